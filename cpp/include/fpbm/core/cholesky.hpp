@@ -1,0 +1,58 @@
+#pragma once
+
+#include <limits>
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
+///
+/// Loops run over compile-time bounds where M is fixed, so that the compiler unrolls them; no square root and
+/// M divisions in all.
+template <int M, typename Scalar = double>
+class Cholesky {
+ public:
+  /// Factorises A, of which only the lower triangle is read.
+  /// Returns false where a pivot is lost in round-off, that is, where A is singular, indefinite or not finite.
+  [[nodiscard]] bool factor(const Matrix<M, M, Scalar>& A) noexcept {
+    const Eigen::Index m = A.rows();
+    const Scalar smallest = kPivotTolerance * A.diagonal().maxCoeff();
+    L_ = A;
+    reciprocal_.resize(m);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      const Scalar pivot = L_(j, j);
+      if (!(pivot > smallest)) return false;
+      reciprocal_(j) = Scalar(1) / pivot;
+      for (Eigen::Index i = j + 1; i < m; ++i) {
+        const Scalar l = L_(i, j) * reciprocal_(j);
+        for (Eigen::Index k = j + 1; k <= i; ++k) L_(i, k) -= l * L_(k, j);
+      }
+      for (Eigen::Index i = j + 1; i < m; ++i) L_(i, j) *= reciprocal_(j);
+    }
+    return true;
+  }
+
+  /// Solution x of A x = b.
+  [[nodiscard]] Vector<M, Scalar> solve(const Vector<M, Scalar>& b) const noexcept {
+    const Eigen::Index m = L_.rows();
+    Vector<M, Scalar> x = b;
+    for (Eigen::Index i = 1; i < m; ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) x(i) -= L_(i, j) * x(j);
+    }
+    for (Eigen::Index i = m - 1; i >= 0; --i) {
+      x(i) *= reciprocal_(i);
+      for (Eigen::Index j = i + 1; j < m; ++j) x(i) -= L_(j, i) * x(j);
+    }
+    return x;
+  }
+
+ private:
+  /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
+  static constexpr Scalar kPivotTolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+
+  Matrix<M, M, Scalar> L_;        ///< Unit lower triangle, below the diagonal.
+  Vector<M, Scalar> reciprocal_;  ///< 1 / D.
+};
+
+}  // namespace fpbm

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/validation.hpp"
+
+/// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
+///
+/// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
+/// too small. The resolvers ask for one thing, solve(A) = W⁻¹A. require_dof throws std::invalid_argument
+/// where W is for another number of joints.
+namespace fpbm {
+
+/// W = I.
+struct UnitWeights {
+  void require_dof(Eigen::Index) const noexcept {}
+
+  template <typename Derived>
+  [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return A.derived();
+  }
+};
+
+/// W = diag(w).
+template <int N, typename Scalar = double>
+class DiagonalWeights {
+ public:
+  /// Throws std::invalid_argument unless all weights are positive and finite.
+  explicit DiagonalWeights(const Vector<N, Scalar>& weights) {
+    validation::require_dof("weights", weights.size(), 1);
+    validation::require_positive("weights", weights);
+    inverse_ = weights.minCoeff() * weights.cwiseInverse();
+  }
+
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
+
+  template <typename Derived>
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return inverse_.asDiagonal() * A.derived();
+  }
+
+ private:
+  Vector<N, Scalar> inverse_;
+};
+
+/// W dense.
+template <int N, typename Scalar = double>
+class DenseWeights {
+ public:
+  /// Throws std::invalid_argument unless W is finite, symmetric (to round-off) and positive definite.
+  explicit DenseWeights(const Matrix<N, N, Scalar>& W) {
+    validation::require_dof("weights", W.rows(), 1);
+    require_symmetric(W);
+    Cholesky<N, Scalar> cholesky;
+    if (!cholesky.factor(W)) throw std::invalid_argument("weights: must be positive definite");
+    inverse_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) inverse_.col(j) = cholesky.solve(inverse_.col(j));
+    inverse_ /= inverse_.diagonal().maxCoeff();
+  }
+
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
+
+  template <typename Derived>
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return inverse_.lazyProduct(A.derived());
+  }
+
+ private:
+  static void require_symmetric(const Matrix<N, N, Scalar>& W) {
+    const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+    validation::require_size("weights (columns)", W.cols(), W.rows());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      for (Eigen::Index i = 0; i < W.rows(); ++i) {
+        const auto name = validation::element("weights", i, j);
+        validation::require_finite(name, static_cast<double>(W(i, j)));
+        using std::abs;
+        if (abs(W(i, j) - W(j, i)) > tolerance * abs(W(i, j))) {
+          validation::fail(name, static_cast<double>(W(i, j)), "equal to its mirror image, since W is symmetric");
+        }
+      }
+    }
+  }
+
+  Matrix<N, N, Scalar> inverse_;
+};
+
+}  // namespace fpbm

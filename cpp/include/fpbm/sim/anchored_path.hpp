@@ -1,0 +1,49 @@
+#pragma once
+
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// A path laid out from where the tip starts, in two segments: the motion, then a hold at rest on its end.
+///
+/// A reference may jump where they meet (the paper's xdd does), so each step of an integrator asks its own segment.
+/// Remembers the last sample, since RK4 asks for each mid-point twice and for each end again as the next start.
+template <typename Path>
+class AnchoredPath {
+ public:
+  using Scalar = typename Path::Scalar;
+  using Space = typename Path::Space;
+  using Point = typename Space::template Point<Scalar>;
+
+  AnchoredPath(const Path& path, const Point& anchor) noexcept
+      : path_(path), anchor_(anchor), end_(anchor), time_(0), last_(from_anchor(Scalar(0))) {
+    end_ = from_anchor(path.duration()).x;
+  }
+
+  /// Reference at t [s] of the motion, whose last instant is T however t is rounded.
+  [[nodiscard]] const Reference<Space, Scalar>& motion(Scalar t) noexcept {
+    if (t != time_) {
+      time_ = t;
+      last_ = from_anchor(t < path_.duration() ? t : path_.duration());
+    }
+    return last_;
+  }
+
+  /// Reference during the hold.
+  [[nodiscard]] Reference<Space, Scalar> hold() const noexcept { return Reference<Space, Scalar>::hold(end_); }
+
+ private:
+  [[nodiscard]] Reference<Space, Scalar> from_anchor(Scalar t) const noexcept {
+    Reference<Space, Scalar> reference = path_.sample(t);
+    reference.x = Space::template displace<Scalar>(anchor_, reference.x);
+    return reference;
+  }
+
+  const Path& path_;
+  Point anchor_;
+  Point end_;
+  Scalar time_;
+  Reference<Space, Scalar> last_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// One sample of a motion, as a rollout shows it to its recorder.
+template <typename Space, int N, typename Scalar = double>
+struct Sample {
+  int index;
+  Scalar t;                                    ///< [s]
+  Vector<N, Scalar> q;                         ///< [rad]
+  Vector<N, Scalar> qd;                        ///< [rad/s]
+  Vector<N, Scalar> qdd;                       ///< [rad/s²]; zero at velocity level, where no scheme gives it.
+  typename Space::template Point<Scalar> tip;  ///< f(q) [m]
+  Reference<Space, Scalar> reference;
+  Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m]
+};
+
+/// A recorder that writes samples row by row into the caller's buffers; a null buffer is left out.
+/// Buffers are row-major: one row per sample, n columns for joint quantities, M for tip quantities.
+template <int M, int N, typename Scalar = double>
+struct MotionBuffers {
+  Scalar* t = nullptr;
+  Scalar* q = nullptr;
+  Scalar* qd = nullptr;
+  Scalar* qdd = nullptr;
+  Scalar* x = nullptr;
+  Scalar* x_ref = nullptr;
+  Scalar* error = nullptr;
+
+  void operator()(const Sample<Position<M>, N, Scalar>& sample) const noexcept {
+    if (t != nullptr) t[sample.index] = sample.t;
+    write(q, sample.index, sample.q);
+    write(qd, sample.index, sample.qd);
+    write(qdd, sample.index, sample.qdd);
+    write(x, sample.index, sample.tip);
+    write(x_ref, sample.index, sample.reference.x);
+    write(error, sample.index, sample.error);
+  }
+
+ private:
+  template <int Rows>
+  static void write(Scalar* buffer, int index, const Vector<Rows, Scalar>& row) noexcept {
+    if (buffer == nullptr) return;
+    Scalar* out = buffer + static_cast<std::ptrdiff_t>(index) * row.size();
+    for (Eigen::Index i = 0; i < row.size(); ++i) out[i] = row(i);
+  }
+};
+
+}  // namespace fpbm

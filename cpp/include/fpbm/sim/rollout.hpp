@@ -1,0 +1,124 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/integrator/rk4.hpp"
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/sim/anchored_path.hpp"
+#include "fpbm/sim/motion.hpp"
+#include "fpbm/sim/time_grid.hpp"
+#include "fpbm/sim/watch.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// How a rollout ended. Where it stopped early, the samples before are good.
+template <int N, typename Scalar = double>
+struct RolloutResult {
+  Status status;          ///< kOk when the whole motion is done; otherwise why it stopped,
+  Scalar time;            ///< when [s],
+  State<N, Scalar> last;  ///< and where: the last good state.
+  int samples;            ///< Samples recorded.
+};
+
+/// An arm under a scheme, as an ordinary differential equation in X = q (velocity level) or X = [q, qd].
+template <typename Arm, typename Scheme, typename Space>
+struct ClosedLoop {
+  using Scalar = typename Arm::Scalar;
+  static constexpr int N = Arm::kDof;
+  static constexpr bool kSecondOrder = Scheme::kLevel == Level::kAcceleration;
+  using X = Matrix<N, kSecondOrder ? 2 : 1, Scalar>;
+
+  const Arm& arm;
+  const Scheme& scheme;
+  Kinematics<Space, N, Scalar> kinematics;
+  State<N, Scalar> state;
+  Vector<N, Scalar> qdd;
+
+  /// dX/dt at X; keeps the kinematics, the state and the accelerations of this evaluation.
+  [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
+    state.q = x.col(0);
+    if constexpr (kSecondOrder) {
+      state.qd = x.col(1);
+      arm.kinematics(state.q, state.qd, kinematics);
+      const Status status = scheme.resolve(kinematics, reference, state, qdd);
+      if (status != Status::kOk) return status;
+      dx.col(0) = state.qd;
+      dx.col(1) = qdd;
+    } else {
+      arm.kinematics(state.q, kinematics);
+      const Status status = scheme.resolve(kinematics, reference, state, state.qd);
+      if (status != Status::kOk) return status;
+      dx.col(0) = state.qd;
+    }
+    return Status::kOk;
+  }
+};
+
+/// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
+///
+/// The path is a displacement from where the tip starts. Velocity-level schemes integrate q (start.qd is not read),
+/// acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time, noexcept.
+/// Throws std::invalid_argument where the scheme or start does not fit the arm or start is not finite, before anything
+/// is recorded; from then on nothing throws or allocates, and what goes wrong is in the result.
+template <typename Arm, typename Path, typename Scheme, typename Recorder>
+RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
+                                                       const State<Arm::kDof, typename Arm::Scalar>& start,
+                                                       const TimeGrid<typename Arm::Scalar>& grid, Recorder&& record) {
+  using Scalar = typename Arm::Scalar;
+  using Space = typename Path::Space;
+  using Loop = ClosedLoop<Arm, Scheme, Space>;
+  using X = typename Loop::X;
+  static_assert(std::is_same_v<typename Path::Scalar, Scalar>, "the path and the arm have one Scalar");
+
+  scheme.require_dof(arm.dof());
+  validation::require_joint_vector("q0", start.q, arm.dof());
+  X x(start.q.size(), Loop::kSecondOrder ? 2 : 1);
+  x.col(0) = start.q;
+  if constexpr (Loop::kSecondOrder) {
+    validation::require_joint_vector("qd0", start.qd, arm.dof());
+    x.col(1) = start.qd;
+  }
+
+  Loop loop{arm, scheme, {}, start, Vector<Arm::kDof, Scalar>::Zero(start.q.size())};
+  arm.kinematics(start.q, loop.kinematics);
+  AnchoredPath<Path> references(path, loop.kinematics.tip);
+
+  X dx = x;
+  TaskWatch<Space::kRows, Scalar> watch;
+  typename AnchoredPath<Path>::Point before = loop.kinematics.tip;
+  RolloutResult<Arm::kDof, Scalar> result{Status::kOk, Scalar(0), start, 0};
+  for (int i = 0;; ++i) {
+    const Scalar t = grid.time(i);
+    const bool last = i == grid.steps();
+    const bool moving = i < grid.motion_steps() || (last && grid.hold_steps() == 0);
+    const auto derivative = [&](Scalar stage_t, const X& stage_x, X& stage_dx) noexcept {
+      return loop.evaluate(moving ? references.motion(stage_t) : references.hold(), stage_x, stage_dx);
+    };
+
+    result.status = derivative(t, x, dx);
+    if (result.status != Status::kOk) break;
+    const Reference<Space, Scalar> reference = moving ? references.motion(t) : references.hold();
+    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(reference.x, loop.kinematics.tip);
+    const Vector<Space::kRows, Scalar> error_rate = reference.xd - loop.kinematics.J.lazyProduct(loop.state.qd);
+    const Scalar travel = Space::template difference<Scalar>(reference.x, before).norm();
+    result.status = watch.check(error, error_rate, grid.dt(), travel, loop.kinematics.J.cwiseAbs().maxCoeff());
+    if (result.status != Status::kOk) break;
+    before = reference.x;
+
+    result.time = t;
+    result.last = loop.state;
+    result.samples = i + 1;
+    record(Sample<Space, Arm::kDof, Scalar>{i, t, loop.state.q, loop.state.qd, loop.qdd, loop.kinematics.tip, reference,
+                                            error});
+    if (last) break;
+    result.status = RK4::step(derivative, t, grid.dt(), dx, x);
+    if (result.status != Status::kOk) break;
+  }
+  return result;
+}
+
+}  // namespace fpbm

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/task/reference.hpp"
+#include "fpbm/task/shapes.hpp"
+#include "fpbm/task/time_law.hpp"
+
+namespace fpbm {
+
+/// A shape run through under a time law in T seconds, then held.
+///
+/// With s(τ), τ = t/T, from the time law and d(s) from the shape:
+///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,
+/// all as displacements from where the tip starts. A value: sample() may be asked for any t, in any order.
+template <typename Shape, typename TimeLaw = SinSquared>
+class Path {
+ public:
+  using Scalar = typename Shape::Scalar;
+  using Space = typename Shape::Space;
+
+  /// Throws std::invalid_argument unless duration [s] is positive and finite.
+  Path(const Shape& shape, Scalar duration, const TimeLaw& time_law = {})
+      : shape_(shape), duration_(duration), time_law_(time_law) {
+    validation::require_positive("duration", static_cast<double>(duration));
+  }
+
+  [[nodiscard]] Scalar duration() const noexcept { return duration_; }
+
+  /// Reference at t [s]: on the path for 0 ≤ t ≤ T, both ends included, and at rest on its ends outside.
+  [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept {
+    if (t < Scalar(0)) return Reference<Space, Scalar>::hold(shape_.at(Scalar(0)).d);
+    if (t > duration_) return Reference<Space, Scalar>::hold(shape_.at(Scalar(1)).d);
+    const Phase<Scalar> phase = time_law_.at(t / duration_);
+    const Scalar sd = phase.sd / duration_;
+    const Scalar sdd = phase.sdd / (duration_ * duration_);
+    const Curve<Space::kRows, Scalar> curve = shape_.at(phase.s);
+    return {curve.d, curve.d1 * sd, curve.d2 * (sd * sd) + curve.d1 * sdd};
+  }
+
+ private:
+  Shape shape_;
+  Scalar duration_;
+  TimeLaw time_law_;
+};
+
+}  // namespace fpbm

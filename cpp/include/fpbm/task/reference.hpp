@@ -1,0 +1,20 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// What the tip is to do at one instant.
+template <typename Space, typename Scalar = double>
+struct Reference {
+  typename Space::template Point<Scalar> x;  ///< Where the tip is to be, in the base frame [m].
+  Vector<Space::kRows, Scalar> xd;           ///< Its velocity [m/s].
+  Vector<Space::kRows, Scalar> xdd;          ///< Its acceleration [m/s²].
+
+  /// At rest on x.
+  [[nodiscard]] static Reference hold(const typename Space::template Point<Scalar>& x) noexcept {
+    return {x, Vector<Space::kRows, Scalar>::Zero(), Vector<Space::kRows, Scalar>::Zero()};
+  }
+};
+
+}  // namespace fpbm

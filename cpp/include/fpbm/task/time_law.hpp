@@ -1,0 +1,43 @@
+#pragma once
+
+#include "fpbm/core/sincos.hpp"
+
+namespace fpbm {
+
+/// Fraction s of a path that is done, and its first two derivatives with respect to time.
+template <typename Scalar>
+struct Phase {
+  Scalar s;
+  Scalar sd;
+  Scalar sdd;
+};
+
+/// The paper's law, s(τ) = sin²(πτ/2): at rest at both ends, where the acceleration steps.
+struct SinSquared {
+  template <typename Scalar>
+  [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {
+    constexpr auto kPi = static_cast<Scalar>(3.14159265358979323846);
+    const SinCos<Scalar> angle = sincos(kPi * tau);
+    return {(Scalar(1) - angle.cos) / Scalar(2), kPi / Scalar(2) * angle.sin, kPi * kPi / Scalar(2) * angle.cos};
+  }
+};
+
+/// s(τ) = 10τ³ − 15τ⁴ + 6τ⁵: velocity and acceleration are zero at both ends.
+struct Quintic {
+  template <typename Scalar>
+  [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {
+    const Scalar rest = Scalar(1) - tau;
+    return {tau * tau * tau * (Scalar(10) + tau * (Scalar(6) * tau - Scalar(15))), Scalar(30) * tau * tau * rest * rest,
+            Scalar(60) * tau * rest * (rest - tau)};
+  }
+};
+
+/// s(τ) = τ: constant parameter speed, so the tip starts and stops with a jump in velocity.
+struct ConstantSpeed {
+  template <typename Scalar>
+  [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {
+    return {tau, Scalar(1), Scalar(0)};
+  }
+};
+
+}  // namespace fpbm
