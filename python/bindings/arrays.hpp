@@ -1,0 +1,85 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "fpbm/core/validation.hpp"
+
+namespace py = pybind11;
+
+namespace fpbm::bindings {
+
+/// Whatever numpy.asarray takes: an argument that is checked and converted here, so that a wrong one is a ValueError
+/// with its name.
+class ArrayLike : public py::object {
+ public:
+  PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, PyObject_Type)  // NOLINT: every Python object is a candidate.
+};
+
+/// Real numbers in an array of the given number of dimensions. Throws std::invalid_argument.
+inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argument, const char* name, int dimensions) {
+  const auto any = py::array::ensure(argument);
+  if (!any || (any.dtype().kind() != 'f' && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')) {
+    PyErr_Clear();
+    throw std::invalid_argument(std::string(name) + ": must be real numbers in an array or a plain sequence, got " +
+                                py::cast<std::string>(py::repr(argument)).substr(0, 80));
+  }
+  if (any.ndim() != dimensions) {
+    throw std::invalid_argument(std::string(name) + ": must have " + std::to_string(dimensions) +
+                                (dimensions == 1 ? " dimension" : " dimensions") + ", got shape " +
+                                py::cast<std::string>(py::str(any.attr("shape"))));
+  }
+  return py::array_t<double, py::array::c_style | py::array::forcecast>(any);
+}
+
+/// A vector of exactly `size` finite entries.
+template <int Size>
+Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
+  const auto array = real_array(argument, name, 1);
+  if (array.size() != Size) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.size()) +
+                                " entries: must have " + std::to_string(Size));
+  }
+  const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
+  validation::require_finite(name, result);
+  return result;
+}
+
+/// One entry per joint: 1 to kMaxDof of them, not yet checked further.
+inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char* name) {
+  const auto array = real_array(argument, name, 1);
+  validation::require_dof(name, array.size(), 1);
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+}
+
+/// One finite entry per joint of an arm.
+inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char* name, int dof) {
+  const auto array = real_array(argument, name, 1);
+  const Eigen::Map<const Eigen::VectorXd> values(array.data(), array.size());
+  validation::require_joint_vector(name, values, dof);
+  return values;
+}
+
+/// One row and one column per joint.
+inline Matrix<Eigen::Dynamic, Eigen::Dynamic> joint_matrix(const ArrayLike& argument, const char* name) {
+  const auto array = real_array(argument, name, 2);
+  validation::require_dof(name, array.shape(0), 1);
+  if (array.shape(1) != array.shape(0)) {
+    throw std::invalid_argument(std::string(name) + ": must be square, got shape (" + std::to_string(array.shape(0)) +
+                                ", " + std::to_string(array.shape(1)) + ")");
+  }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
+}
+
+}  // namespace fpbm::bindings
+
+namespace pybind11::detail {
+template <>
+struct handle_type_name<fpbm::bindings::ArrayLike> {
+  static constexpr auto name = const_name("numpy.typing.ArrayLike");
+};
+}  // namespace pybind11::detail

@@ -1,0 +1,53 @@
+"""Redundancy resolution for robot arms, in closed form.
+
+An arm with more joints than its task needs must decide how every joint moves so that the tip follows its path. The
+schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration level (MAN, WMVNAcceleration, Balanced,
+FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
+"""
+
+from ._core import (
+    FPBM,
+    MAN,
+    MAX_DOF,
+    MVN,
+    WMVN,
+    Balanced,
+    Circle,
+    JointLimits,
+    Line,
+    Lissajous,
+    Path,
+    PlanarArm,
+    Scheme,
+    Status,
+    Tricuspid,
+    WMVNAcceleration,
+    __version__,
+)
+from ._errors import ResolutionError
+from .run import Run, RunStatus
+from .simulate import simulate
+
+__all__ = [
+    "FPBM",
+    "MAN",
+    "MAX_DOF",
+    "MVN",
+    "WMVN",
+    "Balanced",
+    "Circle",
+    "JointLimits",
+    "Line",
+    "Lissajous",
+    "Path",
+    "PlanarArm",
+    "ResolutionError",
+    "Run",
+    "RunStatus",
+    "Scheme",
+    "Status",
+    "Tricuspid",
+    "WMVNAcceleration",
+    "__version__",
+    "simulate",
+]

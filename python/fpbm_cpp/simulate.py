@@ -1,0 +1,74 @@
+"""Simulation of a whole motion."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._core import Path, PlanarArm, Scheme, Status
+from ._errors import ResolutionError
+from .run import Run, RunStatus
+
+
+def simulate(
+    arm: PlanarArm,
+    path: Path,
+    scheme: Scheme,
+    q0: ArrayLike,
+    *,
+    dt: float = 1e-3,
+    hold: float = 0.0,
+    qd0: ArrayLike | None = None,
+    task: str = "position",
+    partial: bool = False,
+) -> Run:
+    """Move an arm along a path under a scheme, by RK4 at fixed steps.
+
+    The path is a displacement from where the tip starts, f(q0). Velocity-level schemes integrate q, acceleration-level
+    schemes q and qd. Runs without the interpreter's lock.
+
+    Parameters
+    ----------
+    arm, path, scheme
+        What moves, along what, and how.
+    q0 : array_like, shape (n,)
+        Joint positions at the start [rad].
+    dt : float
+        Step [s]; it must divide the path's duration and the hold.
+    hold : float
+        How long to stay at rest on the path's end afterwards [s].
+    qd0 : array_like, shape (n,), optional
+        Joint velocities at the start [rad/s], zero unless given; velocity-level schemes do not read them.
+    task : str
+        'position'.
+    partial : bool
+        Where the motion must stop early, return the part that was done rather than raise.
+
+    Returns
+    -------
+    Run
+        The motion; run.status says how it ended.
+
+    Raises
+    ------
+    ValueError
+        Where an argument is out of range, not finite, or of the wrong shape; nothing is run.
+    ResolutionError
+        Where the motion must stop early; the exception's run holds the part before.
+    """
+    if task != "position":
+        raise ValueError(f"task = {task!r}: a planar arm has task 'position'")
+    if qd0 is None:
+        qd0 = np.zeros(arm.dof)
+    code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold)
+    if samples < len(arrays[0]):
+        arrays = tuple(array[:samples].copy() for array in arrays)
+    t, q, qd, qdd, x, x_ref, error = arrays
+    if scheme.level == "velocity" and samples > 1:
+        qdd = np.gradient(qd, t, axis=0)
+    status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
+    run = Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme)
+    if code is not Status.OK and not partial:
+        raise ResolutionError(code, str(status), run)
+    return run
