@@ -3,7 +3,9 @@
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 
 #include "fpbm/core/validation.hpp"
@@ -12,11 +14,15 @@ namespace py = pybind11;
 
 namespace fpbm::bindings {
 
+inline bool is_candidate(const PyObject* /*object*/) {
+  return true;
+}
+
 /// Whatever numpy.asarray takes: an argument that is checked and converted here, so that a wrong one is a ValueError
 /// with its name.
 class ArrayLike : public py::object {
  public:
-  PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, PyObject_Type)  // NOLINT: every Python object is a candidate.
+  PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)
 };
 
 /// Real numbers in an array of the given number of dimensions. Throws std::invalid_argument.
@@ -35,13 +41,15 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
   return py::array_t<double, py::array::c_style | py::array::forcecast>(any);
 }
 
+using OptionalArray = std::optional<ArrayLike>;
+
 /// A vector of exactly `size` finite entries.
 template <int Size>
 Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
   if (array.size() != Size) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.size()) +
-                                " entries: must have " + std::to_string(Size));
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.size()) + " entries: must have " +
+                                std::to_string(Size));
   }
   const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
   validation::require_finite(name, result);

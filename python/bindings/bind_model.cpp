@@ -7,8 +7,6 @@
 #include "py_arm.hpp"
 #include "text.hpp"
 
-#include <pybind11/stl.h>
-
 namespace fpbm::bindings {
 namespace {
 
@@ -68,32 +66,38 @@ ValueError
       .def(py::init([](const ArrayLike& lengths) { return PyPlanarArm(joint_vector(lengths, "lengths")); }),
            py::arg("lengths"))
       .def_property_readonly("dof", &PyPlanarArm::dof, "Number of joints n.")
-      .def_property_readonly("lengths", [](const PyPlanarArm& arm) { return Eigen::VectorXd(arm.lengths()); },
-                             "Link lengths [m], shape (n,).")
-      .def_property_readonly("joint_names", [](const PyPlanarArm& arm) { return joint_names(arm.dof()); },
-                             "Names of the joints, from the base on.")
-      .def_property_readonly("limits", [](const PyPlanarArm& arm) { return JointLimits::none(arm.dof()); },
-                             "Joint limits: a planar arm has none.")
-      .def("forward",
-           [](const PyPlanarArm& arm, const ArrayLike& q) {
-             return Eigen::Vector2d(kinematics(arm, q, q, "position").tip);
-           },
-           py::arg("q"), "Tip position f(q) in the base frame [m], shape (2,). q: shape (n,) [rad].")
-      .def("jacobian",
-           [](const PyPlanarArm& arm, const ArrayLike& q, const std::string& task) {
-             return Eigen::MatrixXd(kinematics(arm, q, q, task).J);
-           },
-           py::arg("q"), py::kw_only(), py::arg("task") = "position",
-           "Task Jacobian J(q), shape (2, n) [m/rad]: tip velocity is J qd. q: shape (n,) [rad].")
-      .def("jacobian_dot",
-           [](const PyPlanarArm& arm, const ArrayLike& q, const ArrayLike& qd, const std::string& task) {
-             return Eigen::MatrixXd(kinematics(arm, q, qd, task).Jd);
-           },
-           py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("task") = "position",
-           "dJ/dt along qd, shape (2, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
-      .def("__eq__",
-           [](const PyPlanarArm& arm, const PyPlanarArm& other) { return arm.lengths() == other.lengths(); },
-           py::is_operator())
+      .def_property_readonly(
+          "lengths", [](const PyPlanarArm& arm) { return Eigen::VectorXd(arm.lengths()); },
+          "Link lengths [m], shape (n,).")
+      .def_property_readonly(
+          "joint_names", [](const PyPlanarArm& arm) { return joint_names(arm.dof()); },
+          "Names of the joints, from the base on.")
+      .def_property_readonly(
+          "limits", [](const PyPlanarArm& arm) { return JointLimits::none(arm.dof()); },
+          "Joint limits: a planar arm has none.")
+      .def(
+          "forward",
+          [](const PyPlanarArm& arm, const ArrayLike& q) {
+            return Eigen::Vector2d(kinematics(arm, q, q, "position").tip);
+          },
+          py::arg("q"), "Tip position f(q) in the base frame [m], shape (2,). q: shape (n,) [rad].")
+      .def(
+          "jacobian",
+          [](const PyPlanarArm& arm, const ArrayLike& q, const std::string& task) {
+            return Eigen::MatrixXd(kinematics(arm, q, q, task).J);
+          },
+          py::arg("q"), py::kw_only(), py::arg("task") = "position",
+          "Task Jacobian J(q), shape (2, n) [m/rad]: tip velocity is J qd. q: shape (n,) [rad].")
+      .def(
+          "jacobian_dot",
+          [](const PyPlanarArm& arm, const ArrayLike& q, const ArrayLike& qd, const std::string& task) {
+            return Eigen::MatrixXd(kinematics(arm, q, qd, task).Jd);
+          },
+          py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("task") = "position",
+          "dJ/dt along qd, shape (2, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
+      .def(
+          "__eq__", [](const PyPlanarArm& arm, const PyPlanarArm& other) { return arm.lengths() == other.lengths(); },
+          py::is_operator())
       .def("__hash__", [](const PyPlanarArm& arm) { return py::hash(py::str(text(arm.lengths()))); })
       .def("__repr__", [](const PyPlanarArm& arm) { return "PlanarArm(" + text(arm.lengths()) + ")"; })
       .def(py::pickle([](const PyPlanarArm& arm) { return Eigen::VectorXd(arm.lengths()); },

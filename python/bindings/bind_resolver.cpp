@@ -6,7 +6,6 @@
 #include "text.hpp"
 
 #include <pybind11/native_enum.h>
-#include <pybind11/stl.h>
 
 namespace fpbm::bindings {
 namespace {
@@ -31,8 +30,8 @@ void set_weights(PyScheme& scheme, const ArrayLike& weights) {
 }
 
 /// The null-space options and the closing of repr; a trial visit checks all parameters against each other.
-PyScheme finish(PyScheme scheme, double null_damping, const py::object& rest_posture, double null_stiffness,
-                const py::object& c) {
+PyScheme finish(PyScheme scheme, double null_damping, const OptionalArray& rest_posture, double null_stiffness,
+                const OptionalArray& c) {
   const auto note = [&scheme](const std::string& option) {
     if (scheme.repr.back() != '(') scheme.repr += ", ";
     scheme.repr += option;
@@ -43,13 +42,13 @@ PyScheme finish(PyScheme scheme, double null_damping, const py::object& rest_pos
   scheme.null_damping = null_damping;
   if (null_damping != 0.0) note("null_damping=" + text(null_damping));
   scheme.null_stiffness = null_stiffness;
-  if (!rest_posture.is_none()) {
-    scheme.rest_posture = joint_vector(py::cast<ArrayLike>(rest_posture), "rest_posture");
+  if (rest_posture) {
+    scheme.rest_posture = joint_vector(*rest_posture, "rest_posture");
     if (dof == 0) dof = scheme.rest_posture->size();
     note("rest_posture=" + text(*scheme.rest_posture) + ", null_stiffness=" + text(null_stiffness));
   }
-  if (!c.is_none()) {
-    scheme.c = joint_vector(py::cast<ArrayLike>(c), "c");
+  if (c) {
+    scheme.c = joint_vector(*c, "c");
     if (dof == 0) dof = scheme.c->size();
     note("c=" + text(*scheme.c));
   }
@@ -77,12 +76,12 @@ void set_gain(PyScheme& scheme, double k) {
 }
 
 Eigen::VectorXd resolve(const PyScheme& scheme, const PyPlanarArm& arm, const ArrayLike& q, const ArrayLike& qd,
-                        const ArrayLike& x, const ArrayLike& xd, const py::object& xdd, const std::string& task) {
+                        const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const std::string& task) {
   PyPlanarArm::require_task(task);
   const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
   Reference<Position<2>> reference{fixed_vector<2>(x, "x"), fixed_vector<2>(xd, "xd"), Vector<2>::Zero()};
-  if (!xdd.is_none()) {
-    reference.xdd = fixed_vector<2>(py::cast<ArrayLike>(xdd), "xdd");
+  if (xdd) {
+    reference.xdd = fixed_vector<2>(*xdd, "xdd");
   } else if (scheme.level() == Level::kAcceleration) {
     throw std::invalid_argument("xdd: an acceleration-level scheme needs it");
   }
@@ -174,12 +173,11 @@ ResolutionError
       .def("__repr__", [](const PyScheme& scheme) { return scheme.repr; });
 
   struct PyMVN : PyScheme {};
-  py::class_<PyMVN, PyScheme>(
-      m, "MVN",
-      (std::string("Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).") + kParameters +
-       kVelocityOptions)
-          .c_str())
-      .def(py::init([](double k, const py::object& rest, double stiffness, const py::object& c) {
+  py::class_<PyMVN, PyScheme>(m, "MVN",
+                              (std::string("Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).") +
+                               kParameters + kVelocityOptions)
+                                  .c_str())
+      .def(py::init([](double k, const OptionalArray& rest, double stiffness, const OptionalArray& c) {
              PyScheme scheme = begin(Law::kWMVN, "MVN");
              set_gain(scheme, k);
              return PyMVN{finish(scheme, 0.0, rest, stiffness, c)};
@@ -188,13 +186,12 @@ ResolutionError
            py::arg("c") = py::none());
 
   struct PyWMVN : PyScheme {};
-  py::class_<PyWMVN, PyScheme>(
-      m, "WMVN",
-      (std::string("Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd.") + kParameters +
-       kWeightsText + kVelocityOptions)
-          .c_str())
-      .def(py::init([](const ArrayLike& weights, double k, const py::object& rest, double stiffness,
-                       const py::object& c) {
+  py::class_<PyWMVN, PyScheme>(m, "WMVN",
+                               (std::string("Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd.") +
+                                kParameters + kWeightsText + kVelocityOptions)
+                                   .c_str())
+      .def(py::init([](const ArrayLike& weights, double k, const OptionalArray& rest, double stiffness,
+                       const OptionalArray& c) {
              PyScheme scheme = begin(Law::kWMVN, "WMVN");
              set_weights(scheme, weights);
              set_gain(scheme, k);
@@ -209,7 +206,7 @@ ResolutionError
       (std::string("Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5).") +
        kParameters + kAccelerationOptions)
           .c_str())
-      .def(py::init([](double damping, const py::object& rest, double stiffness, const py::object& c) {
+      .def(py::init([](double damping, const OptionalArray& rest, double stiffness, const OptionalArray& c) {
              return PyMAN{finish(begin(Law::kMAN, "MAN"), damping, rest, stiffness, c)};
            }),
            py::kw_only(), py::arg("null_damping") = 0.0, py::arg("rest_posture") = py::none(),
@@ -222,8 +219,8 @@ ResolutionError
                    "qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.") +
        kParameters + kWeightsText + kAccelerationOptions)
           .c_str())
-      .def(py::init([](const ArrayLike& weights, double damping, const py::object& rest, double stiffness,
-                       const py::object& c) {
+      .def(py::init([](const ArrayLike& weights, double damping, const OptionalArray& rest, double stiffness,
+                       const OptionalArray& c) {
              PyScheme scheme = begin(Law::kFPBM, "WMVNAcceleration");
              scheme.alpha = 1.0;
              set_weights(scheme, weights);
@@ -238,8 +235,8 @@ ResolutionError
       (std::string("Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9).") +
        kParameters + kAlphaText + kWeightsText + kAccelerationOptions)
           .c_str())
-      .def(py::init([](double alpha, const ArrayLike& weights, double damping, const py::object& rest,
-                       double stiffness, const py::object& c) {
+      .def(py::init([](double alpha, const ArrayLike& weights, double damping, const OptionalArray& rest,
+                       double stiffness, const OptionalArray& c) {
              PyScheme scheme = begin(Law::kFPBM, "Balanced");
              scheme.alpha = alpha;
              scheme.repr += "alpha=" + text(alpha) + ", ";
@@ -252,15 +249,16 @@ ResolutionError
   struct PyFPBM : PyScheme {};
   py::class_<PyFPBM, PyScheme>(
       m, "FPBM",
-      (std::string("Feedback-added pseudoinverse-type balanced minimisation, (13).\n\n"
-                   "The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so\n"
-                   "that the tip error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.") +
+      (std::string(
+           "Feedback-added pseudoinverse-type balanced minimisation, (13).\n\n"
+           "The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so\n"
+           "that the tip error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.") +
        kParameters + kAlphaText + kWeightsText +
        "\nk1, k2 : float\n    Feedback gains on velocity [1/s] and position [1/s^2], not negative." +
        kAccelerationOptions)
           .c_str())
       .def(py::init([](double alpha, const ArrayLike& weights, double k1, double k2, double damping,
-                       const py::object& rest, double stiffness, const py::object& c) {
+                       const OptionalArray& rest, double stiffness, const OptionalArray& c) {
              PyScheme scheme = begin(Law::kFPBM, "FPBM");
              scheme.alpha = alpha;
              scheme.k1 = k1;

@@ -28,8 +28,7 @@ py::tuple simulate(const PyPlanarArm& arm, const PyPath& path, const PyScheme& s
     const py::gil_scoped_release others_may_run;
     result = arm.model().simulate(scheme, path, start, grid, buffers);
   }
-  return py::make_tuple(result.status, result.time, result.samples,
-                        py::make_tuple(t, q, qd, qdd, x, x_ref, error));
+  return py::make_tuple(result.status, result.time, result.samples, py::make_tuple(t, q, qd, qdd, x, x_ref, error));
 }
 
 }  // namespace

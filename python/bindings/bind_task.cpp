@@ -3,17 +3,15 @@
 #include "path.hpp"
 #include "text.hpp"
 
-#include <pybind11/stl.h>
-
 namespace fpbm::bindings {
+
 namespace {
 
 AnyTimeLaw time_law(const std::string& name) {
   if (name == "sin_squared") return {SinSquared{}};
   if (name == "quintic") return {Quintic{}};
   if (name == "constant_speed") return {ConstantSpeed{}};
-  throw std::invalid_argument("time_law = '" + name +
-                              "': must be 'sin_squared', 'quintic' or 'constant_speed'");
+  throw std::invalid_argument("time_law = '" + name + "': must be 'sin_squared', 'quintic' or 'constant_speed'");
 }
 
 /// "Name(first, …, duration=T, time_law='law')".
@@ -33,16 +31,18 @@ void bind_task(py::module_& m) {
 
 A displacement from where the tip starts, so that x(0) = f(q0). The time laws give the fraction done, with tau = t/T:
 'sin_squared', the paper's sin^2(pi tau / 2); 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5; 'constant_speed', tau.)")
-      .def_property_readonly("duration", [](const PyPath& path) { return path.duration(); }, "T [s].")
-      .def("sample",
-           [](const PyPath& path, double t) {
-             validation::require_finite("t", t);
-             const Reference<Position<2>> reference = path.sample(t);
-             return py::make_tuple(Eigen::Vector2d(reference.x), Eigen::Vector2d(reference.xd),
-                                   Eigen::Vector2d(reference.xdd));
-           },
-           py::arg("t"),
-           "(x, xd, xdd) at t [s], each of shape (2,) [m, m/s, m/s^2]; at rest on the path's ends outside 0 <= t <= T.")
+      .def_property_readonly(
+          "duration", [](const PyPath& path) { return path.duration(); }, "T [s].")
+      .def(
+          "sample",
+          [](const PyPath& path, double t) {
+            validation::require_finite("t", t);
+            const Reference<Position<2>> reference = path.sample(t);
+            return py::make_tuple(Eigen::Vector2d(reference.x), Eigen::Vector2d(reference.xd),
+                                  Eigen::Vector2d(reference.xdd));
+          },
+          py::arg("t"),
+          "(x, xd, xdd) at t [s], each of shape (2,) [m, m/s, m/s^2]; at rest on the path's ends outside 0 <= t <= T.")
       .def("__repr__", [](const PyPath& path) { return path.repr; });
 
   const auto law = py::arg("time_law") = "sin_squared";
@@ -95,11 +95,11 @@ ValueError
       .def(py::init([](const ArrayLike& amplitude, double duration, const Vector<2, int>& frequencies, double phase,
                        const std::string& name) {
              const bool one = py::isinstance<py::float_>(amplitude) || py::isinstance<py::int_>(amplitude);
-             const Vector<2> both = one ? Vector<2>::Constant(py::cast<double>(amplitude))
-                                        : fixed_vector<2>(amplitude, "amplitude");
-             return PyLissajous{make_path(Lissajous<double>(both, frequencies, phase), duration, name,
-                                          "Lissajous(" + text(both) + ", frequencies=" + text(frequencies) +
-                                              ", phase=" + text(phase))};
+             const Vector<2> both =
+                 one ? Vector<2>::Constant(py::cast<double>(amplitude)) : fixed_vector<2>(amplitude, "amplitude");
+             return PyLissajous{make_path(
+                 Lissajous<double>(both, frequencies, phase), duration, name,
+                 "Lissajous(" + text(both) + ", frequencies=" + text(frequencies) + ", phase=" + text(phase))};
            }),
            py::arg("amplitude"), py::arg("duration"), py::kw_only(), py::arg("frequencies") = Vector<2, int>(2, 1),
            py::arg("phase") = kTurn / 12.0, law);

@@ -17,9 +17,7 @@ class AnyShape {
   template <typename Shape>
   explicit AnyShape(const Shape& shape) : shape_(shape) {}
 
-  [[nodiscard]] Curve<2, double> at(double s) const noexcept {
-    return std::visit([s](const auto& shape) { return shape.at(s); }, shape_);
-  }
+  [[nodiscard]] Curve<2, double> at(double s) const noexcept;
 
  private:
   std::variant<Circle<double>, Lissajous<double>, Tricuspid<double>, Line<2, double>> shape_;
@@ -29,9 +27,7 @@ class AnyShape {
 struct AnyTimeLaw {
   std::variant<SinSquared, Quintic, ConstantSpeed> law;
 
-  [[nodiscard]] Phase<double> at(double tau) const noexcept {
-    return std::visit([tau](const auto& chosen) { return chosen.at(tau); }, law);
-  }
+  [[nodiscard]] Phase<double> at(double tau) const noexcept;
 };
 
 /// A path as Python sees it: Path itself, and how it was made.

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "fpbm/core/types.hpp"
+#include <cstddef>
+
+#include "fpbm/core/space.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {

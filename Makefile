@@ -1,0 +1,76 @@
+# Every target installs what it needs: Debian packages where they are missing, Python packages into .venv.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+OUT ?= demo
+PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
+EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
+GTEST := /usr/include/gtest/gtest.h:libgtest-dev
+BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
+CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
+
+.PHONY: help demo test test-cpp test-python clang sanitize lint format stubs bench clean
+
+help:
+	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
+	@echo 'make test             build and run every test'
+	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
+	@echo 'make lint             formatting, static analysis, types, stubs'
+	@echo 'make bench            build and run the benchmarks'
+	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
+
+demo: $(VENV)/package
+	$(BIN)/fpbm-cpp reproduce --out $(OUT)
+	@echo 'Report, tables and figures are in $(CURDIR)/$(OUT)'
+
+test: test-cpp test-python
+
+test-cpp: preset = release
+clang: preset = clang
+sanitize: preset = sanitize
+test-cpp clang sanitize:
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang,$(preset)),clang++:clang)
+	cmake --preset $(preset)
+	cmake --build --preset $(preset)
+	ctest --preset $(preset)
+
+test-python: $(VENV)/package $(VENV)/test
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/package $(VENV)/lint
+	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)
+	clang-format --dry-run --Werror $(CXX_SOURCES)
+	clang-tidy --quiet tools/umbrella.cpp -- -std=c++17 -I$(CURDIR)/cpp/include -isystem /usr/include/eigen3
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy --python-executable $(BIN)/python
+	$(BIN)/python tools/stubs.py --check
+
+format: $(VENV)/lint
+	tools/need.sh clang-format
+	clang-format -i $(CXX_SOURCES)
+	$(BIN)/ruff format .
+
+stubs: $(VENV)/package $(VENV)/lint
+	$(BIN)/python tools/stubs.py
+
+bench: $(VENV)/package $(VENV)/test
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
+	cmake --preset bench
+	cmake --build --preset bench
+	build/bench/bench/step --benchmark_min_time=0.2
+	$(BIN)/python bench/simulate.py
+
+clean:
+	rm -rf build $(VENV) demo
+
+# The package with its command line, and the tools of a dependency group in pyproject.toml.
+$(VENV)/package: $(PACKAGE)
+	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
+	$(BIN)/python -m pip install '.[cli]'
+	@touch $@
+
+$(VENV)/test $(VENV)/lint: pyproject.toml | $(VENV)/package
+	$(BIN)/python -m pip install --quiet --group $(notdir $@)
+	@touch $@

@@ -1,0 +1,1 @@
+#include "fpbm/fpbm.hpp"  // What clang-tidy reads to see every header.
