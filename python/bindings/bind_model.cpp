@@ -31,7 +31,8 @@ std::vector<std::string> joint_names(int dof) {
 Kinematics<Position<2>, kDynamic> kinematics(const PyPlanarArm& arm, const ArrayLike& q, const ArrayLike& qd,
                                              const std::string& task) {
   PyPlanarArm::require_task(task);
-  return arm.model().kinematics(joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof()));
+  const ArmModel::Joints positions = joint_vector(q, "q", arm.dof());
+  return arm.model().kinematics(positions, joint_vector(qd, "qd", arm.dof()));
 }
 
 }  // namespace

@@ -1,0 +1,84 @@
+"""Paths: exact derivatives, a start at zero, a hold after the end."""
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+LAWS = ["sin_squared", "quintic", "constant_speed"]
+SHAPES = {
+    "circle": lambda law: fp.Circle(0.45, 8.0, time_law=law),
+    "lissajous": lambda law: fp.Lissajous((0.4, 0.3), 8.0, frequencies=(3, 2), phase=0.7, time_law=law),
+    "tricuspid": lambda law: fp.Tricuspid(0.3, 8.0, time_law=law),
+    "line": lambda law: fp.Line([0.5, -1.0], 8.0, time_law=law),
+}
+
+
+@pytest.fixture(params=[(shape, law) for shape in SHAPES for law in LAWS], ids="-".join)
+def path(request):
+    shape, law = request.param
+    return SHAPES[shape](law)
+
+
+def test_derivatives(path):
+    h = 1e-5
+    for t in np.linspace(0.1, 7.9, 40):
+        before, here, after = path.sample(t - h), path.sample(t), path.sample(t + h)
+        np.testing.assert_allclose((after[0] - before[0]) / (2 * h), here[1], atol=1e-7)
+        np.testing.assert_allclose((after[1] - before[1]) / (2 * h), here[2], atol=1e-6)
+
+
+def test_ends(path):
+    np.testing.assert_allclose(path.sample(0.0)[0], 0, atol=1e-15)
+    x, xd, xdd = path.sample(path.duration + 1.0)
+    np.testing.assert_allclose(x, [0.5, -1.0] if "Line" in repr(path) else 0, atol=1e-14)
+    assert not xd.any()
+    assert not xdd.any()
+    assert not np.any(path.sample(-1.0)[1:])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_papers_shapes(law):
+    for t in np.linspace(0, 10, 11):
+        tau = t / 10
+        s = {"sin_squared": np.sin(np.pi * tau / 2) ** 2, "quintic": tau**3 * (10 - 15 * tau + 6 * tau**2)}.get(law, tau)
+        phi = 2 * np.pi * s
+        expected = {
+            fp.Circle(0.45, 10.0, time_law=law): 0.45 * np.array([np.cos(phi) - 1, np.sin(phi)]),
+            fp.Lissajous(0.4, 10.0, time_law=law): 0.4
+            * np.array(
+                [np.cos(2 * phi + np.pi / 6) - np.cos(np.pi / 6), np.sin(phi + np.pi / 6) - np.sin(np.pi / 6)]
+            ),
+            fp.Tricuspid(0.3, 10.0, time_law=law): 0.3
+            * np.array([2 * np.cos(phi) + np.cos(2 * phi) - 3, 2 * np.sin(phi) - np.sin(2 * phi)]),
+        }
+        for path, x in expected.items():
+            np.testing.assert_allclose(path.sample(t)[0], x, atol=1e-14)
+
+
+def test_repr_says_how_it_was_made():
+    assert repr(fp.Circle(0.45, 10.0)) == "Circle(0.45, duration=10, time_law='sin_squared')"
+    assert repr(fp.Line([1, 2], 3.0, time_law="quintic")) == "Line([1, 2], duration=3, time_law='quintic')"
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: fp.Circle(0.0, 10.0), "radius = 0: must be positive"),
+        (lambda: fp.Circle(np.nan, 10.0), "radius = nan"),
+        (lambda: fp.Circle(0.45, -1.0), "duration = -1: must be positive"),
+        (lambda: fp.Circle(0.45, np.inf), "duration = inf"),
+        (lambda: fp.Circle(0.45, 10.0, time_law="linear"), "time_law = 'linear': must be 'sin_squared'"),
+        (lambda: fp.Tricuspid(-0.3, 10.0), "size = -0.3: must be positive"),
+        (lambda: fp.Lissajous((0.4, 0), 10.0), r"amplitudes\[1\] = 0: must be positive"),
+        (lambda: fp.Lissajous("wide", 10.0), "amplitude: must be real numbers"),
+        (lambda: fp.Lissajous((0.4, 0.4, 0.4), 10.0), "amplitude has 3 entries: must have 2"),
+        (lambda: fp.Lissajous(0.4, 10.0, frequencies=(0, 1)), r"frequencies\[0\] = 0: must be positive"),
+        (lambda: fp.Lissajous(0.4, 10.0, phase=np.inf), "phase = inf: must be finite"),
+        (lambda: fp.Line([1, np.nan], 10.0), r"displacement\[1\] = nan: must be finite"),
+        (lambda: fp.Line([1, 2, 3], 10.0), "displacement has 3 entries: must have 2"),
+    ],
+)
+def test_bad_paths(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
