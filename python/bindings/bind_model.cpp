@@ -96,9 +96,10 @@ ValueError
           },
           py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("task") = "position",
           "dJ/dt along qd, shape (2, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
-      .def(
-          "__eq__", [](const PyPlanarArm& arm, const PyPlanarArm& other) { return arm.lengths() == other.lengths(); },
-          py::is_operator())
+      .def("__eq__",
+           [](const PyPlanarArm& arm, const py::object& other) {
+             return py::isinstance<PyPlanarArm>(other) && other.cast<const PyPlanarArm&>().lengths() == arm.lengths();
+           })
       .def("__hash__", [](const PyPlanarArm& arm) { return py::hash(py::str(text(arm.lengths()))); })
       .def("__repr__", [](const PyPlanarArm& arm) { return "PlanarArm(" + text(arm.lengths()) + ")"; })
       .def(py::pickle([](const PyPlanarArm& arm) { return Eigen::VectorXd(arm.lengths()); },

@@ -1,3 +1,5 @@
+#include <pybind11/typing.h>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "py_arm.hpp"
@@ -6,10 +8,12 @@ namespace fpbm::bindings {
 namespace {
 
 using Array = py::array_t<double>;
+using Arrays = py::typing::Tuple<Array, Array, Array, Array, Array, Array, Array>;
+using Simulation = py::typing::Tuple<Status, double, int, Arrays>;
 
 /// (status, time, samples, arrays): arrays have room for every sample, of which the first `samples` are filled.
-py::tuple simulate(const PyPlanarArm& arm, const PyPath& path, const PyScheme& scheme, const ArrayLike& q0,
-                   const ArrayLike& qd0, double dt, double hold) {
+Simulation simulate(const PyPlanarArm& arm, const PyPath& path, const PyScheme& scheme, const ArrayLike& q0,
+                    const ArrayLike& qd0, double dt, double hold) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
   const TimeGrid<double> grid(path.duration(), dt, hold);
   const py::ssize_t rows = grid.samples();

@@ -62,9 +62,7 @@ def simulate(
     if qd0 is None:
         qd0 = np.zeros(arm.dof)
     code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold)
-    if samples < len(arrays[0]):
-        arrays = tuple(array[:samples].copy() for array in arrays)
-    t, q, qd, qdd, x, x_ref, error = arrays
+    t, q, qd, qdd, x, x_ref, error = (array if samples == len(array) else array[:samples].copy() for array in arrays)
     if scheme.level == "velocity" and samples > 1:
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))

@@ -41,8 +41,8 @@ def numpy_rollout(lengths, path, weights, alpha, k1, k2, q0, steps):
 @pytest.mark.parametrize("n", [2, 4, 9, 12])
 def test_same_steps_as_numpy(n):
     rng = np.random.default_rng(n)
-    lengths, weights, q0 = rng.uniform(0.5, 1, n), rng.uniform(1, 4, n), rng.uniform(0.5, 0.9, n)
-    path = fp.Circle(0.2, 2.0)
+    lengths, weights, q0 = rng.uniform(0.5, 1, n), rng.uniform(1, 4, n), rng.uniform(1.0, 1.4, n)
+    path = fp.Circle(0.1, 2.0)
     run = fp.simulate(fp.PlanarArm(lengths), path, fp.FPBM(0.6, weights, 1, 1), q0, dt=0.02)
     q, qd = numpy_rollout(lengths, path, weights, 0.6, 1, 1, q0, 100)
     np.testing.assert_allclose(run.q[-1], q, atol=1e-11)

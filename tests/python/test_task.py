@@ -41,14 +41,14 @@ def test_ends(path):
 def test_the_papers_shapes(law):
     for t in np.linspace(0, 10, 11):
         tau = t / 10
-        s = {"sin_squared": np.sin(np.pi * tau / 2) ** 2, "quintic": tau**3 * (10 - 15 * tau + 6 * tau**2)}.get(law, tau)
+        s = {"sin_squared": np.sin(np.pi * tau / 2) ** 2, "quintic": tau**3 * (10 - 15 * tau + 6 * tau**2)}.get(
+            law, tau
+        )
         phi = 2 * np.pi * s
         expected = {
             fp.Circle(0.45, 10.0, time_law=law): 0.45 * np.array([np.cos(phi) - 1, np.sin(phi)]),
             fp.Lissajous(0.4, 10.0, time_law=law): 0.4
-            * np.array(
-                [np.cos(2 * phi + np.pi / 6) - np.cos(np.pi / 6), np.sin(phi + np.pi / 6) - np.sin(np.pi / 6)]
-            ),
+            * np.array([np.cos(2 * phi + np.pi / 6) - np.cos(np.pi / 6), np.sin(phi + np.pi / 6) - np.sin(np.pi / 6)]),
             fp.Tricuspid(0.3, 10.0, time_law=law): 0.3
             * np.array([2 * np.cos(phi) + np.cos(2 * phi) - 3, 2 * np.sin(phi) - np.sin(2 * phi)]),
         }

@@ -6,8 +6,6 @@ import numpy as np
 
 from fpbm_cpp.run import Array
 
-EYE = np.eye
-
 
 def forward(lengths: Array, q: Array) -> Array:
     angle = np.cumsum(q)
@@ -35,14 +33,14 @@ def weighted_pinv(J: Array, W: Array) -> Array:
 def velocity(J: Array, W: Array, v: Array, z: Array) -> Array:
     """(3), (6), (7)."""
     P = weighted_pinv(J, W)
-    return P @ v + (EYE(len(z)) - P @ J) @ z
+    return P @ v + (np.eye(len(z)) - P @ J) @ z
 
 
 def acceleration(alpha: float, J: Array, Jd: Array, W: Array, b: Array, xd: Array, z: Array) -> Array:
     """(5), (8), (9), (13), (16), with z projected by N_W."""
     n = J.shape[1]
     P, PW = np.linalg.pinv(J), weighted_pinv(J, W)
-    N_W = EYE(n) - PW @ J
+    N_W = np.eye(n) - PW @ J
     Winv = np.linalg.inv(W)
     man = P @ b
     wmvn = PW @ b + N_W @ Winv @ Jd.T @ np.linalg.inv(J @ Winv @ J.T) @ xd
