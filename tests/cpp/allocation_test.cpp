@@ -1,0 +1,152 @@
+#include "support/allocation_watch.hpp"  // Before anything that includes Eigen.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <new>
+
+#include "support/paper.hpp"
+
+/// A rollout allocates nothing, whatever the scheme and however the number of joints is chosen; and each of the three
+/// watches that say so is seen to fail.
+namespace fpbm::test {
+namespace {
+
+constexpr int kSteps = 100;
+
+struct Watched {
+  Status status;
+  int samples;
+  AllocationCount count;
+};
+
+/// A whole rollout under watch, into buffers of the caller's. `extra` is called at every sample.
+template <typename Arm, typename Scheme, typename Extra>
+Watched watched_rollout(const Arm& arm, const Scheme& scheme, Extra&& extra) {
+  constexpr int N = Arm::kDof;
+  static std::array<double, 4 * (kSteps + 1)> q;
+  static std::array<double, 2 * (kSteps + 1)> error;
+  MotionBuffers<2, N> buffers;
+  buffers.q = q.data();
+  buffers.error = error.data();
+  const auto path = paper_circle();
+  const State<N> start{paper_start().q, Vector<4>::Zero()};
+  const TimeGrid<> grid(kDuration, 2.0 * kDuration / kSteps, kDuration);
+
+  const AllocationWatch watch;
+  const auto result = rollout(arm, path, scheme, start, grid, [&](const auto& sample) {
+    buffers(sample);
+    extra();
+  });
+  return {result.status, result.samples, watch.count()};
+}
+
+template <int N>
+class NoAllocation {
+ public:
+  using Dense = DenseWeights<N>;
+
+  static void in_any_scheme() {
+    const DiagonalWeights<N> W(Vector<N>(Vector<4>(1, 2, 3, 4)));
+    const Dense dense(Matrix<N, N>(Matrix<4, 4>::Identity() + Matrix<4, 4>::Constant(0.2)));
+    const auto z = NullSpace<N>{}.with_damping(1.0).with_rest_posture(Vector<4>::Zero(), 1.0);
+    in(MVN<N>(), "MVN");
+    in(MVN<N>(1.0, z), "MVN with z");
+    in(WMVN<N>(W), "WMVN");
+    in(WMVN<N, double, Dense>(dense, 1.0, z), "WMVN, dense, with z");
+    in(MAN<N>(z), "MAN with z");
+    in(WMVNAcceleration<N>(W), "WMVNAcceleration");
+    in(WMVNAcceleration<N, double, Dense>(dense, z), "WMVNAcceleration, dense, with z");
+    in(Balanced<N>(0.5, W), "Balanced");
+    in(Balanced<N, double, Dense>(0.5, dense, z), "Balanced, dense, with z");
+    in(FPBM<N>(0.6, W, 1.0, 1.0), "FPBM");
+    in(FPBM<N>(0.6, W, 1.0, 1.0, z), "FPBM with z");
+    in(FPBM<N, double, Dense>(0.6, dense, 1.0, 1.0, z), "FPBM, dense, with z");
+  }
+
+ private:
+  template <typename Scheme>
+  static void in(const Scheme& scheme, const char* name) {
+    const PlanarArm<N> arm(Vector<N>(Vector<4>::Ones()));
+    const Watched watched = watched_rollout(arm, scheme, [] {});
+    EXPECT_EQ(watched.status, Status::kOk) << name;
+    EXPECT_EQ(watched.samples, kSteps + 1) << name;
+    EXPECT_EQ(watched.count.by_new, 0) << name;
+    EXPECT_EQ(watched.count.by_malloc, 0) << name;
+    EXPECT_EQ(watched.count.by_eigen, 0) << name;
+  }
+};
+
+TEST(NoAllocation, in_a_rollout_of_a_fixed_size) {
+  NoAllocation<4>::in_any_scheme();
+}
+TEST(NoAllocation, in_a_rollout_of_a_size_chosen_at_run_time) {
+  NoAllocation<Eigen::Dynamic>::in_any_scheme();
+}
+
+/// A motion that has to stop does so without an allocation as well.
+TEST(NoAllocation, in_a_rollout_that_fails) {
+  const Path<Line<2>> path(Line<2>(Vector<2>(3.0, 0.0)), kDuration);
+  const PlanarArm<4> arm = paper_arm();
+  const FPBM<4> scheme = paper_fpbm();
+  const State<4> start = paper_start();
+  const TimeGrid<> grid(kDuration, 1e-2);
+  const AllocationWatch watch;
+  const auto result = rollout(arm, path, scheme, start, grid, [](const auto&) {});
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_NE(result.status, Status::kOk);
+}
+
+/// Plants one allocation at every sample, and tells what the watches saw of the 101.
+template <typename Allocate>
+AllocationCount planted(Allocate&& allocate) {
+  return watched_rollout(paper_arm(), paper_fpbm(), allocate).count;
+}
+
+/// Seen through a volatile pointer, lest the compiler take an allocation away with its release.
+void* volatile seen;
+
+TEST(AllocationWatch, sees_every_form_of_new) {
+  constexpr auto kWide = std::align_val_t(64);
+  EXPECT_EQ(planted([] { seen = ::operator new(8), ::operator delete(seen); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new[](8), ::operator delete[](seen); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new(8, std::nothrow), ::operator delete(seen); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new[](8, std::nothrow), ::operator delete[](seen); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new(8, kWide), ::operator delete(seen, kWide); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new[](8, kWide), ::operator delete[](seen, kWide); }).by_new, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new(8, kWide, std::nothrow), ::operator delete(seen, kWide); }).by_new,
+            kSteps + 1);
+  EXPECT_EQ(planted([] { seen = ::operator new[](8, kWide, std::nothrow), ::operator delete[](seen, kWide); }).by_new,
+            kSteps + 1);
+}
+
+TEST(AllocationWatch, sees_malloc_and_its_family) {
+  if (!AllocationWatch::kSeesMalloc) GTEST_SKIP() << "a sanitizer keeps malloc for itself";
+  EXPECT_EQ(planted([] { seen = std::malloc(8), std::free(seen); }).by_malloc, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = std::calloc(2, 8), std::free(seen); }).by_malloc, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = std::realloc(nullptr, 8), std::free(seen); }).by_malloc, kSteps + 1);
+  EXPECT_EQ(planted([] { seen = std::aligned_alloc(64, 64), std::free(seen); }).by_malloc, kSteps + 1);
+  EXPECT_EQ(planted([] {
+              void* memory = nullptr;
+              if (posix_memalign(&memory, 64, 64) == 0) seen = memory, std::free(seen);
+            }).by_malloc,
+            kSteps + 1);
+}
+
+TEST(AllocationWatch, sees_what_eigen_allocates) {
+  const AllocationCount count = planted([] {
+    const Eigen::VectorXd heap = Eigen::VectorXd::Zero(kSteps);
+    seen = const_cast<double*>(heap.data());
+  });
+  EXPECT_EQ(count.by_eigen, kSteps + 1);
+}
+
+TEST(AllocationWatch, sees_nothing_before_and_after_its_life) {
+  seen = ::operator new(8), ::operator delete(seen);
+  const AllocationWatch watch;
+  EXPECT_EQ(watch.count().total(), 0);
+}
+
+}  // namespace
+}  // namespace fpbm::test

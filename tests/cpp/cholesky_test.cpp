@@ -1,0 +1,132 @@
+#include "fpbm/core/cholesky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "support/random.hpp"
+
+namespace fpbm::test {
+namespace {
+
+/// Solves A x = b by a Cholesky whose type is erased; false where it refuses A.
+using Solve = bool (*)(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
+template <int M, typename Scalar>
+bool solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  Cholesky<M, Scalar> cholesky;
+  if (!cholesky.factor(A.cast<Scalar>())) return false;
+  x = cholesky.solve(b.cast<Scalar>()).template cast<double>();
+  return true;
+}
+
+struct ErasedCholesky {
+  std::string name;
+  int rows;
+  double epsilon;
+  Solve solve;
+
+  [[nodiscard]] bool factors(const Eigen::MatrixXd& A) const {
+    Eigen::VectorXd x;
+    return solve(A, Eigen::VectorXd::Zero(A.rows()), x);
+  }
+};
+
+void PrintTo(const ErasedCholesky& cholesky, std::ostream* out) {
+  *out << cholesky.name;
+}
+
+template <int M, typename Scalar = double>
+ErasedCholesky erased(const std::string& name, int rows = M) {
+  return {name, rows, std::numeric_limits<Scalar>::epsilon(), &solve<M, Scalar>};
+}
+
+std::vector<ErasedCholesky> sizes() {
+  constexpr int kOpen = Eigen::Dynamic;
+  return {erased<1>("m1"),
+          erased<2>("m2"),
+          erased<3>("m3"),
+          erased<4>("m4"),
+          erased<5>("m5"),
+          erased<6>("m6"),
+          erased<kOpen>("dynamic_6", 6),
+          erased<kOpen>("dynamic_32", 32),
+          erased<2, float>("m2_float"),
+          erased<6, float>("m6_float")};
+}
+
+class CholeskyOf : public ::testing::TestWithParam<ErasedCholesky> {};
+
+TEST_P(CholeskyOf, solves_as_eigen_does) {
+  const int rows = GetParam().rows;
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    Random random(seed);
+    const Eigen::MatrixXd A = random.positive_definite(rows);
+    const Eigen::VectorXd b = random.uniform(rows, -1.0, 1.0);
+    const Eigen::VectorXd expected = Eigen::LLT<Eigen::MatrixXd>(A).solve(b);
+    Eigen::VectorXd x;
+    ASSERT_TRUE(GetParam().solve(A, b, x));
+    EXPECT_LE((x - expected).norm(), 16.0 * rows * GetParam().epsilon * expected.norm());
+  }
+}
+
+TEST_P(CholeskyOf, reads_the_lower_triangle_only) {
+  Random random(1);
+  const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
+  const Eigen::VectorXd b = random.uniform(GetParam().rows, -1.0, 1.0);
+  Eigen::MatrixXd lower = A;
+  lower.triangularView<Eigen::StrictlyUpper>().setConstant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::VectorXd x;
+  Eigen::VectorXd y;
+  ASSERT_TRUE(GetParam().solve(A, b, x));
+  ASSERT_TRUE(GetParam().solve(lower, b, y));
+  EXPECT_EQ(x, y);
+}
+
+TEST_P(CholeskyOf, refuses_what_is_not_positive_definite) {
+  const int rows = GetParam().rows;
+  Random random(2);
+  const Eigen::MatrixXd A = random.positive_definite(rows);
+  EXPECT_FALSE(GetParam().factors(Eigen::MatrixXd::Zero(rows, rows))) << "zero";
+  EXPECT_FALSE(GetParam().factors(-A)) << "negative definite";
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    Eigen::MatrixXd indefinite = A;
+    indefinite(i, i) = -0.1;
+    EXPECT_FALSE(GetParam().factors(indefinite)) << "indefinite at " << i;
+  }
+  if (rows == 1) return;
+  const Eigen::MatrixXd thin = random.uniform(rows, rows - 1, -1.0, 1.0);
+  EXPECT_FALSE(GetParam().factors(thin * thin.transpose())) << "singular";
+  EXPECT_FALSE(GetParam().factors(Eigen::MatrixXd::Ones(rows, rows))) << "of rank one";
+}
+
+TEST_P(CholeskyOf, refuses_what_is_not_finite) {
+  Random random(3);
+  const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        Eigen::MatrixXd spoiled = A;
+        spoiled(i, j) = bad;
+        EXPECT_FALSE(GetParam().factors(spoiled)) << bad << " at " << i << ", " << j;
+      }
+    }
+  }
+}
+
+/// No scale is too small or too large: a pivot is judged against the diagonal.
+TEST_P(CholeskyOf, is_indifferent_to_scale) {
+  Random random(4);
+  const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
+  for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;
+}
+
+INSTANTIATE_TEST_SUITE_P(every, CholeskyOf, ::testing::ValuesIn(sizes()),
+                         [](const auto& each) { return each.param.name; });
+
+}  // namespace
+}  // namespace fpbm::test

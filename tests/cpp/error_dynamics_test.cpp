@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <string>
+
+#include "support/paper.hpp"
+#include "support/random.hpp"
+#include "support/recording.hpp"
+
+/// With exact arithmetic FPBM's tip error obeys ë + k₁ė + k₂e = 0, whatever α, W and z.
+namespace fpbm::test {
+namespace {
+
+/// The solution of ë + k₁ė + k₂e = 0 from e(0), ė(0), by its characteristic roots.
+Vector<2> closed_form(double k1, double k2, double t, const Vector<2>& e0, const Vector<2>& ed0) {
+  const std::complex<double> root = std::sqrt(std::complex<double>(k1 * k1 / 4.0 - k2));
+  const double decay = std::exp(-k1 / 2.0 * t);
+  const Vector<2> slope = ed0 + k1 / 2.0 * e0;
+  if (root == 0.0) return decay * (e0 + t * slope);
+  return decay * (std::cosh(root * t).real() * e0 + (std::sinh(root * t) / root).real() * slope);
+}
+
+struct Gains {
+  double k1;
+  double k2;
+};
+constexpr Gains kUndamped{0.0, 4.0};
+constexpr Gains kUnderdamped{1.0, 1.0};
+constexpr Gains kCritical{4.0, 4.0};
+constexpr Gains kOverdamped{6.0, 2.0};
+constexpr Gains kVelocityOnly{2.0, 0.0};
+constexpr Gains kNone{0.0, 0.0};
+
+NullSpace<4> damped() {
+  return NullSpace<4>{}.with_damping(2.0);
+}
+
+/// From a start with the wrong velocity, through a rollout: e(0) = 0, ė(0) = xd(0) − J qd(0).
+TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
+  const State<4> start{paper_start().q, Vector<4>(0.01, -0.04, 0.02, 0.03)};
+  for (const auto& [k1, k2] : {kUndamped, kUnderdamped, kCritical, kOverdamped, kVelocityOnly, kNone}) {
+    for (const double alpha : {0.0, 0.3, 0.6, 1.0}) {
+      SCOPED_TRACE("k1 = " + std::to_string(k1) + ", k2 = " + std::to_string(k2) +
+                   ", alpha = " + std::to_string(alpha));
+      const FPBM<4> scheme(alpha, paper_weights(), k1, k2, damped());
+      const auto run = recorded(paper_arm(), paper_circle(), scheme, start, TimeGrid<>(kDuration, 1e-3));
+      ASSERT_EQ(run.result.status, Status::kOk) << "at " << run.result.time << " s";
+      Kinematics<Position<2>, 4> kinematics;
+      paper_arm().kinematics(start.q, kinematics);
+      const Vector<2> ed0 = -kinematics.J * start.qd;
+      for (const auto& sample : run.samples) {
+        const Vector<2> expected = closed_form(k1, k2, sample.t, Vector<2>::Zero(), ed0);
+        ASSERT_LE((sample.error - expected).norm(), 1e-9) << "t = " << sample.t;
+      }
+    }
+  }
+}
+
+/// From a wrong position as well, by RK4 against a reference laid out beside the tip; random weights, dense.
+TEST(ErrorDynamics, of_a_wrong_start_position_are_those_of_the_gains) {
+  using Scheme = FPBM<4, double, DenseWeights<4>>;
+  const PlanarArm<4> arm = paper_arm();
+  const Path<Circle<>> path = paper_circle();
+  const Vector<4> bent(0.3, 0.6, 0.6, 0.6);  // The paper's posture is too near to straight to be pulled outwards.
+  for (const auto& [k1, k2] : {kUnderdamped, kCritical, kOverdamped}) {
+    for (std::uint32_t seed = 0; seed < 3; ++seed) {
+      SCOPED_TRACE("k1 = " + std::to_string(k1) + ", k2 = " + std::to_string(k2) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const DenseWeights<4> weights(Matrix<4, 4>(random.positive_definite(4)));
+      const Scheme scheme(random.uniform(0.0, 1.0), weights, k1, k2, damped());
+      const Vector<2> e0 = random.uniform(2, -0.2, 0.2);
+
+      using Loop = ClosedLoop<PlanarArm<4>, Scheme, Position<2>>;
+      Loop loop{arm, scheme, {}, {bent, Vector<4>::Zero()}, Vector<4>::Zero()};
+      arm.kinematics(bent, loop.kinematics);
+      const Vector<2> origin = loop.kinematics.tip + e0;
+      const auto reference = [&](double t) noexcept {
+        Reference<Position<2>> at = path.sample(t);
+        at.x += origin;
+        return at;
+      };
+      const auto derivative = [&](double t, const Loop::X& x, Loop::X& dx) noexcept {
+        return loop.evaluate(reference(t), x, dx);
+      };
+      Loop::X x;
+      x << bent, random.uniform(4, -0.1, 0.1);
+      const Vector<2> ed0 = -loop.kinematics.J * x.col(1);
+
+      constexpr double kStep = 1e-3;
+      for (int i = 0; i < 8000; ++i) {
+        ASSERT_EQ(RK4::step(derivative, i * kStep, kStep, x), Status::kOk);
+        const double t = (i + 1) * kStep;
+        arm.kinematics(x.col(0), loop.kinematics);
+        const Vector<2> error = reference(t).x - loop.kinematics.tip;
+        ASSERT_LE((error - closed_form(k1, k2, t, e0, ed0)).norm(), 1e-9) << "t = " << t;
+      }
+    }
+  }
+}
+
+/// At velocity level ė + k e = 0: an error that a coarse first motion left decays at the rate of the gain.
+TEST(ErrorDynamics, at_velocity_level_are_a_decay) {
+  const PlanarArm<4> arm = paper_arm();
+  const WMVN<4> scheme(paper_weights(), 3.0);
+  using Loop = ClosedLoop<PlanarArm<4>, WMVN<4>, Position<2>>;
+  Loop loop{arm, scheme, {}, paper_start(), Vector<4>::Zero()};
+  arm.kinematics(paper_start().q, loop.kinematics);
+  const Vector<2> e0(0.1, -0.2);
+  const auto target = Reference<Position<2>>::hold(loop.kinematics.tip + e0);
+  const auto derivative = [&](double, const Loop::X& x, Loop::X& dx) noexcept { return loop.evaluate(target, x, dx); };
+  Loop::X x = paper_start().q;
+  constexpr double kStep = 1e-3;
+  for (int i = 0; i < 3000; ++i) {
+    ASSERT_EQ(RK4::step(derivative, i * kStep, kStep, x), Status::kOk);
+    arm.kinematics(x, loop.kinematics);
+    const Vector<2> expected = std::exp(-3.0 * (i + 1) * kStep) * e0;
+    ASSERT_LE((target.x - loop.kinematics.tip - expected).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test

@@ -1,0 +1,72 @@
+#include "support/paper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+
+#include "support/recording.hpp"
+
+/// The paper's figures and tables.
+namespace fpbm::test {
+namespace {
+
+template <typename Scheme>
+Recording<4> draw(Figure figure, const Scheme& scheme) {
+  const TimeGrid<> grid(kDuration, 1e-3);
+  switch (figure) {
+    case Figure::kCircle: return recorded(paper_arm(), paper_circle(), scheme, paper_start(), grid);
+    case Figure::kLissajous: return recorded(paper_arm(), paper_lissajous(), scheme, paper_start(), grid);
+    case Figure::kTricuspid: return recorded(paper_arm(), paper_tricuspid(), scheme, paper_start(), grid);
+  }
+  return {};
+}
+
+void expect_final(const PaperCase& expected, const Recording<4>& run) {
+  ASSERT_EQ(run.result.status, Status::kOk) << message(run.result.status);
+  EXPECT_EQ(run.samples.size(), 10001U);
+  EXPECT_EQ(run.result.time, kDuration);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(run.result.last.q(joint), expected.q[i], 1e-9) << "joint " << i;
+    EXPECT_NEAR(run.result.last.qd(joint), expected.qd[i], 1e-9) << "joint " << i;
+  }
+}
+
+class PaperCases : public ::testing::TestWithParam<PaperCase> {};
+
+TEST_P(PaperCases, end_as_in_the_independent_solution) {
+  const PaperCase& expected = GetParam();
+  const FPBM<4> scheme(expected.alpha, DiagonalWeights<4>(Vector<4>(expected.weights.data())), expected.k1,
+                       expected.k2);
+  const Recording<4> run = draw(expected.figure, scheme);
+  expect_final(expected, run);
+  if (expected.k2 > 0.0) {
+    EXPECT_LE(run.largest_error(), 1e-12);
+  } else {
+    // α = k₁ = k₂ = 0 is MAN (8), and so must the scheme of that name be.
+    expect_final(expected, draw(expected.figure, MAN<4>()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(all, PaperCases, ::testing::ValuesIn(kPaperCases),
+                         [](const auto& each) { return "case_" + std::to_string(each.index); });
+
+/// "MAN's tip error diverges and FPBM's does not": with the same integrator and the same 50 steps.
+TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
+  const TimeGrid<> grid(kDuration, 0.2);
+  const auto man = recorded(paper_arm(), paper_circle(), MAN<4>(), paper_start(), grid);
+  const auto fpbm = recorded(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), grid);
+  ASSERT_EQ(man.result.status, Status::kOk);
+  ASSERT_EQ(fpbm.result.status, Status::kOk);
+  EXPECT_GT(man.largest_error(), 10.0 * fpbm.largest_error());
+
+  // Still growing at T: the last tenth is the worst, and its end is worse than its beginning.
+  const double last_tenth = 0.9 * kDuration;
+  EXPECT_EQ(man.largest_error(), man.largest_error(last_tenth));
+  EXPECT_EQ(man.largest_error(), man.samples.back().error.norm());
+  EXPECT_LT(fpbm.largest_error(last_tenth), fpbm.largest_error());
+}
+
+}  // namespace
+}  // namespace fpbm::test

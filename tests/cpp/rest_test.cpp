@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include "support/paper.hpp"
+#include "support/recording.hpp"
+
+/// What becomes of the self-motion. None of the paper's schemes damps it; the secondary motion z does.
+namespace fpbm::test {
+namespace {
+
+Recording<4> circle_and_hold(const NullSpace<4>& null_space) {
+  return recorded(paper_arm(), paper_circle(), paper_fpbm(null_space), paper_start(),
+                  TimeGrid<>(kDuration, 1e-3, 30.0));
+}
+
+/// Largest way of any joint during the hold [rad].
+double way_during_hold(const Recording<4>& run) {
+  return (run.result.last.q - run.samples[10000].q).cwiseAbs().maxCoeff();
+}
+
+TEST(Rest, is_never_reached_without_damping) {
+  const auto run = circle_and_hold({});
+  ASSERT_EQ(run.result.status, Status::kOk);
+  EXPECT_GT(run.result.last.qd.norm(), 1e-3);
+  EXPECT_NEAR(way_during_hold(run), 0.66, 0.005);
+  EXPECT_LE(run.largest_error(), 1e-12) << "the tip is at rest all the while";
+}
+
+TEST(Rest, is_reached_with_damping) {
+  const auto run = circle_and_hold(NullSpace<4>{}.with_damping(2.0));
+  ASSERT_EQ(run.result.status, Status::kOk);
+  EXPECT_LT(run.result.last.qd.norm(), 1e-6);
+  EXPECT_NEAR(way_during_hold(run), 0.004, 0.0005);
+  EXPECT_LE(run.largest_error(), 1e-12) << "and the task does not notice";
+}
+
+/// Chained circles: with a rest posture the arm repeats itself, without damping it does not.
+TEST(Rest, posture_makes_circles_repeat) {
+  const TimeGrid<> grid(kDuration, 5e-3);
+  const auto chain = [&](const NullSpace<4>& null_space, auto&& each) {
+    State<4> state = paper_start();
+    for (int circle = 1; circle <= 20; ++circle) {
+      const auto result = rollout(paper_arm(), paper_circle(), paper_fpbm(null_space), state, grid, [](const auto&) {});
+      ASSERT_EQ(result.status, Status::kOk) << "circle " << circle;
+      state = result.last;
+      each(circle, state);
+    }
+  };
+  Vector<4> second;
+  chain(NullSpace<4>{}.with_damping(2.0).with_rest_posture(paper_start().q, 1.0), [&](int circle, const State<4>& end) {
+    if (circle == 2) second = end.q;
+    if (circle > 2) {
+      EXPECT_LE((end.q - second).cwiseAbs().maxCoeff(), 1e-5) << "circle " << circle;
+    }
+  });
+  double drift = 0.0;
+  chain({}, [&](int circle, const State<4>& end) {
+    if (circle == 2) second = end.q;
+    drift = std::max(drift, (end.q - second).norm());
+  });
+  EXPECT_GT(drift, 0.1);
+}
+
+}  // namespace
+}  // namespace fpbm::test

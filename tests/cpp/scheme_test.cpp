@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+
+#include "support/subjects.hpp"
+
+/// What every scheme owes, whatever the arm, its number of joints and the Scalar.
+namespace fpbm::test {
+namespace {
+
+double condition(const RealMatrix& gram) {
+  return static_cast<double>(gram.norm() * gram.inverse().norm());
+}
+
+double distance(const RealVector& a, const RealVector& b) {
+  return static_cast<double>((a - b).norm());
+}
+
+class SchemeLaws : public ::testing::TestWithParam<Subject> {
+ protected:
+  /// Calls check(scene, law) on random arms, states and parameters in each regime, without and with z.
+  template <typename Check>
+  void everywhere(Check&& check) {
+    for (const Regime regime : {Regime::kRegular, Regime::kNearSingular, Regime::kAtRest}) {
+      for (const bool has_null_space : {false, true}) {
+        for (std::uint32_t seed = 0; seed < 20; ++seed) {
+          SCOPED_TRACE(name(regime) + (has_null_space ? " with z" : " without z") + ", seed " + std::to_string(seed));
+          Random random(seed);
+          const Scene scene = random_scene(random, GetParam(), regime);
+          check(scene, random_law(random, GetParam(), has_null_space));
+        }
+      }
+    }
+  }
+
+  /// What the subject makes of a scene that it must be able to resolve.
+  static Outcome resolved(const Law& law, const Scene& scene) {
+    Outcome outcome = GetParam().resolve(law, scene);
+    EXPECT_EQ(outcome.status, Status::kOk);
+    return outcome;
+  }
+
+  /// Round-off to expect in u. The schemes solve with JJᵀ and JW⁻¹Jᵀ, whose condition is that of J squared; and it is
+  /// the terms that are rounded, which may be larger than their sum.
+  static double tolerance(const Law& law, const Situation& at) {
+    const RealMatrix Winv = real(law.W).inverse();
+    const double relative = 8.0 * GetParam().epsilon *
+                            std::max(condition(at.J * at.J.transpose()), condition(at.J * Winv * at.J.transpose()));
+    if (GetParam().epsilon < 1e-10) {
+      EXPECT_LE(relative, 1e-9) << "the scene is too hard for the promised 1e-9";
+    }
+    const RealVector task_term = pseudoinverse(at.J) * commanded(law, at);
+    return relative * static_cast<double>(resolve(law, at).norm() + task_term.norm() + secondary(law, at).norm());
+  }
+};
+
+/// (3), (5) to (9), (13), (16) as printed.
+TEST_P(SchemeLaws, equals_the_textbook) {
+  everywhere([](const Scene& scene, const Law& law) {
+    const Outcome outcome = resolved(law, scene);
+    EXPECT_LE(distance(outcome.u, resolve(law, outcome.at)), tolerance(law, outcome.at));
+  });
+}
+
+/// J qd = v and J qdd = b: the task first, whatever the weights, the balance and z.
+TEST_P(SchemeLaws, moves_the_tip_as_commanded) {
+  everywhere([](const Scene& scene, const Law& law) {
+    const auto [status, u, at] = resolved(law, scene);
+    EXPECT_LE(distance(at.J * u, commanded(law, at)), static_cast<double>(at.J.norm()) * tolerance(law, at));
+  });
+}
+
+/// J N_W = 0 (Lemma 2) through the scheme; and z does act where there is a null space for it to act in.
+TEST_P(SchemeLaws, a_secondary_motion_leaves_the_task_alone) {
+  everywhere([](const Scene& scene, const Law& law) {
+    if (!law.has_null_space) return;
+    Law bare = law;
+    bare.has_null_space = false;
+    const auto [status, u, at] = resolved(law, scene);
+    const RealVector without = resolved(bare, scene).u;
+    EXPECT_LE(distance(at.J * u, at.J * without), static_cast<double>(at.J.norm()) * tolerance(law, at));
+    if (GetParam().dof > 2) {
+      EXPECT_GT(distance(u, without), 1e-3);
+    }
+  });
+}
+
+/// W → cW changes nothing: only the ratios of the weights matter.
+TEST_P(SchemeLaws, only_the_ratios_of_the_weights_matter) {
+  everywhere([](const Scene& scene, const Law& law) {
+    const Outcome outcome = resolved(law, scene);
+    for (const double c : {1e-6, 3.7, 1e8}) {
+      Law scaled = law;
+      scaled.W *= c;
+      EXPECT_LE(distance(outcome.u, resolved(scaled, scene).u), tolerance(law, outcome.at)) << "c = " << c;
+    }
+  });
+}
+
+/// A straight arm cannot move its tip along itself: refused, and the output stays as it was.
+TEST_P(SchemeLaws, a_singular_posture_is_refused) {
+  everywhere([](Scene scene, const Law& law) {
+    for (const double direction : {0.0, 0.3, 2.0}) {
+      scene.q.setZero();
+      scene.q(0) = direction;
+      const Outcome outcome = GetParam().resolve(law, scene);
+      EXPECT_EQ(outcome.status, Status::kSingular);
+      EXPECT_TRUE(outcome.untouched());
+    }
+  });
+}
+
+/// Whatever is not finite, in state or reference, gives a status and no output.
+TEST_P(SchemeLaws, what_is_not_finite_is_refused) {
+  const Subject& subject = GetParam();
+  const bool acceleration = subject.level == Level::kAcceleration;
+  everywhere([&](const Scene& good, const Law& law) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      const auto expect_refusal = [&](const char* what, auto&& member) {
+        Scene scene = good;
+        member(scene)(1) = bad;
+        const Outcome outcome = subject.resolve(law, scene);
+        EXPECT_NE(outcome.status, Status::kOk) << what << " = " << bad;
+        EXPECT_TRUE(outcome.untouched()) << what << " = " << bad;
+      };
+      expect_refusal(
+          "q", [](Scene & scene) -> auto& { return scene.q; });
+      if (acceleration) {
+        expect_refusal(
+            "qd", [](Scene & scene) -> auto& { return scene.qd; });
+        expect_refusal(
+            "xdd", [](Scene & scene) -> auto& { return scene.xdd; });
+      } else {
+        expect_refusal(
+            "xd", [](Scene & scene) -> auto& { return scene.xd; });
+      }
+      if (subject.kind == Kind::kFPBM || !acceleration) {
+        expect_refusal(
+            "x", [](Scene & scene) -> auto& { return scene.displacement; });
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(every, SchemeLaws, ::testing::ValuesIn(subjects()),
+                         [](const auto& each) { return each.param.name; });
+
+}  // namespace
+}  // namespace fpbm::test

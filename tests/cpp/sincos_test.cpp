@@ -1,0 +1,126 @@
+#include "fpbm/core/sincos.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/random.hpp"
+
+namespace fpbm::test {
+namespace {
+
+constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
+
+/// Largest absolute error of both functions at an angle, alone and as the first of a vector.
+double error_at(double angle) {
+  const SinCos<double> alone = sincos(angle);
+  const Vector<3> angles(angle, 0.5, -1.0);
+  Vector<3> sines;
+  Vector<3> cosines;
+  sincos(angles, sines, cosines);
+  EXPECT_EQ(alone.sin, sines(0));
+  EXPECT_EQ(alone.cos, cosines(0));
+  const long double exact = angle;
+  return static_cast<double>(std::max(std::abs(std::sin(exact) - alone.sin), std::abs(std::cos(exact) - alone.cos)));
+}
+
+double worst_over(double range, int samples) {
+  Random random(7);
+  double worst = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    // Two draws: the numbers of Random have the 24 bits of a float, and the low bits of an angle are to vary as well.
+    const double angle = random.uniform(-range, range) + random.uniform(-1.0, 1.0) * 1e-7 * range;
+    worst = std::max(worst, error_at(std::clamp(angle, -range, range)));
+  }
+  return worst;
+}
+
+TEST(SinCos, is_exact_to_round_off_in_reach) {
+  for (const double range : {1e-8, 0.1, 0.8, 1.6, 4.0, 10.0, 1e3, 1e5, ReducedSinCos::kReach}) {
+    EXPECT_LE(worst_over(range, 50000), 2e-16) << "range " << range;
+  }
+  for (const double angle : {0.0, -0.0, 5e-324, 1e-300, ReducedSinCos::kReach, -ReducedSinCos::kReach}) {
+    EXPECT_LE(error_at(angle), 2e-16) << angle;
+  }
+}
+
+/// Where the reduction cancels most, and where the quadrant changes.
+TEST(SinCos, is_exact_at_multiples_of_a_quarter_turn) {
+  double worst = 0.0;
+  for (int k = -318000; k <= 318000; k += 7) {
+    for (const long double offset : {-0.5L, 0.0L, 0.5L}) {
+      const auto angle = static_cast<double>((k + offset) * kHalfPi);
+      const double above = std::nextafter(angle, 1e9);
+      worst = std::max({worst, error_at(angle), error_at(above)});
+    }
+  }
+  EXPECT_LE(worst, 2e-16);
+}
+
+TEST(SinCos, falls_back_beyond_its_reach) {
+  for (const double angle : {std::nextafter(ReducedSinCos::kReach, 1e9), 1e6, -1e9, 1e15, 1e300}) {
+    EXPECT_LE(error_at(angle), 2e-16) << angle;
+  }
+  // One angle out of reach takes the whole vector the slow way, to the same round-off.
+  const Vector<3> angles(1.0, 1e9, -2.0);
+  Vector<3> sines;
+  Vector<3> cosines;
+  sincos(angles, sines, cosines);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sines(i), std::sin(angles(i)), 2e-16);
+    EXPECT_NEAR(cosines(i), std::cos(angles(i)), 2e-16);
+  }
+}
+
+template <typename Scalar>
+void expect_nan_of(Scalar bad) {
+  EXPECT_TRUE(std::isnan(sincos(bad).sin));
+  EXPECT_TRUE(std::isnan(sincos(bad).cos));
+  for (Eigen::Index at = 0; at < 4; ++at) {
+    Vector<4, Scalar> angles(Scalar(0.1), Scalar(0.2), Scalar(0.3), Scalar(0.4));
+    angles(at) = bad;
+    Vector<4, Scalar> sines;
+    Vector<4, Scalar> cosines;
+    sincos(angles, sines, cosines);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      EXPECT_EQ(std::isnan(sines(i)), i == at) << bad << " at " << at << ", entry " << i;
+      EXPECT_EQ(std::isnan(cosines(i)), i == at) << bad << " at " << at << ", entry " << i;
+    }
+  }
+}
+
+TEST(SinCos, of_what_is_not_finite_is_nan_there_and_nowhere_else) {
+  expect_nan_of(std::numeric_limits<double>::quiet_NaN());
+  expect_nan_of(std::numeric_limits<double>::infinity());
+  expect_nan_of(-std::numeric_limits<double>::infinity());
+  expect_nan_of(std::numeric_limits<float>::quiet_NaN());
+  expect_nan_of(std::numeric_limits<float>::infinity());
+}
+
+TEST(SinCos, of_float_is_exact_to_round_off) {
+  Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const auto angle = static_cast<float>(random.uniform(-1000.0, 1000.0));
+    const SinCos<float> pair = sincos(angle);
+    EXPECT_NEAR(pair.sin, std::sin(static_cast<double>(angle)), 6.1e-8);
+    EXPECT_NEAR(pair.cos, std::cos(static_cast<double>(angle)), 6.1e-8);
+  }
+}
+
+TEST(SinCos, takes_as_many_angles_as_there_are) {
+  for (const Eigen::Index n : {1, 2, 5, 17, 32}) {
+    const Vector<Eigen::Dynamic> angles = Vector<Eigen::Dynamic>::LinSpaced(n, -3.0, 40.0);
+    Vector<Eigen::Dynamic> sines;
+    Vector<Eigen::Dynamic> cosines;
+    sincos(angles, sines, cosines);
+    ASSERT_EQ(sines.size(), n);
+    ASSERT_EQ(cosines.size(), n);
+    EXPECT_LE((sines.array() - angles.array().sin()).abs().maxCoeff(), 4e-16);
+    EXPECT_LE((cosines.array() - angles.array().cos()).abs().maxCoeff(), 4e-16);
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test

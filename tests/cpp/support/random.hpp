@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+
+namespace fpbm::test {
+
+/// Random test material, the same in every run and on every machine.
+/// All numbers are floats, so that every Scalar under test starts from exactly the same data.
+class Random {
+ public:
+  explicit Random(std::uint32_t seed) : engine_(seed) {}
+
+  [[nodiscard]] double uniform(double low, double high) {
+    const double fraction = static_cast<double>(engine_()) / 4294967296.0;
+    return static_cast<double>(static_cast<float>(low + (high - low) * fraction));
+  }
+
+  [[nodiscard]] Eigen::VectorXd uniform(Eigen::Index n, double low, double high) {
+    Eigen::VectorXd values(n);
+    for (double& value : values) value = uniform(low, high);
+    return values;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd uniform(Eigen::Index rows, Eigen::Index cols, double low, double high) {
+    return uniform(rows * cols, low, high).reshaped(rows, cols);
+  }
+
+  /// Symmetric positive definite, with a condition number of order 10.
+  [[nodiscard]] Eigen::MatrixXd positive_definite(Eigen::Index n) {
+    const Eigen::MatrixXd A = uniform(n, n, -1.0, 1.0);
+    const Eigen::MatrixXd product = A * A.transpose() / static_cast<double>(n) + 0.2 * Eigen::MatrixXd::Identity(n, n);
+    return product.cast<float>().cast<double>();
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+}  // namespace fpbm::test
