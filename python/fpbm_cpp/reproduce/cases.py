@@ -1,0 +1,128 @@
+"""The paper as data: the arm, the paths, and the 18 motions with what was printed and what is right."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from .._core import FPBM, MAN, Circle, Lissajous, Path, PlanarArm, Scheme, Tricuspid
+from ..run import Array, Run
+from ..simulate import simulate
+
+DT = 1e-3  # [s]
+PATHS = {"circle": Circle, "lissajous": Lissajous, "tricuspid": Tricuspid}
+NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tricuspid"}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One motion of the paper; what was not printed is None.
+
+    Attributes
+    ----------
+    path : str
+        'circle', 'lissajous' or 'tricuspid'.
+    reference_q, reference_qd : sequence of n floats
+        Final joint positions [rad] and velocities [rad/s] of an independent solution.
+    fpbm : mapping
+        Parameters of FPBM; empty for MAN.
+    table, row, figure
+        Where it is printed: '1' or '2, 3', the name of the row, the figure's number.
+    printed_qd, printed_error, misprinted_joint
+        Final joint velocities [rad/s], largest tip error [m], and the joint (1 to n) whose velocity is a misprint.
+    """
+
+    path: str
+    reference_q: Sequence[float]
+    reference_qd: Sequence[float]
+    fpbm: Mapping[str, Any] = field(default_factory=dict)
+    table: str | None = None
+    row: str | None = None
+    figure: int = 0
+    printed_qd: Sequence[float] | None = None
+    printed_error: float | None = None
+    misprinted_joint: int = 0
+
+    @property
+    def scheme(self) -> Scheme:
+        """MAN, or FPBM with the case's parameters."""
+        return FPBM(**self.fpbm) if self.fpbm else MAN()
+
+    @property
+    def weights(self) -> str:
+        """'diag(1, 2, 3, 4)'; empty for MAN."""
+        return f"diag({', '.join(map(str, self.fpbm['weights']))})" if self.fpbm else ""
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """A misprint in the set-up, with the posture [deg] or the circle's radius [m] that the text gives."""
+
+    text: str
+    q0_degrees: Sequence[float] | None = None
+    radius: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Paper:
+    """The set-up and every case."""
+
+    source: str
+    arm: PlanarArm
+    q0: Array
+    paths: Mapping[str, Path]
+    errata: Sequence[Erratum]
+    cases: Sequence[Case]
+
+    def simulate(self, path: str, scheme: Scheme, **options: Any) -> Run:
+        """A motion from the paper's start; options as for fpbm_cpp.simulate."""
+        return simulate(self.arm, self.paths[path], scheme, **{"q0": self.q0, "dt": DT, **options})
+
+    def figure(self, number: int) -> Case:
+        """The case that a figure shows."""
+        return next(case for case in self.cases if case.figure == number)
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A case and our run of it."""
+
+    case: Case
+    run: Run
+
+    @property
+    def from_reference(self) -> float:
+        """Largest difference of final positions [rad] and velocities [rad/s] from the independent solution."""
+        theirs = [self.case.reference_q, self.case.reference_qd]
+        return float(np.abs([self.run.q[-1], self.run.qd[-1]] - np.array(theirs)).max())
+
+    @property
+    def from_printed(self) -> float | None:
+        """Largest difference of final velocities from the printed ones [rad/s], misprints left out."""
+        if self.case.printed_qd is None:
+            return None
+        good = np.arange(1, len(self.case.printed_qd) + 1) != self.case.misprinted_joint
+        return float(np.abs(self.run.qd[-1] - self.case.printed_qd)[good].max())
+
+
+def load() -> Paper:
+    """The paper's set-up and numbers, from paper.json."""
+    data = json.loads(files(__package__ or "fpbm_cpp.reproduce").joinpath("paper.json").read_text("utf-8"))
+    return Paper(
+        source=data["source"],
+        arm=PlanarArm(data["links"]),
+        q0=np.deg2rad(data["q0_degrees"]),
+        paths={name: PATHS[name](**shape, duration=data["duration"]) for name, shape in data["paths"].items()},
+        errata=[Erratum(**erratum) for erratum in data["errata"]],
+        cases=[Case(**case) for case in data["cases"]],
+    )
+
+
+def run_all(paper: Paper) -> list[Result]:
+    """Every case, run."""
+    return [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
