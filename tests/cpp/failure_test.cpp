@@ -1,0 +1,189 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/paper.hpp"
+#include "support/random.hpp"
+#include "support/recording.hpp"
+
+/// Motions that cannot be done end with a status, in time, and with good samples; motions that can be done are done.
+namespace fpbm::test {
+namespace {
+
+/// What is asked of a random arm in a random posture.
+struct Task {
+  Eigen::VectorXd lengths;
+  Eigen::VectorXd q0;
+  Vector<2> way;  ///< Of a line.
+  double duration;
+  double dt;
+  std::uint32_t seed;  ///< Of the weights.
+};
+
+struct Ending {
+  Status status;
+  double time;
+  int samples;
+  double largest_error;
+  bool finite;
+};
+
+template <int N, typename Scheme>
+Ending run(const Task& task, const Scheme& scheme) {
+  const PlanarArm<N> arm(task.lengths);
+  const Path<Line<2>> path(Line<2>(task.way), task.duration);
+  const State<N> start{task.q0, Vector<N>::Zero()};
+  const auto motion = recorded(arm, path, scheme, start, TimeGrid<>(task.duration, task.dt));
+  const bool finite = std::all_of(motion.samples.begin(), motion.samples.end(), [](const auto& sample) {
+    return sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite() && sample.error.allFinite();
+  });
+  return {motion.result.status, motion.result.time, motion.result.samples, motion.largest_error(), finite};
+}
+
+template <int N>
+DiagonalWeights<N> weights(const Task& task) {
+  return DiagonalWeights<N>(Vector<N>(Random(task.seed).uniform(N, 0.5, 8.0)));
+}
+
+/// A scheme on an arm, types erased.
+struct Contender {
+  std::string name;
+  int dof;
+  Ending (*run)(const Task&);
+  double most_error;  ///< In steps of the reference: the worst that is let through before the rollout stops.
+  double most_delay;  ///< In steps, after the reference has left the workspace.
+};
+
+void PrintTo(const Contender& contender, std::ostream* out) {
+  *out << contender.name;
+}
+
+/// Without damping the self-motion may wind up on the way, MAN's to hundreds of rad/s: then the steps no longer resolve
+/// the motion, and the rollout stops only when the error has grown. Hence the wider bounds of MAN and plain FPBM.
+template <int N>
+void add_contenders(std::vector<Contender>& all) {
+  const auto add = [&](const char* scheme, Ending (*go)(const Task&), double most_error, double most_delay) {
+    all.push_back({std::string(scheme) + "_n" + std::to_string(N), N, go, most_error, most_delay});
+  };
+  add(
+      "MVN", [](const Task& task) { return run<N>(task, MVN<N>()); }, 1.0, 2.0);
+  add(
+      "WMVN", [](const Task& task) { return run<N>(task, WMVN<N>(weights<N>(task), 5.0)); }, 1.0, 2.0);
+  add(
+      "MAN", [](const Task& task) { return run<N>(task, MAN<N>()); }, N == 2 ? 1.0 : 30.0, N == 2 ? 2.0 : 10.0);
+  add(
+      "FPBM", [](const Task& task) { return run<N>(task, FPBM<N>(0.6, weights<N>(task), 1.0, 1.0)); },
+      N == 2 ? 1.0 : 10.0, 2.0);
+  add(
+      "FPBM_damped",
+      [](const Task& task) {
+        return run<N>(task, FPBM<N>(0.6, weights<N>(task), 1.0, 1.0, NullSpace<N>{}.with_damping(2.0)));
+      },
+      1.0, 2.0);
+}
+
+std::vector<Contender> contenders() {
+  std::vector<Contender> all;
+  add_contenders<2>(all);
+  add_contenders<4>(all);
+  add_contenders<7>(all);
+  return all;
+}
+
+Vector<2> tip(const Eigen::VectorXd& lengths, const Eigen::VectorXd& q) {
+  const PlanarArm<Eigen::Dynamic> arm(lengths);
+  Kinematics<Position<2>, Eigen::Dynamic> kinematics;
+  arm.kinematics(q, kinematics);
+  return kinematics.tip;
+}
+
+class Failure : public ::testing::TestWithParam<Contender> {};
+
+TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
+  const int n = GetParam().dof;
+  for (const double dt : {1e-3, 1e-2}) {
+    for (std::uint32_t seed = 0; seed < 30; ++seed) {
+      SCOPED_TRACE("dt = " + std::to_string(dt) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const Eigen::VectorXd lengths = random.uniform(n, 0.5, 1.5);
+      const Eigen::VectorXd q0 = random.uniform(n, -2.0, 2.0);
+      const double direction = random.uniform(-kPi, kPi);
+      const double reach = lengths.sum();
+      // Longer than the workspace is wide, so that it leaves whatever the start.
+      const Vector<2> way = 2.5 * reach * Vector<2>(std::cos(direction), std::sin(direction));
+      const Task task{lengths, q0, way, 5.0, dt, seed};
+      const Ending ending = GetParam().run(task);
+
+      const Path<Line<2>> path(Line<2>(way), task.duration);
+      double exit = 0.0;
+      while ((tip(lengths, q0) + path.sample(exit).x).norm() <= reach) exit += dt;
+      const double longest_step = kPi / 2.0 * way.norm() / task.duration * dt;
+
+      EXPECT_NE(ending.status, Status::kOk);
+      EXPECT_TRUE(ending.finite);
+      EXPECT_LE(ending.time, exit + GetParam().most_delay * dt);
+      EXPECT_LE(ending.largest_error, GetParam().most_error * longest_step);
+      EXPECT_LE(ending.samples, static_cast<int>(std::lround(ending.time / dt)) + 1);
+    }
+  }
+}
+
+/// A rank lost from the start: nothing is recorded at all.
+TEST_P(Failure, refuses_a_singular_start) {
+  const int n = GetParam().dof;
+  for (const double direction : {0.0, 0.3}) {
+    for (const double fold : {0.0, kPi}) {
+      Random random(1);
+      Eigen::VectorXd q0 = Eigen::VectorXd::Zero(n);
+      q0(0) = direction;
+      q0(1) = fold;
+      for (const double length : {0.1, -0.1}) {
+        const Vector<2> way = length * Vector<2>(std::cos(direction), std::sin(direction));
+        const Ending ending = GetParam().run({random.uniform(n, 0.5, 1.5), q0, way, 1.0, 1e-2, 0});
+        EXPECT_EQ(ending.status, Status::kSingular);
+        EXPECT_EQ(ending.samples, 0);
+        EXPECT_EQ(ending.time, 0.0);
+      }
+    }
+  }
+}
+
+/// No false alarm: from a well bent posture, a fifth of a link's way in any direction.
+TEST_P(Failure, does_not_befall_a_motion_well_inside_the_workspace) {
+  const int n = GetParam().dof;
+  for (const double dt : {1e-3, 1e-2, 0.1}) {
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+      SCOPED_TRACE("dt = " + std::to_string(dt) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const double bend = 2.0 / (n - 1);
+      Eigen::VectorXd q0 = random.uniform(n, 0.7 * bend, bend);
+      q0(0) = random.uniform(-kPi, kPi);
+      const double direction = random.uniform(-kPi, kPi);
+      const Task task{
+          random.uniform(n, 0.8, 1.2), q0, 0.2 * Vector<2>(std::cos(direction), std::sin(direction)), 5.0, dt, seed};
+      const Ending ending = GetParam().run(task);
+      EXPECT_EQ(ending.status, Status::kOk);
+      EXPECT_EQ(ending.time, task.duration);
+      EXPECT_TRUE(ending.finite);
+      EXPECT_LE(ending.largest_error, 1e-3 * std::pow(dt, 2));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(every, Failure, ::testing::ValuesIn(contenders()),
+                         [](const auto& each) { return each.param.name; });
+
+/// Whatever went wrong, there is a sentence for it; and where something went wrong, advice.
+TEST(Status, speaks) {
+  for (const Status status : {Status::kOk, Status::kSingular, Status::kTaskLost, Status::kNotFinite}) {
+    EXPECT_STRNE(message(status), "");
+    EXPECT_STRNE(message(status), "unknown status");
+    EXPECT_EQ(std::string(advice(status)).empty(), status == Status::kOk);
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test
