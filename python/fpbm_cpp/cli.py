@@ -45,7 +45,8 @@ def reproduce_command(context: click.Context, out: Path) -> None:
         raise click.ClickException('reproduce needs matplotlib: pip install "fpbm_cpp[cli]"') from None
     except OSError as error:
         where = error.filename2 or error.filename or out
-        raise click.ClickException(f"cannot write to {where}: {error.strerror}") from None
+        reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
+        raise click.ClickException(f"cannot write to {where}: {reason}") from None
     except KeyboardInterrupt:
         click.echo("interrupted; every file written so far is whole", err=True)
         context.exit(130)

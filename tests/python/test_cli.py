@@ -76,10 +76,10 @@ def test_disagreement_fails(reproduction: package.Reproduction, monkeypatch: pyt
 
 def test_directory_is_a_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
-    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+    for out, reason in ((tmp_path / "file", "it is a file"), (tmp_path / "file" / "below", "Not a directory")):
         result = call("reproduce", "--out", str(out))
         assert result.exit_code == 1
-        assert_one_plain_line(result.stderr, "cannot write to", str(out))
+        assert_one_plain_line(result.stderr, f"cannot write to {out}: {reason}")
     assert (tmp_path / "file").read_text() == "mine"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import Any
@@ -15,7 +15,7 @@ from ..run import Array, Run
 from ..simulate import simulate
 
 DT = 1e-3  # [s]
-PATHS = {"circle": Circle, "lissajous": Lissajous, "tricuspid": Tricuspid}
+PATHS: Mapping[str, Callable[..., Path]] = {"circle": Circle, "lissajous": Lissajous, "tricuspid": Tricuspid}
 NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tricuspid"}
 
 

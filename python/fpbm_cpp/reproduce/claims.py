@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -171,7 +172,7 @@ def chained(paper: Paper, scheme: Scheme, dt: float = DT) -> list[Run]:
     return runs
 
 
-def _fpbm(paper: Paper, **changed: object) -> Scheme:
+def _fpbm(paper: Paper, **changed: Any) -> Scheme:
     """The scheme of Fig. 2, with some parameters changed."""
     return FPBM(**{**paper.figure(2).fpbm, **changed})
 
