@@ -148,7 +148,9 @@ def one_figure(paper: cases.Paper, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_second_run_overwrites_its_own_files_only(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / "fig2.png").write_text("old")
-    first = {file: file.read_bytes() for file in reproduce(tmp_path).files}
+    said: list[str] = []
+    first = {file: file.read_bytes() for file in reproduce(tmp_path, say=said.append).files}
+    assert said == ["running 18 cases", "drawing Fig. 2", "checking the claims"]
     second = {file: file.read_bytes() for file in reproduce(tmp_path).files}
     assert first == second
     assert {file.name for file in tmp_path.iterdir()} == {"notes.txt", "fig2.png", "fig2.pdf", "report.md"}
@@ -169,10 +171,3 @@ def test_interrupted_run_leaves_whole_files(tmp_path: Path, monkeypatch: pytest.
         reproduce(tmp_path)
     assert [file.name for file in tmp_path.iterdir()] == ["fig2.png"]
     assert (tmp_path / "fig2.png").read_text() == "old"
-
-
-@pytest.mark.usefixtures("one_figure")
-def test_steps_are_said(tmp_path: Path) -> None:
-    said: list[str] = []
-    reproduce(tmp_path, say=said.append)
-    assert said == ["running 18 cases", "drawing Fig. 2", "checking the claims"]

@@ -29,4 +29,5 @@ def rendered(drawn: Figure, kind: str) -> bytes:
     """The figure as 'png' or 'pdf'; the same bytes every time."""
     file = BytesIO()
     drawn.savefig(file, format=kind, metadata={"CreationDate": None} if kind == "pdf" else None)
+    drawn.set_layout_engine("none")  # Laid out once for both kinds.
     return file.getvalue()
