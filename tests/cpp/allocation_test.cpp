@@ -48,8 +48,8 @@ class NoAllocation {
   using Dense = DenseWeights<N>;
 
   static void in_any_scheme() {
-    const DiagonalWeights<N> W(Vector<N>(Vector<4>(1, 2, 3, 4)));
-    const Dense dense(Matrix<N, N>(Matrix<4, 4>::Identity() + Matrix<4, 4>::Constant(0.2)));
+    const DiagonalWeights<N> W{Vector<N>(Vector<4>(1, 2, 3, 4))};
+    const Dense dense{Matrix<N, N>(Matrix<4, 4>::Identity() + Matrix<4, 4>::Constant(0.2))};
     const auto z = NullSpace<N>{}.with_damping(1.0).with_rest_posture(Vector<4>::Zero(), 1.0);
     in(MVN<N>(), "MVN");
     in(MVN<N>(1.0, z), "MVN with z");
@@ -68,7 +68,7 @@ class NoAllocation {
  private:
   template <typename Scheme>
   static void in(const Scheme& scheme, const char* name) {
-    const PlanarArm<N> arm(Vector<N>(Vector<4>::Ones()));
+    const PlanarArm<N> arm{Vector<N>(Vector<4>::Ones())};
     const Watched watched = watched_rollout(arm, scheme, [] {});
     EXPECT_EQ(watched.status, Status::kOk) << name;
     EXPECT_EQ(watched.samples, kSteps + 1) << name;

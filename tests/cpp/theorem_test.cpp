@@ -27,7 +27,9 @@ std::vector<std::pair<Subject, Subject>> pairs() {
 /// At one instant: along qd = J_W⁺xd with xd moving at xdd, the rate of (7) is (9).
 TEST(Theorem1, is_true_at_every_instant) {
   EXPECT_EQ(pairs().size(), 8U);
-  for (const auto& [velocity, acceleration] : pairs()) {
+  for (const auto& pair : pairs()) {
+    const Subject& velocity = pair.first;
+    const Subject& acceleration = pair.second;
     SCOPED_TRACE(velocity.name);
     for (std::uint32_t seed = 0; seed < 20; ++seed) {
       Random random(seed);
