@@ -59,7 +59,7 @@ bench: $(VENV)/package $(VENV)/test
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
 	cmake --preset bench
 	cmake --build --preset bench
-	build/bench/bench/step --benchmark_min_time=0.2
+	build/bench/bench/bench_step --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true
 	$(BIN)/python bench/simulate.py
 
 clean:

@@ -10,6 +10,8 @@ def main() -> int:
     except ModuleNotFoundError as missing:
         print(f'fpbm-cpp needs {missing.name}: pip install "fpbm_cpp[cli]"', file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return 130
     command(prog_name="fpbm-cpp")
     return 0
 

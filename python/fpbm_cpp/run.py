@@ -52,7 +52,7 @@ class RunStatus:
 
     def __str__(self) -> str:
         if self.ok:
-            return f"{message(self.code)}, t = {self.time:g} s"
+            return f"complete, t = {self.time:g} s"
         where = np.array2string(self.q, precision=4, separator=", ")
         return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
 

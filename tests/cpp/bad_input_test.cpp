@@ -83,9 +83,9 @@ TEST(BadInput, weights) {
   asymmetric(2, 0) = 0.25;
   expect_refusal([&] { DenseWeights<3>{asymmetric}; }, {"weights[2, 0] = 0.25:", "symmetric"});
   const Matrix<2, 2> indefinite{{1.0, 2.0}, {2.0, 1.0}};
-  expect_refusal([&] { DenseWeights<2>{indefinite}; }, {"weights", "positive definite"});
+  expect_refusal([&] { DenseWeights<2>{indefinite}; }, {"weights[1, 1]", "positive definite"});
   const Matrix<2, 2> singular{{1.0, 1.0}, {1.0, 1.0}};
-  expect_refusal([&] { DenseWeights<2>{singular}; }, {"weights", "positive definite"});
+  expect_refusal([&] { DenseWeights<2>{singular}; }, {"weights[1, 1]", "positive definite"});
   expect_refusal([] { DenseWeights<Eigen::Dynamic>(OpenSquare(OpenSquare::Ones(3, 2))); }, {"weights", "2", "3"});
 }
 
@@ -177,6 +177,17 @@ TEST(BadInput, start) {
     // At velocity level the start velocity is not read.
     EXPECT_EQ(rollout(arm, paper_circle(), MVN<4>(), start, TimeGrid<>(10.0, 0.1), [](const auto&) {}).status,
               Status::kOk);
+  }
+}
+
+TEST(BadInput, a_grid_of_another_duration) {
+  for (const double duration : {5.0, 20.0}) {
+    expect_refusal(
+        [&] {
+          rollout(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), TimeGrid<>(duration, 0.1),
+                  [](const auto&) { FAIL() << "nothing is to be recorded"; });
+        },
+        {"grid duration = ", "must be the duration of the path"});
   }
 }
 

@@ -19,7 +19,7 @@ using Solve = bool (*)(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen
 template <int M, typename Scalar>
 bool solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   Cholesky<M, Scalar> cholesky;
-  if (!cholesky.factor(A.cast<Scalar>())) return false;
+  if (cholesky.factor(A.cast<Scalar>()) != Status::kOk) return false;
   x = cholesky.solve(b.cast<Scalar>()).template cast<double>();
   return true;
 }

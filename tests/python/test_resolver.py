@@ -114,7 +114,7 @@ def test_repr_and_level():
         (lambda: fp.WMVN(np.ones((2, 2, 2))), "weights: must have 1 dimension, got shape"),
         (lambda: fp.WMVN(np.ones((2, 3))), r"weights: must be square, got shape \(2, 3\)"),
         (lambda: fp.WMVN([[1, 2], [0, 1]]), r"weights\[1, 0\] = 0: must be equal to its mirror image"),
-        (lambda: fp.WMVN([[1, 2], [2, 1]]), "weights: must be positive definite"),
+        (lambda: fp.WMVN([[1, 2], [2, 1]]), r"weights\[1, 1\] = 1: must be larger: W is not positive definite"),
         (lambda: fp.WMVN([[1, np.inf], [np.inf, 1]]), r"weights\[1, 0\] = inf: must be finite"),
         (lambda: fp.WMVN([1, 1], k=-1), "k = -1: must be finite and not negative"),
         (lambda: fp.FPBM(1.5, [1, 1], 1, 1), r"alpha = 1.5: must be in \[0, 1\]"),

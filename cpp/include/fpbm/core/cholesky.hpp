@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -14,15 +15,16 @@ template <int M, typename Scalar = double>
 class Cholesky {
  public:
   /// Factorises A, of which only the lower triangle is read.
-  /// Returns false where a pivot is lost in round-off, that is, where A is singular, indefinite or not finite.
-  [[nodiscard]] bool factor(const Matrix<M, M, Scalar>& A) noexcept {
+  /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
+  /// where A is not finite.
+  [[nodiscard]] Status factor(const Matrix<M, M, Scalar>& A) noexcept {
     const Eigen::Index m = A.rows();
     const Scalar smallest = kPivotTolerance * A.diagonal().maxCoeff();
     L_ = A;
     reciprocal_.resize(m);
     for (Eigen::Index j = 0; j < m; ++j) {
       const Scalar pivot = L_(j, j);
-      if (!(pivot > smallest)) return false;
+      if (!(pivot > smallest)) return lost(A, j);
       reciprocal_(j) = Scalar(1) / pivot;
       for (Eigen::Index i = j + 1; i < m; ++i) {
         const Scalar l = L_(i, j) * reciprocal_(j);
@@ -30,8 +32,11 @@ class Cholesky {
       }
       for (Eigen::Index i = j + 1; i < m; ++i) L_(i, j) *= reciprocal_(j);
     }
-    return true;
+    return Status::kOk;
   }
+
+  /// Row in which factor() lost its pivot, the leading rows before it being positive definite.
+  [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.
   [[nodiscard]] Vector<M, Scalar> solve(const Vector<M, Scalar>& b) const noexcept {
@@ -48,11 +53,17 @@ class Cholesky {
   }
 
  private:
+  [[nodiscard]] Status lost(const Matrix<M, M, Scalar>& A, Eigen::Index pivot) noexcept {
+    lost_pivot_ = pivot;
+    return A.allFinite() ? Status::kSingular : Status::kNotFinite;
+  }
+
   /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
   static constexpr Scalar kPivotTolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
   Matrix<M, M, Scalar> L_;        ///< Unit lower triangle, below the diagonal.
   Vector<M, Scalar> reciprocal_;  ///< 1 / D.
+  Eigen::Index lost_pivot_ = 0;
 };
 
 }  // namespace fpbm

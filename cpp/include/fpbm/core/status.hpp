@@ -13,7 +13,7 @@ enum class Status : unsigned char {
 /// One plain sentence: what happened.
 [[nodiscard]] constexpr const char* message(Status status) noexcept {
   switch (status) {
-    case Status::kOk: return "the motion is complete";
+    case Status::kOk: return "all is well";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
     case Status::kTaskLost:
       return "the tip has left its reference: the target is out of reach, or the step is too long";
@@ -26,7 +26,8 @@ enum class Status : unsigned char {
 [[nodiscard]] constexpr const char* advice(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "";
-    case Status::kSingular: return "Choose another start posture, or a path that stays inside the workspace.";
+    case Status::kSingular:
+      return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";
     case Status::kTaskLost: return "Keep the path inside the workspace and away from singular postures, or shorten dt.";
     case Status::kNotFinite: return "Check the start state and the path, lower the gains, or shorten dt.";
   }

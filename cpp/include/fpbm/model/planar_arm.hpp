@@ -42,8 +42,8 @@ class PlanarArm {
   /// One pass out along the arm for the links, one pass back for the sums over all links beyond a joint:
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
   template <bool kWithRate>
-  void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-             Kinematics<Position<2>, N, Scalar>& out) const noexcept {
+  [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
+                              Kinematics<Position<2>, N, Scalar>& out) const noexcept {
     const Eigen::Index n = lengths_.size();
     out.J.resize(2, n);
     if constexpr (kWithRate) out.Jd.resize(2, n);

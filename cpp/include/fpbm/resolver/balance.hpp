@@ -14,12 +14,13 @@ namespace fpbm {
 ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z),
 ///
 /// with no pseudoinverse or projector formed. α = 0 without z, and α = 1, cost one factorisation only.
-/// Leaves qdd alone unless it returns kOk.
+/// Leaves qdd alone unless it returns kOk. Flattened, since a large translation unit may keep small calls apart.
 template <typename Space, int N, typename Scalar, typename Weights>
-[[nodiscard]] Status balance(Scalar alpha, const Weights& weights, const Vector<Space::kRows, Scalar>& b,
-                             const NullSpace<N, Scalar>& null_space, const Kinematics<Space, N, Scalar>& kinematics,
-                             const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                             Vector<N, Scalar>& qdd) noexcept {
+[[nodiscard, gnu::flatten]] Status balance(Scalar alpha, const Weights& weights, const Vector<Space::kRows, Scalar>& b,
+                                           const NullSpace<N, Scalar>& null_space,
+                                           const Kinematics<Space, N, Scalar>& kinematics,
+                                           const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                                           Vector<N, Scalar>& qdd) noexcept {
   constexpr int M = Space::kRows;
   const auto& J = kinematics.J;
   const bool has_z = null_space.template active<Level::kAcceleration>();
@@ -28,14 +29,14 @@ template <typename Space, int N, typename Scalar, typename Weights>
 
   if (alpha != Scalar(1)) {
     const Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
-    if (!cholesky.factor(gram)) return Status::kSingular;
+    if (const Status status = cholesky.factor(gram); status != Status::kOk) return status;
     const Vector<M, Scalar> lambda1 = cholesky.solve(b);
     result = (Scalar(1) - alpha) * J.transpose().lazyProduct(lambda1);
   }
   if (alpha != Scalar(0) || has_z) {
     const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
     const Matrix<M, M, Scalar> gram = J.lazyProduct(WinvJt);
-    if (!cholesky.factor(gram)) return Status::kSingular;
+    if (const Status status = cholesky.factor(gram); status != Status::kOk) return status;
     const Vector<M, Scalar> mu = cholesky.solve(reference.xd);
     const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
     Vector<N, Scalar> u = weights.solve(Jdtmu);

@@ -11,14 +11,15 @@ namespace fpbm {
 ///   u = J_W⁺v + N_W z = W⁻¹Jᵀλ + z,   λ = (JW⁻¹Jᵀ)⁻¹(v − J z),
 ///
 /// with no pseudoinverse or projector formed. Leaves u alone unless it returns kOk.
+/// Flattened, since a large translation unit may keep small calls apart.
 template <Level kLevel, int M, int N, typename Scalar, typename Weights>
-[[nodiscard]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v,
-                                const NullSpace<N, Scalar>& null_space, const Matrix<M, N, Scalar>& J,
-                                const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
+[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v,
+                                              const NullSpace<N, Scalar>& null_space, const Matrix<M, N, Scalar>& J,
+                                              const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
   const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
   const Matrix<M, M, Scalar> gram = J.lazyProduct(WinvJt);
   Cholesky<M, Scalar> cholesky;
-  if (!cholesky.factor(gram)) return Status::kSingular;
+  if (const Status status = cholesky.factor(gram); status != Status::kOk) return status;
 
   Vector<N, Scalar> result;
   if (null_space.template active<kLevel>()) {

@@ -61,7 +61,7 @@ class NullSpace {
   [[nodiscard]] NullSpace with_constant(const Vector<N, Scalar>& added) const {
     NullSpace changed = *this;
     if (has_constant_) {
-      require_dof(added.size());
+      validation::require_size("rest_posture or c", added.size(), constant_.size());
       changed.constant_ += added;
     } else {
       changed.constant_ = added;

@@ -51,7 +51,11 @@ class DenseWeights {
     validation::require_dof("weights", W.rows(), 1);
     require_symmetric(W);
     Cholesky<N, Scalar> cholesky;
-    if (!cholesky.factor(W)) throw std::invalid_argument("weights: must be positive definite");
+    if (cholesky.factor(W) != Status::kOk) {
+      const Eigen::Index i = cholesky.lost_pivot();
+      validation::fail(validation::element("weights", i, i), static_cast<double>(W(i, i)),
+                       "larger: W is not positive definite");
+    }
     inverse_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
     for (Eigen::Index j = 0; j < W.cols(); ++j) inverse_.col(j) = cholesky.solve(inverse_.col(j));
     inverse_ /= inverse_.diagonal().maxCoeff();
@@ -66,15 +70,19 @@ class DenseWeights {
 
  private:
   static void require_symmetric(const Matrix<N, N, Scalar>& W) {
-    const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
     validation::require_size("weights (columns)", W.cols(), W.rows());
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       for (Eigen::Index i = 0; i < W.rows(); ++i) {
-        const auto name = validation::element("weights", i, j);
-        validation::require_finite(name, static_cast<double>(W(i, j)));
-        using std::abs;
-        if (abs(W(i, j) - W(j, i)) > tolerance * abs(W(i, j))) {
-          validation::fail(name, static_cast<double>(W(i, j)), "equal to its mirror image, since W is symmetric");
+        validation::require_finite(validation::element("weights", i, j), static_cast<double>(W(i, j)));
+      }
+    }
+    using std::abs;
+    const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * W.cwiseAbs().maxCoeff();
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      for (Eigen::Index i = j + 1; i < W.rows(); ++i) {
+        if (abs(W(i, j) - W(j, i)) > tolerance) {
+          validation::fail(validation::element("weights", i, j), static_cast<double>(W(i, j)),
+                           "equal to its mirror image, since W is symmetric");
         }
       }
     }

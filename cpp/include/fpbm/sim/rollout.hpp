@@ -62,8 +62,9 @@ struct ClosedLoop {
 ///
 /// The path is a displacement from where the tip starts. Velocity-level schemes integrate q (start.qd is not read),
 /// acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time, noexcept.
-/// Throws std::invalid_argument where the scheme or start does not fit the arm or start is not finite, before anything
-/// is recorded; from then on nothing throws or allocates, and what goes wrong is in the result.
+/// Throws std::invalid_argument where the scheme or start does not fit the arm, the grid does not fit the path, or
+/// start is not finite, before anything is recorded; from then on nothing throws or allocates, and what goes wrong is
+/// in the result.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
@@ -72,8 +73,12 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   using Space = typename Path::Space;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
+  using Row = Vector<Space::kRows, Scalar>;
   static_assert(std::is_same_v<typename Path::Scalar, Scalar>, "the path and the arm have one Scalar");
 
+  if (grid.duration() != path.duration()) {
+    validation::fail("grid duration", static_cast<double>(grid.duration()), "the duration of the path");
+  }
   scheme.require_dof(arm.dof());
   validation::require_joint_vector("q0", start.q, arm.dof());
   X x(start.q.size(), Loop::kSecondOrder ? 2 : 1);
@@ -88,8 +93,9 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   AnchoredPath<Path> references(path, loop.kinematics.tip);
 
   X dx = x;
-  TaskWatch<Space::kRows, Scalar> watch;
-  typename AnchoredPath<Path>::Point before = loop.kinematics.tip;
+  ErrorWatch<Space::kRows, Scalar> position_watch;
+  [[maybe_unused]] ErrorWatch<Space::kRows, Scalar> velocity_watch;
+  auto before = Reference<Space, Scalar>::hold(loop.kinematics.tip);
   RolloutResult<Arm::kDof, Scalar> result{Status::kOk, Scalar(0), start, 0};
   for (int i = 0;; ++i) {
     const Scalar t = grid.time(i);
@@ -102,12 +108,24 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = derivative(t, x, dx);
     if (result.status != Status::kOk) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t) : references.hold();
-    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(reference.x, loop.kinematics.tip);
-    const Vector<Space::kRows, Scalar> error_rate = reference.xd - loop.kinematics.J.lazyProduct(loop.state.qd);
-    const Scalar travel = Space::template difference<Scalar>(reference.x, before).norm();
-    result.status = watch.check(error, error_rate, grid.dt(), travel, loop.kinematics.J.cwiseAbs().maxCoeff());
-    if (result.status != Status::kOk) break;
-    before = reference.x;
+    const Row error = Space::template difference<Scalar>(reference.x, loop.kinematics.tip);
+    const Row error_rate = reference.xd - loop.kinematics.J.lazyProduct(loop.state.qd);
+    const Scalar reach = loop.kinematics.J.cwiseAbs().maxCoeff();
+    const Scalar turn = grid.dt() * loop.state.qd.cwiseAbs().maxCoeff();
+    const Scalar travel = Space::template difference<Scalar>(reference.x, before.x).norm();
+    bool on_course = position_watch.follows(error, error_rate, grid.dt(), travel, turn, reach);
+    if constexpr (Loop::kSecondOrder) {
+      const Row error_acceleration =
+          reference.xdd - loop.kinematics.J.lazyProduct(loop.qdd) - loop.kinematics.Jd.lazyProduct(loop.state.qd);
+      const Scalar change = (reference.xd - before.xd).norm();
+      on_course &= turn <= Scalar(kLargestTurn);
+      on_course &= velocity_watch.follows(error_rate, error_acceleration, grid.dt(), change, turn, reach / grid.dt());
+    }
+    if (!on_course) {
+      result.status = Status::kTaskLost;
+      break;
+    }
+    before = reference;
 
     result.time = t;
     result.last = loop.state;

@@ -14,7 +14,7 @@ class TimeGrid {
  public:
   /// duration, dt and hold in seconds. Throws std::invalid_argument unless dt is positive, finite, and divides both
   /// duration and hold (to 1e-9); the message names the nearest dt that does.
-  TimeGrid(Scalar duration, Scalar dt, Scalar hold = Scalar(0)) {
+  TimeGrid(Scalar duration, Scalar dt, Scalar hold = Scalar(0)) : duration_(duration) {
     validation::require_positive("duration", static_cast<double>(duration));
     validation::require_positive("dt", static_cast<double>(dt));
     validation::require_non_negative("hold", static_cast<double>(hold));
@@ -23,6 +23,7 @@ class TimeGrid {
     hold_steps_ = hold > Scalar(0) ? steps("hold", static_cast<double>(hold), static_cast<double>(dt)) : 0;
   }
 
+  [[nodiscard]] Scalar duration() const noexcept { return duration_; }
   [[nodiscard]] Scalar dt() const noexcept { return dt_; }
   [[nodiscard]] int motion_steps() const noexcept { return motion_steps_; }
   [[nodiscard]] int hold_steps() const noexcept { return hold_steps_; }
@@ -49,6 +50,7 @@ class TimeGrid {
 
   static constexpr double kMostSteps = 1e9;
 
+  Scalar duration_;
   Scalar dt_;
   int motion_steps_;
   int hold_steps_;
