@@ -73,7 +73,6 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   using Space = typename Path::Space;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
-  using Row = Vector<Space::kRows, Scalar>;
   static_assert(std::is_same_v<typename Path::Scalar, Scalar>, "the path and the arm have one Scalar");
 
   if (grid.duration() != path.duration()) {
@@ -93,9 +92,7 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
   AnchoredPath<Path> references(path, loop.kinematics.tip);
 
   X dx = x;
-  ErrorWatch<Space::kRows, Scalar> position_watch;
-  [[maybe_unused]] ErrorWatch<Space::kRows, Scalar> velocity_watch;
-  auto before = Reference<Space, Scalar>::hold(loop.kinematics.tip);
+  TaskWatch<Space, Arm::kDof, Scalar> watch(loop.kinematics.tip);
   RolloutResult<Arm::kDof, Scalar> result{Status::kOk, Scalar(0), start, 0};
   for (int i = 0;; ++i) {
     const Scalar t = grid.time(i);
@@ -108,30 +105,16 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = derivative(t, x, dx);
     if (result.status != Status::kOk) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t) : references.hold();
-    const Row error = Space::template difference<Scalar>(reference.x, loop.kinematics.tip);
-    const Row error_rate = reference.xd - loop.kinematics.J.lazyProduct(loop.state.qd);
-    const Scalar reach = loop.kinematics.J.cwiseAbs().maxCoeff();
-    const Scalar turn = grid.dt() * loop.state.qd.cwiseAbs().maxCoeff();
-    const Scalar travel = Space::template difference<Scalar>(reference.x, before.x).norm();
-    bool on_course = position_watch.follows(error, error_rate, grid.dt(), travel, turn, reach);
-    if constexpr (Loop::kSecondOrder) {
-      const Row error_acceleration =
-          reference.xdd - loop.kinematics.J.lazyProduct(loop.qdd) - loop.kinematics.Jd.lazyProduct(loop.state.qd);
-      const Scalar change = (reference.xd - before.xd).norm();
-      on_course &= turn <= Scalar(kLargestTurn);
-      on_course &= velocity_watch.follows(error_rate, error_acceleration, grid.dt(), change, turn, reach / grid.dt());
-    }
-    if (!on_course) {
+    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, reference, loop.state, loop.qdd, grid.dt())) {
       result.status = Status::kTaskLost;
       break;
     }
-    before = reference;
 
     result.time = t;
     result.last = loop.state;
     result.samples = i + 1;
     record(Sample<Space, Arm::kDof, Scalar>{i, t, loop.state.q, loop.state.qd, loop.qdd, loop.kinematics.tip, reference,
-                                            error});
+                                            Space::template difference<Scalar>(reference.x, loop.kinematics.tip)});
     if (last) break;
     result.status = RK4::step(derivative, t, grid.dt(), dx, x);
     if (result.status != Status::kOk) break;

@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/task/reference.hpp"
 
 namespace fpbm {
-
-/// The largest angle [rad] by which a joint may move in one step for the step to resolve the motion.
-inline constexpr double kLargestTurn = 0.25;
 
 /// Watches an error from sample to sample for the step in which it grows by more than its rate explains.
 ///
@@ -28,7 +28,7 @@ class ErrorWatch {
     using std::sqrt;
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
     const Scalar expected = kTolerance * (travel + error.norm() + h * rate.norm());
-    const Scalar truncation = turn * (turn * turn) * (turn * turn) * size;
+    const Scalar truncation = kTruncation * turn * (turn * turn) * (turn * turn) * size;
     const Scalar round_off = sqrt(std::numeric_limits<Scalar>::epsilon()) * size;
     const bool follows = !started_ || growth <= expected + truncation + round_off;
     error_ = error;
@@ -39,10 +39,50 @@ class ErrorWatch {
 
  private:
   static constexpr Scalar kTolerance = Scalar(0.1);
+  static constexpr Scalar kTruncation = Scalar(0.05);
 
   bool started_ = false;
   Row error_ = Row::Zero();
   Row rate_ = Row::Zero();
+};
+
+/// Watches a rollout for the step in which the tip leaves its reference, by its position and, where the scheme is one
+/// of acceleration, its velocity.
+template <typename Space, int N, typename Scalar = double>
+class TaskWatch {
+ public:
+  explicit TaskWatch(const typename Space::template Point<Scalar>& tip)
+      : before_(Reference<Space, Scalar>::hold(tip)) {}
+
+  /// Whether this sample, h seconds after the last, is where the scheme of that level was to bring the arm.
+  template <Level kLevel>
+  [[nodiscard]] bool on_course(const Kinematics<Space, N, Scalar>& kinematics,
+                               const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                               [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h) noexcept {
+    using Row = Vector<Space::kRows, Scalar>;
+    const auto& [tip, J, Jd] = kinematics;
+    const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();
+    const Scalar reach = J.cwiseAbs().maxCoeff();
+    const Row e = Space::template difference<Scalar>(reference.x, tip);
+    const Row ed = reference.xd - J.lazyProduct(state.qd);
+    const Scalar travel = Space::template difference<Scalar>(reference.x, before_.x).norm();
+    bool follows = turn <= kLargestTurn && position_.follows(e, ed, h, travel, turn, reach);
+    if constexpr (kLevel == Level::kAcceleration) {
+      const Row edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
+      const Scalar change = (reference.xd - before_.xd).norm();
+      follows = follows && velocity_.follows(ed, edd, h, change, turn, reach / h);
+    }
+    before_ = reference;
+    return follows;
+  }
+
+ private:
+  /// The angle [rad] by which a joint may move in one step at most, for the step to resolve the motion.
+  static constexpr Scalar kLargestTurn = Scalar(0.25);
+
+  ErrorWatch<Space::kRows, Scalar> position_;
+  ErrorWatch<Space::kRows, Scalar> velocity_;
+  Reference<Space, Scalar> before_;
 };
 
 }  // namespace fpbm
