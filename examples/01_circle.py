@@ -1,4 +1,4 @@
-"""The paper's robot follows the paper's circle (Fig. 2): four unit links, FPBM with α = 0.6 and W = diag(1, 2, 3, 4)."""
+"""The paper's robot follows the paper's circle (Fig. 2): four unit links, FPBM, α = 0.6, W = diag(1, 2, 3, 4)."""
 
 from math import pi
 
