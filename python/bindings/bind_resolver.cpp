@@ -106,7 +106,7 @@ ValueError
 
 constexpr const char* kAccelerationOptions = R"(
 null_damping : float
-    Damping of the self-motion [1/s]. Without it no scheme of the paper comes to rest.
+    Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
 rest_posture, null_stiffness : array_like, shape (n,), and float
     Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
 c : array_like, shape (n,)

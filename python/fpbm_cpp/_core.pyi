@@ -379,7 +379,7 @@ class MAN(Scheme):
     Parameters
     ----------
     null_damping : float
-        Damping of the self-motion [1/s]. Without it no scheme of the paper comes to rest.
+        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
     rest_posture, null_stiffness : array_like, shape (n,), and float
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
@@ -410,7 +410,7 @@ class WMVNAcceleration(Scheme):
     weights : array_like, shape (n,) or (n, n)
         Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
     null_damping : float
-        Damping of the self-motion [1/s]. Without it no scheme of the paper comes to rest.
+        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
     rest_posture, null_stiffness : array_like, shape (n,), and float
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
@@ -442,7 +442,7 @@ class Balanced(Scheme):
     weights : array_like, shape (n,) or (n, n)
         Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
     null_damping : float
-        Damping of the self-motion [1/s]. Without it no scheme of the paper comes to rest.
+        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
     rest_posture, null_stiffness : array_like, shape (n,), and float
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
@@ -480,7 +480,7 @@ class FPBM(Scheme):
     k1, k2 : float
         Feedback gains on velocity [1/s] and position [1/s^2], not negative.
     null_damping : float
-        Damping of the self-motion [1/s]. Without it no scheme of the paper comes to rest.
+        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
     rest_posture, null_stiffness : array_like, shape (n,), and float
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
