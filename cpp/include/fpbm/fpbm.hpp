@@ -3,6 +3,7 @@
 /// Redundancy resolution for robot arms: include this, or just the rooms you need.
 
 #include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/status.hpp"
@@ -11,6 +12,7 @@
 #include "fpbm/integrator/rk4.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/planar_arm.hpp"
+#include "fpbm/model/serial_arm.hpp"
 #include "fpbm/resolver/balance.hpp"
 #include "fpbm/resolver/balanced.hpp"
 #include "fpbm/resolver/feedback.hpp"

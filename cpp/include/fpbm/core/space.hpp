@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -25,6 +26,31 @@ struct Position {
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<M, Scalar>& d) noexcept {
     return y + d;
+  }
+};
+
+/// Task space of tip poses: linear rows first, then angular, in the base frame's axes at the tip.
+struct Pose {
+  static constexpr int kRows = 6;
+
+  template <typename Scalar>
+  using Point = Transform<Scalar>;
+
+  /// x ⊖ y: from y's origin to x's [m], then the rotation vector of R_x R_yᵀ [rad].
+  template <typename Scalar>
+  [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    const Matrix<3, 3, Scalar> turn = x.R.lazyProduct(y.R.transpose());
+    Vector<6, Scalar> result;
+    result.template head<3>() = x.p - y.p;
+    result.template tail<3>() = rotation_vector(turn);
+    return result;
+  }
+
+  /// y ⊕ d: y moved by d's first three rows and turned by the rotation vector in its last three.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
+    const Vector<3, Scalar> turn = d.template tail<3>();
+    return {y.p + d.template head<3>(), rotation(turn).lazyProduct(y.R)};
   }
 };
 

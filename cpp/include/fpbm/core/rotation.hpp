@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/core/sincos.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Where a frame is and how it is turned, seen from another.
+template <typename Scalar = double>
+struct Transform {
+  Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin [m].
+  Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the frame's axes.
+};
+
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> cross(const Vector<3, Scalar>& a, const Vector<3, Scalar>& b) noexcept {
+  return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
+}
+
+/// Rotation matrix of a rotation vector r [rad]: by |r| about r/|r| (Rodrigues).
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<3, Scalar>& r) noexcept {
+  using std::sqrt;
+  // With half angles neither factor loses digits near |r| = 0: sin(a)/a there is 1 to round-off.
+  const Scalar half = sqrt(r.squaredNorm()) / Scalar(2);
+  const SinCos<Scalar> angle = sincos(half);
+  const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
+  const Vector<3, Scalar> v = sinc / Scalar(2) * r;  // Vector part of the unit quaternion (w, v).
+  const Scalar w = angle.cos;
+  Matrix<3, 3, Scalar> R = Scalar(2) * v * v.transpose();
+  R.diagonal().array() += w * w - v.squaredNorm();
+  const Vector<3, Scalar> u = Scalar(2) * w * v;
+  R(0, 1) -= u(2);
+  R(1, 0) += u(2);
+  R(2, 0) -= u(1);
+  R(0, 2) += u(1);
+  R(1, 2) -= u(0);
+  R(2, 1) += u(0);
+  return R;
+}
+
+/// Rotation vector of a rotation matrix, |r| ≤ π [rad]; the inverse of rotation().
+///
+/// By way of the unit quaternion with its largest entry taken from the diagonal (S. W. Shepperd, Quaternion from
+/// rotation matrix, 1978), which loses no digits near 0 and none near π.
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
+  using std::atan2;
+  using std::sqrt;
+  const Scalar trace = R.trace();
+  Scalar w;
+  Vector<3, Scalar> v;
+  Eigen::Index i = 0;
+  if (trace >= R.diagonal().maxCoeff(&i)) {
+    const Scalar root = sqrt(Scalar(1) + trace);
+    w = root / Scalar(2);
+    v = Vector<3, Scalar>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)) / (Scalar(2) * root);
+  } else {
+    const Eigen::Index j = (i + 1) % 3;
+    const Eigen::Index k = (i + 2) % 3;
+    const Scalar root = sqrt(Scalar(1) + R(i, i) - R(j, j) - R(k, k));
+    v(i) = root / Scalar(2);
+    v(j) = (R(i, j) + R(j, i)) / (Scalar(2) * root);
+    v(k) = (R(i, k) + R(k, i)) / (Scalar(2) * root);
+    w = (R(k, j) - R(j, k)) / (Scalar(2) * root);
+    if (w < Scalar(0)) {
+      w = -w;
+      v = -v;
+    }
+  }
+  const Scalar sine = sqrt(v.squaredNorm());
+  const Scalar scale = sine > Scalar(0) ? atan2(sine, w) / sine : Scalar(1);
+  return Scalar(2) * scale * v;
+}
+
+}  // namespace fpbm
