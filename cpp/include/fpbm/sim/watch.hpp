@@ -21,8 +21,9 @@ class ErrorWatch {
  public:
   using Row = Vector<M, Scalar>;
 
-  /// Whether e came here by its rate of h seconds ago. travel is the way of the reference in between, turn [rad] the
-  /// largest step of a joint, size the largest value that a joint adds to what e is a difference of; e's units.
+  /// Whether e came here by its rate of h seconds ago. travel is the way of the reference in between, turn the
+  /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
+  /// turn and h [s] are in e's units.
   [[nodiscard]] bool follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
                              Scalar size) noexcept {
     using std::sqrt;
@@ -77,7 +78,8 @@ class TaskWatch {
   }
 
  private:
-  /// The angle [rad] by which a joint may move in one step at most, for the step to resolve the motion.
+  /// How far a joint may move in one step at most, for the step to resolve the motion [rad], or [m] for a prismatic
+  /// one.
   static constexpr Scalar kLargestTurn = Scalar(0.25);
 
   ErrorWatch<Space::kRows, Scalar> position_;
