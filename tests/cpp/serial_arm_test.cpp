@@ -56,7 +56,7 @@ void expect_derivatives_of_random_chains(int dof) {
   Random random(static_cast<std::uint32_t>(dof));
   for (int trial = 0; trial < 50; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
-    const SerialArm<N> arm(random_chain(random, dof), random_transform(random));
+    const SerialArm<N> arm({random_chain(random, dof), random_transform(random)});
     const Vector<N> q = random.uniform(dof, -3.0, 3.0);
     const Vector<N> qd = random.uniform(dof, -1.0, 1.0);
     expect_derivatives<N, Position<3>>(arm, q, qd);
@@ -97,7 +97,7 @@ TEST(SerialArm, tip_is_the_product_of_its_transforms) {
     }
     multiply(tip.p, tip.R);
     Kinematics<Pose, 7> kinematics;
-    SerialArm<7>(joints, tip).kinematics(q, kinematics);
+    SerialArm<7>({joints, tip}).kinematics(q, kinematics);
     EXPECT_LE((kinematics.tip.p - product.topRightCorner<3, 1>()).norm(), 1e-13);
     EXPECT_LE((kinematics.tip.R - product.topLeftCorner<3, 3>()).norm(), 1e-13);
   }
@@ -110,7 +110,7 @@ TEST(SerialArm, a_planar_arm_is_one) {
   for (int i = 1; i < N; ++i) joints[static_cast<std::size_t>(i)].placement.p(0) = lengths(i - 1);
   Transform<> tip;
   tip.p(0) = lengths(N - 1);
-  const SerialArm<N> serial(joints, tip);
+  const SerialArm<N> serial({joints, tip});
   const PlanarArm<N> planar(lengths);
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
@@ -132,7 +132,7 @@ TEST(SerialArm, fpbm_gives_the_tip_its_commanded_acceleration) {
   constexpr int N = 8;
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
-    const SerialArm<N> arm(random_chain(random, N), random_transform(random));
+    const SerialArm<N> arm({random_chain(random, N), random_transform(random)});
     const State<N> state{Vector<N>(random.uniform(N, -2.0, 2.0)), Vector<N>(random.uniform(N, -0.5, 0.5))};
     Kinematics<Pose, N> kinematics;
     arm.kinematics(state.q, state.qd, kinematics);
@@ -169,7 +169,7 @@ TEST(Rotation, vector_and_matrix_are_inverse_to_each_other) {
 TEST(SerialArm, bad_chains_are_refused) {
   const auto refusal = [](const std::vector<Joint<>>& joints, const Transform<>& tip) -> std::string {
     try {
-      SerialArm<2>(joints, tip);
+      SerialArm<2>({joints, tip});
     } catch (const std::invalid_argument& refused) {
       return refused.what();
     }

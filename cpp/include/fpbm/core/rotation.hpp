@@ -12,6 +12,11 @@ template <typename Scalar = double>
 struct Transform {
   Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin [m].
   Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the frame's axes.
+
+  /// Where b is, seen from where a is seen from.
+  [[nodiscard]] friend Transform operator*(const Transform& a, const Transform& b) noexcept {
+    return {a.p + a.R.lazyProduct(b.p), a.R.lazyProduct(b.R)};
+  }
 };
 
 template <typename Scalar>

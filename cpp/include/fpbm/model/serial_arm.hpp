@@ -1,30 +1,17 @@
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <limits>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "fpbm/core/rotation.hpp"
+#include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
-#include "fpbm/core/validation.hpp"
+#include "fpbm/model/chain.hpp"
 #include "fpbm/model/kinematics.hpp"
 
 namespace fpbm {
 
-enum class JointType : unsigned char { kRevolute, kPrismatic };
-
-/// One joint of a chain.
-template <typename Scalar = double>
-struct Joint {
-  JointType type = JointType::kRevolute;
-  Transform<Scalar> placement = {};  ///< The joint's frame, seen from the joint before, both at zero.
-  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the joint's frame; its length does not matter.
-};
-
-/// Any chain of N revolute and prismatic joints, in space. Immutable.
+/// Any chain of N revolute, continuous and prismatic joints, in space. Immutable.
 ///
 /// Joint positions in radians or metres, the base frame is that of the first placement. N = Eigen::Dynamic takes the
 /// number of joints from the chain, up to kMaxDof.
@@ -34,30 +21,25 @@ class SerialArm {
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// The chain from base to tip; tip is the tip's frame seen from the last joint.
-  /// Throws std::invalid_argument where their number is not N or beyond kMaxDof, an axis is zero, a number is not
-  /// finite, or a placement's R is no rotation.
-  explicit SerialArm(const std::vector<Joint<Scalar>>& joints, const Transform<Scalar>& tip = {})
-      : dof_(static_cast<Eigen::Index>(joints.size())) {
-    validation::require_dof("joints", dof_, 1);
-    if constexpr (N != Eigen::Dynamic) validation::require_size("joints", dof_, N);
+  /// Throws std::invalid_argument where the number of joints is not N or beyond kMaxDof, an axis is zero, a number is
+  /// not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
+  explicit SerialArm(const Chain<Scalar>& chain)
+      : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
     // Each joint's frame is turned so that its axis is z: then all joints move alike.
     Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      const std::string name = validation::element("joints", static_cast<Eigen::Index>(i));
-      require_transform(name + ".placement", joints[i].placement);
-      const Matrix<3, 3, Scalar> to_axis = z_to(name + ".axis", joints[i].axis);
-      links_[i].p = turned_back * joints[i].placement.p;
-      links_[i].R = turned_back * joints[i].placement.R * to_axis;
+    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+      const Joint<Scalar>& joint = chain.joints[i];
+      const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
+      links_[i] = {turned_back * joint.placement.p, turned_back * joint.placement.R * to_axis};
       turned_back = to_axis.transpose();
-      types_[i] = joints[i].type;
+      slides_[i] = joint.type == JointType::kPrismatic;
+      limits_.set(static_cast<Eigen::Index>(i), joint.bounds);
     }
-    require_transform("tip", tip);
-    tip_.p = turned_back * tip.p;
-    tip_.R = turned_back * tip.R;
+    tip_ = {turned_back * chain.tip.p, turned_back * chain.tip.R};
   }
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
+  [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
   template <typename Space>
@@ -106,7 +88,7 @@ class SerialArm {
       const Row3 z = frame.R.col(2);
       axes[k] = z;
       if constexpr (kWithRate) axis_rates[k] = cross(w, z);
-      if (types_[k] == JointType::kRevolute) {
+      if (!slides_[k]) {
         const Row3 x = frame.R.col(0);
         frame.R.col(0) = cosines(i) * x + sines(i) * frame.R.col(1);
         frame.R.col(1) = cosines(i) * frame.R.col(1) - sines(i) * x;
@@ -122,7 +104,7 @@ class SerialArm {
 
     for (Eigen::Index i = 0; i < dof_; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const bool turns = types_[k] == JointType::kRevolute;
+      const bool turns = !slides_[k];
       const Row3 arm = frame.p - origins[k];
       out.J.col(i).template head<3>() = turns ? cross(axes[k], arm) : axes[k];
       if constexpr (kWithTurn) out.J.col(i).template tail<3>() = turns ? axes[k] : Row3::Zero();
@@ -140,23 +122,8 @@ class SerialArm {
     }
   }
 
-  static void require_transform(const std::string& name, const Transform<Scalar>& transform) {
-    validation::require_finite((name + ".p").c_str(), transform.p);
-    validation::require_finite((name + ".R").c_str(), transform.R.reshaped());
-    const Matrix<3, 3, Scalar> gram = transform.R.transpose() * transform.R;
-    const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
-    const Scalar off = (gram - Matrix<3, 3, Scalar>::Identity()).cwiseAbs().maxCoeff();
-    const Row3 x = transform.R.col(0);
-    const Row3 y = transform.R.col(1);
-    if (off > tolerance || cross(x, y).dot(transform.R.col(2)) < Scalar(0)) {
-      throw std::invalid_argument(name + ".R: must be a rotation matrix");
-    }
-  }
-
   /// A rotation that takes z to the axis.
-  static Matrix<3, 3, Scalar> z_to(const std::string& name, const Row3& axis) {
-    validation::require_finite(name.c_str(), axis);
-    if (!(axis.norm() > Scalar(0))) throw std::invalid_argument(name + " is zero: must point somewhere");
+  static Matrix<3, 3, Scalar> z_to(const Row3& axis) {
     Matrix<3, 3, Scalar> R;
     const Row3 z = axis.normalized();
     Eigen::Index least = 0;
@@ -172,8 +139,9 @@ class SerialArm {
 
   Eigen::Index dof_;
   std::array<Transform<Scalar>, kCapacity<N>> links_;
-  std::array<JointType, kCapacity<N>> types_{};
+  std::array<bool, kCapacity<N>> slides_{};
   Transform<Scalar> tip_;
+  JointLimits<N, Scalar> limits_;
 };
 
 }  // namespace fpbm

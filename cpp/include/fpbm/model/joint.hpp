@@ -1,0 +1,70 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "fpbm/core/rotation.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+enum class JointType : unsigned char {
+  kRevolute,    ///< Turns, within bounds [rad].
+  kContinuous,  ///< Turns without end.
+  kPrismatic,   ///< Slides [m].
+};
+
+/// How far and how fast one joint may go; infinite where there is no bound.
+template <typename Scalar = double>
+struct JointBounds {
+  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+
+  Scalar lower = -kNone;        ///< [rad] or [m]
+  Scalar upper = kNone;         ///< [rad] or [m]
+  Scalar velocity = kNone;      ///< Either way [rad/s] or [m/s].
+  Scalar acceleration = kNone;  ///< Either way [rad/s²] or [m/s²].
+};
+
+/// A joint that is moved by another: its position is ratio times the other's, plus offset.
+template <typename Scalar = double>
+struct Mimic {
+  int joint = -1;  ///< The other's index in the chain, or -1: a joint with a drive of its own.
+  Scalar ratio = 1;
+  Scalar offset = 0;  ///< [rad] or [m]
+};
+
+/// One joint of a chain.
+template <typename Scalar = double>
+struct Joint {
+  JointType type = JointType::kRevolute;
+  Transform<Scalar> placement = {};  ///< The joint's frame, seen from the joint before, both at zero.
+  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the joint's frame; its length does not matter.
+  JointBounds<Scalar> bounds = {};
+  std::string name = {};
+  Mimic<Scalar> mimic = {};
+};
+
+/// The bounds of all joints of an arm; infinite where there is none.
+template <int N, typename Scalar = double>
+struct JointLimits {
+  Vector<N, Scalar> lower;         ///< [rad] or [m]
+  Vector<N, Scalar> upper;         ///< [rad] or [m]
+  Vector<N, Scalar> velocity;      ///< [rad/s] or [m/s]
+  Vector<N, Scalar> acceleration;  ///< [rad/s²] or [m/s²]
+
+  /// No bounds at all, for dof joints.
+  [[nodiscard]] static JointLimits none(Eigen::Index dof) {
+    const Vector<N, Scalar> infinite = Vector<N, Scalar>::Constant(dof, JointBounds<Scalar>::kNone);
+    return {-infinite, infinite, infinite, infinite};
+  }
+
+  /// Sets joint i's.
+  void set(Eigen::Index i, const JointBounds<Scalar>& bounds) noexcept {
+    lower(i) = bounds.lower;
+    upper(i) = bounds.upper;
+    velocity(i) = bounds.velocity;
+    acceleration(i) = bounds.acceleration;
+  }
+};
+
+}  // namespace fpbm
