@@ -24,16 +24,52 @@ template <typename Scalar>
   return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
 }
 
-/// Rotation matrix of a rotation vector r [rad]: by |r| about r/|r| (Rodrigues).
+/// Unit quaternion (w, v) of a rotation vector r [rad], w = cos(|r|/2).
 template <typename Scalar>
-[[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<3, Scalar>& r) noexcept {
+[[nodiscard]] Vector<4, Scalar> quaternion(const Vector<3, Scalar>& r) noexcept {
   using std::sqrt;
   // With half angles neither factor loses digits near |r| = 0: sin(a)/a there is 1 to round-off.
   const Scalar half = sqrt(r.squaredNorm()) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
-  const Vector<3, Scalar> v = sinc / Scalar(2) * r;  // Vector part of the unit quaternion (w, v).
-  const Scalar w = angle.cos;
+  Vector<4, Scalar> q;
+  q(0) = angle.cos;
+  q.template tail<3>() = sinc / Scalar(2) * r;
+  return q;
+}
+
+/// Unit quaternion (w, v) of a rotation matrix, w ≥ 0.
+///
+/// Its largest entry is taken from the diagonal (S. W. Shepperd, Quaternion from rotation matrix, 1978), which loses no
+/// digits near a turn of 0 and none near π.
+template <typename Scalar>
+[[nodiscard]] Vector<4, Scalar> quaternion(const Matrix<3, 3, Scalar>& R) noexcept {
+  using std::sqrt;
+  const Scalar trace = R.trace();
+  Vector<4, Scalar> q;
+  Eigen::Index i = 0;
+  if (trace >= R.diagonal().maxCoeff(&i)) {
+    const Scalar root = sqrt(Scalar(1) + trace);
+    q(0) = root / Scalar(2);
+    q.template tail<3>() =
+        Vector<3, Scalar>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)) / (Scalar(2) * root);
+    return q;
+  }
+  const Eigen::Index j = (i + 1) % 3;
+  const Eigen::Index k = (i + 2) % 3;
+  const Scalar root = sqrt(Scalar(1) + R(i, i) - R(j, j) - R(k, k));
+  q(1 + i) = root / Scalar(2);
+  q(1 + j) = (R(i, j) + R(j, i)) / (Scalar(2) * root);
+  q(1 + k) = (R(i, k) + R(k, i)) / (Scalar(2) * root);
+  q(0) = (R(k, j) - R(j, k)) / (Scalar(2) * root);
+  return q(0) < Scalar(0) ? Vector<4, Scalar>(-q) : q;
+}
+
+/// Rotation matrix of a unit quaternion (w, v): (w² − |v|²) I + 2 v vᵀ + 2 w [v]×.
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<4, Scalar>& q) noexcept {
+  const Scalar w = q(0);
+  const Vector<3, Scalar> v = q.template tail<3>();
   Matrix<3, 3, Scalar> R = Scalar(2) * v * v.transpose();
   R.diagonal().array() += w * w - v.squaredNorm();
   const Vector<3, Scalar> u = Scalar(2) * w * v;
@@ -46,37 +82,21 @@ template <typename Scalar>
   return R;
 }
 
+/// Rotation matrix of a rotation vector r [rad]: by |r| about r/|r| (Rodrigues).
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<3, Scalar>& r) noexcept {
+  return rotation(quaternion(r));
+}
+
 /// Rotation vector of a rotation matrix, |r| ≤ π [rad]; the inverse of rotation().
-///
-/// By way of the unit quaternion with its largest entry taken from the diagonal (S. W. Shepperd, Quaternion from
-/// rotation matrix, 1978), which loses no digits near 0 and none near π.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::atan2;
   using std::sqrt;
-  const Scalar trace = R.trace();
-  Scalar w;
-  Vector<3, Scalar> v;
-  Eigen::Index i = 0;
-  if (trace >= R.diagonal().maxCoeff(&i)) {
-    const Scalar root = sqrt(Scalar(1) + trace);
-    w = root / Scalar(2);
-    v = Vector<3, Scalar>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)) / (Scalar(2) * root);
-  } else {
-    const Eigen::Index j = (i + 1) % 3;
-    const Eigen::Index k = (i + 2) % 3;
-    const Scalar root = sqrt(Scalar(1) + R(i, i) - R(j, j) - R(k, k));
-    v(i) = root / Scalar(2);
-    v(j) = (R(i, j) + R(j, i)) / (Scalar(2) * root);
-    v(k) = (R(i, k) + R(k, i)) / (Scalar(2) * root);
-    w = (R(k, j) - R(j, k)) / (Scalar(2) * root);
-    if (w < Scalar(0)) {
-      w = -w;
-      v = -v;
-    }
-  }
+  const Vector<4, Scalar> q = quaternion(R);
+  const Vector<3, Scalar> v = q.template tail<3>();
   const Scalar sine = sqrt(v.squaredNorm());
-  const Scalar scale = sine > Scalar(0) ? atan2(sine, w) / sine : Scalar(1);
+  const Scalar scale = sine > Scalar(0) ? atan2(sine, q(0)) / sine : Scalar(1);
   return Scalar(2) * scale * v;
 }
 

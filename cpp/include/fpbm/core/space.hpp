@@ -1,40 +1,82 @@
 #pragma once
 
+#include <cmath>
+
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
 
-/// Task space of tip positions: M = 2 in the plane, M = 3 in space [m].
+inline constexpr double kTurn = 6.28318530717958647692;
+
+/// A task space tells resolvers and paths what a point of it is, how many rows its velocities have (kRows), what x ⊖ y
+/// means, and what it means that one displacement follows another:
 ///
-/// A task space tells the resolvers three things: how many rows the task has, what a point of it is, and what
-/// x ⊖ y means.
+///   difference(x, y)   x ⊖ y: the displacement that leads from y to x, along the base frame's axes;
+///   displace(y, d)     y ⊕ d: the point that d leads to from y;
+///   compose(y, x)      where x leads that was seen from the origin and now starts at y;
+///   store(x, out)      the point as kSize plain numbers.
+
+/// Task space of tip positions: M = 2 in the plane, M = 3 in space [m].
 template <int M>
 struct Position {
   static constexpr int kRows = M;
+  static constexpr int kSize = M;
 
   template <typename Scalar>
   using Point = Vector<M, Scalar>;
 
-  /// x ⊖ y: the displacement that leads from y to x.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> origin() noexcept {
+    return Point<Scalar>::Zero();
+  }
+
   template <typename Scalar>
   [[nodiscard]] static Vector<M, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     return x - y;
   }
 
-  /// y ⊕ d: the point that the displacement d leads to from y.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<M, Scalar>& d) noexcept {
     return y + d;
+  }
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
+    return y + x;
+  }
+
+  template <typename Scalar>
+  static void store(const Point<Scalar>& x, Scalar* out) noexcept {
+    for (int i = 0; i < M; ++i) out[i] = x(i);
+  }
+};
+
+/// Task space of tip poses in the plane: x, y [m] and the angle from the base frame's x axis to the tip's [rad].
+struct PlanarPose : Position<3> {
+  /// x ⊖ y, the angle by the shorter way round.
+  template <typename Scalar>
+  [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    using std::round;
+    constexpr auto kRound = static_cast<Scalar>(kTurn);
+    Vector<3, Scalar> result = x - y;
+    result(2) -= kRound * round(result(2) / kRound);
+    return result;
   }
 };
 
 /// Task space of tip poses: linear rows first, then angular, in the base frame's axes at the tip.
 struct Pose {
   static constexpr int kRows = 6;
+  static constexpr int kSize = 16;
 
   template <typename Scalar>
   using Point = Transform<Scalar>;
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> origin() noexcept {
+    return {};
+  }
 
   /// x ⊖ y: from y's origin to x's [m], then the rotation vector of R_x R_yᵀ [rad].
   template <typename Scalar>
@@ -52,6 +94,35 @@ struct Pose {
     const Vector<3, Scalar> turn = d.template tail<3>();
     return {y.p + d.template head<3>(), rotation(turn).lazyProduct(y.R)};
   }
+
+  /// y moved by x.p and turned by x.R, both along the base frame's axes.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
+    return {y.p + x.p, x.R.lazyProduct(y.R)};
+  }
+
+  /// As a homogeneous 4×4 matrix, row by row.
+  template <typename Scalar>
+  static void store(const Point<Scalar>& x, Scalar* out) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) out[4 * i + j] = x.R(i, j);
+      out[4 * i + 3] = x.p(i);
+    }
+    out[12] = out[13] = out[14] = Scalar(0);
+    out[15] = Scalar(1);
+  }
+};
+
+/// The space of poses over a space of positions.
+template <typename Space>
+struct PoseOver;
+template <>
+struct PoseOver<Position<2>> {
+  using type = PlanarPose;
+};
+template <>
+struct PoseOver<Position<3>> {
+  using type = Pose;
 };
 
 }  // namespace fpbm

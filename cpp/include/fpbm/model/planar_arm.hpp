@@ -1,8 +1,11 @@
 #pragma once
 
+#include <type_traits>
+
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 
 namespace fpbm {
@@ -27,26 +30,34 @@ class PlanarArm {
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
   [[nodiscard]] const Vector<N, Scalar>& lengths() const noexcept { return lengths_; }
 
-  /// Tip position and J at q; leaves Jd alone.
-  void kinematics(const Vector<N, Scalar>& q, Kinematics<Position<2>, N, Scalar>& out) const noexcept {
+  /// None: as far and as fast as one likes.
+  [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
+
+  /// Tip and J at q, for the task spaces Position<2> and PlanarPose; leaves Jd alone.
+  template <typename Space>
+  void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     sweep<false>(q, q, out);
   }
 
-  /// Tip position, J and Jd at (q, qd).
+  /// Tip, J and Jd at (q, qd), for the task spaces Position<2> and PlanarPose.
+  template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
-                  Kinematics<Position<2>, N, Scalar>& out) const noexcept {
+                  Kinematics<Space, N, Scalar>& out) const noexcept {
     sweep<true>(q, qd, out);
   }
 
  private:
   /// One pass out along the arm for the links, one pass back for the sums over all links beyond a joint:
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
-  template <bool kWithRate>
+  /// The tip's angle is θₙ, to which every joint adds its own.
+  template <bool kWithRate, typename Space>
   [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                              Kinematics<Position<2>, N, Scalar>& out) const noexcept {
+                              Kinematics<Space, N, Scalar>& out) const noexcept {
+    constexpr bool kWithTurn = std::is_same_v<Space, PlanarPose>;
+    static_assert(kWithTurn || std::is_same_v<Space, Position<2>>, "a planar arm has tasks Position<2> and PlanarPose");
     const Eigen::Index n = lengths_.size();
-    out.J.resize(2, n);
-    if constexpr (kWithRate) out.Jd.resize(2, n);
+    out.J.resize(Space::kRows, n);
+    if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
 
     Vector<N, Scalar> angles = q;
     for (Eigen::Index i = 1; i < n; ++i) angles(i) += angles(i - 1);
@@ -67,11 +78,16 @@ class PlanarArm {
       }
     }
     for (Eigen::Index i = n - 2; i >= 0; --i) {
-      out.J.col(i) += out.J.col(i + 1);
-      if constexpr (kWithRate) out.Jd.col(i) += out.Jd.col(i + 1);
+      out.J.col(i).template head<2>() += out.J.col(i + 1).template head<2>();
+      if constexpr (kWithRate) out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
     }
     out.tip(0) = out.J(1, 0);
     out.tip(1) = -out.J(0, 0);
+    if constexpr (kWithTurn) {
+      out.tip(2) = angles(n - 1);
+      out.J.row(2).setOnes();
+      if constexpr (kWithRate) out.Jd.row(2).setZero();
+    }
   }
 
   Vector<N, Scalar> lengths_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/task/path.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -16,15 +17,19 @@ class AnchoredPath {
   using Point = typename Space::template Point<Scalar>;
 
   AnchoredPath(const Path& path, const Point& anchor) noexcept
-      : path_(path), anchor_(anchor), end_(anchor), time_(0), last_(from_anchor(Scalar(0))) {
-    end_ = from_anchor(path.duration()).x;
+      : path_(path), anchor_(anchor), end_(anchor), time_(0), since_(0), last_(from_anchor(Scalar(0), Scalar(0))) {
+    end_ = from_anchor(path.duration(), path.duration()).x;
   }
 
-  /// Reference at t [s] of the motion, whose last instant is T however t is rounded.
-  [[nodiscard]] const Reference<Space, Scalar>& motion(Scalar t) noexcept {
-    if (t != time_) {
+  /// Reference at t [s] of the motion, in an integrator's step that starts at since; the motion's last instant is T
+  /// however t is rounded.
+  [[nodiscard]] const Reference<Space, Scalar>& motion(Scalar t, [[maybe_unused]] Scalar since) noexcept {
+    bool known = t == time_;
+    if constexpr (kHasPieces<Path>) known = known && since == since_;
+    if (!known) {
       time_ = t;
-      last_ = from_anchor(t < path_.duration() ? t : path_.duration());
+      since_ = since;
+      last_ = from_anchor(t < path_.duration() ? t : path_.duration(), since);
     }
     return last_;
   }
@@ -33,9 +38,9 @@ class AnchoredPath {
   [[nodiscard]] Reference<Space, Scalar> hold() const noexcept { return Reference<Space, Scalar>::hold(end_); }
 
  private:
-  [[nodiscard]] Reference<Space, Scalar> from_anchor(Scalar t) const noexcept {
-    Reference<Space, Scalar> reference = path_.sample(t);
-    reference.x = Space::template displace<Scalar>(anchor_, reference.x);
+  [[nodiscard]] Reference<Space, Scalar> from_anchor(Scalar t, Scalar since) const noexcept {
+    Reference<Space, Scalar> reference = sample_within(path_, t, since);
+    reference.x = Space::template compose<Scalar>(anchor_, reference.x);
     return reference;
   }
 
@@ -43,6 +48,7 @@ class AnchoredPath {
   Point anchor_;
   Point end_;
   Scalar time_;
+  Scalar since_;
   Reference<Space, Scalar> last_;
 };
 

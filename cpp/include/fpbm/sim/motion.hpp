@@ -21,8 +21,9 @@ struct Sample {
 };
 
 /// A recorder that writes samples row by row into the caller's buffers; a null buffer is left out.
-/// Buffers are row-major: one row per sample, n columns for joint quantities, M for tip quantities.
-template <int M, int N, typename Scalar = double>
+/// Buffers are row-major: one row per sample of n columns for joint quantities, Space::kSize for points (a pose is a
+/// 4×4 matrix row by row), Space::kRows for the error.
+template <typename Space, int N, typename Scalar = double>
 struct MotionBuffers {
   Scalar* t = nullptr;
   Scalar* q = nullptr;
@@ -32,13 +33,13 @@ struct MotionBuffers {
   Scalar* x_ref = nullptr;
   Scalar* error = nullptr;
 
-  void operator()(const Sample<Position<M>, N, Scalar>& sample) const noexcept {
+  void operator()(const Sample<Space, N, Scalar>& sample) const noexcept {
     if (t != nullptr) t[sample.index] = sample.t;
     write(q, sample.index, sample.q);
     write(qd, sample.index, sample.qd);
     write(qdd, sample.index, sample.qdd);
-    write(x, sample.index, sample.tip);
-    write(x_ref, sample.index, sample.reference.x);
+    write_point(x, sample.index, sample.tip);
+    write_point(x_ref, sample.index, sample.reference.x);
     write(error, sample.index, sample.error);
   }
 
@@ -48,6 +49,10 @@ struct MotionBuffers {
     if (buffer == nullptr) return;
     Scalar* out = buffer + static_cast<std::ptrdiff_t>(index) * row.size();
     for (Eigen::Index i = 0; i < row.size(); ++i) out[i] = row(i);
+  }
+
+  static void write_point(Scalar* buffer, int index, const typename Space::template Point<Scalar>& point) noexcept {
+    if (buffer != nullptr) Space::store(point, buffer + static_cast<std::ptrdiff_t>(index) * Space::kSize);
   }
 };
 

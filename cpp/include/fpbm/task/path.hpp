@@ -1,5 +1,8 @@
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include "fpbm/core/validation.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/shapes.hpp"
@@ -7,11 +10,34 @@
 
 namespace fpbm {
 
+/// A path has a Scalar, a Space, a duration() [s], and a sample(t) that may be asked for any t, in any order: x, xd,
+/// xdd as displacements from where the tip starts, at rest on the path's ends before 0 and after its duration.
+///
+/// One whose acceleration steps on the way has a sample(t, since) besides: at t of that piece of it which is in force
+/// just after since, so that an integrator's step stays within a piece.
+template <typename Path, typename = void>
+inline constexpr bool kHasPieces = false;
+template <typename Path>
+inline constexpr bool kHasPieces<
+    Path, std::void_t<decltype(std::declval<const Path&>().sample(typename Path::Scalar(), typename Path::Scalar()))>> =
+    true;
+
+/// Any path's sample at t, within the piece in force just after since.
+template <typename Path>
+[[nodiscard]] Reference<typename Path::Space, typename Path::Scalar> sample_within(
+    const Path& path, typename Path::Scalar t, [[maybe_unused]] typename Path::Scalar since) noexcept {
+  if constexpr (kHasPieces<Path>) {
+    return path.sample(t, since);
+  } else {
+    return path.sample(t);
+  }
+}
+
 /// A shape run through under a time law in T seconds, then held.
 ///
 /// With s(τ), τ = t/T, from the time law and d(s) from the shape:
 ///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,
-/// all as displacements from where the tip starts. A value: sample() may be asked for any t, in any order.
+/// all as displacements from where the tip starts.
 template <typename Shape, typename TimeLaw = SinSquared>
 class Path {
  public:
@@ -33,7 +59,7 @@ class Path {
     const Phase<Scalar> phase = time_law_.at(t / duration_);
     const Scalar sd = phase.sd / duration_;
     const Scalar sdd = phase.sdd / (duration_ * duration_);
-    const Curve<Space::kRows, Scalar> curve = shape_.at(phase.s);
+    const Curve<Space, Scalar> curve = shape_.at(phase.s);
     return {curve.d, curve.d1 * sd, curve.d2 * (sd * sd) + curve.d1 * sdd};
   }
 

@@ -3,18 +3,9 @@
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/task/curve.hpp"
 
 namespace fpbm {
-
-/// Displacement from where a shape starts, and its first two derivatives with respect to the fraction s done.
-template <int M, typename Scalar>
-struct Curve {
-  Vector<M, Scalar> d;
-  Vector<M, Scalar> d1;
-  Vector<M, Scalar> d2;
-};
-
-inline constexpr double kTurn = 6.28318530717958647692;
 
 /// Circle of radius r [m], counter-clockwise from its rightmost point: r (cos φ − 1, sin φ), φ = 2πs.
 template <typename Scalar_ = double>
@@ -27,7 +18,7 @@ class Circle {
     validation::require_positive("radius", static_cast<double>(radius));
   }
 
-  [[nodiscard]] Curve<2, Scalar> at(Scalar s) const noexcept {
+  [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     constexpr auto kRate = static_cast<Scalar>(kTurn);
     const SinCos<Scalar> phi = sincos(kRate * s);
     const Scalar x = radius_ * phi.cos;
@@ -56,7 +47,7 @@ class Lissajous {
     validation::require_finite("phase", static_cast<double>(phase));
   }
 
-  [[nodiscard]] Curve<2, Scalar> at(Scalar s) const noexcept {
+  [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     const SinCos<Scalar> x = sincos(rates_(0) * s + phase_);
     const SinCos<Scalar> y = sincos(rates_(1) * s + phase_);
     const Vector<2, Scalar> p{amplitudes_(0) * x.cos, amplitudes_(1) * y.sin};
@@ -80,7 +71,7 @@ class Tricuspid {
 
   explicit Tricuspid(Scalar size) : size_(size) { validation::require_positive("size", static_cast<double>(size)); }
 
-  [[nodiscard]] Curve<2, Scalar> at(Scalar s) const noexcept {
+  [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     constexpr auto kRate = static_cast<Scalar>(kTurn);
     const SinCos<Scalar> phi = sincos(kRate * s);
     const Scalar c1 = size_ * Scalar(2) * phi.cos;
@@ -107,7 +98,7 @@ class Line {
     validation::require_finite("displacement", displacement);
   }
 
-  [[nodiscard]] Curve<M, Scalar> at(Scalar s) const noexcept {
+  [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     return {displacement_ * s, displacement_, Vector<M, Scalar>::Zero()};
   }
 

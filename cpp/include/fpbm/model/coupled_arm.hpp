@@ -1,0 +1,97 @@
+#pragma once
+
+#include <string>
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/chain.hpp"
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/model/serial_arm.hpp"
+
+namespace fpbm {
+
+/// A serial chain in which some joints move with others (gears, belts, URDF's mimic): N joints that have a drive of
+/// their own, and any number that follow. Immutable.
+///
+/// Chain positions are A q + b with a constant A, so that J = J_chain A and Jd = Jd_chain A.
+template <int N, typename Scalar_ = double>
+class CoupledArm {
+ public:
+  using Scalar = Scalar_;
+  static constexpr int kDof = N;
+
+  /// Joints whose mimic names another joint follow that one, which must have a drive of its own; a follower's bounds
+  /// are not read.
+  /// Throws std::invalid_argument where a chain is wrong for a SerialArm, a mimic is out of range, or the number of
+  /// joints with a drive is not N.
+  explicit CoupledArm(const Chain<Scalar>& chain) : chain_(without_mimics(chain)) {
+    const auto length = static_cast<Eigen::Index>(chain.joints.size());
+    Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> column(length);
+    Eigen::Index dof = 0;
+    for (Eigen::Index i = 0; i < length; ++i) column(i) = drives(chain, i) ? dof++ : Eigen::Index(-1);
+    validation::require_dof("joints with a drive", dof, 1);
+    if constexpr (N != Eigen::Dynamic) validation::require_size("joints with a drive", dof, N);
+
+    A_.setZero(length, dof);
+    b_.setZero(length);
+    limits_ = JointLimits<N, Scalar>::none(dof);
+    for (Eigen::Index i = 0; i < length; ++i) {
+      const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
+      if (drives(chain, i)) {
+        A_(i, column(i)) = Scalar(1);
+        limits_.set(column(i), joint.bounds);
+        continue;
+      }
+      const std::string name = validation::element("joints", i) + ".mimic";
+      const Mimic<Scalar>& mimic = joint.mimic;
+      if (mimic.joint >= length || column(mimic.joint) < 0) {
+        validation::fail(name + ".joint", mimic.joint, "the index of a joint with a drive of its own");
+      }
+      validation::require_finite(name + ".ratio", static_cast<double>(mimic.ratio));
+      validation::require_finite(name + ".offset", static_cast<double>(mimic.offset));
+      A_(i, column(mimic.joint)) = mimic.ratio;
+      b_(i) = mimic.offset;
+    }
+  }
+
+  [[nodiscard]] int dof() const noexcept { return static_cast<int>(A_.cols()); }
+  [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
+
+  /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
+  template <typename Space>
+  void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
+                  Kinematics<Space, N, Scalar>& out) const noexcept {
+    Kinematics<Space, Eigen::Dynamic, Scalar> all;
+    chain_.kinematics(Positions(A_.lazyProduct(q) + b_), Positions(A_.lazyProduct(qd)), all);
+    out.tip = all.tip;
+    out.J = all.J.lazyProduct(A_);
+    out.Jd = all.Jd.lazyProduct(A_);
+  }
+
+  /// Tip and J at q; leaves Jd alone.
+  template <typename Space>
+  void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
+    Kinematics<Space, Eigen::Dynamic, Scalar> all;
+    chain_.kinematics(Positions(A_.lazyProduct(q) + b_), all);
+    out.tip = all.tip;
+    out.J = all.J.lazyProduct(A_);
+  }
+
+ private:
+  using Positions = Vector<Eigen::Dynamic, Scalar>;
+
+  static bool drives(const Chain<Scalar>& chain, Eigen::Index i) {
+    return chain.joints[static_cast<std::size_t>(i)].mimic.joint < 0;
+  }
+
+  static Chain<Scalar> without_mimics(Chain<Scalar> chain) {
+    for (Joint<Scalar>& joint : chain.joints) joint.mimic = {};
+    return chain;
+  }
+
+  SerialArm<Eigen::Dynamic, Scalar> chain_;
+  Matrix<Eigen::Dynamic, N, Scalar> A_;
+  Positions b_;
+  JointLimits<N, Scalar> limits_ = JointLimits<N, Scalar>::none(N == Eigen::Dynamic ? 0 : N);
+};
+
+}  // namespace fpbm

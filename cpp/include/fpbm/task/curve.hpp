@@ -1,0 +1,15 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Displacement from where a shape starts, and its first two derivatives with respect to the fraction s done.
+template <typename Space, typename Scalar>
+struct Curve {
+  typename Space::template Point<Scalar> d;
+  Vector<Space::kRows, Scalar> d1;
+  Vector<Space::kRows, Scalar> d2;
+};
+
+}  // namespace fpbm

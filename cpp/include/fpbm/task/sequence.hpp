@@ -1,0 +1,44 @@
+#pragma once
+
+#include <limits>
+#include <type_traits>
+
+#include "fpbm/task/path.hpp"
+
+namespace fpbm {
+
+/// One path after another: the second starts where the first ends. For more than two, a sequence of sequences.
+template <typename First, typename Second>
+class Sequence {
+ public:
+  using Scalar = typename First::Scalar;
+  using Space = typename First::Space;
+  static_assert(std::is_same_v<Space, typename Second::Space> && std::is_same_v<Scalar, typename Second::Scalar>,
+                "both paths have one task space and one Scalar");
+
+  Sequence(const First& first, const Second& second)
+      : first_(first), second_(second), end_of_first_(first.sample(first.duration()).x) {}
+
+  [[nodiscard]] Scalar duration() const noexcept { return first_.duration() + second_.duration(); }
+
+  [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept { return sample(t, t); }
+
+  [[nodiscard]] Reference<Space, Scalar> sample(Scalar t, Scalar since) const noexcept {
+    const Scalar T = first_.duration();
+    // The ends of an integrator's steps are multiples of its step, and by their rounding just before T or after it.
+    if (since < T * (Scalar(1) - kRounding)) return sample_within(first_, t < T ? t : T, since);
+    const Scalar begun = t > T ? t - T : Scalar(0);
+    Reference<Space, Scalar> reference = sample_within(second_, begun, since > T ? since - T : Scalar(0));
+    reference.x = Space::template compose<Scalar>(end_of_first_, reference.x);
+    return reference;
+  }
+
+ private:
+  static constexpr Scalar kRounding = 8 * std::numeric_limits<Scalar>::epsilon();
+
+  First first_;
+  Second second_;
+  typename Space::template Point<Scalar> end_of_first_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Quintic spline through points at given times, at rest (velocity and acceleration zero) at both ends, with four
+/// continuous derivatives: of all curves through them the one of least ∫|jerk|² dt.
+///
+/// Memory is taken at construction and by copies, never by at().
+template <int M, typename Scalar = double>
+class Spline {
+ public:
+  using Row = Vector<M, Scalar>;
+
+  /// Value and the first two derivatives with respect to time.
+  struct Sample {
+    Row x;
+    Row xd;
+    Row xdd;
+  };
+
+  /// At least two points, at strictly increasing times [s].
+  Spline(const std::vector<Row>& points, const std::vector<Scalar>& times) : times_(times), knots_(points.size()) {
+    for (std::size_t i = 0; i < points.size(); ++i) knots_[i].x = points[i];
+    solve();
+  }
+
+  [[nodiscard]] const std::vector<Scalar>& times() const noexcept { return times_; }
+
+  /// At t [s]: on an end outside of the times.
+  [[nodiscard]] Sample at(Scalar t) const noexcept {
+    const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
+    const auto i = static_cast<std::size_t>(after - times_.begin()) - 1;
+    const Knot& a = knots_[i];
+    const Knot& b = knots_[i + 1];
+    const Scalar h = times_[i + 1] - times_[i];
+    const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
+    // From a's Taylor polynomial, what is missing at b.
+    const Row x = b.x - (a.x + h * (a.xd + h / 2 * a.xdd));
+    const Row xd = h * (b.xd - (a.xd + h * a.xdd));
+    const Row xdd = h * h * (b.xdd - a.xdd);
+    const Row c3 = 10 * x - 4 * xd + xdd / 2;
+    const Row c4 = -15 * x + 7 * xd - xdd;
+    const Row c5 = 6 * x - 3 * xd + xdd / 2;
+    const Scalar s = u * h;
+    return {a.x + s * (a.xd + s / 2 * a.xdd) + u * u * u * (c3 + u * (c4 + u * c5)),
+            a.xd + s * a.xdd + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5))),
+            a.xdd + u / (h * h) * (6 * c3 + u * (12 * c4 + u * (20 * c5)))};
+  }
+
+ private:
+  struct Knot {
+    Row x = Row::Zero();
+    Row xd = Row::Zero();
+    Row xdd = Row::Zero();
+  };
+  using Block = Matrix<2, 2, Scalar>;
+  using Rates = Matrix<2, M, Scalar>;  // Velocity and acceleration of a knot.
+
+  /// The inner knots' velocities and accelerations make snap and jerk continuous: a block tridiagonal system, which is
+  /// positive definite, since it is that of the least ∫|jerk|² dt, and so is solved without pivoting.
+  void solve() {
+    const std::size_t inner = knots_.size() - 2;
+    std::vector<Block> upper(inner);
+    std::vector<Rates> rates(inner);
+    for (std::size_t i = 0; i < inner; ++i) {
+      const Scalar h = times_[i + 1] - times_[i];
+      const Scalar g = times_[i + 2] - times_[i + 1];
+      Block diagonal = ends(h) + begins(g);
+      const Row before = (knots_[i + 1].x - knots_[i].x) / (h * h * h);
+      const Row after = (knots_[i + 2].x - knots_[i + 1].x) / (g * g * g);
+      Rates right;
+      right.row(0) = 360 * (before / h + after / g).transpose();
+      right.row(1) = 60 * (after - before).transpose();
+      if (i > 0) {
+        const Block lower = across(h).transpose();
+        diagonal -= lower * upper[i - 1];
+        right -= lower * rates[i - 1];
+      }
+      const Block inverse = inverted(diagonal);
+      upper[i] = inverse * across(g);
+      rates[i] = inverse * right;
+    }
+    for (std::size_t i = inner; i-- > 0;) {
+      if (i + 1 < inner) rates[i] -= upper[i] * rates[i + 1];
+      knots_[i + 1].xd = rates[i].row(0).transpose();
+      knots_[i + 1].xdd = rates[i].row(1).transpose();
+    }
+  }
+
+  /// What a knot's own rates do to −snap and jerk at the end of a piece of h seconds, and at its begin.
+  static Block ends(Scalar h) {
+    Block block;
+    block << 192 / (h * h * h), -36 / (h * h), -36 / (h * h), 9 / h;
+    return block;
+  }
+  static Block begins(Scalar h) {
+    Block block;
+    block << 192 / (h * h * h), 36 / (h * h), 36 / (h * h), 9 / h;
+    return block;
+  }
+  /// What the next knot's do.
+  static Block across(Scalar h) {
+    Block block;
+    block << 168 / (h * h * h), -24 / (h * h), 24 / (h * h), -3 / h;
+    return block;
+  }
+
+  static Block inverted(const Block& block) {
+    Block adjugate;
+    adjugate << block(1, 1), -block(0, 1), -block(1, 0), block(0, 0);
+    return adjugate / (block(0, 0) * block(1, 1) - block(0, 1) * block(1, 0));
+  }
+
+  std::vector<Scalar> times_;
+  std::vector<Knot> knots_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,210 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "fpbm/core/space.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/task/reference.hpp"
+#include "fpbm/task/spline.hpp"
+
+namespace fpbm {
+
+/// How fast a tip may go; infinite where there is no bound.
+template <typename Scalar = double>
+struct TipBounds {
+  Scalar speed = std::numeric_limits<Scalar>::infinity();              ///< [m/s]
+  Scalar acceleration = std::numeric_limits<Scalar>::infinity();       ///< [m/s²]
+  Scalar turn_rate = std::numeric_limits<Scalar>::infinity();          ///< [rad/s]
+  Scalar turn_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
+};
+
+/// A smooth path through points of a task space, from rest to rest, with continuous acceleration everywhere.
+///
+/// Positions lie on a quintic spline; so do orientations, as quaternions on a spline in their four numbers, scaled to
+/// unit length, of which the angular velocity and its derivative are exact. Only differences from the first point
+/// matter: a path is a displacement from where the tip starts. Between two orientations it turns by the shorter way.
+template <typename Space_, typename Scalar_ = double>
+class Waypoints {
+ public:
+  using Scalar = Scalar_;
+  using Space = Space_;
+  using Point = typename Space::template Point<Scalar>;
+
+  /// Through points[i] at times[i] [s], the first of them 0.
+  /// Throws std::invalid_argument unless there are as many times as points, at least two, strictly increasing, and all
+  /// are finite.
+  Waypoints(const std::vector<Point>& points, const std::vector<Scalar>& times)
+      : spline_(rows(points), required(times, points.size())) {}
+
+  /// In duration [s], of which each piece gets its share by its length, straight and in angle alike.
+  /// Throws std::invalid_argument where duration is not positive and finite, there are fewer than two points, or two
+  /// that follow each other are one.
+  [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
+    validation::require_positive("duration", static_cast<double>(duration));
+    std::vector<Scalar> times = shares(points);
+    for (Scalar& time : times) time *= duration;
+    times.back() = duration;
+    return Waypoints(points, times);
+  }
+
+  /// As fast as the bounds allow (to 1 %, and to whole hundredths of a second, so that the usual steps fit), each piece
+  /// with its share of the time as above. Throws std::invalid_argument where no bound holds the tip back, too.
+  [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
+    require_bound("speed", bounds.speed);
+    require_bound("acceleration", bounds.acceleration);
+    require_bound("turn_rate", bounds.turn_rate);
+    require_bound("turn_acceleration", bounds.turn_acceleration);
+    const TipBounds<Scalar> peak = lasting(points, Scalar(1)).peaks();
+    const Scalar duration = std::max(std::max(peak.speed / bounds.speed, peak.turn_rate / bounds.turn_rate),
+                                     std::max(std::sqrt(peak.acceleration / bounds.acceleration),
+                                              std::sqrt(peak.turn_acceleration / bounds.turn_acceleration)));
+    if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must hold the tip back");
+    return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
+  }
+
+  [[nodiscard]] Scalar duration() const noexcept { return spline_.times().back(); }
+
+  /// Reference at t [s], as a displacement from the first point; at rest on the ends outside 0 ≤ t ≤ T.
+  [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept {
+    const auto at = spline_.at(t);
+    if constexpr (!kTurns) {
+      return {at.x, at.xd, at.xdd};
+    } else {
+      using Quaternion = Vector<4, Scalar>;
+      const Quaternion Q = at.x.template tail<4>();
+      const Quaternion Qd = at.xd.template tail<4>();
+      const Quaternion Qdd = at.xdd.template tail<4>();
+      // With q = Q/|Q|, ω = 2 q̇q*, of which only the part of Q̇ across Q is left in the vector part.
+      const Scalar square = Q.squaredNorm();
+      const Vector<3, Scalar> w = Scalar(2) / square * times_conjugate(Qd, Q);
+      Reference<Space, Scalar> result;
+      result.x = {at.x.template head<3>(), rotation(Quaternion(Q / std::sqrt(square)))};
+      result.xd << at.xd.template head<3>(), w;
+      result.xdd << at.xdd.template head<3>(), Scalar(2) / square * (times_conjugate(Qdd, Q) - Q.dot(Qd) * w);
+      return result;
+    }
+  }
+
+ private:
+  static constexpr bool kTurns = std::is_same_v<Space, Pose>;
+  static constexpr int kLinear = Space::kRows == 2 || std::is_same_v<Space, PlanarPose> ? 2 : 3;
+  static constexpr int kCoordinates = kTurns ? 7 : Space::kRows;
+  using Row = Vector<kCoordinates, Scalar>;
+
+  /// Vector part of the product of a quaternion with another's conjugate.
+  static Vector<3, Scalar> times_conjugate(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
+    const Vector<3, Scalar> v = a.template tail<3>();
+    const Vector<3, Scalar> w = b.template tail<3>();
+    return b(0) * v - a(0) * w - cross(v, w);
+  }
+
+  /// What the spline goes through: displacements from the first point, orientations by the shorter way.
+  static std::vector<Row> rows(const std::vector<Point>& points) {
+    require_points(points);
+    std::vector<Row> result(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if constexpr (kTurns) {
+        const Matrix<3, 3, Scalar> turn = points[i].R * points[0].R.transpose();
+        Vector<4, Scalar> q = quaternion(turn);
+        if (i > 0 && q.dot(result[i - 1].template tail<4>()) < Scalar(0)) q = -q;
+        result[i] << points[i].p - points[0].p, q;
+      } else if (i == 0) {
+        result[i].setZero();
+      } else {
+        result[i] = result[i - 1] + Space::template difference<Scalar>(points[i], points[i - 1]);
+      }
+    }
+    return result;
+  }
+
+  static void require_points(const std::vector<Point>& points) {
+    if (points.size() < 2) {
+      throw std::invalid_argument("points has " + std::to_string(points.size()) + " entries: must have 2 at least");
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Scalar numbers[Space::kSize];
+      Space::store(points[i], numbers);
+      for (int k = 0; k < Space::kSize; ++k) {
+        validation::require_finite(
+            validation::element("points", static_cast<Eigen::Index>(i)) + "[" + std::to_string(k) + "]",
+            static_cast<double>(numbers[k]));
+      }
+    }
+  }
+
+  static const std::vector<Scalar>& required(const std::vector<Scalar>& times, std::size_t points) {
+    if (times.size() != points) {
+      throw std::invalid_argument("times has " + std::to_string(times.size()) + " entries: must have " +
+                                  std::to_string(points) + ", one per point");
+    }
+    if (times[0] != Scalar(0)) validation::fail("times[0]", static_cast<double>(times[0]), "0");
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      if (!(times[i] > times[i - 1]) || !std::isfinite(times[i])) {
+        validation::fail(validation::element("times", static_cast<Eigen::Index>(i)), static_cast<double>(times[i]),
+                         "finite and after the one before");
+      }
+    }
+    return times;
+  }
+
+  static void require_bound(const char* name, Scalar bound) {
+    if (!(bound > Scalar(0))) validation::fail(name, static_cast<double>(bound), "positive");
+  }
+
+  /// When each point's turn comes, of a whole of 1.
+  static std::vector<Scalar> shares(const std::vector<Point>& points) {
+    require_points(points);
+    std::vector<Scalar> lengths(points.size(), Scalar(0));
+    std::vector<Scalar> angles(points.size(), Scalar(0));
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Vector<Space::kRows, Scalar> way = Space::template difference<Scalar>(points[i], points[i - 1]);
+      lengths[i] = way.template head<kLinear>().norm();
+      angles[i] = way.template tail<Space::kRows - kLinear>().norm();
+      if (!(lengths[i] + angles[i] > Scalar(0))) {
+        throw std::invalid_argument(validation::element("points", static_cast<Eigen::Index>(i)) +
+                                    ": must differ from the one before");
+      }
+    }
+    const Scalar length = std::accumulate(lengths.begin(), lengths.end(), Scalar(0));
+    const Scalar angle = std::accumulate(angles.begin(), angles.end(), Scalar(0));
+    std::vector<Scalar> times(points.size(), Scalar(0));
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      times[i] = times[i - 1] + (length > Scalar(0) ? lengths[i] / length : Scalar(0)) +
+                 (angle > Scalar(0) ? angles[i] / angle : Scalar(0));
+    }
+    const Scalar whole = times.back();
+    for (Scalar& time : times) time /= whole;
+    return times;
+  }
+
+  /// The largest speeds and accelerations on the way.
+  [[nodiscard]] TipBounds<Scalar> peaks() const {
+    constexpr int kSamples = 64;  // For each piece, whose polynomials are of fifth degree.
+    constexpr int kAngular = Space::kRows - kLinear;
+    TipBounds<Scalar> peak{0, 0, 0, 0};
+    const std::vector<Scalar>& times = spline_.times();
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      for (int k = 0; k < kSamples; ++k) {
+        const Scalar fraction = Scalar(k) / Scalar(kSamples);
+        const auto at = sample(times[i - 1] + fraction * (times[i] - times[i - 1]));
+        peak.speed = std::max(peak.speed, at.xd.template head<kLinear>().norm());
+        peak.acceleration = std::max(peak.acceleration, at.xdd.template head<kLinear>().norm());
+        peak.turn_rate = std::max(peak.turn_rate, at.xd.template tail<kAngular>().norm());
+        peak.turn_acceleration = std::max(peak.turn_acceleration, at.xdd.template tail<kAngular>().norm());
+      }
+    }
+    return peak;
+  }
+
+  Spline<kCoordinates, Scalar> spline_;
+};
+
+}  // namespace fpbm
