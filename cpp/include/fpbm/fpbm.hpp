@@ -16,6 +16,7 @@
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/planar_arm.hpp"
+#include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/resolver/balance.hpp"
 #include "fpbm/resolver/balanced.hpp"

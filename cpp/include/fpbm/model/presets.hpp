@@ -1,0 +1,121 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fpbm/model/chain.hpp"
+#include "fpbm/model/dh.hpp"
+#include "fpbm/model/joint.hpp"
+
+/// Arms as their makers specify them, from the frame of the base to that of the flange.
+///
+/// Each is a chain, to build a SerialArm<7> from, or to change first: a tool is chain.tip = chain.tip * tool.
+namespace fpbm::presets {
+
+namespace arms {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kRight = 90.0 * kDegree;
+constexpr double kHalfTurn = 180.0 * kDegree;
+
+/// [deg] and [deg/s], the same both ways.
+struct Degrees {
+  double position;
+  double velocity;
+
+  operator JointBounds<>() const {
+    return {-position * kDegree, position * kDegree, velocity * kDegree, JointBounds<>::kNone};
+  }
+};
+
+/// The chain with its joints bounded, and numbered after the name.
+template <typename Bounds>
+[[nodiscard]] Chain<> driven(Chain<> chain, const std::string& name, const std::vector<Bounds>& bounds) {
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    chain.joints[i].name = name + std::to_string(i + 1);
+    chain.joints[i].bounds = bounds[i];
+  }
+  return chain;
+}
+
+}  // namespace arms
+
+/// Franka Emika Panda, 7 joints, to its flange, which ROS calls link 8.
+///
+/// Franka Control Interface documentation of August 2025, "Robot and interface specifications": "Limits for Panda", and
+/// "Denavit–Hartenberg parameters", by Craig's convention, which the Panda shares with its successor.
+[[nodiscard]] inline Chain<> panda() {
+  using arms::kRight;
+  Chain<> chain = modified_dh<double>({
+      // a [m], alpha [rad], d [m]
+      {0.0, 0.0, 0.333},
+      {0.0, -kRight, 0.0},
+      {0.0, kRight, 0.316},
+      {0.0825, kRight, 0.0},
+      {-0.0825, -kRight, 0.384},
+      {0.0, kRight, 0.0},
+      {0.088, kRight, 0.0},
+  });
+  chain.tip.p(2) = 0.107;
+  const std::vector<JointBounds<>> bounds = {
+      // [rad], [rad], [rad/s], [rad/s²]
+      {-2.8973, 2.8973, 2.1750, 15.0},  {-1.7628, 1.7628, 2.1750, 7.5},  {-2.8973, 2.8973, 2.1750, 10.0},
+      {-3.0718, -0.0698, 2.1750, 12.5}, {-2.8973, 2.8973, 2.6100, 15.0}, {-0.0175, 3.7525, 2.6100, 20.0},
+      {-2.8973, 2.8973, 2.6100, 20.0},
+  };
+  return arms::driven(chain, "panda_joint", bounds);
+}
+
+/// KUKA LBR iiwa 14 R820, 7 joints, to its flange.
+///
+/// KUKA "LBR iiwa 7 R800, LBR iiwa 14 R820, Specification" V5 of January 2015: figure 4-4, "Working envelope", and
+/// section 4.3.2, "Axis data". It has no table of Denavit-Hartenberg parameters and no accelerations. The signs of
+/// alpha are such that positive A2 and A6, and negative A4, tilt the upright arm to +x, as on the robot.
+[[nodiscard]] inline Chain<> iiwa14() {
+  using arms::kRight;
+  const Chain<> chain = classic_dh<double>({
+      // a [m], alpha [rad], d [m]
+      {0.0, -kRight, 0.360},
+      {0.0, kRight, 0.0},
+      {0.0, kRight, 0.420},
+      {0.0, -kRight, 0.0},
+      {0.0, -kRight, 0.400},
+      {0.0, kRight, 0.0},
+      {0.0, 0.0, 0.126},
+  });
+  const std::vector<arms::Degrees> bounds = {
+      {170.0, 85.0}, {120.0, 85.0}, {170.0, 100.0}, {120.0, 75.0}, {170.0, 130.0}, {120.0, 135.0}, {175.0, 135.0},
+  };
+  return arms::driven(chain, "joint_a", bounds);
+}
+
+/// Kinova Gen3 with a spherical wrist, 7 joints, to the frame of its interface module.
+///
+/// Kinova "Gen3 Ultra lightweight robot, User Guide" R07 of 2022: table 94, "7 DoF spherical Classical DH parameters",
+/// whose row of the base is alpha of the first joint here; tables 39 and 40 for the bounds. The guide rounds lengths to
+/// 0.1 mm and leaves out the offset at joint 6; these here are from GEN3_URDF_V12 of Kinova's kortex_description, which
+/// has all digits. Bounds of acceleration depend on the mode of control: none is set.
+[[nodiscard]] inline Chain<> gen3() {
+  using arms::kHalfTurn;
+  using arms::kRight;
+  constexpr JointType kTurns = JointType::kRevolute;
+  constexpr JointType kEndless = JointType::kContinuous;
+  constexpr double kAny = JointBounds<>::kNone;
+  Chain<> chain = modified_dh<double>({
+      // a [m], alpha [rad], d [m], theta [rad]
+      {0.0, kHalfTurn, -(0.15643 + 0.12838), 0.0, kEndless},
+      {0.0, kRight, -(0.005375 + 0.006375), kHalfTurn, kTurns},
+      {0.0, kRight, -(0.21038 + 0.21038), kHalfTurn, kEndless},
+      {0.0, kRight, -(0.006375 + 0.006375), kHalfTurn, kTurns},
+      {0.0, kRight, -(0.20843 + 0.10593), kHalfTurn, kEndless},
+      {0.0, kRight, -(0.00017505 + 0.00017505), kHalfTurn, kTurns},
+      {0.0, kRight, -(0.10593 + 0.061525), kHalfTurn, kEndless},
+  });
+  chain.tip = dh::along_x<double>({0.0, kHalfTurn});
+  const std::vector<arms::Degrees> bounds = {
+      {kAny, 79.64}, {128.9, 79.64}, {kAny, 79.64}, {147.8, 79.64}, {kAny, 69.91}, {120.3, 69.91}, {kAny, 69.91},
+  };
+  return arms::driven(chain, "joint_", bounds);
+}
+
+}  // namespace fpbm::presets

@@ -1,0 +1,220 @@
+#include "fpbm/model/presets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "fpbm/model/serial_arm.hpp"
+#include "support/random.hpp"
+
+/// The arms of presets.hpp against models of other origin, and the Denavit-Hartenberg tables they are built from
+/// against plain products.
+namespace fpbm::test {
+namespace {
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kDegree = kHalfTurn / 180.0;
+
+using Matrix34 = Matrix<3, 4>;
+
+template <int N>
+Matrix34 tip_of(const Chain<>& chain, const Vector<N>& q) {
+  Kinematics<Pose, N> kinematics;
+  SerialArm<N>(chain).kinematics(q, kinematics);
+  Matrix34 tip;
+  tip << kinematics.tip.R, kinematics.tip.p;
+  return tip;
+}
+
+void expect_tip(const Chain<>& chain, const Vector<7>& q, const std::vector<double>& rows, double tolerance = 1e-12) {
+  const Matrix34 expected = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data());
+  EXPECT_LE((tip_of<7>(chain, q) - expected).cwiseAbs().maxCoeff(), tolerance) << q.transpose();
+}
+
+void expect_both_ways(const Vector<7>& lower, const Vector<7>& upper, const Vector<7>& expected, double tolerance) {
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_NEAR(upper(i), expected(i), tolerance) << i;
+    EXPECT_EQ(lower(i), -upper(i)) << i;
+  }
+}
+
+std::vector<std::string> names_of(const Chain<>& chain) {
+  std::vector<std::string> names;
+  for (const Joint<>& joint : chain.joints) names.push_back(joint.name);
+  return names;
+}
+
+/// Poses: panda.urdf of example-robot-data 6.0.0, panda_link8, by Pinocchio 4.1.0. Bounds: franka_ros,
+/// franka_description/robots/panda/joint_limits.yaml; of acceleration: franka_rust 0.1.15.
+TEST(Presets, panda_is_the_others_panda) {
+  const Chain<> panda = presets::panda();
+  // clang-format off
+  expect_tip(panda, Vector<7>::Zero(), {
+      1.0, 0.0, 0.0, 0.088,
+      0.0, -1.0, 0.0, 0.0,
+      0.0, 0.0, -1.0, 0.926});
+  const Vector<7> ready{0.0, -kHalfTurn / 4, 0.0, -0.75 * kHalfTurn, 0.0, kHalfTurn / 2, kHalfTurn / 4};
+  expect_tip(panda, ready, {
+      std::sqrt(0.5), -std::sqrt(0.5), 0.0, 0.306890566592941,
+      -std::sqrt(0.5), -std::sqrt(0.5), 0.0, 0.0,
+      0.0, 0.0, -1.0, 0.590282052302839});
+  expect_tip(panda, {0.5, -1.0, 1.5, -2.0, -0.5, 2.5, -1.5}, {
+      -0.0945820042185657, -0.850408580677225, 0.517551437432596, -0.397827255325499,
+      -0.137846378738888, 0.526061549688126, 0.839200584966611, 0.458305614445778,
+      -0.985927289584062, 0.0080306818063453, -0.166981699006661, 0.462365503028319});
+  // clang-format on
+  const JointLimits<7> limits = SerialArm<7>(panda).limits();
+  EXPECT_EQ(limits.lower, Vector<7>(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973));
+  EXPECT_EQ(limits.upper, Vector<7>(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973));
+  EXPECT_EQ(limits.velocity, Vector<7>(2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61));
+  EXPECT_EQ(limits.acceleration, Vector<7>(15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0));
+  EXPECT_TRUE((ready.array() > limits.lower.array()).all() && (ready.array() < limits.upper.array()).all());
+  EXPECT_EQ(names_of(panda), (std::vector<std::string>{"panda_joint1", "panda_joint2", "panda_joint3", "panda_joint4",
+                                                       "panda_joint5", "panda_joint6", "panda_joint7"}));
+}
+
+/// Franka: "The arm can reach its maximum extension when joint 4 has angle −0.467002423653011 rad".
+TEST(Presets, panda_reaches_farthest_where_its_maker_says) {
+  Chain<> to_wrist = presets::panda();
+  to_wrist.tip = to_wrist.joints[5].placement;
+  to_wrist.joints.resize(5);
+  const SerialArm<5> arm(to_wrist);
+  const Vector<3> shoulder{0.0, 0.0, 0.333};
+  Kinematics<Position<3>, 5> kinematics;
+  const auto reach = [&](double elbow) {
+    arm.kinematics(Vector<5>(0.3, 0.7, -0.4, elbow, 0.1), kinematics);
+    return (kinematics.tip - shoulder).norm();
+  };
+  constexpr double kElbowFlip = -0.467002423653011;
+  const double farthest = reach(kElbowFlip);
+  EXPECT_NEAR((kinematics.tip - shoulder).dot(kinematics.J.col(3)), 0.0, 1e-14);
+  EXPECT_GT(farthest, reach(kElbowFlip - 0.01));
+  EXPECT_GT(farthest, reach(kElbowFlip + 0.01));
+}
+
+/// Poses: the joint frames of mujoco_menagerie's iiwa14.xml, by Pinocchio 4.1.0. Bounds: Drake, iiwa_constants.cc, and
+/// lbr_fri_ros2_stack, joint_limits.yaml.
+TEST(Presets, iiwa14_is_the_others_iiwa14) {
+  const Chain<> iiwa14 = presets::iiwa14();
+  // clang-format off
+  expect_tip(iiwa14, Vector<7>::Zero(), {
+      1.0, 0.0, 0.0, 0.0,
+      0.0, 1.0, 0.0, 0.0,
+      0.0, 0.0, 1.0, 1.306});
+  const Vector<7> bent{0.0, kHalfTurn / 4, 0.0, -kHalfTurn / 2, 0.0, kHalfTurn / 4, 0.0};
+  expect_tip(iiwa14, bent, {
+      -1.0, 0.0, 0.0, 0.579827560572968,
+      0.0, 1.0, 0.0, 0.0,
+      0.0, 0.0, -1.0, 0.248142135623731});
+  expect_tip(iiwa14, {0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5}, {
+      0.0110649205805657, -0.327300888465268, 0.944855383612957, -0.22991831530967,
+      0.108567593576908, -0.938933994800224, -0.326521103503905, 0.181632451593342,
+      0.994027487123702, 0.106193605355194, 0.0251450397533994, 0.521806959737738});
+  // clang-format on
+  const JointLimits<7> limits = SerialArm<7>(iiwa14).limits();
+  expect_both_ways(limits.lower, limits.upper, kDegree * Vector<7>(170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 175.0),
+                   1e-15);
+  const Vector<7> drake{1.483529, 1.483529, 1.745329, 1.308996, 2.268928, 2.356194, 2.356194};
+  EXPECT_LE((limits.velocity - drake).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_TRUE((limits.acceleration.array() == JointBounds<>::kNone).all());
+  EXPECT_EQ(names_of(iiwa14).front(), "joint_a1");
+  EXPECT_EQ(names_of(iiwa14).back(), "joint_a7");
+}
+
+/// Poses: the joint frames of mujoco_menagerie's gen3.xml, by Pinocchio 4.1.0, and table 94 of the User Guide, R07, as
+/// it is printed: rounded to 0.1 mm. Bounds of position: menagerie's.
+TEST(Presets, gen3_is_the_others_gen3) {
+  const Chain<> gen3 = presets::gen3();
+  const Vector<7> home = kDegree * Vector<7>(0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0);
+  const Vector<7> generic{0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5};
+  // clang-format off
+  expect_tip(gen3, Vector<7>::Zero(), {
+      1.0, 0.0, 0.0, 0.0,
+      0.0, 1.0, 0.0, -0.0248501,
+      0.0, 0.0, 1.0, 1.187385});
+  expect_tip(gen3, home, {
+      0.0, 0.0, 1.0, 0.456665189948651,
+      1.0, 0.0, 0.0, 0.0013501,
+      0.0, 1.0, 0.0, 0.433724314026701});
+  expect_tip(gen3, generic, {
+      0.635978200885924, 0.617126787562068, -0.463342482480532, -0.176920240590453,
+      -0.582916680056964, 0.777621605124216, 0.235611509386536, 0.404261775297256,
+      0.505707298849114, 0.120246277769238, 0.854283887576825, 0.556623398531648});
+  // clang-format on
+  constexpr double kQuarter = kHalfTurn / 2;
+  Chain<> guide = modified_dh<double>({{0.0, kHalfTurn, -0.2848, 0.0},
+                                       {0.0, kQuarter, -0.0118, kHalfTurn},
+                                       {0.0, kQuarter, -0.4208, kHalfTurn},
+                                       {0.0, kQuarter, -0.0128, kHalfTurn},
+                                       {0.0, kQuarter, -0.3143, kHalfTurn},
+                                       {0.0, kQuarter, 0.0, kHalfTurn},
+                                       {0.0, kQuarter, -0.1674, kHalfTurn}});
+  guide.tip.R = Vector<3>(1.0, -1.0, -1.0).asDiagonal();
+  for (const Vector<7>& q : {Vector<7>(Vector<7>::Zero()), home, generic}) {
+    EXPECT_LE((tip_of<7>(gen3, q) - tip_of<7>(guide, q)).cwiseAbs().maxCoeff(), 6e-4);
+  }
+
+  constexpr double kAny = JointBounds<>::kNone;
+  const JointLimits<7> limits = SerialArm<7>(gen3).limits();
+  const Vector<7> upper{kAny, 2.2497294058206907, kAny, 2.5795966344476193, kAny, 2.0996310901491784, kAny};
+  for (int i = 0; i < 7; ++i) {
+    const JointType type = gen3.joints[static_cast<std::size_t>(i)].type;
+    EXPECT_EQ(type, i % 2 == 0 ? JointType::kContinuous : JointType::kRevolute) << i;
+    EXPECT_DOUBLE_EQ(limits.upper(i), upper(i)) << i;
+    EXPECT_EQ(limits.lower(i), -limits.upper(i)) << i;
+    EXPECT_DOUBLE_EQ(limits.velocity(i), (i < 4 ? 79.64 : 69.91) * kDegree) << i;
+  }
+  EXPECT_TRUE((limits.acceleration.array() == kAny).all());
+  EXPECT_EQ(names_of(gen3).front(), "joint_1");
+  EXPECT_EQ(names_of(gen3).back(), "joint_7");
+}
+
+Eigen::Matrix4d along(int axis, double distance) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T(axis, 3) = distance;
+  return T;
+}
+
+Eigen::Matrix4d about(int axis, double angle) {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  const int j = (axis + 1) % 3;
+  const int k = (axis + 2) % 3;
+  T(j, j) = T(k, k) = std::cos(angle);
+  T(k, j) = std::sin(angle);
+  T(j, k) = -T(k, j);
+  return T;
+}
+
+/// Rz Tz Tx Rx for classic tables and Rx Tx Rz Tz for modified ones, factor by factor.
+TEST(DenavitHartenberg, tip_is_the_product_of_its_rows) {
+  constexpr int kX = 0;
+  constexpr int kZ = 2;
+  constexpr int N = 7;
+  Random random(11);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<DHRow<>> table;
+    for (int i = 0; i < N; ++i) {
+      const JointType type = random.uniform(0.0, 1.0) < 0.3 ? JointType::kPrismatic : JointType::kRevolute;
+      table.push_back({random.uniform(-0.5, 0.5), random.uniform(-3.0, 3.0), random.uniform(-0.5, 0.5),
+                       random.uniform(-3.0, 3.0), type});
+    }
+    const Vector<N> q = random.uniform(N, -3.0, 3.0);
+    Eigen::Matrix4d classic = Eigen::Matrix4d::Identity();
+    Eigen::Matrix4d modified = Eigen::Matrix4d::Identity();
+    for (int i = 0; i < N; ++i) {
+      const DHRow<>& row = table[static_cast<std::size_t>(i)];
+      const bool slides = row.type == JointType::kPrismatic;
+      const double theta = row.theta + (slides ? 0.0 : q(i));
+      const double d = row.d + (slides ? q(i) : 0.0);
+      classic = classic * about(kZ, theta) * along(kZ, d) * along(kX, row.a) * about(kX, row.alpha);
+      modified = modified * about(kX, row.alpha) * along(kX, row.a) * about(kZ, theta) * along(kZ, d);
+    }
+    EXPECT_LE((tip_of<N>(classic_dh(table), q) - classic.topRows<3>()).cwiseAbs().maxCoeff(), 1e-13) << trial;
+    EXPECT_LE((tip_of<N>(modified_dh(table), q) - modified.topRows<3>()).cwiseAbs().maxCoeff(), 1e-13) << trial;
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test
