@@ -35,7 +35,7 @@ test-cpp clang sanitize:
 	cmake --build --preset $(preset)
 	ctest --preset $(preset)
 
-test-python: $(VENV)/package $(VENV)/test
+test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest
 
 lint: $(VENV)/package $(VENV)/lint
@@ -73,4 +73,14 @@ $(VENV)/package: $(PACKAGE)
 
 $(VENV)/test $(VENV)/lint: pyproject.toml | $(VENV)/package
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
+	@touch $@
+
+# What the arms are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
+# the URDFs are read, so what it needs is left out; Debian's PyKDL is for a Python of Debian's version.
+SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
+$(VENV)/peers: pyproject.toml | $(VENV)/package
+	-$(BIN)/python -m pip install --quiet --group peers
+	-$(BIN)/python -m pip install --quiet --no-deps ManipulaPy==1.4.2
+	-$(if $(filter $(call SUFFIX,/usr/bin/python3),$(call SUFFIX,$(BIN)/python)),\
+	  tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,$(BIN)/python):python3-pykdl)
 	@touch $@
