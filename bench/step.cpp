@@ -123,7 +123,7 @@ void tick(benchmark::State& bench, Arm arm, Scheme scheme) {
   Loop loop{arm, scheme, start.kinematics, start.state, start.state.qd};
   fpbm::AnchoredPath references(path, start.kinematics.tip);
   const auto derivative = [&](double t, const X& x, X& dx) noexcept {
-    return loop.evaluate(references.motion(t), x, dx);
+    return loop.evaluate(references.motion(t, t), x, dx);
   };
   X x(arm.dof(), Loop::kSecondOrder ? 2 : 1);
   escape(arm);

@@ -2,7 +2,10 @@
 
 #include <memory>
 
-#include "fpbm/core/status.hpp"
+#include "fpbm/model/chain.hpp"
+#include "fpbm/model/coupled_arm.hpp"
+#include "fpbm/model/planar_arm.hpp"
+#include "fpbm/model/serial_arm.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "path.hpp"
@@ -11,44 +14,50 @@
 namespace fpbm::bindings {
 
 inline constexpr int kDynamic = Eigen::Dynamic;
+using Joints = Vector<kDynamic>;
 
-/// An arm behind its number of joints: every call ends in code made for just that number.
-class ArmModel {
+/// An arm with a task in Space, behind its number of joints: every call ends in code made for just that number.
+template <typename Space_>
+class TaskModel {
  public:
-  using Joints = Vector<kDynamic>;
-  using Rows = Matrix<2, kDynamic>;
-  using Buffers = MotionBuffers<2, kDynamic>;
+  using Space = Space_;
+  using Buffers = MotionBuffers<Space, kDynamic>;
 
-  ArmModel() = default;
-  ArmModel(const ArmModel&) = delete;
-  ArmModel& operator=(const ArmModel&) = delete;
-  virtual ~ArmModel() = default;
+  TaskModel() = default;
+  TaskModel(const TaskModel&) = delete;
+  TaskModel& operator=(const TaskModel&) = delete;
+  virtual ~TaskModel() = default;
 
-  [[nodiscard]] virtual Kinematics<Position<2>, kDynamic> kinematics(const Joints& q, const Joints& qd) const = 0;
-  [[nodiscard]] virtual Status resolve(const PyScheme& scheme, const Reference<Position<2>>& reference,
-                                       const State<kDynamic>& state, Joints& out) const = 0;
-  [[nodiscard]] virtual RolloutResult<kDynamic> simulate(const PyScheme& scheme, const PyPath& path,
+  [[nodiscard]] virtual Kinematics<Space, kDynamic> kinematics(const Joints& q, const Joints& qd) const = 0;
+  [[nodiscard]] virtual RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
                                                          const State<kDynamic>& start, const TimeGrid<double>& grid,
                                                          const Buffers& buffers) const = 0;
 };
 
-/// Fixed-size code for this many joints; beyond, the heap-free code of run-time size.
-inline constexpr int kSmallestFixedDof = 2;
-inline constexpr int kLargestFixedDof = 10;
+/// An arm with each of its tasks.
+template <typename Positions>
+struct ArmModels {
+  std::shared_ptr<const TaskModel<Positions>> position;
+  std::shared_ptr<const TaskModel<typename PoseOver<Positions>::type>> pose;
+};
 
-/// The arm's model in code of exactly N joints. One source file per N, written by CMake, instantiates it.
+/// What an arm of the library is made from, and the space of its tip's positions.
+template <typename Arm>
+struct ArmTraits {
+  using Source = Chain<>;
+  using Positions = Position<3>;
+};
 template <int N>
-std::unique_ptr<const ArmModel> make_planar_model(const ArmModel::Joints& lengths);
+struct ArmTraits<PlanarArm<N>> {
+  using Source = Joints;
+  using Positions = Position<2>;
+};
 
-/// The choice of N.
-template <int N = kSmallestFixedDof>
-std::unique_ptr<const ArmModel> choose_planar_model(const ArmModel::Joints& lengths) {
-  if constexpr (N > kLargestFixedDof) {
-    return make_planar_model<kDynamic>(lengths);
-  } else {
-    if (lengths.size() == N) return make_planar_model<N>(lengths);
-    return choose_planar_model<N + 1>(lengths);
-  }
-}
+template <typename Arm>
+using ModelsOf = ArmModels<typename ArmTraits<Arm>::Positions>;
+
+/// The models of an arm. Source files written by CMake define it, one for each kind and number of joints.
+template <typename Arm>
+ModelsOf<Arm> make_models(const typename ArmTraits<Arm>::Source& source);
 
 }  // namespace fpbm::bindings

@@ -5,10 +5,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 
+#include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/model/chain.hpp"
 
 namespace py = pybind11;
 
@@ -81,6 +84,57 @@ inline Matrix<Eigen::Dynamic, Eigen::Dynamic> joint_matrix(const ArrayLike& argu
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
+}
+
+/// A matrix of exactly `rows` x `cols` finite entries.
+inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
+  const auto array = real_array(argument, name, 2);
+  if (array.shape(0) != rows || array.shape(1) != cols) {
+    throw std::invalid_argument(std::string(name) + ": must have shape (" + std::to_string(rows) + ", " +
+                                std::to_string(cols) + "), got (" + std::to_string(array.shape(0)) + ", " +
+                                std::to_string(array.shape(1)) + ")");
+  }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::MatrixXd result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < cols; ++j) {
+      if (!std::isfinite(result(i, j))) validation::fail(validation::element(name, i, j), result(i, j), "finite");
+    }
+  }
+  return result;
+}
+
+/// A frame: a homogeneous 4 x 4 matrix.
+inline Transform<> transform(const ArrayLike& argument, const char* name) {
+  const Eigen::MatrixXd H = matrix(argument, name, 4, 4);
+  const Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
+  if (H.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw std::invalid_argument(std::string(name) +
+                                ": must be a homogeneous matrix, with (0, 0, 0, 1) as its last row");
+  }
+  chain_check::require_transform(name, result);
+  return result;
+}
+
+/// A point of a task space: shape (2,), (3,) or (4, 4).
+template <typename Space>
+typename Space::template Point<double> point(const ArrayLike& argument, const char* name) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    return transform(argument, name);
+  } else {
+    return fixed_vector<Space::kSize>(argument, name);
+  }
+}
+
+/// The point as Python has it.
+template <int M>
+py::array_t<double> array_of(const Vector<M>& x) {
+  return py::array_t<double>(M, x.data());
+}
+inline py::array_t<double> array_of(const Transform<>& x) {
+  py::array_t<double> result({4, 4});
+  Pose::store(x, result.mutable_data());
+  return result;
 }
 
 }  // namespace fpbm::bindings

@@ -2,6 +2,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "kinematics.hpp"
 #include "py_arm.hpp"
 #include "text.hpp"
 
@@ -75,20 +76,47 @@ void set_gain(PyScheme& scheme, double k) {
   throw py::error_already_set();
 }
 
-Eigen::VectorXd resolve(const PyScheme& scheme, const PyPlanarArm& arm, const ArrayLike& q, const ArrayLike& qd,
-                        const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const std::string& task) {
-  PyPlanarArm::require_task(task);
-  const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
-  Reference<Position<2>> reference{fixed_vector<2>(x, "x"), fixed_vector<2>(xd, "xd"), Vector<2>::Zero()};
+/// One evaluation in a task space, where the kinematics are known.
+template <typename Space>
+Eigen::VectorXd resolve_task(const PyScheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
+                             const State<kDynamic>& state, const ArrayLike& x, const ArrayLike& xd,
+                             const OptionalArray& xdd) {
+  constexpr int kRows = Space::kRows;
+  require_redundant(kRows, static_cast<int>(state.q.size()));
+  Reference<Space> reference{point<Space>(x, "x"), fixed_vector<kRows>(xd, "xd"), Vector<kRows>::Zero()};
   if (xdd) {
-    reference.xdd = fixed_vector<2>(*xdd, "xdd");
+    reference.xdd = fixed_vector<kRows>(*xdd, "xdd");
   } else if (scheme.level() == Level::kAcceleration) {
     throw std::invalid_argument("xdd: an acceleration-level scheme needs it");
   }
-  ArmModel::Joints out;
-  const Status status = arm.model().resolve(scheme, reference, state, out);
+  Joints out = Joints::Zero(state.q.size());
+  const Status status = resolve(scheme, kinematics, reference, state, out);
   if (status != Status::kOk) raise(status);
   return out;
+}
+
+Eigen::VectorXd resolve_for_arm(const PyScheme& scheme, const PyArm& arm, const ArrayLike& q, const ArrayLike& qd,
+                                const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
+                                const std::string& task) {
+  const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
+  return arm.visit(task, [&](const auto& model) {
+    return resolve_task(scheme, model.kinematics(state.q, state.qd), state, x, xd, xdd);
+  });
+}
+
+Eigen::VectorXd resolve_for_kinematics(const PyScheme& scheme, const PyKinematics& kinematics, const ArrayLike& q,
+                                       const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd,
+                                       const OptionalArray& xdd) {
+  if (!kinematics.has_rate && scheme.level() == Level::kAcceleration) {
+    throw std::invalid_argument("Jd: an acceleration-level scheme needs it");
+  }
+  return std::visit(
+      [&](const auto& known) {
+        const auto dof = static_cast<int>(known.J.cols());
+        const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
+        return resolve_task(scheme, known, state, x, xd, xdd);
+      },
+      kinematics.value);
 }
 
 constexpr const char* kVelocityOptions = R"(
@@ -143,21 +171,22 @@ void bind_resolver(py::module_& m) {
       .def_property_readonly(
           "level", [](const PyScheme& s) { return s.level() == Level::kVelocity ? "velocity" : "acceleration"; },
           "'velocity' where resolve returns qd, 'acceleration' where it returns qdd.")
-      .def("resolve", &resolve, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
+      .def("resolve", &resolve_for_arm, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
            py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position",
            R"(Joint motion that the scheme asks for in one state.
 
 Parameters
 ----------
-arm : PlanarArm
+arm : Arm
     The arm.
 q, qd : array_like, shape (n,)
     Joint state [rad], [rad/s].
-x, xd, xdd : array_like, shape (2,)
-    Where the tip is to be in the base frame [m], its velocity [m/s] and acceleration [m/s^2]; xdd may be left out at
-    velocity level.
+x : array_like, shape (2,), (3,) or (4, 4)
+    Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
+xd, xdd : array_like, shape (m,)
+    Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
 task : str
-    'position'.
+    'position' or 'pose'.
 
 Returns
 -------
@@ -170,6 +199,9 @@ ValueError
     Where an argument is not finite or of the wrong shape.
 ResolutionError
     Where the posture is singular or the result not finite.)")
+      .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
+           py::arg("xd"), py::arg("xdd") = py::none(),
+           "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.")
       .def("__repr__", [](const PyScheme& scheme) { return scheme.repr; });
 
   struct PyMVN : PyScheme {};

@@ -1,41 +1,64 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include "fpbm/core/space.hpp"
 #include "fpbm/task/path.hpp"
 
 namespace fpbm::bindings {
 
-/// Any shape of task/, chosen at construction: what Path needs of a shape, behind one type.
-class AnyShape {
+/// Any path of a task space, behind one type.
+template <typename Space_>
+class AnyPath {
  public:
   using Scalar = double;
-  using Space = Position<2>;
+  using Space = Space_;
 
-  template <typename Shape>
-  explicit AnyShape(const Shape& shape) : shape_(shape) {}
+  template <typename Path>
+  explicit AnyPath(const Path& path) : held_(std::make_shared<Held<Path>>(path)), duration_(path.duration()) {}
 
-  [[nodiscard]] Curve<2, double> at(double s) const noexcept;
+  [[nodiscard]] double duration() const noexcept { return duration_; }
+  [[nodiscard]] Reference<Space> sample(double t) const noexcept { return held_->sample(t, t); }
+  [[nodiscard]] Reference<Space> sample(double t, double since) const noexcept { return held_->sample(t, since); }
 
  private:
-  std::variant<Circle<double>, Lissajous<double>, Tricuspid<double>, Line<2, double>> shape_;
+  struct Holder {
+    Holder() = default;
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+    virtual ~Holder() = default;
+    [[nodiscard]] virtual Reference<Space> sample(double t, double since) const noexcept = 0;
+  };
+
+  template <typename Path>
+  struct Held final : Holder {
+    explicit Held(const Path& path_) : path(path_) {}
+    [[nodiscard]] Reference<Space> sample(double t, double since) const noexcept override {
+      return sample_within(path, t, since);
+    }
+    Path path;
+  };
+
+  std::shared_ptr<const Holder> held_;
+  double duration_;
 };
 
-/// Any time law of task/.
-struct AnyTimeLaw {
-  std::variant<SinSquared, Quintic, ConstantSpeed> law;
-
-  [[nodiscard]] Phase<double> at(double tau) const noexcept;
-};
-
-/// A path as Python sees it: Path itself, and how it was made.
-struct PyPath : Path<AnyShape, AnyTimeLaw> {
-  PyPath(const AnyShape& shape, double duration, const AnyTimeLaw& time_law, std::string description)
-      : Path(shape, duration, time_law), repr(std::move(description)) {}
-
+/// A path as Python sees it, in the task space that it was made in, and how it was made.
+struct PyPath {
+  std::variant<AnyPath<Position<2>>, AnyPath<PlanarPose>, AnyPath<Position<3>>, AnyPath<Pose>> path;
   std::string repr;
+
+  [[nodiscard]] double duration() const {
+    return std::visit([](const auto& any) { return any.duration(); }, path);
+  }
+
+  /// The path for a task in that space: a path of the plane lies in space's xy plane, and a path of positions holds the
+  /// tip's orientation. Throws std::invalid_argument where the task cannot follow it.
+  template <typename Space>
+  [[nodiscard]] AnyPath<Space> as() const;
 };
 
 }  // namespace fpbm::bindings

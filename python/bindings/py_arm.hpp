@@ -1,29 +1,98 @@
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include "arm.hpp"
 
 namespace fpbm::bindings {
 
-/// A planar arm as Python sees it.
-class PyPlanarArm {
+/// Fixed-size code for this many joints; beyond, the heap-free code of run-time size.
+template <template <int, typename> class Arm>
+inline constexpr std::pair<int, int> kFixedDof{FPBM_SERIAL_DOF};
+template <>
+inline constexpr std::pair<int, int> kFixedDof<PlanarArm>{FPBM_PLANAR_DOF};
+
+/// The choice of N.
+template <template <int, typename> class Arm, int N = kFixedDof<Arm>.first>
+ModelsOf<Arm<kDynamic, double>> choose_models(const typename ArmTraits<Arm<kDynamic, double>>::Source& source,
+                                              std::size_t dof) {
+  if constexpr (N > kFixedDof<Arm>.second) {
+    return make_models<Arm<kDynamic, double>>(source);
+  } else {
+    if (dof == N) return make_models<Arm<N, double>>(source);
+    return choose_models<Arm, N + 1>(source, dof);
+  }
+}
+
+/// Throws std::invalid_argument where a task has more rows than the arm has joints.
+inline void require_redundant(int rows, int dof) {
+  if (dof < rows) {
+    throw std::invalid_argument("task: it has " + std::to_string(rows) + " rows, and the arm " + std::to_string(dof) +
+                                " joints: must not be more rows than joints");
+  }
+}
+
+/// An arm as Python sees it.
+class PyArm {
  public:
-  explicit PyPlanarArm(const ArmModel::Joints& lengths) : lengths_(lengths), model_(choose_planar_model<>(lengths)) {}
+  [[nodiscard]] int dof() const noexcept { return static_cast<int>(limits_.lower.size()); }
+  [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return limits_; }
 
-  [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
-  [[nodiscard]] const ArmModel::Joints& lengths() const noexcept { return lengths_; }
-  [[nodiscard]] const ArmModel& model() const noexcept { return *model_; }
-
-  /// Throws std::invalid_argument unless task names one that a planar arm has.
-  static void require_task(const std::string& task) {
-    if (task != "position") throw std::invalid_argument("task = '" + task + "': a planar arm has task 'position'");
+  /// Calls visitor(const TaskModel<Space>&) for the task space of that name.
+  /// Throws std::invalid_argument where there is none.
+  template <typename Visitor>
+  auto visit(const std::string& task, Visitor&& visitor) const {
+    return std::visit(
+        [&](const auto& models) {
+          if (task == "position") return visitor(*models.position);
+          if (task == "pose") return visitor(*models.pose);
+          throw std::invalid_argument("task = '" + task + "': must be 'position' or 'pose'");
+        },
+        models_);
   }
 
+ protected:
+  template <typename Positions>
+  PyArm(ArmModels<Positions> models, JointLimits<kDynamic> limits)
+      : models_(std::move(models)), limits_(std::move(limits)) {}
+
  private:
-  ArmModel::Joints lengths_;
-  std::shared_ptr<const ArmModel> model_;
+  std::variant<ArmModels<Position<2>>, ArmModels<Position<3>>> models_;
+  JointLimits<kDynamic> limits_;
+};
+
+class PyPlanarArm : public PyArm {
+ public:
+  explicit PyPlanarArm(const Joints& lengths)
+      : PyArm(choose_models<PlanarArm>(lengths, static_cast<std::size_t>(lengths.size())),
+              PlanarArm<kDynamic>(lengths).limits()),
+        lengths_(lengths) {}
+
+  [[nodiscard]] const Joints& lengths() const noexcept { return lengths_; }
+
+ private:
+  Joints lengths_;
+};
+
+class PySerialArm : public PyArm {
+ public:
+  explicit PySerialArm(const Chain<>& chain) : PySerialArm(chain, is_coupled(chain)) {}
+
+ private:
+  PySerialArm(const Chain<>& chain, bool coupled)
+      : PyArm(coupled ? make_models<CoupledArm<kDynamic>>(chain) : choose_models<SerialArm>(chain, chain.joints.size()),
+              coupled ? CoupledArm<kDynamic>(chain).limits() : SerialArm<kDynamic>(chain).limits()) {}
+
+  static bool is_coupled(const Chain<>& chain) {
+    for (const Joint<>& joint : chain.joints) {
+      if (joint.mimic.joint >= 0) return true;
+    }
+    return false;
+  }
 };
 
 }  // namespace fpbm::bindings

@@ -11,9 +11,11 @@ from ._core import (
     MAX_DOF,
     MVN,
     WMVN,
+    Arm,
     Balanced,
     Circle,
     JointLimits,
+    Kinematics,
     Line,
     Lissajous,
     Path,
@@ -21,11 +23,16 @@ from ._core import (
     Scheme,
     Status,
     Tricuspid,
+    Waypoints,
     WMVNAcceleration,
     __version__,
+    rotation,
+    rotation_vector,
 )
 from ._errors import ResolutionError
+from .joint import Joint
 from .run import Run, RunStatus
+from .serial_arm import SerialArm
 from .simulate import simulate
 
 __all__ = [
@@ -34,9 +41,12 @@ __all__ = [
     "MAX_DOF",
     "MVN",
     "WMVN",
+    "Arm",
     "Balanced",
     "Circle",
+    "Joint",
     "JointLimits",
+    "Kinematics",
     "Line",
     "Lissajous",
     "Path",
@@ -45,9 +55,13 @@ __all__ = [
     "Run",
     "RunStatus",
     "Scheme",
+    "SerialArm",
     "Status",
     "Tricuspid",
     "WMVNAcceleration",
+    "Waypoints",
     "__version__",
+    "rotation",
+    "rotation_vector",
     "simulate",
 ]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Status, advice, message
+from ._core import PlanarArm, Status, advice, message
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ._core import Path, PlanarArm, Scheme
+    from ._core import Arm, Path, Scheme
 
 Array = NDArray[np.float64]
 
@@ -68,14 +68,15 @@ class Run:
     q, qd, qdd : numpy.ndarray, shape (N, n)
         Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]. Velocity-level schemes give no
         accelerations: there qdd holds finite differences of qd.
-    x, x_ref : numpy.ndarray, shape (N, 2)
-        Where the tip is and where it is to be, in the base frame [m].
-    error : numpy.ndarray, shape (N, 2)
-        x_ref - x [m].
+    x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
+        Where the tip is and where it is to be, in the base frame [m]; poses are (x, y, angle) in the plane, homogeneous
+        matrices in space.
+    error : numpy.ndarray, shape (N, m)
+        From x to x_ref: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
     status : RunStatus
         How it ended.
-    arm, path, scheme
-        What moved, along what, and how.
+    arm, path, scheme, task
+        What moved, along what, how, and as what task.
     """
 
     t: Array
@@ -86,13 +87,28 @@ class Run:
     x_ref: Array
     error: Array
     status: RunStatus
-    arm: PlanarArm
+    arm: Arm
     path: Path
     scheme: Scheme
+    task: str = "position"
 
     def max_error(self) -> float:
         """Largest distance of the tip from its reference [m]."""
-        return float(np.linalg.norm(self.error, axis=1).max(initial=0.0))
+        return float(np.linalg.norm(self.error[:, : self.positions.shape[1]], axis=1).max(initial=0.0))
+
+    def max_turn_error(self) -> float:
+        """Largest angle between the tip's orientation and its reference [rad]; 0 where the task leaves it free."""
+        return float(np.linalg.norm(self.error[:, self.positions.shape[1] :], axis=1).max(initial=0.0))
+
+    @property
+    def positions(self) -> Array:
+        """Where the tip is [m], shape (N, 2) or (N, 3): x without the orientation."""
+        return _positions(self.x, self.arm)
+
+    def manipulability(self) -> Array:
+        """sqrt(det(J J')) of the task, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
+        J = np.array([self.arm.jacobian(q, task=self.task) for q in self.q])
+        return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
 
     def plot(self) -> Figure:
         """Figure of the motion: arm snapshots, tip error, joint velocities and accelerations.
@@ -122,3 +138,10 @@ class Run:
             f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm!r} along {self.path!r}; "
             f"largest tip error {self.max_error():.3g} m; {self.status}>"
         )
+
+
+def _positions(x: Array, arm: Arm) -> Array:
+    """The positions among points of a task."""
+    if x.ndim == 3:
+        return x[:, :3, 3]
+    return x[:, :2] if isinstance(arm, PlanarArm) else x

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._core import Path, PlanarArm, Scheme, Status
+from ._core import Arm, Path, Scheme, Status
 from ._errors import ResolutionError
 from .run import Run, RunStatus
 
 
 def simulate(
-    arm: PlanarArm,
+    arm: Arm,
     path: Path,
     scheme: Scheme,
     q0: ArrayLike,
@@ -41,7 +41,7 @@ def simulate(
     qd0 : array_like, shape (n,), optional
         Joint velocities at the start [rad/s], zero unless given; velocity-level schemes do not read them.
     task : str
-        'position'.
+        'position', or 'pose' to track the tip's orientation as well.
     partial : bool
         Where the motion must stop early, return the part that was done rather than raise.
 
@@ -57,16 +57,14 @@ def simulate(
     ResolutionError
         Where the motion must stop early; the exception's run holds the part before.
     """
-    if task != "position":
-        raise ValueError(f"task = {task!r}: a planar arm has task 'position'")
     if qd0 is None:
         qd0 = np.zeros(arm.dof)
-    code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold)
+    code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold, task)
     t, q, qd, qdd, x, x_ref, error = (array if samples == len(array) else array[:samples].copy() for array in arrays)
     if scheme.level == "velocity" and samples > 1:
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
-    run = Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme)
+    run = Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task)
     if code is not Status.OK and not partial:
         raise ResolutionError(code, str(status), run)
     return run

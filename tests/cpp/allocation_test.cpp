@@ -27,7 +27,7 @@ Watched watched_rollout(const Arm& arm, const Scheme& scheme, Extra&& extra) {
   constexpr int N = Arm::kDof;
   static std::array<double, 4 * (kSteps + 1)> q;
   static std::array<double, 2 * (kSteps + 1)> error;
-  MotionBuffers<2, N> buffers;
+  MotionBuffers<Position<2>, N> buffers;
   buffers.q = q.data();
   buffers.error = error.data();
   const auto path = paper_circle();

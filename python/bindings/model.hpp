@@ -1,0 +1,42 @@
+#pragma once
+
+#include "arm.hpp"
+
+namespace fpbm::bindings {
+
+template <typename Arm, typename Space>
+class Model final : public TaskModel<Space> {
+ public:
+  explicit Model(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) {}
+
+  [[nodiscard]] Kinematics<Space, kDynamic> kinematics(const Joints& q, const Joints& qd) const override {
+    Kinematics<Space, N> result;
+    arm_->kinematics(q, qd, result);
+    return {result.tip, result.J, result.Jd};
+  }
+
+  [[nodiscard]] RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
+                                                 const State<kDynamic>& start, const TimeGrid<double>& grid,
+                                                 const typename TaskModel<Space>::Buffers& buffers) const override {
+    const State<N> fixed{start.q, start.qd};
+    const MotionBuffers<Space, N> record{buffers.t, buffers.q,     buffers.qd,   buffers.qdd,
+                                         buffers.x, buffers.x_ref, buffers.error};
+    const RolloutResult<N> result = scheme.visit<N>(
+        arm_->dof(), [&](const auto& chosen) { return rollout(*arm_, path, chosen, fixed, grid, record); });
+    return {result.status, result.time, {result.last.q, result.last.qd}, result.samples};
+  }
+
+ private:
+  static constexpr int N = Arm::kDof;
+  std::shared_ptr<const Arm> arm_;
+};
+
+template <typename Arm>
+ModelsOf<Arm> make_models(const typename ArmTraits<Arm>::Source& source) {
+  using Positions = typename ArmTraits<Arm>::Positions;
+  const auto arm = std::make_shared<const Arm>(source);
+  return {std::make_shared<Model<Arm, Positions>>(arm),
+          std::make_shared<Model<Arm, typename PoseOver<Positions>::type>>(arm)};
+}
+
+}  // namespace fpbm::bindings
