@@ -185,11 +185,13 @@ def kdl(robot: Robot) -> Kinematics:
     return kinematics
 
 
-# From example-robot-data. The torso of TIAGo and PR2 slides; some joints of PR2 turn without end.
+# From example-robot-data. The torso of TIAGo and PR2 slides, some joints of PR2 turn without end, and the fixed joints
+# at TIAGo's wrist and at both ends of Baxter's arm do not commute.
 URDFS = {
     "Panda": ("panda_description/urdf/panda.urdf", "panda_hand"),
     "UR5": ("ur_description/urdf/ur5_robot.urdf", "tool0"),
-    "TIAGo": ("tiago_description/robots/tiago_no_hand.urdf", "arm_tool_link"),
+    "TIAGo": ("tiago_description/robots/tiago_no_hand.urdf", "wrist_ft_link"),
+    "Baxter": ("baxter_description/urdf/baxter.urdf", "right_hand_range_link"),
     "PR2": ("pr2_description/urdf/pr2.urdf", "r_gripper_tool_frame"),
 }
 PRESETS = ("panda", "iiwa14", "gen3")
