@@ -1,12 +1,14 @@
 #include "support/subjects.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 
 namespace fpbm::test {
 
 std::vector<Subject> subjects() {
   std::vector<Subject> all;
-  for (const auto& some : {subjects_n2(), subjects_n4(), subjects_n7(), subjects_dynamic(), subjects_float()}) {
+  for (const auto& some : {subjects_n2(), subjects_n4(), subjects_n7(), subjects_dynamic(), subjects_float(),
+                           subjects_planar_pose(), subjects_position(), subjects_pose(), subjects_pose_dynamic()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -43,21 +45,50 @@ std::string name(Regime regime) {
   return "";
 }
 
-Scene random_scene(Random& random, const Subject& subject, Regime regime) {
-  const Eigen::Index n = subject.dof;
-  // All joints bend the same way, by 1 to 2 rad in all: far from straight and from folded. Near a singular posture by
-  // a few hundredths, as long as the square of J's condition number leaves the Scalar some digits.
+namespace {
+
+/// Condition number of J.
+double condition(const Subject& subject, const Scene& scene) {
+  Law law;
+  law.kind = subject.kind;
+  law.W = Eigen::MatrixXd::Identity(subject.dof, subject.dof);
+  const Eigen::MatrixXd J = subject.resolve(law, scene).at.J.cast<double>();
+  const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+  return sigma(0) / sigma(sigma.size() - 1);
+}
+
+/// A planar arm with a position task: all joints bend the same way, by 1 to 2 rad in all, which is far from straight
+/// and from folded; or by a few hundredths, as long as the square of J's condition number leaves the Scalar some
+/// digits.
+Eigen::VectorXd bent_posture(Random& random, const Subject& subject, Regime regime) {
   const double small = subject.epsilon < 1e-10 ? 0.05 : 0.3;
-  const double bend = (regime == Regime::kNearSingular ? small : 2.0) / static_cast<double>(n);
+  const double bend = (regime == Regime::kNearSingular ? small : 2.0) / subject.dof;
+  Eigen::VectorXd q = random.uniform(subject.dof, 0.5 * bend, bend);
+  q(0) = random.uniform(-3.0, 3.0);
+  return q;
+}
+
+/// Any other: by trial.
+Eigen::VectorXd tried_posture(Random& random, const Subject& subject, Regime regime, Scene scene) {
+  const bool near = regime == Regime::kNearSingular;
+  while (true) {
+    scene.q = random.uniform(subject.dof, -2.0, 2.0);
+    const double at = condition(subject, scene);
+    if (near ? at > 60.0 && at < 200.0 : at < 30.0) return scene.q;
+  }
+}
+
+}  // namespace
+
+Scene random_scene(Random& random, const Subject& subject, Regime regime) {
   const double rate = regime == Regime::kAtRest ? 0.0 : 1.0;
   Scene scene;
-  scene.lengths = random.uniform(n, 0.5, 1.5);
-  scene.q = random.uniform(n, 0.5 * bend, bend);
-  scene.q(0) = random.uniform(-3.0, 3.0);
-  scene.qd = random.uniform(n, -rate, rate);
-  scene.displacement = random.uniform(2, -1.0, 1.0);
-  scene.xd = random.uniform(2, -rate, rate);
-  scene.xdd = random.uniform(2, -rate, rate);
+  scene.lengths = random.uniform(subject.dof, 0.5, 1.5);
+  scene.qd = random.uniform(subject.dof, -rate, rate);
+  scene.displacement = random.uniform(subject.rows, -1.0, 1.0);
+  scene.xd = random.uniform(subject.rows, -rate, rate);
+  scene.xdd = random.uniform(subject.rows, -rate, rate);
+  scene.q = subject.rows == 2 ? bent_posture(random, subject, regime) : tried_posture(random, subject, regime, scene);
   return scene;
 }
 

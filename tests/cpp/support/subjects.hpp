@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -12,14 +13,15 @@
 /// Every scheme on every kind of arm, their types erased: a law is written and compiled once and run over them all.
 namespace fpbm::test {
 
-/// A planar arm in a state, and what is asked of its tip, x as a displacement from where the tip is.
+/// An arm with links of these lengths in a state, and what is asked of its tip, x as a displacement from where the tip
+/// is.
 struct Scene {
   Eigen::VectorXd lengths;
   Eigen::VectorXd q;
   Eigen::VectorXd qd;
-  Eigen::Vector2d displacement;
-  Eigen::Vector2d xd;
-  Eigen::Vector2d xdd;
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd xd;
+  Eigen::VectorXd xdd;
 };
 
 /// What a scheme made of a scene.
@@ -36,6 +38,7 @@ struct Outcome {
 struct Subject {
   std::string name;
   int dof;
+  int rows;        ///< Of its task.
   double epsilon;  ///< Of its Scalar.
   Kind kind;
   Level level;
@@ -53,6 +56,10 @@ inline void PrintTo(const Subject& subject, std::ostream* out) {
 [[nodiscard]] std::vector<Subject> subjects_n7();
 [[nodiscard]] std::vector<Subject> subjects_dynamic();
 [[nodiscard]] std::vector<Subject> subjects_float();
+[[nodiscard]] std::vector<Subject> subjects_planar_pose();
+[[nodiscard]] std::vector<Subject> subjects_position();
+[[nodiscard]] std::vector<Subject> subjects_pose();
+[[nodiscard]] std::vector<Subject> subjects_pose_dynamic();
 
 /// All of the above.
 [[nodiscard]] std::vector<Subject> subjects();

@@ -57,11 +57,10 @@ RealMatrix rate_term(const RealMatrix& J, const RealMatrix& Jd, const RealMatrix
 }
 
 RealVector commanded(const Law& law, const Situation& at) {
-  const RealVector e = at.x - at.tip;
-  if (is_velocity(law.kind)) return at.xd + static_cast<Real>(law.k) * e;
+  if (is_velocity(law.kind)) return at.xd + static_cast<Real>(law.k) * at.error;
   RealVector b = at.xdd - at.Jd * at.qd;
   if (law.kind == Kind::kFPBM) {
-    b += static_cast<Real>(law.k1) * (at.xd - at.J * at.qd) + static_cast<Real>(law.k2) * e;
+    b += static_cast<Real>(law.k1) * (at.xd - at.J * at.qd) + static_cast<Real>(law.k2) * at.error;
   }
   return b;
 }

@@ -39,12 +39,12 @@ struct Situation {
   RealVector tip;
   RealMatrix J;
   RealMatrix Jd;
-  RealVector x;
+  RealVector error;  ///< x ⊖ f(q).
   RealVector xd;
   RealVector xdd;
 };
 
-/// Tip, J and Jd of a planar arm, each element summed on its own; q and qd as given, the rest left alone.
+/// Tip position, J and Jd of a planar arm, each element summed on its own; q and qd as given, the rest left alone.
 [[nodiscard]] Situation planar_arm(const RealVector& lengths, const RealVector& q, const RealVector& qd);
 
 /// J⁺, from an orthogonal decomposition, whose round-off goes by the condition of J and not by its square.
