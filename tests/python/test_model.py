@@ -84,5 +84,13 @@ def test_bad_states(arm, q0):
             call([0, 0, np.nan, 0])
     with pytest.raises(ValueError, match=r"qd\[0\] = inf: must be finite"):
         arm.jacobian_dot(q0, [np.inf, 0, 0, 0])
-    with pytest.raises(ValueError, match="task = 'pose': a planar arm has task 'position'"):
-        arm.jacobian(q0, task="pose")
+    with pytest.raises(ValueError, match="task = 'velocity': must be 'position' or 'pose'"):
+        arm.jacobian(q0, task="velocity")
+
+
+def test_a_planar_pose_has_the_angle_as_its_last_row(arm, q0):
+    qd = np.arange(4.0)
+    known = arm.kinematics(q0, qd, task="pose")
+    np.testing.assert_allclose(known.tip, [*arm.forward(q0), q0.sum()], atol=1e-15)
+    np.testing.assert_array_equal(known.J, [*arm.jacobian(q0), np.ones(4)])
+    np.testing.assert_array_equal(known.Jd, [*arm.jacobian_dot(q0, qd), np.zeros(4)])

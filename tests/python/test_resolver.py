@@ -5,20 +5,48 @@ import pytest
 import textbook
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 import fpbm_cpp as fp
 
-SIZES = [2, 3, 4, 7, 10, 11, fp.MAX_DOF]
+PLANAR_SIZES = [2, 3, 4, 7, 9, 10, fp.MAX_DOF]
+UR = [
+    [0, np.pi / 2, 0.089, 0],
+    [-0.425, 0, 0, 0],
+    [-0.392, 0, 0, 0],
+    [0, np.pi / 2, 0.109, 0],
+    [0, -np.pi / 2, 0.095, 0],
+]
+ON_RAIL = [fp.Joint("prismatic", axis=[1, 0, 0]), *fp.SerialArm.preset("iiwa14").joints]
+COUPLED = list(fp.SerialArm.preset("iiwa14").joints)
+COUPLED[5] = fp.Joint("revolute", COUPLED[5].placement, COUPLED[5].axis, mimic=(1, -0.7, 0.3))
+IN_SPACE = [
+    fp.SerialArm.preset("panda"),
+    fp.SerialArm.preset("iiwa14"),
+    fp.SerialArm.preset("gen3"),
+    fp.SerialArm.from_dh([*UR, [0, 0, 0.082, 0]], "classic"),
+    fp.SerialArm.from_joints(ON_RAIL),
+    fp.SerialArm.from_joints([*ON_RAIL, *ON_RAIL]),
+    fp.SerialArm.from_joints(COUPLED),
+]
 
 
 class Case:
-    """A random arm, state, reference and set of parameters, away from singular postures."""
+    """A random arm, task, state, reference and set of parameters."""
 
-    def __init__(self, n: int, seed: int, dense: bool) -> None:
+    def __init__(self, arm: fp.Arm, task: str, seed: int, dense: bool) -> None:
         rng = np.random.default_rng(seed)
-        self.lengths = rng.uniform(0.3, 1.5, n)
+        self.arm, self.task, n = arm, task, arm.dof
         self.q, self.qd, self.q_rest, self.c = rng.uniform(-1.5, 1.5, (4, n))
-        self.x, self.xd, self.xdd = rng.uniform(-1, 1, (3, 2))
+        known = arm.kinematics(self.q, self.qd, task=task)
+        self.J, self.Jd = known.J, known.Jd
+        self.error, self.xd, self.xdd = rng.uniform(-1, 1, (3, len(self.J)))
+        if known.tip.ndim == 2:
+            self.x = np.eye(4)
+            self.x[:3, 3] = known.tip[:3, 3] + self.error[:3]
+            self.x[:3, :3] = Rotation.from_rotvec(self.error[3:]).as_matrix() @ known.tip[:3, :3]
+        else:
+            self.x = known.tip + self.error
         self.alpha, self.k1, self.k2, self.kn, self.kp = rng.uniform(0.05, 0.95, 5)
         if dense:
             root = rng.uniform(-1, 1, (n, n))
@@ -26,18 +54,29 @@ class Case:
         else:
             self.weights = rng.uniform(0.2, 5, n)
             self.W = np.diag(self.weights)
-        self.arm = fp.PlanarArm(self.lengths)
-        self.J = textbook.jacobian(self.lengths, self.q)
-        self.Jd = textbook.jacobian_dot(self.lengths, self.q, self.qd)
-        self.error = self.x - textbook.forward(self.lengths, self.q)
 
     def resolve(self, scheme: fp.Scheme) -> np.ndarray:
-        return scheme.resolve(self.arm, self.q, self.qd, self.x, self.xd, self.xdd)
+        asked = (self.q, self.qd, self.x, self.xd, self.xdd)
+        resolved = scheme.resolve(self.arm, *asked, task=self.task)
+        known = self.arm.kinematics(self.q, self.qd, task=self.task)
+        np.testing.assert_array_equal(scheme.resolve(known, *asked), resolved)
+        return resolved
 
 
 @st.composite
 def cases(draw):
-    case = Case(draw(st.sampled_from(SIZES)), draw(st.integers(0, 2**32 - 1)), draw(st.booleans()))
+    seed, dense, task = (
+        draw(st.integers(0, 2**32 - 1)),
+        draw(st.booleans()),
+        draw(st.sampled_from(["position", "pose"])),
+    )
+    if draw(st.booleans()):
+        arm = draw(st.sampled_from(IN_SPACE))
+    else:
+        n = draw(st.sampled_from(PLANAR_SIZES))
+        arm = fp.PlanarArm(np.random.default_rng(seed).uniform(0.3, 1.5, n))
+    assume(arm.dof >= len(arm.jacobian(np.zeros(arm.dof), task=task)))
+    case = Case(arm, task, seed, dense)
     assume(np.linalg.cond(case.J) < 100)
     return case
 
@@ -142,7 +181,8 @@ def test_bad_parameters(make, words):
         ({"x": [0, 0, 0]}, "x has 3 entries: must have 2"),
         ({"xd": [0, np.nan]}, r"xd\[1\] = nan"),
         ({"xdd": None}, "xdd: an acceleration-level scheme needs it"),
-        ({"task": "pose"}, "task = 'pose'"),
+        ({"task": "pose"}, "x has 2 entries: must have 3"),
+        ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
     ],
 )
 def test_bad_arguments_of_resolve(arm, q0, change, words):
@@ -161,3 +201,48 @@ def test_a_singular_posture_is_refused_with_advice(arm, scheme):
     with pytest.raises(fp.ResolutionError, match=r"posture is singular.*Choose another start") as caught:
         scheme.resolve(arm, np.zeros(4), np.zeros(4), [4, 0], [0.1, 0], [0, 0])
     assert caught.value.status is fp.Status.SINGULAR
+
+
+def test_kinematics_of_ones_own(q0):
+    """Planar, in space or a pose: by the shape of the tip, and the task where that does not tell."""
+    J = np.random.default_rng(1).uniform(-1, 1, (3, 4))
+    qd = np.ones(4)
+    position = fp.Kinematics([0.0, 0.0, 3.0], J, 0 * J)
+    pose = fp.Kinematics([0.0, 0.0, 3.0], J, 0 * J, task="pose")
+    scheme = fp.FPBM(0.5, np.ones(4), 1.0, 1.0)
+    asked = (q0, qd, [0.0, 0.0, -3.0], np.zeros(3), np.zeros(3))
+    straight = J @ scheme.resolve(position, *asked)
+    round_the_other_way = J @ scheme.resolve(pose, *asked)
+    np.testing.assert_allclose(straight - round_the_other_way, [0, 0, -2 * np.pi], atol=1e-12)
+
+    without_rate = fp.Kinematics([0.0, 0.0, 3.0], J)
+    np.testing.assert_allclose(J @ fp.MVN().resolve(without_rate, q0, qd, [0, 0, 0], [1, 2, 3]), [1, 2, 3], atol=1e-12)
+    with pytest.raises(ValueError, match="Jd: an acceleration-level scheme needs it"):
+        scheme.resolve(without_rate, *asked)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: fp.Kinematics([0, 0], np.ones((3, 4))), r"J: must have shape \(2, 4\), got \(3, 4\)"),
+        (lambda: fp.Kinematics([0, 0], np.ones((2, 4)), np.ones((2, 3))), r"Jd: must have shape \(2, 4\)"),
+        (lambda: fp.Kinematics([0, 0, 0, 0], np.ones((3, 4))), "tip has 4 entries: must have 3"),
+        (lambda: fp.Kinematics(2 * np.eye(4), np.ones((6, 7))), r"tip: must be a homogeneous matrix"),
+        (lambda: fp.Kinematics(np.diag([1, 1, 2, 1]), np.ones((6, 7))), r"tip.R: must be a rotation matrix"),
+        (lambda: fp.Kinematics([0, np.nan], np.ones((2, 4))), r"tip\[1\] = nan: must be finite"),
+        (lambda: fp.Kinematics([0, 0], [[1, 2], [3, np.inf]]), r"J\[1, 1\] = inf: must be finite"),
+        (lambda: fp.Kinematics([0, 0], np.ones((2, 33))), "a row of J has 33 entries"),
+        (lambda: fp.Kinematics("here", np.ones((2, 4))), "tip: must be real numbers"),
+    ],
+)
+def test_bad_kinematics(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_a_task_of_more_rows_than_joints():
+    arm = fp.PlanarArm([1, 1])
+    with pytest.raises(ValueError, match="task: it has 3 rows, and the arm 2 joints"):
+        fp.MVN().resolve(arm, [0.1, 0.2], [0, 0], [0, 0, 0], [0, 0, 0], task="pose")
+    with pytest.raises(ValueError, match="task: it has 3 rows, and the arm 2 joints"):
+        fp.simulate(arm, fp.Circle(0.1, 1.0), fp.MVN(), [0.1, 0.2], task="pose")

@@ -56,6 +56,42 @@ def test_the_papers_shapes(law):
             np.testing.assert_allclose(path.sample(t)[0], x, atol=1e-14)
 
 
+def test_one_after_another():
+    path = fp.Line([1, 0], 1.0).then(fp.Line([0, 1, 2], 2.0))
+    assert path.duration == 3.0
+    np.testing.assert_allclose(path.sample(1.0)[0], [1, 0, 0], atol=1e-15)
+    np.testing.assert_allclose(path.sample(3.0)[0], [1, 1, 2], atol=1e-15)
+    turned = path.then(fp.Line([0, 0, 1], 1.0).with_turn([0, 0, 1.0]))
+    x = turned.sample(4.0)[0]
+    np.testing.assert_allclose(x[:3, 3], [1, 1, 3], atol=1e-15)
+    np.testing.assert_allclose(x[:3, :3], fp.rotation([0, 0, 1.0]), atol=1e-15)
+    assert ".then(" in repr(turned)
+
+
+def test_through_waypoints():
+    points = np.array([[0.5, 0.1, 0.3], [0.4, 0.3, 0.5], [0.2, 0.3, 0.2], [0.5, 0.1, 0.3]])
+    times = [0, 1.0, 2.5, 4.0]
+    timed = fp.Waypoints(points, times=times)
+    for t, point in zip(times, points):
+        np.testing.assert_allclose(timed.sample(t)[0], point - points[0], atol=1e-15)
+    for end in (0.0, 4.0):
+        assert np.abs(timed.sample(end)[1:]).max() < 1e-13
+    assert fp.Waypoints(points, duration=3.0).duration == 3.0
+    quick = fp.Waypoints(points, speed=0.2, acceleration=0.5)
+    samples = [quick.sample(t) for t in np.linspace(0, quick.duration, 2000)]
+    speed = max(np.linalg.norm(xd) for _, xd, _ in samples)
+    acceleration = max(np.linalg.norm(xdd) for _, _, xdd in samples)
+    assert speed <= 0.2
+    assert acceleration <= 0.5
+    assert max(speed / 0.2, (acceleration / 0.5) ** 0.5) > 0.985
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[1:, 0, 3] = 0.1, 0.3
+    poses[1, :3, :3], poses[2, :3, :3] = fp.rotation([0, 0.5, 0]), fp.rotation([0.7, 0, 0])
+    posed = fp.Waypoints(poses, times=[0, 1, 2])
+    for t, pose in enumerate(poses):
+        np.testing.assert_allclose(posed.sample(t)[0], pose, atol=1e-14)
+
+
 def test_repr_says_how_it_was_made():
     assert repr(fp.Circle(0.45, 10.0)) == "Circle(0.45, duration=10, time_law='sin_squared')"
     assert repr(fp.Line([1, 2], 3.0, time_law="quintic")) == "Line([1, 2], duration=3, time_law='quintic')"
@@ -76,7 +112,27 @@ def test_repr_says_how_it_was_made():
         (lambda: fp.Lissajous(0.4, 10.0, frequencies=(0, 1)), r"frequencies\[0\] = 0: must be positive"),
         (lambda: fp.Lissajous(0.4, 10.0, phase=np.inf), "phase = inf: must be finite"),
         (lambda: fp.Line([1, np.nan], 10.0), r"displacement\[1\] = nan: must be finite"),
-        (lambda: fp.Line([1, 2, 3], 10.0), "displacement has 3 entries: must have 2"),
+        (lambda: fp.Line([1, 2, 3, 4], 10.0), "displacement has 4 entries: must have 2"),
+        (lambda: fp.Circle(0.1, 1.0).in_plane("xx"), "plane = 'xx': must be two of 'x', 'y' and 'z'"),
+        (lambda: fp.Circle(0.1, 1.0).in_plane([[1, 0, 0], [1, 1, 0]]), r"u v / \|u\| \|v\| = 0.707106781: must be 0"),
+        (lambda: fp.Circle(0.1, 1.0).in_plane([1, 0, 0]), "plane: must have 2 dimensions"),
+        (lambda: fp.Line([1, 2, 3], 1.0).in_plane("xy"), "in_plane: the path must be one of positions in a plane"),
+        (lambda: fp.Circle(0.1, 1.0).with_turn([0, 0, 1]), "turn: must have 0 dimensions"),
+        (lambda: fp.Line([1, 2, 3], 1.0).with_turn(1.0), "turn: must have 1 dimension"),
+        (lambda: fp.Line([1, 2], 1.0).with_turn(np.nan), r"turn\[0\] = nan: must be finite"),
+        (lambda: fp.Line([1, 2], 1.0).with_turn(1.0).with_turn(1.0), "with_turn: the path turns the tip already"),
+        (lambda: fp.Line([1, 2], 1.0).with_turn(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: it turns the tip"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]]), "duration, times or bounds of speed: must be given, one of the three"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], duration=1, speed=1), "must be given, one of the three"),
+        (lambda: fp.Waypoints([[0, 0]], duration=1), "points has 1 entries: must have 2 at least"),
+        (lambda: fp.Waypoints([[0], [1]], duration=1), r"points: must have shape \(k, 2\), \(k, 3\) or \(k, 4, 4\)"),
+        (lambda: fp.Waypoints([[0, 0], [0, 0]], duration=1), r"points\[1\]: must differ from the one before"),
+        (lambda: fp.Waypoints([[0, 0], [1, np.inf]], duration=1), r"points\[1\]\[1\] = inf: must be finite"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[0, 0]), r"times\[1\] = 0: must be finite and after"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[1]), "times has 1 entries: must have 2, one per point"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], speed=0), "speed = 0: must be positive"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], turn_rate=1.0), "bounds: at least one must hold the tip back"),
+        (lambda: fp.Waypoints(np.zeros((2, 4, 4)), duration=1), r"points\[0\]: must be a homogeneous matrix"),
     ],
 )
 def test_bad_paths(make, words):

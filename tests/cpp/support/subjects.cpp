@@ -69,12 +69,13 @@ Eigen::VectorXd bent_posture(Random& random, const Subject& subject, Regime regi
 }
 
 /// Any other: by trial.
-Eigen::VectorXd tried_posture(Random& random, const Subject& subject, Regime regime, Scene scene) {
+Eigen::VectorXd tried_posture(Random& random, const Subject& subject, Regime regime, const Eigen::VectorXd& lengths) {
   const bool near = regime == Regime::kNearSingular;
+  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(subject.rows);
   while (true) {
-    scene.q = random.uniform(subject.dof, -2.0, 2.0);
-    const double at = condition(subject, scene);
-    if (near ? at > 60.0 && at < 200.0 : at < 30.0) return scene.q;
+    const Eigen::VectorXd q = random.uniform(subject.dof, -2.0, 2.0);
+    const double at = condition(subject, {lengths, q, 0.0 * q, at_rest, at_rest, at_rest});
+    if (near ? at > 60.0 && at < 200.0 : at < 30.0) return q;
   }
 }
 
@@ -84,11 +85,12 @@ Scene random_scene(Random& random, const Subject& subject, Regime regime) {
   const double rate = regime == Regime::kAtRest ? 0.0 : 1.0;
   Scene scene;
   scene.lengths = random.uniform(subject.dof, 0.5, 1.5);
+  scene.q =
+      subject.rows == 2 ? bent_posture(random, subject, regime) : tried_posture(random, subject, regime, scene.lengths);
   scene.qd = random.uniform(subject.dof, -rate, rate);
   scene.displacement = random.uniform(subject.rows, -1.0, 1.0);
   scene.xd = random.uniform(subject.rows, -rate, rate);
   scene.xdd = random.uniform(subject.rows, -rate, rate);
-  scene.q = subject.rows == 2 ? bent_posture(random, subject, regime) : tried_posture(random, subject, regime, scene);
   return scene;
 }
 

@@ -1,0 +1,137 @@
+"""Serial arms from joints, tables and presets, and what they say of themselves."""
+
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import fpbm_cpp as fp
+
+PANDA = fp.SerialArm.preset("panda")
+
+
+def frame(turn, p):
+    H = np.eye(4)
+    H[:3, :3], H[:3, 3] = fp.rotation(turn), p
+    return H
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["classic", "modified"]))
+def test_dh_tables_are_products_of_transforms(seed, convention):
+    rng = np.random.default_rng(seed)
+    n = rng.integers(1, 10)
+    table = rng.uniform(-1.5, 1.5, (n, 4))
+    types = rng.choice(["revolute", "continuous", "prismatic"], n)
+    base, tip = frame(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3)), frame(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3))
+    q = rng.uniform(-2, 2, n)
+    product = base
+    for (a, alpha, d, theta), kind, position in zip(table, types, q):
+        d, theta = (d + position, theta) if kind == "prismatic" else (d, theta + position)
+        along_x, along_z = frame([alpha, 0, 0], [a, 0, 0]), frame([0, 0, theta], [0, 0, d])
+        product = product @ (along_z @ along_x if convention == "classic" else along_x @ along_z)
+    arm = fp.SerialArm.from_dh(table, convention, types=types, base=base, tip=tip)
+    np.testing.assert_allclose(arm.forward(q), product @ tip, atol=1e-13)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_jacobians_are_derivatives(seed):
+    rng = np.random.default_rng(seed)
+    joints = [
+        fp.Joint(kind, frame(rng.uniform(-2, 2, 3), rng.uniform(-0.5, 0.5, 3)), rng.uniform(-1, 1, 3))
+        for kind in rng.choice(["revolute", "continuous", "prismatic"], rng.integers(1, 12))
+    ]
+    if len(joints) > 3:
+        joints[2] = fp.Joint("revolute", axis=[1, 0, 0], mimic=(0, -1.5, 0.2))
+    arm = fp.SerialArm(joints, frame([0.1, 0.2, 0.3], [0.1, 0, 0.2]))
+    q, qd = rng.uniform(-2, 2, (2, arm.dof))
+    h = 1e-6
+    before, after = arm.forward(q - h * qd), arm.forward(q + h * qd)
+    twist = [*(after - before)[:3, 3], *fp.rotation_vector(after[:3, :3] @ before[:3, :3].T)]
+    J = arm.jacobian(q, task="pose")
+    np.testing.assert_allclose(J @ qd, np.array(twist) / (2 * h), atol=1e-7)
+    change = (arm.jacobian(q + h * qd, task="pose") - arm.jacobian(q - h * qd, task="pose")) / (2 * h)
+    Jd = arm.jacobian_dot(q, qd, task="pose")
+    np.testing.assert_allclose(Jd, change, atol=1e-6)
+    np.testing.assert_array_equal(arm.jacobian(q), J[:3])
+    np.testing.assert_array_equal(arm.jacobian_dot(q, qd), Jd[:3])
+
+
+def test_an_arm_describes_itself():
+    assert PANDA.dof == 7
+    assert PANDA.joint_names[0] == "panda_joint1"
+    assert repr(PANDA) == "<SerialArm of 7 joints, panda_joint1 to panda_joint7>"
+    assert np.all(PANDA.limits.lower < PANDA.limits.upper)
+    assert PANDA.limits.acceleration.shape == (7,)
+    again = pickle.loads(pickle.dumps(PANDA))
+    assert again == PANDA
+    assert hash(again) == hash(PANDA)
+    assert fp.SerialArm.preset("iiwa14") != PANDA
+    assert fp.SerialArm([fp.Joint(), fp.Joint()]).joint_names == ["joint_1", "joint_2"]
+
+
+def test_followers_are_no_degrees_of_freedom():
+    arm = fp.SerialArm([fp.Joint(name="a"), fp.Joint(name="b", mimic=(0, 2.0, 0.1)), fp.Joint(name="c", lower=-1)])
+    assert arm.dof == 2
+    assert arm.joint_names == ["a", "c"]
+    np.testing.assert_array_equal(arm.limits.lower, [-np.inf, -1])
+    np.testing.assert_allclose(fp.rotation_vector(arm.forward([0.2, 0.3])[:3, :3]), [0, 0, 0.2 + 0.5 + 0.3], atol=1e-15)
+
+
+def test_bounds_of_a_table():
+    arm = fp.SerialArm.from_dh(
+        np.zeros((2, 4)), "modified", lower=[-1, -2], upper=[1, 2], velocity=[3, 4], acceleration=[5, 6], names="ab"
+    )
+    assert arm.joint_names == ["a", "b"]
+    np.testing.assert_array_equal(arm.limits.lower, [-1, -2])
+    np.testing.assert_array_equal(arm.limits.upper, [1, 2])
+    np.testing.assert_array_equal(arm.limits.velocity, [3, 4])
+    np.testing.assert_array_equal(arm.limits.acceleration, [5, 6])
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: fp.SerialArm([]), "joints has 0 entries: must have 1 to 32"),
+        (lambda: fp.SerialArm([fp.Joint()] * 33), "joints has 33 entries: must have 1 to 32"),
+        (lambda: fp.SerialArm([fp.Joint("helical")]), r"joints\[0\].type = 'helical': must be 'revolute'"),
+        (lambda: fp.SerialArm([fp.Joint(axis=[0, 0, 0])]), "axis is zero: must point somewhere"),
+        (lambda: fp.SerialArm([fp.Joint(axis=[0, 1])]), "axis has 2 entries: must have 3"),
+        (lambda: fp.SerialArm([fp.Joint(placement=np.eye(3))]), r"placement: must have shape \(4, 4\), got \(3, 3\)"),
+        (lambda: fp.SerialArm([fp.Joint(placement=np.diag([1, 1, 3, 1]))]), "placement.R: must be a rotation matrix"),
+        (lambda: fp.SerialArm([fp.Joint(lower=1, upper=-1)]), "lower = 1: must be below upper"),
+        (lambda: fp.SerialArm([fp.Joint(lower=np.nan)]), "lower = nan: must be below upper"),
+        (lambda: fp.SerialArm([fp.Joint("continuous", lower=-1)]), "is continuous: must have no lower and no upper"),
+        (lambda: fp.SerialArm([fp.Joint(velocity=0)]), "velocity = 0: must be positive"),
+        (lambda: fp.SerialArm([fp.Joint(acceleration=-1)]), "acceleration = -1: must be positive"),
+        (lambda: fp.SerialArm([fp.Joint(mimic=(0, 1.0, 0.0))]), "joints with a drive has 0 entries"),
+        (lambda: fp.SerialArm([fp.Joint(), fp.Joint(mimic=(-1, 1.0, 0.0))]), r"mimic\[0\] = -1: must be the index"),
+        (lambda: fp.SerialArm([fp.Joint(), fp.Joint(mimic=(5, 1.0, 0.0))]), "mimic.joint = 5: must be the index"),
+        (lambda: fp.SerialArm([fp.Joint()], tip=np.zeros((4, 4))), "tip: must be a homogeneous matrix"),
+        (
+            lambda: fp.SerialArm.from_dh(np.zeros((2, 4)), "craig"),
+            "convention = 'craig': must be 'classic' or 'modified'",
+        ),
+        (lambda: fp.SerialArm.from_dh(np.zeros((2, 3)), "classic"), r"table: must have shape \(2, 4\), got \(2, 3\)"),
+        (lambda: fp.SerialArm.from_dh([[0, 0, 0, np.nan]], "classic"), r"table\[0, 3\] = nan: must be finite"),
+        (lambda: fp.SerialArm.from_dh(np.zeros((2, 4)), "classic", lower=[1]), "lower has 1 entries: must have 2"),
+        (
+            lambda: fp.SerialArm.from_dh(np.zeros((2, 4)), "classic", types=["revolute"]),
+            "types has 1 entries: must have 2",
+        ),
+        (lambda: fp.SerialArm.from_dh(np.zeros((1, 4)), "classic", types=["fixed"]), r"types\[0\] = 'fixed'"),
+        (lambda: fp.SerialArm.preset("ur5"), "name = 'ur5': must be 'panda', 'iiwa14' or 'gen3'"),
+        (lambda: PANDA.forward(np.zeros(6)), "q has 6 entries: must have 7"),
+        (lambda: PANDA.jacobian(np.zeros(7), task="planar"), "task = 'planar': must be 'position' or 'pose'"),
+    ],
+)
+def test_bad_arms(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_rotations_are_inverse_to_their_vectors():
+    rng = np.random.default_rng(1)
+    for r in rng.uniform(-1.8, 1.8, (50, 3)):
+        np.testing.assert_allclose(fp.rotation_vector(fp.rotation(r)), r, atol=1e-14)
