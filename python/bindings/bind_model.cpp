@@ -1,3 +1,5 @@
+#include <pybind11/typing.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -24,7 +26,7 @@ JointType joint_type(const std::string& type, const std::string& name) {
 }
 
 /// A chain of fpbm_cpp.Joint, or of anything with its attributes.
-Chain<> chain_of(const py::sequence& joints, const ArrayLike& tip) {
+Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& tip) {
   Chain<> chain;
   for (const py::handle given : joints) {
     const std::string name = "joints[" + std::to_string(chain.joints.size()) + "]";
@@ -47,11 +49,13 @@ Chain<> chain_of(const py::sequence& joints, const ArrayLike& tip) {
   return chain;
 }
 
+using PlainChain = py::typing::Tuple<py::typing::List<py::typing::Dict<py::str, py::object>>, py::array_t<double>>;
+
 /// A chain as Python makes its joints from: a dictionary for each, and the tip.
-py::tuple plain(const Chain<>& chain) {
+PlainChain plain(const Chain<>& chain) {
   py::list joints;
   for (const Joint<>& joint : chain.joints) {
-    py::dict fields;
+    py::typing::Dict<py::str, py::object> fields;
     fields["type"] = kTypes[static_cast<std::size_t>(joint.type)];
     fields["placement"] = array_of(joint.placement);
     fields["axis"] = array_of(joint.axis);
@@ -66,7 +70,7 @@ py::tuple plain(const Chain<>& chain) {
 }
 
 /// The chain of a Denavit-Hartenberg table, one row (a, alpha, d, theta) a joint.
-py::tuple dh(const ArrayLike& table, const std::string& convention, const std::vector<std::string>& types) {
+PlainChain dh(const ArrayLike& table, const std::string& convention, const std::vector<std::string>& types) {
   const auto rows = real_array(table, "table", 2).shape(0);
   const Eigen::MatrixXd numbers = matrix(table, "table", rows, 4);
   validation::require_size("types", static_cast<Eigen::Index>(types.size()), rows);
@@ -80,7 +84,7 @@ py::tuple dh(const ArrayLike& table, const std::string& convention, const std::v
   throw std::invalid_argument("convention = '" + convention + "': must be 'classic' or 'modified'");
 }
 
-py::tuple preset(const std::string& name) {
+PlainChain preset(const std::string& name) {
   if (name == "panda") return plain(presets::panda());
   if (name == "iiwa14") return plain(presets::iiwa14());
   if (name == "gen3") return plain(presets::gen3());
@@ -254,9 +258,10 @@ ValueError
                       [](const Eigen::VectorXd& lengths) { return PyPlanarArm(lengths); }));
 
   py::class_<PySerialArm, PyArm>(m, "SerialArm", "The compiled part of fpbm_cpp.SerialArm.")
-      .def(
-          py::init([](const py::sequence& joints, const ArrayLike& tip) { return PySerialArm(chain_of(joints, tip)); }),
-          py::arg("joints"), py::arg("tip"))
+      .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip) {
+             return PySerialArm(chain_of(joints, tip));
+           }),
+           py::arg("joints"), py::arg("tip"))
       .def(
           "forward",
           [](const PySerialArm& arm, const ArrayLike& q) {

@@ -3,16 +3,19 @@ The compiled part of fpbm_cpp.
 """
 
 from __future__ import annotations
+import collections.abc
 import enum
 import numpy
 import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Arm",
     "Balanced",
     "Circle",
     "FPBM",
     "JointLimits",
+    "Kinematics",
     "Line",
     "Lissajous",
     "MAN",
@@ -21,12 +24,18 @@ __all__: list[str] = [
     "Path",
     "PlanarArm",
     "Scheme",
+    "SerialArm",
     "Status",
     "Tricuspid",
     "WMVN",
     "WMVNAcceleration",
+    "Waypoints",
     "advice",
+    "dh",
     "message",
+    "preset",
+    "rotation",
+    "rotation_vector",
     "simulate",
 ]
 
@@ -56,17 +65,99 @@ class JointLimits:
         Highest joint speeds [rad/s], shape (n,).
         """
 
-class PlanarArm:
+class Kinematics:
+    """
+    Tip, J and Jd of an arm in one state: all that a scheme knows of it.
+
+    From an arm's kinematics(), or from any library that has these three (Pinocchio, Drake, MuJoCo, ...).
+
+    Parameters
+    ----------
+    tip : array_like, shape (2,), (3,) or (4, 4)
+        f(q) in the base frame [m]: a position, (x, y, angle) of a pose in the plane, or a homogeneous matrix.
+    J : array_like, shape (m, n)
+        Task Jacobian, linear rows first, then angular, along the base frame's axes (Pinocchio's LOCAL_WORLD_ALIGNED).
+    Jd : array_like, shape (m, n), optional
+        dJ/dt along qd; velocity-level schemes do without.
+    task : str
+        Tells what three numbers in tip are: a 'position' in space, or a 'pose' in the plane.
+
+    Raises
+    ------
+    ValueError
+        Where a number is not finite, or shapes do not fit.
+    """
+    def __init__(
+        self,
+        tip: numpy.typing.ArrayLike,
+        J: numpy.typing.ArrayLike,
+        Jd: numpy.typing.ArrayLike | None = None,
+        *,
+        task: str = "position",
+    ) -> None: ...
+    @property
+    def J(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Task Jacobian, shape (m, n).
+        """
+    @property
+    def Jd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        dJ/dt along qd, shape (m, n).
+        """
+    @property
+    def tip(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        f(q) in the base frame [m], shape (2,), (3,) or (4, 4).
+        """
+
+class Arm:
+    """
+    A robot arm: what all kinds of it can do.
+    """
+    def jacobian(
+        self, q: numpy.typing.ArrayLike, *, task: str = "position"
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Task Jacobian J(q), shape (m, n): tip velocity is J qd. q: shape (n,) [rad]. task: 'position' or 'pose', whose rows are linear first, then
+        angular, along the base frame's axes.
+        """
+    def jacobian_dot(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s]. task: 'position' or 'pose', whose rows are linear first, then
+        angular, along the base frame's axes.
+        """
+    def kinematics(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
+    ) -> Kinematics:
+        """
+        Tip, J and Jd at q, qd, shape (n,) [rad], [rad/s]. task: 'position' or 'pose', whose rows are linear first, then
+        angular, along the base frame's axes.
+        """
+    @property
+    def dof(self) -> int:
+        """
+        Number of joints n.
+        """
+    @property
+    def limits(self) -> JointLimits:
+        """
+        Bounds of the joints' motion.
+        """
+
+class PlanarArm(Arm):
     """
     Planar arm of n revolute joints.
 
     f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first
-    from the base frame's x axis.
+    from the base frame's x axis. Its pose is (x, y, th_n).
 
     Parameters
     ----------
     lengths : array_like, shape (n,)
-        Link lengths [m], 2 to MAX_DOF of them, positive. Up to 10 joints run in code made for just that number.
+        Link lengths [m], 2 to MAX_DOF of them, positive. Up to 8 joints run in code made for just that number.
 
     Raises
     ------
@@ -79,26 +170,9 @@ class PlanarArm:
     def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
-    def forward(self, q: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Tip position f(q) in the base frame [m], shape (2,). q: shape (n,) [rad].
-        """
-    def jacobian(
-        self, q: numpy.typing.ArrayLike, *, task: str = "position"
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Task Jacobian J(q), shape (2, n) [m/rad]: tip velocity is J qd. q: shape (n,) [rad].
-        """
-    def jacobian_dot(
-        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        dJ/dt along qd, shape (2, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].
-        """
-    @property
-    def dof(self) -> int:
-        """
-        Number of joints n.
         """
     @property
     def joint_names(self) -> list[str]:
@@ -110,29 +184,57 @@ class PlanarArm:
         """
         Link lengths [m], shape (n,).
         """
-    @property
-    def limits(self) -> JointLimits:
+
+class SerialArm(Arm):
+    """
+    The compiled part of fpbm_cpp.SerialArm.
+    """
+    def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
+    def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint limits: a planar arm has none.
+        Tip pose f(q) in the base frame as a homogeneous matrix [m], shape (4, 4). q: shape (n,) [rad].
         """
 
 class Path:
     """
-    A shape run through under a time law in T seconds, then held.
+    Where the tip is to be, over T seconds, from rest to rest; then held.
 
-    A displacement from where the tip starts, so that x(0) = f(q0). The time laws give the fraction done, with tau = t/T:
-    'sin_squared', the paper's sin^2(pi tau / 2); 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5; 'constant_speed', tau.
+    A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
+    unless in_plane() lays them elsewhere; paths of positions leave the tip's orientation free under task='position' and
+    hold it under task='pose', unless with_turn() turns it.
+
+    The time laws give the fraction done, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose acceleration
+    steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there; 'constant_speed', tau.
     """
     def __repr__(self) -> str: ...
+    def in_plane(self, plane: typing.Any) -> Path:
+        """
+        This path of the plane laid into a plane of space.
+
+        plane: the base frame's axes that its x and y run along, as in 'yz', or any two directions at right angles,
+        shape (2, 3).
+        """
     def sample(
         self, t: typing.SupportsFloat | typing.SupportsIndex
     ) -> tuple[
-        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"],
-        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"],
-        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"],
+        numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]
     ]:
         """
-        (x, xd, xdd) at t [s], each of shape (2,) [m, m/s, m/s^2]; at rest on the path's ends outside 0 <= t <= T.
+        (x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
+
+        x has shape (2,) or (3,), or (4, 4) where the path turns the tip in space (in the plane: x, y, angle); xd and xdd have
+        shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.
+        """
+    def then(self, path: Path) -> Path:
+        """
+        This path, and from its end another.
+        """
+    def with_turn(self, turn: numpy.typing.ArrayLike, *, time_law: str = "quintic") -> Path:
+        """
+        This path of positions with the tip turned on the way, from rest to rest over its whole duration.
+
+        turn: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the orientation that
+        the tip starts in. To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the orientation.
         """
     @property
     def duration(self) -> float:
@@ -236,7 +338,7 @@ class Line(Path):
 
     Parameters
     ----------
-    displacement : array_like, shape (2,)
+    displacement : array_like, shape (2,) or (3,)
         From the start of the line to its end [m].
     duration : float
         T [s], positive.
@@ -256,6 +358,43 @@ class Line(Path):
         time_law: str = "sin_squared",
     ) -> None: ...
 
+class Waypoints(Path):
+    """
+    A smooth path through points, from rest to rest.
+
+    A quintic spline: of all curves through the points at those times, the one of least jerk. Acceleration is continuous
+    everywhere, the ends included. Orientations are splines of quaternions, and turn by the shorter way.
+
+    Parameters
+    ----------
+    points : array_like, shape (k, 2), (k, 3) or (k, 4, 4)
+        Positions [m] or poses, two at least. Only differences from the first matter, since a path starts where the tip is:
+        coordinates in the base frame do as well as displacements.
+    duration : float
+        T [s]; each piece gets its share by its length.
+    times : array_like, shape (k,)
+        When each point is passed [s], the first at 0.
+    speed, acceleration, turn_rate, turn_acceleration : float
+        As fast as these bounds of the tip's motion allow [m/s, m/s^2, rad/s, rad/s^2], to 1 %; T is rounded up to 0.01 s.
+
+    Raises
+    ------
+    ValueError
+        Where not just one of duration, times and bounds is given, a number is out of range or not finite, or two points
+        that follow each other are one.
+    """
+    def __init__(
+        self,
+        points: numpy.typing.ArrayLike,
+        *,
+        duration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        times: numpy.typing.ArrayLike | None = None,
+        speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        turn_rate: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        turn_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    ) -> None: ...
+
 class Status(enum.Enum):
     """
     What became of an evaluation or a rollout.
@@ -271,9 +410,10 @@ class Scheme:
     A redundancy resolution scheme: what all of them can do.
     """
     def __repr__(self) -> str: ...
+    @typing.overload
     def resolve(
         self,
-        arm: PlanarArm,
+        arm: Arm,
         q: numpy.typing.ArrayLike,
         qd: numpy.typing.ArrayLike,
         x: numpy.typing.ArrayLike,
@@ -287,15 +427,16 @@ class Scheme:
 
         Parameters
         ----------
-        arm : PlanarArm
+        arm : Arm
             The arm.
         q, qd : array_like, shape (n,)
             Joint state [rad], [rad/s].
-        x, xd, xdd : array_like, shape (2,)
-            Where the tip is to be in the base frame [m], its velocity [m/s] and acceleration [m/s^2]; xdd may be left out at
-            velocity level.
+        x : array_like, shape (2,), (3,) or (4, 4)
+            Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
+        xd, xdd : array_like, shape (m,)
+            Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
         task : str
-            'position'.
+            'position' or 'pose'.
 
         Returns
         -------
@@ -308,6 +449,19 @@ class Scheme:
             Where an argument is not finite or of the wrong shape.
         ResolutionError
             Where the posture is singular or the result not finite.
+        """
+    @typing.overload
+    def resolve(
+        self,
+        kinematics: Kinematics,
+        q: numpy.typing.ArrayLike,
+        qd: numpy.typing.ArrayLike,
+        x: numpy.typing.ArrayLike,
+        xd: numpy.typing.ArrayLike,
+        xdd: numpy.typing.ArrayLike | None = None,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.
         """
     @property
     def level(self) -> str:
@@ -509,19 +663,34 @@ def advice(status: Status) -> str:
     One sentence: what to do about it; empty for OK.
     """
 
+def dh(
+    table: numpy.typing.ArrayLike, convention: str, types: collections.abc.Sequence[str]
+) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def message(status: Status) -> str:
     """
     One sentence: what happened.
     """
 
+def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
+def rotation(r: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+    """
+    Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.
+    """
+
+def rotation_vector(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    Rotation vector of a rotation matrix, shape (3,), of length at most pi [rad].
+    """
+
 def simulate(
-    arm: PlanarArm,
+    arm: Arm,
     path: Path,
     scheme: Scheme,
     q0: numpy.typing.ArrayLike,
     qd0: numpy.typing.ArrayLike,
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
+    task: str,
 ) -> tuple[
     Status,
     float,

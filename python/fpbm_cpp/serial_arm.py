@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,7 +46,7 @@ class SerialArm(_core.SerialArm):
     def __init__(self, joints: Sequence[Joint], tip: ArrayLike | None = None) -> None:
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(joints, 1))
         frame = np.eye(4) if tip is None else np.array(tip, dtype=float)
-        super().__init__(joints, frame)
+        super().__init__(list(joints), frame)
         self.joints = named
         self.tip: Array = frame
 
@@ -98,12 +99,12 @@ class SerialArm(_core.SerialArm):
         for key, values in columns.items():
             if values is None:
                 continue
-            entries = list(values) if key == "name" else [float(v) for v in np.asarray(values, dtype=float).ravel()]
+            entries = np.asarray(values, dtype=str if key == "name" else float).ravel().tolist()
             if len(entries) != n:
                 raise ValueError(f"{key} has {len(entries)} entries: must have {n}, one per joint")
             for joint, value in zip(fields, entries):
                 joint[key] = value
-        return cls([Joint(**joint) for joint in fields], end if tip is None else end @ np.asarray(tip, dtype=float))
+        return cls(_joints(fields), end if tip is None else end @ np.asarray(tip, dtype=float))
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], tip: str, base: str | None = None) -> SerialArm:
@@ -136,7 +137,7 @@ class SerialArm(_core.SerialArm):
     def preset(cls, name: str) -> SerialArm:
         """Arm of a data sheet, up to its flange: 'panda' (Franka), 'iiwa14' (KUKA) or 'gen3' (Kinova, 7 joints)."""
         fields, tip = _core.preset(name)
-        return cls([Joint(**joint) for joint in fields], tip)
+        return cls(_joints(fields), tip)
 
     @property
     def joint_names(self) -> list[str]:
@@ -161,6 +162,10 @@ class SerialArm(_core.SerialArm):
 
     def __repr__(self) -> str:
         return f"<SerialArm of {self.dof} joints, {self.joints[0].name} to {self.joints[-1].name}>"
+
+
+def _joints(fields: list[dict[str, Any]]) -> list[Joint]:
+    return [Joint(**joint) for joint in fields]
 
 
 def _bytes(values: ArrayLike) -> bytes:

@@ -81,7 +81,13 @@ def test_followers_are_no_degrees_of_freedom():
 
 def test_bounds_of_a_table():
     arm = fp.SerialArm.from_dh(
-        np.zeros((2, 4)), "modified", lower=[-1, -2], upper=[1, 2], velocity=[3, 4], acceleration=[5, 6], names="ab"
+        np.zeros((2, 4)),
+        "modified",
+        lower=[-1, -2],
+        upper=[1, 2],
+        velocity=[3, 4],
+        acceleration=[5, 6],
+        names=["a", "b"],
     )
     assert arm.joint_names == ["a", "b"]
     np.testing.assert_array_equal(arm.limits.lower, [-1, -2])
