@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import textbook
-from hypothesis import assume, given
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -29,6 +29,16 @@ IN_SPACE = [
     fp.SerialArm.from_joints([*ON_RAIL, *ON_RAIL]),
     fp.SerialArm.from_joints(COUPLED),
 ]
+
+
+def random_chain(rng: np.random.Generator) -> fp.SerialArm:
+    def frame() -> np.ndarray:
+        H = np.eye(4)
+        H[:3, :3], H[:3, 3] = fp.rotation(rng.uniform(-1.8, 1.8, 3)), rng.uniform(-0.5, 0.5, 3)
+        return H
+
+    types = rng.choice(["revolute", "continuous", "prismatic"], rng.integers(3, 12), p=[0.5, 0.2, 0.3])
+    return fp.SerialArm([fp.Joint(kind, frame(), rng.uniform(-1, 1, 3)) for kind in types], frame())
 
 
 class Case:
@@ -70,11 +80,13 @@ def cases(draw):
         draw(st.booleans()),
         draw(st.sampled_from(["position", "pose"])),
     )
-    if draw(st.booleans()):
+    kind, rng = draw(st.sampled_from(["named", "chain", "planar"])), np.random.default_rng(seed)
+    if kind == "named":
         arm = draw(st.sampled_from(IN_SPACE))
+    elif kind == "chain":
+        arm = random_chain(rng)
     else:
-        n = draw(st.sampled_from(PLANAR_SIZES))
-        arm = fp.PlanarArm(np.random.default_rng(seed).uniform(0.3, 1.5, n))
+        arm = fp.PlanarArm(rng.uniform(0.3, 1.5, draw(st.sampled_from(PLANAR_SIZES))))
     assume(arm.dof >= len(arm.jacobian(np.zeros(arm.dof), task=task)))
     case = Case(arm, task, seed, dense)
     assume(np.linalg.cond(case.J) < 100)
@@ -85,6 +97,10 @@ def close(actual, expected):
     np.testing.assert_allclose(actual, expected, atol=1e-9 * (1 + np.abs(expected).max()))
 
 
+MANY = settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+
+
+@MANY
 @given(cases())
 def test_velocity_level(case):
     eye = np.eye(len(case.q))
@@ -97,6 +113,7 @@ def test_velocity_level(case):
     close(case.resolve(fp.WMVN(case.weights, k=case.k1, **options)), textbook.velocity(case.J, case.W, v, z))
 
 
+@MANY
 @given(cases())
 def test_acceleration_level(case):
     eye = np.eye(len(case.q))
