@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ._core import PlanarArm, Status, advice, message
+from ._types import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ._core import Arm, Path, Scheme
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
+from ._types import Array
 from .joint import Joint
-from .run import Array
 
 PRESETS = ("panda", "iiwa14", "gen3")
 

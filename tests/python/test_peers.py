@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
-from fpbm_cpp.run import Array
+from fpbm_cpp._types import Array
 
 STATES = 1000
 

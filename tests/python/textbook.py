@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fpbm_cpp.run import Array
+from fpbm_cpp._types import Array
 
 
 def forward(lengths: Array, q: Array) -> Array:

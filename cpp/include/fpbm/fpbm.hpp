@@ -42,5 +42,6 @@
 #include "fpbm/task/shapes.hpp"
 #include "fpbm/task/spline.hpp"
 #include "fpbm/task/time_law.hpp"
+#include "fpbm/task/tip_bounds.hpp"
 #include "fpbm/task/waypoints.hpp"
 #include "fpbm/task/with_turn.hpp"

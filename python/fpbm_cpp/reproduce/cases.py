@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from .._core import FPBM, MAN, Circle, Lissajous, Path, PlanarArm, Scheme, Tricuspid
-from ..run import Array, Run
+from .._types import Array
+from ..run import Run
 from ..simulate import simulate
 
 DT = 1e-3  # [s]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from .._core import FPBM, MAN, Balanced, Scheme
-from ..run import Array, Run
+from .._types import Array
+from ..run import Run
 from .cases import DT, NAMES, Paper, Result
 
 COARSE = 0.2  # 50 steps over a path [s]

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -14,17 +13,9 @@
 #include "fpbm/core/validation.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/spline.hpp"
+#include "fpbm/task/tip_bounds.hpp"
 
 namespace fpbm {
-
-/// How fast a tip may go; infinite where there is no bound.
-template <typename Scalar = double>
-struct TipBounds {
-  Scalar speed = std::numeric_limits<Scalar>::infinity();              ///< [m/s]
-  Scalar acceleration = std::numeric_limits<Scalar>::infinity();       ///< [m/s²]
-  Scalar turn_rate = std::numeric_limits<Scalar>::infinity();          ///< [rad/s]
-  Scalar turn_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
-};
 
 /// A smooth path through points of a task space, from rest to rest, with continuous acceleration everywhere.
 ///
