@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdlib>
 #include <new>
+#include <type_traits>
+#include <vector>
 
 #include "support/paper.hpp"
 
@@ -83,6 +85,42 @@ TEST(NoAllocation, in_a_rollout_of_a_fixed_size) {
 }
 TEST(NoAllocation, in_a_rollout_of_a_size_chosen_at_run_time) {
   NoAllocation<Eigen::Dynamic>::in_any_scheme();
+}
+
+/// Arms in space, poses, and every kind of path: waypoints take their memory when they are made.
+template <typename Arm>
+void expect_none_in_space(const Arm& arm) {
+  constexpr int N = Arm::kDof;
+  Vector<N> q0 = Vector<N>::Zero(arm.dof());
+  q0.template tail<7>() << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
+  const FPBM<N> scheme(0.6, DiagonalWeights<N>(Vector<N>::Ones(arm.dof())), 10.0, 25.0);
+  const auto expect_none = [&](const auto& path) {
+    using Space = typename std::decay_t<decltype(path)>::Space;
+    static std::array<double, Space::kSize*(kSteps + 1)> x;
+    MotionBuffers<Space, N> buffers;
+    buffers.x = x.data();
+    const State<N> start{q0, 0.0 * q0};
+    const TimeGrid<> grid(path.duration(), path.duration() / kSteps);
+    const AllocationWatch watch;
+    const auto result = rollout(arm, path, scheme, start, grid, buffers);
+    EXPECT_EQ(watch.count().total(), 0);
+    EXPECT_EQ(result.status, Status::kOk);
+  };
+  const InPlane circle(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
+  const std::vector<Transform<>> points{{}, {{0.05, 0.0, 0.05}, rotation(Vector<3>(0.1, 0.2, 0.0))}, {{0.1, 0.0, 0.0}}};
+  expect_none(circle);
+  expect_none(WithTurn(circle, Vector<3>(0.1, 0.2, 0.3)));
+  expect_none(Sequence(WithTurn(circle), Waypoints<Pose>::lasting(points, 5.0)));
+}
+
+TEST(NoAllocation, in_space) {
+  Chain<> chain = presets::panda();
+  expect_none_in_space(SerialArm<7>(chain));
+  expect_none_in_space(SerialArm<Eigen::Dynamic>(chain));
+  chain.joints.insert(chain.joints.begin(), Joint<>{JointType::kPrismatic});
+  chain.joints[0].mimic = {1, 0.1, 0.0};
+  expect_none_in_space(CoupledArm<7>(chain));
+  expect_none_in_space(CoupledArm<Eigen::Dynamic>(chain));
 }
 
 /// A motion that has to stop does so without an allocation as well.

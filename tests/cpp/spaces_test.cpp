@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
@@ -142,6 +143,49 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
   expect_tracked(WithTurn(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>{});
   expect_tracked(WithTurn(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(weights));
   expect_tracked(WithTurn(circle), MAN<7>{});
+}
+
+/// Out of reach, from any start: it stops before the way leaves the ball that no flange leaves, and the tip has not
+/// gone astray by more than one step of its reference; whatever is recorded is finite.
+TEST(PoseTask, that_leaves_the_workspace_ends) {
+  const SerialArm<7> arm(presets::panda());
+  const JointLimits<7>& limits = arm.limits();
+  constexpr double kReach = 1.2;  // More than all links in a row, from the shoulder 0.333 m up.
+  Random random(7);
+  const auto expect_end = [&](const auto& scheme, const auto& path, double speed) {
+    State<7> start{Vector<7>::Zero(), Vector<7>::Zero()};
+    for (Eigen::Index i = 0; i < 7; ++i) start.q(i) = random.uniform(limits.lower(i), limits.upper(i));
+    constexpr double kStep = 2e-3;
+    double worst = 0.0;
+    bool finite = true;
+    double away = 0.0;
+    const auto run = rollout(arm, path, scheme, start, TimeGrid<>(4.0, kStep), [&](const auto& sample) noexcept {
+      finite = finite && sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite();
+      worst = std::max(worst, sample.error.template head<3>().norm());
+      if constexpr (std::decay_t<decltype(path)>::Space::kRows == 6) {
+        away = (sample.reference.x.p - Vector<3>(0, 0, 0.333)).norm();
+      } else {
+        away = (sample.reference.x - Vector<3>(0, 0, 0.333)).norm();
+      }
+    });
+    EXPECT_NE(run.status, Status::kOk);
+    EXPECT_TRUE(finite);
+    EXPECT_LE(away, kReach);
+    EXPECT_LE(worst, kStep * speed);
+  };
+  for (int trial = 0; trial < 40; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const Vector<3> way = 3.0 * Vector<3>(random.uniform(3, -1, 1)).normalized();
+    const Path line(Line<3>(way), 4.0);
+    const double speed = kPi / 2 * way.norm() / 4.0;
+    const DiagonalWeights<7> weights(Vector<7>(random.uniform(7, 1, 4)));
+    const WithTurn turned(line, Vector<3>(random.uniform(3, -1, 1)));
+    expect_end(MVN<7>{}, line, speed);
+    expect_end(MAN<7>{}, line, speed);
+    expect_end(WMVN<7>(weights, 5.0), turned, speed);
+    expect_end(MAN<7>{}, turned, speed);
+    expect_end(FPBM<7>(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0)), turned, speed);
+  }
 }
 
 /// From a start 0.6 rad and 5 cm off, at rest: position errors, and orientation errors where the target is at rest, go
