@@ -1,0 +1,29 @@
+"""Every Python example runs as it stands and has a counterpart in C++."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("[0-9][0-9]_*.py"))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_example(example: Path, tmp_path: Path) -> None:
+    if "plot" in example.read_text():
+        pytest.importorskip("matplotlib")
+    command = [sys.executable, str(example)]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout
+    for picture in tmp_path.iterdir():
+        assert picture.read_bytes().startswith(b"\x89PNG")
+    assert any(tmp_path.iterdir()) == ("savefig" in example.read_text())
+
+
+def test_pairs() -> None:
+    assert len(EXAMPLES) >= 5
+    assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES)
