@@ -60,3 +60,56 @@ def reproduce_command(context: click.Context, out: Path) -> None:
     click.echo(f"\n{len(done.files)} files in {out}{os.sep}, {time.perf_counter() - start:.0f} s")
     if not done.agrees:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
+
+
+@command.command("export-header", epilog="Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp")
+@click.argument("urdf", metavar="ARM.urdf", type=click.Path(path_type=Path))
+@click.option("--tip", metavar="LINK", required=True, help="Link to move.")
+@click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
+@click.option(
+    "-o",
+    "--out",
+    metavar="FILE.hpp",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Header to write, whole or not at all; - is the standard output.",
+)
+@click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
+def export_header_command(urdf: Path, tip: str, base: str | None, out: Path, name: str | None) -> None:
+    """Write the arm of a URDF file as a C++ header.
+
+    The header constructs the arm from base to tip, with neither parser nor file when the program runs.
+    """
+    from .export_header import export_header, namespace_of
+    from .urdf import read_urdf
+
+    to_stdout = str(out) == "-"
+    source = f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"
+    try:
+        joints, frame = read_urdf(urdf, tip, base)
+        name = name or namespace_of((urdf if to_stdout else out).stem)
+        header = export_header(joints, frame, name=name, source=source)
+    except OSError as error:
+        raise click.ClickException(f"cannot read {urdf}: {error.strerror}") from None
+    except (ValueError, ImportError) as error:
+        raise click.ClickException(str(error)) from None
+    if to_stdout:
+        click.echo(header, nl=False)
+        return
+    try:
+        _write(out.resolve(), header.encode())
+    except OSError as error:
+        raise click.ClickException(f"cannot write to {out}: {error.strerror}") from None
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Write a file whole, or not at all."""
+    if file.exists() and not file.is_file():
+        file.write_bytes(content)  # A device; a directory says that it is one.
+        return
+    part = file.with_name(f".{file.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(content)
+        os.replace(part, file)
+    finally:
+        part.unlink(missing_ok=True)

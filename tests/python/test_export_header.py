@@ -1,0 +1,339 @@
+"""Arms written as C++ headers: what the header computes, and what the command says when something is wrong."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from math import inf
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
+
+from fpbm_cpp.export_header import export_header, namespace_of
+from fpbm_cpp.joint import Joint
+
+pytest.importorskip("click")
+pytest.importorskip("yourdfpy")
+
+from click.testing import CliRunner, Result
+
+from fpbm_cpp.cli import command
+from fpbm_cpp.urdf import read_urdf
+
+ROOT = Path(__file__).parents[2]
+EIGEN = Path("/usr/include/eigen3")
+NASTY = ['say "hi"', "back\\slash", "two\nlines", "Gelenk für 関節", "what??/", "tab\there\x7f1", ""]
+
+
+def placed(rng: np.random.Generator) -> np.ndarray:
+    T = np.eye(4)
+    T[:3, :3] = Rotation.random(random_state=rng.integers(1 << 30)).as_matrix()
+    T[:3, 3] = rng.uniform(-1, 1, 3)
+    return T
+
+
+def chain(seed: int, types: Sequence[str], mimics: dict[int, tuple[int, float, float]]) -> list[Joint]:
+    rng = np.random.default_rng(seed)
+    bounds = {"continuous": (-inf, inf)}
+    return [
+        Joint(type, placed(rng), rng.uniform(-2, 2, 3), *bounds.get(type, (-1.5, 2.5)), 3.0, name=name, mimic=mimic)
+        for type, name, mimic in zip(types, NASTY, map(mimics.get, range(len(types))))
+    ]
+
+
+TIP = placed(np.random.default_rng(5))
+ARMS = {
+    "serial": chain(1, ["revolute", "prismatic", "continuous"] * 2 + ["revolute"], {}),
+    "my::coupled": chain(2, ["revolute", "prismatic", "revolute", "revolute"], {0: (2, -1.5, 0.3), 3: (1, 0.7, -0.2)}),
+}
+
+
+def coupling(joints: Sequence[Joint]) -> tuple[np.ndarray, np.ndarray]:
+    """A and b, where the chain's positions are A q + b."""
+    drives = [i for i, joint in enumerate(joints) if joint.mimic is None]
+    A, b = np.eye(len(joints))[:, drives], np.zeros(len(joints))
+    for i, joint in enumerate(joints):
+        if joint.mimic is not None:
+            master, ratio, b[i] = joint.mimic
+            A[i] = ratio * A[master]
+    return A, b
+
+
+def screw(axis: np.ndarray, through: np.ndarray, type: str) -> np.ndarray:
+    """Twist [v, w] of a joint with its axis through a point, in base axes."""
+    w = axis / np.linalg.norm(axis)
+    return np.r_[w, 0, 0, 0] if type == "prismatic" else np.r_[np.cross(through, w), w]
+
+
+def hat(twist: np.ndarray) -> np.ndarray:
+    v, (x, y, z) = twist[:3], twist[3:]
+    return np.vstack([np.column_stack([[[0, -z, y], [z, 0, -x], [-y, x, 0]], v]), np.zeros(4)])
+
+
+def adjoint(T: np.ndarray) -> np.ndarray:
+    R, (x, y, z) = T[:3, :3], T[:3, 3]
+    p = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.block([[R, p @ R], [np.zeros((3, 3)), R]])
+
+
+def product_of_exponentials(joints: Sequence[Joint], q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Tip and J at q, which may be complex."""
+    A, b = coupling(joints)
+    zero, moved, columns = np.eye(4), np.eye(4), []
+    for joint, position in zip(joints, A @ q + b):
+        zero = zero @ joint.placement
+        twist = screw(zero[:3, :3] @ joint.axis, zero[:3, 3], joint.type)
+        columns.append(adjoint(moved) @ twist)
+        moved = moved @ expm(hat(twist) * position)
+    tip = moved @ zero @ TIP
+    at_tip = adjoint(np.vstack([np.column_stack([np.eye(3), -tip[:3, 3]]), [0, 0, 0, 1]]))
+    return tip, at_tip @ np.column_stack(columns) @ A
+
+
+PROGRAM = """
+#include "coupled.hpp"
+#include "serial.hpp"
+
+#include <cstdio>
+
+void print(const char* format, double number) { std::printf(format, number); }
+
+template <typename Derived>
+void print(const Eigen::MatrixBase<Derived>& M) {
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    for (Eigen::Index j = 0; j < M.cols(); ++j) print("%.17g ", M(i, j));
+  }
+}
+
+template <int N, typename Arm>
+void run(const Arm& arm, const std::array<const char*, N>& names) {
+  const auto& limits = arm.limits();
+  for (const char* name : names) std::printf("%s%c", name, 0);
+  print(limits.lower), print(limits.upper), print(limits.velocity), print(limits.acceleration);
+  fpbm::State<N> state;
+  for (int sample = 0; sample < 20; ++sample) {
+    for (int i = 0; i < N; ++i) if (std::scanf("%lf", &state.q(i)) != 1) return;
+    for (int i = 0; i < N; ++i) if (std::scanf("%lf", &state.qd(i)) != 1) return;
+    fpbm::Kinematics<fpbm::Pose, N> kinematics;
+    arm.kinematics(state.q, state.qd, kinematics);
+    print(kinematics.tip.p), print(kinematics.tip.R), print(kinematics.J), print(kinematics.Jd);
+  }
+  std::printf("%c", 0);
+}
+
+int main() {
+  run<serial::kDof>(serial::arm(), serial::kJointNames);
+  run<my::coupled::kDof>(my::coupled::arm(), my::coupled::kJointNames);
+}
+"""
+
+
+@pytest.mark.skipif(not shutil.which("g++") or not EIGEN.exists(), reason="needs g++ and Eigen")
+def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
+    for name, joints in ARMS.items():
+        source = 'an "arm" \\\nint x = 1;'
+        file = tmp_path / f"{name.split('::')[-1]}.hpp"
+        file.write_text(export_header(joints, TIP, name=name, source=source), encoding="utf-8")
+    (tmp_path / "main.cpp").write_text(PROGRAM)
+    flags = ["-std=c++17", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+    includes = ["-I", str(ROOT / "cpp/include"), "-isystem", str(EIGEN)]
+    subprocess.run(["g++", *flags, *includes, "main.cpp", "-o", "main"], cwd=tmp_path, check=True)
+
+    rng = np.random.default_rng(3)
+    states = {name: rng.uniform(-2, 2, (20, 2, coupling(joints)[0].shape[1])) for name, joints in ARMS.items()}
+    numbers = " ".join(repr(float(x)) for array in states.values() for x in array.ravel())
+    printed = subprocess.run([tmp_path / "main"], input=numbers.encode(), capture_output=True, check=True).stdout
+    parts = iter(printed.split(b"\0"))
+    for name, joints in ARMS.items():
+        drives = [joint for joint in joints if joint.mimic is None]
+        expected_names = [joint.name or f"joint_{joints.index(joint) + 1}" for joint in drives]
+        assert [next(parts).decode() for _ in drives] == expected_names
+        n = len(drives)
+        limits, *samples = np.split(np.array(next(parts).split(), float), 4 * n + np.arange(20) * (12 + 12 * n))
+        for bound, row in zip(("lower", "upper", "velocity", "acceleration"), limits.reshape(4, n)):
+            np.testing.assert_array_equal(row, [getattr(joint, bound) for joint in drives])
+        for (q, qd), sample in zip(states[name], samples):
+            p, R, J, Jd = np.split(sample, [3, 12, 12 + 6 * n])
+            tip, jacobian = product_of_exponentials(joints, q)
+            _, ahead = product_of_exponentials(joints, q + 1e-30j * qd)
+            np.testing.assert_allclose(p, tip[:3, 3], rtol=0, atol=1e-12)
+            np.testing.assert_allclose(R.reshape(3, 3), tip[:3, :3], rtol=0, atol=1e-12)
+            np.testing.assert_allclose(J.reshape(6, n), jacobian, rtol=0, atol=1e-12)
+            np.testing.assert_allclose(Jd.reshape(6, n), ahead.imag / 1e-30, rtol=0, atol=1e-11)
+
+
+# The text
+
+
+def test_what_is_as_by_default_is_left_out() -> None:
+    text = export_header([Joint(name="a"), Joint("continuous", velocity=2.0)], np.eye(4), name="n")
+    assert "placement" not in text
+    assert "chain.tip" not in text
+    assert "joints[0].bounds" not in text
+    assert "  chain.joints[1].bounds = {-kNone, kNone, 2.0};\n" in text
+    assert "constexpr double kNone = fpbm::JointBounds<>::kNone;" in text
+    assert "kNone" not in export_header([Joint()], np.eye(4), name="n")
+
+
+@given(numbers=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=16, max_size=16))
+def test_numbers_survive(numbers: list[float]) -> None:
+    p, R, axis, lower = numbers[:3], np.reshape(numbers[3:12], (3, 3)), numbers[12:15], numbers[15]
+    T = np.block([[R, np.reshape(p, (3, 1))], [np.zeros(3), 1]])
+    text = export_header([Joint("revolute", T, axis, lower)], T, name="n")
+
+    def written(name: str) -> list[float]:
+        (braces,) = re.findall(rf"  {re.escape(name)} = (?:fpbm::Matrix<3, 3>)?({{[^;]*}});", text)
+        return [inf if number == "kNone" else float(number) for number in re.findall(r"[^{},\s]+", braces)]
+
+    assert written("chain.joints[0].axis") == axis
+    assert lower == -inf or written("chain.joints[0].bounds")[0] == lower
+    for name in ("chain.joints[0].placement", "chain.tip"):
+        assert not np.any(p) or written(f"{name}.p") == p
+        assert np.array_equal(R, np.eye(3)) or written(f"{name}.R") == R.ravel().tolist()
+
+
+@pytest.mark.parametrize(
+    ("stem", "name"),
+    [
+        ("panda", "panda"),
+        ("04_exported_arm", "exported_arm"),
+        ("my-arm v2.1", "my_arm_v2_1"),
+        ("__x__y__", "x_y"),
+        ("Łódź", "d"),
+        ("関節", "arm"),
+        ("7", "arm"),
+        ("", "arm"),
+        ("int", "int_arm"),
+        ("std", "std_arm"),
+        ("fpbm", "fpbm_arm"),
+    ],
+)
+def test_namespace_after_a_file(stem: str, name: str) -> None:
+    assert namespace_of(stem) == name
+    assert f"namespace {name} {{" in export_header([Joint()], np.eye(4), name=name)
+
+
+@pytest.mark.parametrize(
+    "name", ["", "7up", "a b", "a-b", "a\n", "_a", "a__b", "int", "fpbm", "std::x", "a::", "::a", "a:b", "é", "x{"]
+)
+def test_name_that_no_namespace_can_have(name: str) -> None:
+    with pytest.raises(ValueError, match=r"must be a C\+\+ identifier that is not taken") as caught:
+        export_header([Joint()], np.eye(4), name=name)
+    assert str(caught.value).startswith(f"name = {name!r}: ")
+
+
+def test_source_stays_in_its_comment() -> None:
+    text = export_header([Joint()], np.eye(4), name="n", source="a\nb\r\u2028\u202ec\\ é")
+    assert text.startswith(
+        "// Written by fpbm-cpp export-header from a?b???c\\ é. Regenerate rather than edit.\n#pragma"
+    )
+
+
+# The command
+
+URDF = """<robot name="r"><link name="base"/><link name="mid"/><link name="tip"/>
+<joint name="a" type="revolute"><parent link="base"/><child link="mid"/><limit upper="1" velocity="1"/></joint>
+<joint name="b" type="continuous"><parent link="mid"/><child link="tip"/></joint></robot>
+"""
+
+
+def call(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(command, ["export-header", *map(str, arguments)])
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> Path:
+    file = tmp_path / "two.urdf"
+    file.write_text(URDF)
+    return file
+
+
+def test_example_is_as_written_today(tmp_path: Path) -> None:
+    """If not: fpbm-cpp export-header examples/04_exported_arm.urdf --tip tool -o examples/04_exported_arm.hpp"""
+    out = tmp_path / "04_exported_arm.hpp"
+    result = call(ROOT / "examples/04_exported_arm.urdf", "--tip", "tool", "-o", out)
+    assert (result.exit_code, result.output) == (0, "")
+    assert out.read_bytes() == (ROOT / "examples/04_exported_arm.hpp").read_bytes()
+
+
+def test_command_writes_what_the_function_does(arm: Path, tmp_path: Path) -> None:
+    joints, tip = read_urdf(arm, "tip", "mid")
+    assert call(arm, "--tip", "tip", "--base", "mid", "-o", tmp_path / "my-arm.hpp").exit_code == 0
+    expected = export_header(joints, tip, name="my_arm", source="two.urdf, base mid, tip tip")
+    assert (tmp_path / "my-arm.hpp").read_text() == expected
+    assert sorted(os.listdir(tmp_path)) == ["my-arm.hpp", "two.urdf"]
+
+
+def test_standard_output(arm: Path) -> None:
+    joints, tip = read_urdf(arm, "tip")
+    for options, name in ((), "two"), (("--name", "robots::left"), "robots::left"):
+        result = call(arm, "--tip", "tip", "-o", "-", *options)
+        assert result.exit_code == 0
+        assert result.stdout == export_header(joints, tip, name=name, source="two.urdf, tip tip")
+
+
+def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out.hpp"
+    out.write_text("old")
+    (tmp_path / "link.hpp").symlink_to(out)
+    (tmp_path / "usual").write_text("")
+    assert call(arm, "--tip", "tip", "-o", tmp_path / "link.hpp", "--name", "n").exit_code == 0
+    assert "namespace n {" in out.read_text()
+    assert (tmp_path / "link.hpp").is_symlink()
+    assert out.stat().st_mode == (tmp_path / "usual").stat().st_mode
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/null"), reason="no /dev/null")
+def test_device(arm: Path) -> None:
+    assert call(arm, "--tip", "tip", "-o", "/dev/null").exit_code == 0
+    assert Path("/dev/null").is_char_device()
+
+
+def assert_refused(result: Result, message: str) -> None:
+    assert result.exit_code == 1
+    assert result.output == f"Error: {message}\n"
+
+
+def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "out.hpp"
+    out.write_text("mine")
+    before = sorted(os.listdir(tmp_path))
+    to_out = ("--tip", "tip", "-o", out)
+    bad = arm.parent / "nowhere.urdf"
+    assert_refused(call(bad, *to_out), f"cannot read {bad}: No such file or directory")
+    assert_refused(call(tmp_path, *to_out), f"cannot read {tmp_path}: Is a directory")
+    leaves = "its branches end in 'tip'"
+    assert_refused(call(arm, "--tip", "top", "-o", out), f"{arm}: tip = 'top': must be a link, perhaps 'tip'; {leaves}")
+    assert_refused(call(arm, *to_out, "--base", "x"), f"{arm}: base = 'x': must be a link; {leaves}")
+    assert_refused(call(arm, *to_out, "--name", "int"), "name = 'int': must be a C++ identifier that is not taken")
+    assert_refused(call(arm, "--tip", "tip", "-o", tmp_path), f"cannot write to {tmp_path}: Is a directory")
+    lost = tmp_path / "no" / "out.hpp"
+    assert_refused(call(arm, "--tip", "tip", "-o", lost), f"cannot write to {lost}: No such file or directory")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", full)
+        assert_refused(call(arm, *to_out), f"cannot write to {out}: No space left on device")
+    monkeypatch.setitem(sys.modules, "yourdfpy", None)
+    assert_refused(call(arm, *to_out), 'reading URDF needs yourdfpy: pip install "fpbm_cpp[urdf]"')
+    assert out.read_text() == "mine"
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_wrong_usage(arm: Path) -> None:
+    for arguments, said in (((arm, "-o", "x.hpp"), "--tip"), ((arm, "--tip", "tip"), "--out"), ((), "ARM.urdf")):
+        result = call(*arguments)
+        assert result.exit_code == 2
+        assert said in result.output.splitlines()[-1]
+    assert "Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp" in call("--help").output
