@@ -199,6 +199,21 @@ TEST(Sequence, is_integrated_piece_by_piece) {
   EXPECT_LE(worst, 1e-10);
 }
 
+/// Where a reference steps in velocity, on the way or at its end, the arm is not said to have lost it.
+TEST(Sequence, may_step_in_velocity) {
+  const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
+  const Path circle(Circle(0.2), 4.0, ConstantSpeed{});
+  const Path line(Line<2>({-0.2, 0.1}), 1.0, ConstantSpeed{});
+  const State<4> start{{0.3, 0.4, 0.5, 0.3}, Vector<4>::Zero()};
+  const FPBM<4> scheme(0.6, DiagonalWeights<4>({1, 2, 3, 4}), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
+  const auto status = [&](const auto& path, const auto& by) {
+    return rollout(arm, path, by, start, TimeGrid<>(path.duration(), 1e-3, 2.0), [](const auto&) noexcept {}).status;
+  };
+  EXPECT_EQ(status(circle, scheme), Status::kOk);
+  EXPECT_EQ(status(Sequence(circle, line), scheme), Status::kOk);
+  EXPECT_EQ(status(Sequence(circle, line), MVN<4>(5.0)), Status::kOk);
+}
+
 template <typename Make>
 std::string refusal(Make&& make) {
   try {

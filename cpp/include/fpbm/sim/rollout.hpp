@@ -98,6 +98,8 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     const Scalar t = grid.time(i);
     const bool last = i == grid.steps();
     const bool moving = i < grid.motion_steps() || (last && grid.hold_steps() == 0);
+    const Reference<Space, Scalar> arrived =
+        i <= grid.motion_steps() ? references.motion(t, grid.time(i > 0 ? i - 1 : 0)) : references.hold();
     const auto derivative = [&](Scalar stage_t, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(moving ? references.motion(stage_t, t) : references.hold(), stage_x, stage_dx);
     };
@@ -105,7 +107,8 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = derivative(t, x, dx);
     if (result.status != Status::kOk) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t, t) : references.hold();
-    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, reference, loop.state, loop.qdd, grid.dt())) {
+    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, arrived, reference, loop.state, loop.qdd,
+                                                  grid.dt())) {
       result.status = Status::kTaskLost;
       break;
     }

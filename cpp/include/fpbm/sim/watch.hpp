@@ -25,17 +25,20 @@ class ErrorWatch {
   /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
   /// turn and h [s] are in e's units.
   [[nodiscard]] bool follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
-                             Scalar size) noexcept {
+                             Scalar size) const noexcept {
     using std::sqrt;
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
     const Scalar expected = kTolerance * (travel + error.norm() + h * rate.norm());
     const Scalar truncation = kTruncation * turn * (turn * turn) * (turn * turn) * size;
     const Scalar round_off = sqrt(std::numeric_limits<Scalar>::epsilon()) * size;
-    const bool follows = !started_ || growth <= expected + truncation + round_off;
+    return !started_ || growth <= expected + truncation + round_off;
+  }
+
+  /// From here on: e and its rate, where the reference may have stepped since follows() was asked.
+  void start_from(const Row& error, const Row& rate) noexcept {
     error_ = error;
     rate_ = rate;
     started_ = true;
-    return follows;
   }
 
  private:
@@ -55,23 +58,28 @@ class TaskWatch {
   explicit TaskWatch(const typename Space::template Point<Scalar>& tip)
       : before_(Reference<Space, Scalar>::hold(tip)) {}
 
-  /// Whether this sample, h seconds after the last, is where the scheme of that level was to bring the arm.
+  /// Whether this sample, h seconds after the last, is where the scheme of that level was to bring the arm: arrived is
+  /// what it was led to, and reference, of which qdd is the answer, where it is led from here. They differ where a
+  /// path's pieces meet.
   template <Level kLevel>
-  [[nodiscard]] bool on_course(const Kinematics<Space, N, Scalar>& kinematics,
+  [[nodiscard]] bool on_course(const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& arrived,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h) noexcept {
     using Row = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();
     const Scalar reach = J.cwiseAbs().maxCoeff();
-    const Row e = Space::template difference<Scalar>(reference.x, tip);
-    const Row ed = reference.xd - J.lazyProduct(state.qd);
-    const Scalar travel = Space::template difference<Scalar>(reference.x, before_.x).norm();
+    const Row velocity = J.lazyProduct(state.qd);
+    const Row e = Space::template difference<Scalar>(arrived.x, tip);
+    const Row ed = reference.xd - velocity;
+    const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
     bool follows = turn <= kLargestTurn && position_.follows(e, ed, h, travel, turn, reach);
+    position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
       const Row edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
-      const Scalar change = (reference.xd - before_.xd).norm();
-      follows = follows && velocity_.follows(ed, edd, h, change, turn, reach / h);
+      const Scalar change = (arrived.xd - before_.xd).norm();
+      follows = follows && velocity_.follows(arrived.xd - velocity, edd, h, change, turn, reach / h);
+      velocity_.start_from(ed, edd);
     }
     before_ = reference;
     return follows;
