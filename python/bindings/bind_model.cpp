@@ -191,6 +191,7 @@ ValueError
   py::class_<PyArm>(m, "Arm", "A robot arm: what all kinds of it can do.")
       .def_property_readonly("dof", &PyArm::dof, "Number of joints n.")
       .def_property_readonly("limits", &PyArm::limits, "Bounds of the joints' motion.")
+      .def_property_readonly("joint_names", &PyArm::joint_names, "Names of the joints, from the base on.")
       .def("kinematics", &kinematics_of, py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("task") = "position",
            (std::string("Tip, J and Jd at q, qd, shape (n,) [rad], [rad/s].") + kTaskText).c_str())
       .def(
@@ -233,14 +234,6 @@ ValueError
       .def_property_readonly(
           "lengths", [](const PyPlanarArm& arm) { return Eigen::VectorXd(arm.lengths()); },
           "Link lengths [m], shape (n,).")
-      .def_property_readonly(
-          "joint_names",
-          [](const PyPlanarArm& arm) {
-            std::vector<std::string> names;
-            for (int i = 1; i <= arm.dof(); ++i) names.push_back("joint_" + std::to_string(i));
-            return names;
-          },
-          "Names of the joints, from the base on.")
       .def(
           "forward",
           [](const PyPlanarArm& arm, const ArrayLike& q) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "arm.hpp"
 
@@ -41,6 +42,7 @@ class PyArm {
  public:
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(limits_.lower.size()); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return limits_; }
+  [[nodiscard]] const std::vector<std::string>& joint_names() const noexcept { return joint_names_; }
 
   /// Calls visitor(const TaskModel<Space>&) for the task space of that name.
   /// Throws std::invalid_argument where there is none.
@@ -57,24 +59,31 @@ class PyArm {
 
  protected:
   template <typename Positions>
-  PyArm(ArmModels<Positions> models, JointLimits<kDynamic> limits)
-      : models_(std::move(models)), limits_(std::move(limits)) {}
+  PyArm(ArmModels<Positions> models, JointLimits<kDynamic> limits, std::vector<std::string> joint_names)
+      : models_(std::move(models)), limits_(std::move(limits)), joint_names_(std::move(joint_names)) {}
 
  private:
   std::variant<ArmModels<Position<2>>, ArmModels<Position<3>>> models_;
   JointLimits<kDynamic> limits_;
+  std::vector<std::string> joint_names_;
 };
 
 class PyPlanarArm : public PyArm {
  public:
   explicit PyPlanarArm(const Joints& lengths)
       : PyArm(choose_models<PlanarArm>(lengths, static_cast<std::size_t>(lengths.size())),
-              PlanarArm<kDynamic>(lengths).limits()),
+              PlanarArm<kDynamic>(lengths).limits(), names(lengths.size())),
         lengths_(lengths) {}
 
   [[nodiscard]] const Joints& lengths() const noexcept { return lengths_; }
 
  private:
+  static std::vector<std::string> names(Eigen::Index dof) {
+    std::vector<std::string> result;
+    for (Eigen::Index i = 1; i <= dof; ++i) result.push_back("joint_" + std::to_string(i));
+    return result;
+  }
+
   Joints lengths_;
 };
 
@@ -85,7 +94,16 @@ class PySerialArm : public PyArm {
  private:
   PySerialArm(const Chain<>& chain, bool coupled)
       : PyArm(coupled ? make_models<CoupledArm<kDynamic>>(chain) : choose_models<SerialArm>(chain, chain.joints.size()),
-              coupled ? CoupledArm<kDynamic>(chain).limits() : SerialArm<kDynamic>(chain).limits()) {}
+              coupled ? CoupledArm<kDynamic>(chain).limits() : SerialArm<kDynamic>(chain).limits(), names(chain)) {}
+
+  /// Of the joints that have a drive of their own.
+  static std::vector<std::string> names(const Chain<>& chain) {
+    std::vector<std::string> result;
+    for (const Joint<>& joint : chain.joints) {
+      if (joint.mimic.joint < 0) result.push_back(joint.name);
+    }
+    return result;
+  }
 
   static bool is_coupled(const Chain<>& chain) {
     for (const Joint<>& joint : chain.joints) {

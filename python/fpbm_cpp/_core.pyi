@@ -142,6 +142,11 @@ class Arm:
         Number of joints n.
         """
     @property
+    def joint_names(self) -> list[str]:
+        """
+        Names of the joints, from the base on.
+        """
+    @property
     def limits(self) -> JointLimits:
         """
         Bounds of the joints' motion.
@@ -173,11 +178,6 @@ class PlanarArm(Arm):
     def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Tip position f(q) in the base frame [m], shape (2,). q: shape (n,) [rad].
-        """
-    @property
-    def joint_names(self) -> list[str]:
-        """
-        Names of the joints, from the base on.
         """
     @property
     def lengths(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .run import _positions
 from .serial_arm import SerialArm
 from .skeleton import joint_points
 
@@ -53,7 +52,7 @@ def arm_panel(axes: Any, run: Run) -> None:
         style = {"lw": 2.4, "ms": 5, "mec": "white", "mew": 0.6, "solid_capstyle": "round"}
         axes.plot(*points.T, "o-", color=FADE(time(t[i])), **style)
     axes.plot(*run.positions.T, color=TIP, lw=3, label="tip")
-    axes.plot(*_positions(run.x_ref, run.arm).T, color=TARGET, lw=1.2, ls=(0, (2, 2)), label="target")
+    axes.plot(*run.reference_positions.T, color=TARGET, lw=1.2, ls=(0, (2, 2)), label="target")
     axes.plot(*np.zeros((run.positions.shape[1], 1)), "s", color="0.25", ms=11, zorder=0)
     axes.set(xlabel="x [m]", ylabel="y [m]")
     if space:

@@ -103,6 +103,11 @@ class Run:
         """Where the tip is [m], shape (N, 2) or (N, 3): x without the orientation."""
         return _positions(self.x, self.arm)
 
+    @property
+    def reference_positions(self) -> Array:
+        """Where the tip is to be [m], shape (N, 2) or (N, 3): x_ref without the orientation."""
+        return _positions(self.x_ref, self.arm)
+
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the task, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
         J = np.array([self.arm.jacobian(q, task=self.task) for q in self.q])

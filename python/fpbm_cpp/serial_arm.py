@@ -46,7 +46,7 @@ class SerialArm(_core.SerialArm):
     def __init__(self, joints: Sequence[Joint], tip: ArrayLike | None = None) -> None:
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(joints, 1))
         frame = np.eye(4) if tip is None else np.array(tip, dtype=float)
-        super().__init__(list(joints), frame)
+        super().__init__(list(named), frame)
         self.joints = named
         self.tip: Array = frame
 
@@ -138,11 +138,6 @@ class SerialArm(_core.SerialArm):
         """Arm of a data sheet, up to its flange: 'panda' (Franka), 'iiwa14' (KUKA) or 'gen3' (Kinova, 7 joints)."""
         fields, tip = _core.preset(name)
         return cls(_joints(fields), tip)
-
-    @property
-    def joint_names(self) -> list[str]:
-        """Names of the joints that have a drive of their own, from the base on."""
-        return [joint.name for joint in self.joints if joint.mimic is None]
 
     def _key(self) -> tuple[object, ...]:
         joints = tuple(
