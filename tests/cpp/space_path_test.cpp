@@ -130,6 +130,31 @@ TEST(Waypoints, pass_every_point_on_time) {
   expect_waypoints<Pose>();
 }
 
+/// Least jerk is what makes jerk and snap continuous: one-sided differences of acceleration across each knot.
+TEST(Spline, has_four_continuous_derivatives) {
+  Random random(6);
+  std::vector<Vector<2>> points;
+  std::vector<double> times;
+  for (int i = 0; i < 6; ++i) {
+    points.emplace_back(random.uniform(2, -1.0, 1.0));
+    times.push_back(i == 0 ? 0.0 : times.back() + random.uniform(0.5, 1.5));
+  }
+  const Spline<2> spline(points, times);
+  for (std::size_t i = 1; i + 1 < times.size(); ++i) {
+    constexpr double kStep = 1e-3;
+    const auto at = [&](int steps) { return Vector<2>(spline.at(times[i] + steps * kStep).xdd); };
+    // Within a piece acceleration is a cubic, of which these four points are exact.
+    const auto jerk = [&](int way) {
+      return Vector<2>((-11 * at(0) + 18 * at(way) - 9 * at(2 * way) + 2 * at(3 * way)) / (6 * way * kStep));
+    };
+    const auto snap = [&](int way) {
+      return Vector<2>((2 * at(0) - 5 * at(way) + 4 * at(2 * way) - at(3 * way)) / (kStep * kStep));
+    };
+    EXPECT_LE((jerk(1) - jerk(-1)).norm(), 1e-8 * (1 + jerk(1).norm()));
+    EXPECT_LE((snap(1) - snap(-1)).norm(), 1e-6 * (1 + snap(1).norm()));
+  }
+}
+
 TEST(Waypoints, of_two_points_are_the_quintic_law) {
   const auto line = Waypoints<Position<3>>::lasting({{0, 0, 0}, {0.3, 0.1, -0.2}}, 2.5);
   const Path expected(Line<3>({0.3, 0.1, -0.2}), 2.5, Quintic{});

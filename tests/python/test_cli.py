@@ -108,7 +108,12 @@ def test_missing_extra(module: str, said: str, tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_ctrl_c(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with subprocess.Popen([*MODULE, "reproduce", "--out", str(out)], stderr=subprocess.PIPE, text=True) as process:
+
+    def heed_interrupts() -> None:  # A shell lets its background jobs ignore them.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    start = [*MODULE, "reproduce", "--out", str(out)]
+    with subprocess.Popen(start, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts) as process:
         assert process.stderr is not None
         while "drawing" not in process.stderr.readline():
             time.sleep(0.01)
