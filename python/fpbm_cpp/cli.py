@@ -80,6 +80,7 @@ def export_header_command(urdf: Path, tip: str, base: str | None, out: Path, nam
 
     The header constructs the arm from base to tip, with neither parser nor file when the program runs.
     """
+    from ._files import write_whole
     from .export_header import export_header, namespace_of
     from .urdf import read_urdf
 
@@ -97,19 +98,6 @@ def export_header_command(urdf: Path, tip: str, base: str | None, out: Path, nam
         click.echo(header, nl=False)
         return
     try:
-        _write(out.resolve(), header.encode())
+        write_whole(out.resolve(), header.encode())
     except OSError as error:
         raise click.ClickException(f"cannot write to {out}: {error.strerror}") from None
-
-
-def _write(file: Path, content: bytes) -> None:
-    """Write a file whole, or not at all."""
-    if file.exists() and not file.is_file():
-        file.write_bytes(content)  # A device; a directory says that it is one.
-        return
-    part = file.with_name(f".{file.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        os.replace(part, file)
-    finally:
-        part.unlink(missing_ok=True)

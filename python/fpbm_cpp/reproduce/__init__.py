@@ -5,11 +5,11 @@ Data flows one way: paper.json → cases (runs) → tables, figures, claims → 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from .._files import write_whole
 from .cases import Result, load, run_all
 from .claims import Claim, check_claims
 from .figures import make_figure, rendered
@@ -61,19 +61,8 @@ def reproduce(out: Path, say: Callable[[str], None] = lambda step: None) -> Repr
         say(f"drawing Fig. {result.case.figure}")
         drawn = make_figure(result)
         for kind in ("png", "pdf"):
-            files.append(_write(out / f"fig{result.case.figure}.{kind}", rendered(drawn, kind)))
+            files.append(write_whole(out / f"fig{result.case.figure}.{kind}", rendered(drawn, kind)))
     say("checking the claims")
     tables, claims = make_tables(results), check_claims(paper, results)
-    files.append(_write(out / "report.md", make_report(paper, results, tables, claims).encode()))
+    files.append(write_whole(out / "report.md", make_report(paper, results, tables, claims).encode()))
     return Reproduction(results, tables, claims, summary(results), files)
-
-
-def _write(file: Path, content: bytes) -> Path:
-    """Write a file whole, or not at all."""
-    part = file.with_name(f".{file.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        os.replace(part, file)
-    finally:
-        part.unlink(missing_ok=True)
-    return file
