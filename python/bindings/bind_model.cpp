@@ -133,16 +133,16 @@ void bind_model(py::module_& m) {
   py::class_<Limits>(m, "JointLimits", "Bounds of each joint's motion, infinite where there is none.")
       .def_property_readonly(
           "lower", [](const Limits& limits) { return Eigen::VectorXd(limits.lower); },
-          "Lowest joint positions [rad], shape (n,).")
+          "Lowest joint positions [rad] or [m], shape (n,).")
       .def_property_readonly(
           "upper", [](const Limits& limits) { return Eigen::VectorXd(limits.upper); },
-          "Highest joint positions [rad], shape (n,).")
+          "Highest joint positions [rad] or [m], shape (n,).")
       .def_property_readonly(
           "velocity", [](const Limits& limits) { return Eigen::VectorXd(limits.velocity); },
-          "Highest joint speeds [rad/s], shape (n,).")
+          "Highest joint speeds [rad/s] or [m/s], shape (n,).")
       .def_property_readonly(
           "acceleration", [](const Limits& limits) { return Eigen::VectorXd(limits.acceleration); },
-          "Highest joint accelerations [rad/s^2], shape (n,).")
+          "Highest joint accelerations [rad/s^2] or [m/s^2], shape (n,).")
       .def("__repr__", [](const Limits& limits) {
         return "JointLimits(lower=" + text(limits.lower) + ", upper=" + text(limits.upper) +
                ", velocity=" + text(limits.velocity) + ", acceleration=" + text(limits.acceleration) + ")";

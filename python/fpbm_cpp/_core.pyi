@@ -47,22 +47,22 @@ class JointLimits:
     @property
     def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Highest joint accelerations [rad/s^2], shape (n,).
+        Highest joint accelerations [rad/s^2] or [m/s^2], shape (n,).
         """
     @property
     def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Lowest joint positions [rad], shape (n,).
+        Lowest joint positions [rad] or [m], shape (n,).
         """
     @property
     def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Highest joint positions [rad], shape (n,).
+        Highest joint positions [rad] or [m], shape (n,).
         """
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Highest joint speeds [rad/s], shape (n,).
+        Highest joint speeds [rad/s] or [m/s], shape (n,).
         """
 
 class Kinematics:

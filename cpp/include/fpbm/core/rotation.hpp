@@ -65,6 +65,14 @@ template <typename Scalar>
   return q(0) < Scalar(0) ? Vector<4, Scalar>(-q) : q;
 }
 
+/// Vector part of a b*, a quaternion times the conjugate of another: of q̇ q* it is half the angular velocity.
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> vector_of_quotient(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
+  const Vector<3, Scalar> v = a.template tail<3>();
+  const Vector<3, Scalar> w = b.template tail<3>();
+  return b(0) * v - a(0) * w - cross(v, w);
+}
+
 /// Rotation matrix of a unit quaternion (w, v): (w² − |v|²) I + 2 v vᵀ + 2 w [v]×.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<4, Scalar>& q) noexcept {

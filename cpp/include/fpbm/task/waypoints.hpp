@@ -75,11 +75,11 @@ class Waypoints {
       const Quaternion Qdd = at.xdd.template tail<4>();
       // With q = Q/|Q|, ω = 2 q̇q*, of which only the part of Q̇ across Q is left in the vector part.
       const Scalar square = Q.squaredNorm();
-      const Vector<3, Scalar> w = Scalar(2) / square * times_conjugate(Qd, Q);
+      const Vector<3, Scalar> w = Scalar(2) / square * vector_of_quotient(Qd, Q);
       Reference<Space, Scalar> result;
       result.x = {at.x.template head<3>(), rotation(Quaternion(Q / std::sqrt(square)))};
       result.xd << at.xd.template head<3>(), w;
-      result.xdd << at.xdd.template head<3>(), Scalar(2) / square * (times_conjugate(Qdd, Q) - Q.dot(Qd) * w);
+      result.xdd << at.xdd.template head<3>(), Scalar(2) / square * (vector_of_quotient(Qdd, Q) - Q.dot(Qd) * w);
       return result;
     }
   }
@@ -89,13 +89,6 @@ class Waypoints {
   static constexpr int kLinear = Space::kRows == 2 || std::is_same_v<Space, PlanarPose> ? 2 : 3;
   static constexpr int kCoordinates = kTurns ? 7 : Space::kRows;
   using Row = Vector<kCoordinates, Scalar>;
-
-  /// Vector part of the product of a quaternion with another's conjugate.
-  static Vector<3, Scalar> times_conjugate(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
-    const Vector<3, Scalar> v = a.template tail<3>();
-    const Vector<3, Scalar> w = b.template tail<3>();
-    return b(0) * v - a(0) * w - cross(v, w);
-  }
 
   /// What the spline goes through: displacements from the first point, orientations by the shorter way.
   static std::vector<Row> rows(const std::vector<Point>& points) {
