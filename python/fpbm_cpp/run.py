@@ -64,8 +64,8 @@ class Run:
     t : numpy.ndarray, shape (N,)
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
-        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]. Velocity-level schemes give no
-        accelerations: there qdd holds finite differences of qd.
+        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2], with m for rad where a joint slides.
+        Velocity-level schemes give no accelerations: there qdd holds finite differences of qd.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
         Where the tip is and where it is to be, in the base frame [m]; poses are (x, y, angle) in the plane, homogeneous
         matrices in space.

@@ -14,14 +14,12 @@ from . import _core
 from ._types import Array
 from .joint import Joint
 
-PRESETS = ("panda", "iiwa14", "gen3")
-
 
 class SerialArm(_core.SerialArm):
     """Any chain of revolute, continuous and prismatic joints in space.
 
-    Joint positions in radians or metres, the base frame is that of the first placement. Chains of 4 to 8 joints run in
-    code made for just that number.
+    Joint positions in radians or metres; the base frame is the one that the first placement is seen from. Chains of 4
+    to 8 joints run in code made for just that number.
 
     Parameters
     ----------

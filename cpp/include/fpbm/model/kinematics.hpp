@@ -11,7 +11,7 @@ template <typename Space, int N, typename Scalar = double>
 struct Kinematics {
   static constexpr int kRows = Space::kRows;
 
-  typename Space::template Point<Scalar> tip;  ///< f(q), in the base frame [m].
+  typename Space::template Point<Scalar> tip;  ///< f(q), in the base frame [m, rad].
   Matrix<kRows, N, Scalar> J;                  ///< Task Jacobian: tip velocity is J qd.
   Matrix<kRows, N, Scalar> Jd;                 ///< dJ/dt along qd: tip acceleration is J qdd + Jd qd.
 };

@@ -13,8 +13,8 @@ namespace fpbm {
 
 /// Any chain of N revolute, continuous and prismatic joints, in space. Immutable.
 ///
-/// Joint positions in radians or metres, the base frame is that of the first placement. N = Eigen::Dynamic takes the
-/// number of joints from the chain, up to kMaxDof.
+/// Joint positions in radians or metres; the base frame is the one that the first placement is seen from.
+/// N = Eigen::Dynamic takes the number of joints from the chain, up to kMaxDof.
 template <int N, typename Scalar_ = double>
 class SerialArm {
  public:

@@ -12,12 +12,12 @@ template <typename Space, int N, typename Scalar = double>
 struct Sample {
   int index;
   Scalar t;                                    ///< [s]
-  Vector<N, Scalar> q;                         ///< [rad]
+  Vector<N, Scalar> q;                         ///< [rad], or [m] for a prismatic joint, as everywhere below
   Vector<N, Scalar> qd;                        ///< [rad/s]
   Vector<N, Scalar> qdd;                       ///< [rad/s²]; zero at velocity level, where no scheme gives it.
-  typename Space::template Point<Scalar> tip;  ///< f(q) [m]
+  typename Space::template Point<Scalar> tip;  ///< f(q) [m, rad]
   Reference<Space, Scalar> reference;
-  Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m]
+  Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m, rad]
 };
 
 /// A recorder that writes samples row by row into the caller's buffers; a null buffer is left out.
