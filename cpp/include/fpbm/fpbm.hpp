@@ -3,6 +3,7 @@
 /// Redundancy resolution for robot arms: include this, or just the rooms you need.
 
 #include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/null_basis.hpp"
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
@@ -20,6 +21,7 @@
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/resolver/balance.hpp"
 #include "fpbm/resolver/balanced.hpp"
+#include "fpbm/resolver/damping.hpp"
 #include "fpbm/resolver/feedback.hpp"
 #include "fpbm/resolver/fpbm.hpp"
 #include "fpbm/resolver/least_norm.hpp"

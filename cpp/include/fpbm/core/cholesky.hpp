@@ -52,6 +52,24 @@ class Cholesky {
     return x;
   }
 
+  /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, and by M times at most too low.
+  [[nodiscard]] Scalar inverse_trace() const noexcept {
+    const Eigen::Index m = L_.rows();
+    Matrix<M, M, Scalar> inverse = L_;  // Of L, below the diagonal.
+    Scalar trace = Scalar(0);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      Scalar row = Scalar(1);
+      for (Eigen::Index j = 0; j < i; ++j) {
+        Scalar entry = L_(i, j);
+        for (Eigen::Index k = j + 1; k < i; ++k) entry += L_(i, k) * inverse(k, j);
+        inverse(i, j) = -entry;
+        row += entry * entry;
+      }
+      trace += row * reciprocal_(i);
+    }
+    return trace;
+  }
+
  private:
   [[nodiscard]] Status lost(const Matrix<M, M, Scalar>& A, Eigen::Index pivot) noexcept {
     lost_pivot_ = pivot;

@@ -2,18 +2,33 @@
 
 namespace fpbm {
 
-/// What became of one evaluation, step or rollout. The loop returns it and never throws.
+/// What became of one evaluation, step, tick or rollout. The loop returns it and never throws.
+/// Up to kSlowed the result is good; from kSingular on there is none.
 enum class Status : unsigned char {
   kOk = 0,
+  kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
+  kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
   kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
   kTaskLost,   ///< In one step the tip left the course that the scheme prescribes.
   kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
 };
 
+/// Whether there is no result.
+[[nodiscard]] constexpr bool failed(Status status) noexcept {
+  return status >= Status::kSingular;
+}
+
+/// The graver of two.
+[[nodiscard]] constexpr Status worse(Status a, Status b) noexcept {
+  return a > b ? a : b;
+}
+
 /// One plain sentence: what happened.
 [[nodiscard]] constexpr const char* message(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "all is well";
+    case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
+    case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
     case Status::kTaskLost:
       return "the tip has left its reference: the target is out of reach, or the step is too long";
@@ -26,6 +41,8 @@ enum class Status : unsigned char {
 [[nodiscard]] constexpr const char* advice(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "";
+    case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
+    case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
     case Status::kSingular:
       return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";
     case Status::kTaskLost: return "Keep the path inside the workspace and away from singular postures, or shorten dt.";

@@ -6,7 +6,8 @@ namespace fpbm {
 
 /// The classic fourth-order Runge-Kutta method for dx/dt = f(t, x).
 ///
-/// The derivative is `Status f(t, x, dx) noexcept`; a stage that fails ends the step, and x stays as it was.
+/// The derivative is `Status f(t, x, dx) noexcept`; a stage that fails ends the step, and x stays as it was. Otherwise
+/// the step's status is the worst of its stages'.
 /// X is any type with vector arithmetic, an Eigen matrix of fixed capacity as a rule.
 struct RK4 {
   /// One step of length h from (t, x), of which dx = f(t, x) is already known.
@@ -17,21 +18,25 @@ struct RK4 {
     X k3 = k1;
     X k4 = k1;
     X stage = x + half * k1;
-    if (const Status status = f(t + half, stage, k2); status != Status::kOk) return status;
+    Status status = f(t + half, stage, k2);
+    if (failed(status)) return status;
     stage = x + half * k2;
-    if (const Status status = f(t + half, stage, k3); status != Status::kOk) return status;
+    status = worse(status, f(t + half, stage, k3));
+    if (failed(status)) return status;
     stage = x + h * k3;
-    if (const Status status = f(t + h, stage, k4); status != Status::kOk) return status;
+    status = worse(status, f(t + h, stage, k4));
+    if (failed(status)) return status;
     x += h / Scalar(6) * (k1 + Scalar(2) * (k2 + k3) + k4);
-    return Status::kOk;
+    return status;
   }
 
   /// One step of length h from (t, x).
   template <typename Derivative, typename Scalar, typename X>
   [[nodiscard]] static Status step(Derivative&& f, Scalar t, Scalar h, X& x) noexcept {
     X k1 = x;
-    if (const Status status = f(t, x, k1); status != Status::kOk) return status;
-    return step(f, t, h, k1, x);
+    const Status status = f(t, x, k1);
+    if (failed(status)) return status;
+    return worse(status, step(f, t, h, k1, x));
   }
 };
 

@@ -13,10 +13,12 @@ struct Balanced {
 
   Scalar alpha;  ///< Share of WMVN, in [0, 1].
   Weights weights;
-  NullSpace<N, Scalar> null_space;  ///< Secondary acceleration z.
+  NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  Balanced(Scalar alpha_, const Weights& weights_, const NullSpace<N, Scalar>& null_space_ = {})
-      : alpha(alpha_), weights(weights_), null_space(null_space_) {
+  Balanced(Scalar alpha_, const Weights& weights_, const NullSpace<N, Scalar>& null_space_ = {},
+           const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : alpha(alpha_), weights(weights_), null_space(null_space_), singular(singular_) {
     validation::require_fraction("alpha", static_cast<double>(alpha));
   }
 
@@ -32,7 +34,7 @@ struct Balanced {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(Scalar(0), Scalar(0), kinematics, reference, state);
-    return balance(alpha, weights, b, null_space, kinematics, reference, state, qdd);
+    return balance(alpha, weights, b, null_space, singular, kinematics, reference, state, qdd);
   }
 };
 

@@ -15,12 +15,14 @@ struct FPBM {
 
   Scalar alpha;  ///< Share of WMVN, in [0, 1].
   Weights weights;
-  Scalar k1;                        ///< Velocity feedback gain [1/s].
-  Scalar k2;                        ///< Position feedback gain [1/s²].
-  NullSpace<N, Scalar> null_space;  ///< Secondary acceleration z.
+  Scalar k1;                         ///< Velocity feedback gain [1/s].
+  Scalar k2;                         ///< Position feedback gain [1/s²].
+  NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  FPBM(Scalar alpha_, const Weights& weights_, Scalar k1_, Scalar k2_, const NullSpace<N, Scalar>& null_space_ = {})
-      : alpha(alpha_), weights(weights_), k1(k1_), k2(k2_), null_space(null_space_) {
+  FPBM(Scalar alpha_, const Weights& weights_, Scalar k1_, Scalar k2_, const NullSpace<N, Scalar>& null_space_ = {},
+       const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : alpha(alpha_), weights(weights_), k1(k1_), k2(k2_), null_space(null_space_), singular(singular_) {
     validation::require_fraction("alpha", static_cast<double>(alpha));
     validation::require_non_negative("k1", static_cast<double>(k1));
     validation::require_non_negative("k2", static_cast<double>(k2));
@@ -38,7 +40,7 @@ struct FPBM {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    return balance(alpha, weights, b, null_space, kinematics, reference, state, qdd);
+    return balance(alpha, weights, b, null_space, singular, kinematics, reference, state, qdd);
   }
 };
 

@@ -14,9 +14,12 @@ template <int N, typename Scalar = double>
 struct MAN {
   static constexpr Level kLevel = Level::kAcceleration;
 
-  NullSpace<N, Scalar> null_space;  ///< Secondary acceleration z.
+  NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  explicit MAN(const NullSpace<N, Scalar>& null_space_ = {}) : null_space(null_space_) {}
+  explicit MAN(const NullSpace<N, Scalar>& null_space_ = {},
+               const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : null_space(null_space_), singular(singular_) {}
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const { null_space.require_dof(dof); }
@@ -27,7 +30,7 @@ struct MAN {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(Scalar(0), Scalar(0), kinematics, reference, state);
-    return least_norm<kLevel>(UnitWeights{}, b, null_space, kinematics.J, state, qdd);
+    return least_norm<kLevel>(UnitWeights{}, b, null_space, singular, kinematics.J, state, qdd);
   }
 };
 

@@ -12,10 +12,13 @@ template <int N, typename Scalar = double>
 struct MVN {
   static constexpr Level kLevel = Level::kVelocity;
 
-  Scalar k;                         ///< Position feedback gain [1/s]: xd + k (x ⊖ f(q)) in place of xd.
-  NullSpace<N, Scalar> null_space;  ///< Secondary velocity z.
+  Scalar k;                          ///< Position feedback gain [1/s]: xd + k (x ⊖ f(q)) in place of xd.
+  NullSpace<N, Scalar> null_space;   ///< Secondary velocity z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  explicit MVN(Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {}) : k(k_), null_space(null_space_) {
+  explicit MVN(Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {},
+               const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : k(k_), null_space(null_space_), singular(singular_) {
     validation::require_non_negative("k", static_cast<double>(k));
   }
 
@@ -28,7 +31,7 @@ struct MVN {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    return least_norm<kLevel>(UnitWeights{}, v, null_space, kinematics.J, state, qd);
+    return least_norm<kLevel>(UnitWeights{}, v, null_space, singular, kinematics.J, state, qd);
   }
 };
 

@@ -6,13 +6,18 @@
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
 ///
 /// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
-/// too small. The resolvers ask for one thing, solve(A) = W⁻¹A. require_dof throws std::invalid_argument
-/// where W is for another number of joints.
+/// too small. The resolvers ask for two things: solve(A) = W⁻¹A, and a bound on the largest eigenvalue of W⁻¹.
+/// require_dof throws std::invalid_argument where W is for another number of joints.
 namespace fpbm {
 
 /// W = I.
 struct UnitWeights {
   void require_dof(Eigen::Index) const noexcept {}
+
+  template <typename Scalar>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return Scalar(1);
+  }
 
   template <typename Derived>
   [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
@@ -32,6 +37,11 @@ class DiagonalWeights {
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
+
+  template <typename>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return Scalar(1);
+  }
 
   template <typename Derived>
   [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
@@ -62,6 +72,11 @@ class DenseWeights {
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
+
+  template <typename>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return inverse_.trace();
+  }
 
   template <typename Derived>
   [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {

@@ -13,10 +13,12 @@ struct WMVNAcceleration {
   static constexpr Level kLevel = Level::kAcceleration;
 
   Weights weights;
-  NullSpace<N, Scalar> null_space;  ///< Secondary acceleration z.
+  NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  explicit WMVNAcceleration(const Weights& weights_, const NullSpace<N, Scalar>& null_space_ = {})
-      : weights(weights_), null_space(null_space_) {}
+  explicit WMVNAcceleration(const Weights& weights_, const NullSpace<N, Scalar>& null_space_ = {},
+                            const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : weights(weights_), null_space(null_space_), singular(singular_) {}
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
@@ -30,7 +32,7 @@ struct WMVNAcceleration {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(Scalar(0), Scalar(0), kinematics, reference, state);
-    return balance(Scalar(1), weights, b, null_space, kinematics, reference, state, qdd);
+    return balance(Scalar(1), weights, b, null_space, singular, kinematics, reference, state, qdd);
   }
 };
 

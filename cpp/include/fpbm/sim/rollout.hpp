@@ -18,7 +18,7 @@ namespace fpbm {
 /// How a rollout ended. Where it stopped early, the samples before are good.
 template <int N, typename Scalar = double>
 struct RolloutResult {
-  Status status;          ///< kOk when the whole motion is done; otherwise why it stopped,
+  Status status;          ///< kOk or kDamped when the whole motion is done; otherwise why it stopped,
   Scalar time;            ///< when [s],
   State<N, Scalar> last;  ///< and where: the last good state.
   int samples;            ///< Samples recorded.
@@ -45,26 +45,27 @@ struct ClosedLoop {
       state.qd = x.col(1);
       arm.kinematics(state.q, state.qd, kinematics);
       const Status status = scheme.resolve(kinematics, reference, state, qdd);
-      if (status != Status::kOk) return status;
+      if (failed(status)) return status;
       dx.col(0) = state.qd;
       dx.col(1) = qdd;
+      return status;
     } else {
       arm.kinematics(state.q, kinematics);
       const Status status = scheme.resolve(kinematics, reference, state, state.qd);
-      if (status != Status::kOk) return status;
-      dx.col(0) = state.qd;
+      if (!failed(status)) dx.col(0) = state.qd;
+      return status;
     }
-    return Status::kOk;
   }
 };
 
 /// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
 ///
-/// The path is a displacement from where the tip starts. Velocity-level schemes integrate q (start.qd is not read),
-/// acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time, noexcept.
-/// Throws std::invalid_argument where the scheme or start does not fit the arm, the grid does not fit the path, or
-/// start is not finite, before anything is recorded; from then on nothing throws or allocates, and what goes wrong is
-/// in the result.
+/// The path is a displacement from where the tip starts. Where damping at a singular posture makes the tip miss its
+/// path, the motion stops with kTaskLost; a loop that must go on is the Tracker's. Velocity-level schemes integrate q
+/// (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
+/// noexcept. Throws std::invalid_argument where the scheme or start does not fit the arm, the grid does not fit the
+/// path, or start is not finite, before anything is recorded; from then on nothing throws or allocates, and what goes
+/// wrong is in the result.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
@@ -104,11 +105,12 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
       return loop.evaluate(moving ? references.motion(stage_t, t) : references.hold(), stage_x, stage_dx);
     };
 
-    result.status = derivative(t, x, dx);
-    if (result.status != Status::kOk) break;
+    const Status status = derivative(t, x, dx);
+    result.status = worse(result.status, status);
+    if (failed(status)) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t, t) : references.hold();
-    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, arrived, reference, loop.state, loop.qdd,
-                                                  grid.dt())) {
+    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, arrived, reference, loop.state, loop.qdd, grid.dt(),
+                                                  status == Status::kDamped)) {
       result.status = Status::kTaskLost;
       break;
     }
@@ -119,8 +121,8 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     record(Sample<Space, Arm::kDof, Scalar>{i, t, loop.state.q, loop.state.qd, loop.qdd, loop.kinematics.tip, reference,
                                             Space::template difference<Scalar>(reference.x, loop.kinematics.tip)});
     if (last) break;
-    result.status = RK4::step(derivative, t, grid.dt(), dx, x);
-    if (result.status != Status::kOk) break;
+    result.status = worse(result.status, RK4::step(derivative, t, grid.dt(), dx, x));
+    if (failed(result.status)) break;
   }
   return result;
 }

@@ -60,11 +60,11 @@ class TaskWatch {
 
   /// Whether this sample, h seconds after the last, is where the scheme of that level was to bring the arm: arrived is
   /// what it was led to, and reference, of which qdd is the answer, where it is led from here. They differ where a
-  /// path's pieces meet.
+  /// path's pieces meet. Where the scheme was damped, the reference must not outrun the tip by more than one step.
   template <Level kLevel>
   [[nodiscard]] bool on_course(const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& arrived,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h) noexcept {
+                               [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
     using Row = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();
@@ -74,6 +74,11 @@ class TaskWatch {
     const Row ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
     bool follows = turn <= kLargestTurn && position_.follows(e, ed, h, travel, turn, reach);
+    if (damped) {
+      follows = follows && e.norm() <= undamped_error_ + kDampedSteps * travel;
+    } else {
+      undamped_error_ = e.norm();
+    }
     position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
       const Row edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
@@ -90,6 +95,10 @@ class TaskWatch {
   /// one.
   static constexpr Scalar kLargestTurn = Scalar(0.25);
 
+  /// How far the tip may fall behind where the scheme is damped, in steps of the reference.
+  static constexpr Scalar kDampedSteps = Scalar(1.1);
+
+  Scalar undamped_error_{0};
   ErrorWatch<Space::kRows, Scalar> position_;
   ErrorWatch<Space::kRows, Scalar> velocity_;
   Reference<Space, Scalar> before_;
