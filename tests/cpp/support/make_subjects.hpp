@@ -63,7 +63,10 @@ template <typename Arm, typename Space, typename Scheme>
   const Reference<Space, Scalar> reference{x, scene.xd.cast<Scalar>(), scene.xdd.cast<Scalar>()};
 
   Joints u = Joints::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
-  const Status status = SchemeTraits<Scheme>::make(law).resolve(kinematics, reference, state, u);
+  auto scheme = SchemeTraits<Scheme>::make(law);
+  scheme.singular =
+      SingularDamping<Scalar>(static_cast<Scalar>(law.singular_radius), static_cast<Scalar>(law.singular_brake));
+  const Status status = scheme.resolve(kinematics, reference, state, u);
   return {
       status,
       real(u),

@@ -30,6 +30,8 @@ struct Law {
   double stiffness = 0.0;
   Eigen::VectorXd q_rest;
   Eigen::VectorXd c;
+  double singular_radius = 0.0;  ///< Share of ‖J‖_F below which the schemes damp; the laws here never do.
+  double singular_brake = 0.0;
 };
 
 /// An arm in a state, and what is asked of its tip.
