@@ -4,6 +4,7 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/integrator/closed_loop.hpp"
 #include "fpbm/integrator/rk4.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/resolver/null_space.hpp"
@@ -22,40 +23,6 @@ struct RolloutResult {
   Scalar time;            ///< when [s],
   State<N, Scalar> last;  ///< and where: the last good state.
   int samples;            ///< Samples recorded.
-};
-
-/// An arm under a scheme, as an ordinary differential equation in X = q (velocity level) or X = [q, qd].
-template <typename Arm, typename Scheme, typename Space>
-struct ClosedLoop {
-  using Scalar = typename Arm::Scalar;
-  static constexpr int N = Arm::kDof;
-  static constexpr bool kSecondOrder = Scheme::kLevel == Level::kAcceleration;
-  using X = Matrix<N, kSecondOrder ? 2 : 1, Scalar>;
-
-  const Arm& arm;
-  const Scheme& scheme;
-  Kinematics<Space, N, Scalar> kinematics;
-  State<N, Scalar> state;
-  Vector<N, Scalar> qdd;
-
-  /// dX/dt at X; keeps the kinematics, the state and the accelerations of this evaluation.
-  [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
-    state.q = x.col(0);
-    if constexpr (kSecondOrder) {
-      state.qd = x.col(1);
-      arm.kinematics(state.q, state.qd, kinematics);
-      const Status status = scheme.resolve(kinematics, reference, state, qdd);
-      if (failed(status)) return status;
-      dx.col(0) = state.qd;
-      dx.col(1) = qdd;
-      return status;
-    } else {
-      arm.kinematics(state.q, kinematics);
-      const Status status = scheme.resolve(kinematics, reference, state, state.qd);
-      if (!failed(status)) dx.col(0) = state.qd;
-      return status;
-    }
-  }
 };
 
 /// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
