@@ -1,0 +1,58 @@
+#pragma once
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/realtime/tick.hpp"
+#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// What a loop changes in its reference before a scheme sees it: a target far away is brought nearer, so that it pulls
+/// no harder than one at a distance of options.pull (Buss 2004), and the integral of the error is added.
+template <Level kLevel, typename Space, typename Scalar = double>
+class Correction {
+ public:
+  using Twist = Vector<Space::kRows, Scalar>;
+
+  /// Throws std::invalid_argument where an option is out of range.
+  explicit Correction(const TrackerOptions<Scalar>& options)
+      : dt_(options.dt), pull_(options.pull), gain_(options.integral_gain), bound_(options.integral_bound) {
+    validation::require_positive("pull", static_cast<double>(pull_));
+    validation::require_non_negative("integral_gain", static_cast<double>(gain_));
+    validation::require_positive("integral_bound", static_cast<double>(bound_));
+  }
+
+  /// At the start of a tick, with its error.
+  void begin(const Twist& error) noexcept {
+    error_ = error;
+    const Scalar length = error.norm();
+    far_ = length > pull_;
+    if (far_) excess_ = (Scalar(1) - pull_ / length) * error;
+  }
+
+  [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
+    if (far_) reference.x = Space::template displace<Scalar>(reference.x, -excess_);
+    if (gain_ != Scalar(0)) (kLevel == Level::kAcceleration ? reference.xdd : reference.xd) += gain_ * integral_;
+    return reference;
+  }
+
+  /// At its end, if the whole task was done.
+  void integrate() noexcept {
+    if (gain_ == Scalar(0) || far_) return;
+    integral_ += dt_ * error_;
+    const Scalar size = gain_ * integral_.norm();
+    if (size > bound_) integral_ *= bound_ / size;
+  }
+
+ private:
+  Scalar dt_;
+  Scalar pull_;
+  Scalar gain_;
+  Scalar bound_;
+  bool far_ = false;
+  Twist error_ = Twist::Zero();
+  Twist excess_ = Twist::Zero();
+  Twist integral_ = Twist::Zero();
+};
+
+}  // namespace fpbm
