@@ -57,6 +57,7 @@ class Limits {
       side->end.resize(n);
       side->offset.resize(n);
       side->deceleration.resize(n);
+      side->rest.resize(n);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       require_ordered(i);
@@ -64,21 +65,19 @@ class Limits {
       const Scalar deceleration = std::isfinite(bounds_.acceleration(i)) ? bounds_.acceleration(i) : Scalar(1);
       const Scalar offset = deceleration * tick / Scalar(2);
       const Scalar beyond = offset * offset / (Scalar(2) * deceleration);  // So that the joint may rest on its bound.
-      upper_.set(i, {bounds.upper(i) + beyond, offset, deceleration});
-      lower_.set(i, {-bounds.lower(i) + beyond, offset, deceleration});
+      upper_.set(i, {bounds.upper(i) + beyond, offset, deceleration}, bounds.upper(i));
+      lower_.set(i, {-bounds.lower(i) + beyond, offset, deceleration}, -bounds.lower(i));
     }
   }
 
   /// Narrows joint i's velocity toward its upper or lower end. Throws std::invalid_argument where the joint could not
   /// follow the envelope, or could leave its range within it.
   void set_upper_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
-    require_within(i, envelope, bounds_.upper(i));
-    upper_.set(i, envelope);
+    upper_.set(i, envelope, rest_within(i, envelope, bounds_.upper(i)));
   }
   void set_lower_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
     const VelocityEnvelope<Scalar> mirrored{-envelope.end, envelope.offset, envelope.deceleration};
-    require_within(i, mirrored, -bounds_.lower(i));
-    lower_.set(i, mirrored);
+    lower_.set(i, mirrored, rest_within(i, mirrored, -bounds_.lower(i)));
   }
 
   /// The bounds, accelerations filled in.
@@ -151,8 +150,10 @@ class Limits {
     Row end;
     Row offset;
     Row deceleration;
+    Row rest;  ///< Where the envelope is zero: no farther.
 
-    void set(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) noexcept {
+    void set(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar rest_at) noexcept {
+      rest(i) = rest_at;
       end(i) = envelope.end;
       offset(i) = envelope.offset;
       deceleration(i) = envelope.deceleration;
@@ -160,7 +161,7 @@ class Limits {
 
     [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
       const Scalar p = qd + offset(i);
-      return !(p > Scalar(0)) ? q <= end(i) : p * p <= Scalar(2) * deceleration(i) * (end(i) - q);
+      return q <= rest(i) && (!(p > Scalar(0)) || p * p <= Scalar(2) * deceleration(i) * (end(i) - q));
     }
   };
 
@@ -215,7 +216,8 @@ class Limits {
     return std::isfinite(speed) ? Scalar(2) * speed / tick_ : given;
   }
 
-  void require_within(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar bound) const {
+  /// Where an envelope stops the joint, within its bound.
+  [[nodiscard]] Scalar rest_within(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar bound) const {
     const auto name = [i](const char* field) { return validation::element("envelope", i) + "." + field; };
     validation::require_positive(name("deceleration"), static_cast<double>(envelope.deceleration));
     if (envelope.deceleration > bounds_.acceleration(i)) {
@@ -229,6 +231,7 @@ class Limits {
     if (!(rest <= bound)) {
       validation::fail(name("end"), static_cast<double>(envelope.end), "such that the joint stops within its range");
     }
+    return rest;
   }
 
   Scalar tick_;
