@@ -26,7 +26,7 @@ class SingularDamping {
  public:
   /// radius: share of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
   /// brake: damping of the null space at a singular posture [1/s]. Throws std::invalid_argument on a bad value.
-  explicit SingularDamping(Scalar radius = Scalar(0.01), Scalar brake = Scalar(100)) : radius_(radius), brake_(brake) {
+  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(100)) : radius_(radius), brake_(brake) {
     validation::require_fraction("singular_radius", static_cast<double>(radius));
     validation::require_non_negative("singular_brake", static_cast<double>(brake));
   }
