@@ -1,0 +1,605 @@
+#include "fpbm/resolver/damping.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/make_subjects.hpp"
+#include "support/paper.hpp"
+#include "support/recording.hpp"
+
+/// Damping near singular postures: every scheme on every arm, and the Panda, against singular value decompositions in
+/// extended precision.
+namespace fpbm::test {
+namespace {
+
+/// The preset, built as the random arms are; whatever the links, they are the Panda's.
+struct Panda : SerialArm<7> {
+  explicit Panda(const Vector<7>&) : SerialArm<7>(presets::panda()) {}
+};
+
+/// A subject, and a posture in which it is singular, whatever the first joint.
+struct Place {
+  Subject subject;
+  Eigen::VectorXd singular;
+};
+
+void PrintTo(const Place& place, std::ostream* out) {
+  *out << place.subject.name;
+}
+
+std::vector<Place> places() {
+  std::vector<Place> all;
+  // Stretched arms. Those in space lose two positions at once, or three rows of a pose.
+  for (const Subject& subject : subjects()) all.push_back({subject, Eigen::VectorXd::Zero(subject.dof)});
+  // Stretched: joints 2, 4, 6 and the flange on a line, the offsets of 82.5 and 88 mm on either side of it.
+  const double elbow = -std::atan2(0.0825, 0.316) - std::atan2(0.0825, 0.384);
+  const double wrist = kPi + std::atan2(0.0825, 0.384) - std::atan2(0.088, 0.107);
+  const Eigen::VectorXd stretched = Eigen::Vector<double, 7>(0.0, -0.4, 0.0, elbow, 0.0, wrist, 0.3);
+  for (const Subject& subject : make_subjects<Panda, Position<3>>("position_panda", 7)) {
+    all.push_back({subject, stretched});
+  }
+  // Upright: the axes of joints 1, 3 and 5 are one.
+  for (const Subject& subject : make_subjects<Panda, Pose>("pose_panda", 7)) {
+    all.push_back({subject, Eigen::VectorXd::Zero(7)});
+  }
+  return all;
+}
+
+/// Where round-off leaves room for differences of differences.
+std::vector<Place> places_in_double() {
+  std::vector<Place> all = places();
+  all.erase(std::remove_if(all.begin(), all.end(), [](const Place& each) { return each.subject.epsilon > 1e-10; }),
+            all.end());
+  return all;
+}
+
+/// Singular values of J, the largest first, and its left singular vectors.
+Eigen::JacobiSVD<RealMatrix> spectrum(const RealMatrix& J) {
+  return Eigen::JacobiSVD<RealMatrix>(J, Eigen::ComputeFullU);
+}
+
+double least_singular_value(const RealMatrix& J) {
+  return static_cast<double>(spectrum(J).singularValues().tail(1)(0));
+}
+
+/// σ_min / ‖J‖_F: the radius from which on J is damped.
+double distance_to_singular(const RealMatrix& J) {
+  return least_singular_value(J) / static_cast<double>(J.norm());
+}
+
+/// Δ / ε² as defined, whose trace is the number of lost directions.
+RealMatrix lost_directions(const RealMatrix& J, double radius) {
+  const Real edge = static_cast<Real>(radius) * J.norm();
+  const auto svd = spectrum(J);
+  RealMatrix lost = RealMatrix::Zero(J.rows(), J.rows());
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    const Real ratio = svd.singularValues()(i) / edge;
+    if (ratio < 1)
+      lost += std::pow(1 - ratio * ratio, Real(3)) * svd.matrixU().col(i) * svd.matrixU().col(i).transpose();
+  }
+  return lost;
+}
+
+/// What a damped scheme is to answer, and the size of the terms it is the sum of.
+struct Expected {
+  RealVector u;
+  double size;
+};
+
+/// The laws as printed, with J⁺ and J_W⁺ damped and the brake in z.
+Expected damped(const Law& law, const Situation& at) {
+  const bool velocity = law.kind == Kind::kMVN || law.kind == Kind::kWMVN;
+  const bool unweighted = law.kind == Kind::kMVN || law.kind == Kind::kMAN;
+  const bool balanced = law.kind == Kind::kBalanced || law.kind == Kind::kFPBM;
+  const Real alpha = balanced ? static_cast<Real>(law.alpha) : Real(unweighted ? 0 : 1);
+  const RealMatrix lost = lost_directions(at.J, law.singular_radius);
+  const Real edge = static_cast<Real>(law.singular_radius) * at.J.norm();
+  const RealMatrix delta = edge * edge * lost;
+  RealMatrix Winv = real(law.W).inverse();
+  Winv /= Winv.diagonal().maxCoeff();
+
+  const RealMatrix inverse = (at.J * Winv * at.J.transpose() + delta).inverse();
+  const RealMatrix Jp = at.J.transpose() * (at.J * at.J.transpose() + delta).inverse();
+  const RealMatrix JWp = Winv * at.J.transpose() * inverse;
+  const RealVector b = commanded(law, at);
+  RealVector z = secondary(law, at);
+  RealVector rate = RealVector::Zero(at.q.size());
+  if (!velocity) {
+    z -= static_cast<Real>(law.singular_brake) * lost.trace() * at.qd;
+    rate = alpha * Winv * at.Jd.transpose() * inverse * at.xd;
+  }
+  const RealVector v = z + rate;
+  const RealVector task = (1 - alpha) * Jp * b + alpha * JWp * b;
+  return {task + v - JWp * at.J * v,
+          static_cast<double>((Jp.norm() + JWp.norm()) * b.norm() + (1 + JWp.norm() * at.J.norm()) * v.norm())};
+}
+
+/// Of each kind of state: over a hundred places in six kinds of regular states each are more than ten thousand.
+constexpr std::uint32_t kSeeds = 16;
+
+bool same_bits(const RealVector& a, const RealVector& b) {
+  // Back in double, which the values are from: a long double has bytes that mean nothing.
+  const Eigen::VectorXd x = a.cast<double>();
+  const Eigen::VectorXd y = b.cast<double>();
+  return x.size() == y.size() &&
+         std::memcmp(x.data(), y.data(), sizeof(double) * static_cast<std::size_t>(x.size())) == 0;
+}
+
+class Damping : public ::testing::TestWithParam<Place> {
+ protected:
+  static const Subject& subject() { return GetParam().subject; }
+
+  static Outcome resolve(const Law& law, const Scene& scene) { return subject().resolve(law, scene); }
+
+  static Law with_radius(const Law& law, double radius, double brake = 100.0) {
+    Law result = law;
+    result.singular_radius = radius;
+    result.singular_brake = brake;
+    return result;
+  }
+
+  /// Calls check(scene, law) in states that are not singular, some of them hard by.
+  template <typename Check>
+  static void in_regular_states(Check&& check) {
+    for (const Regime regime : {Regime::kRegular, Regime::kNearSingular, Regime::kAtRest}) {
+      for (const bool has_null_space : {false, true}) {
+        for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+          SCOPED_TRACE(name(regime) + (has_null_space ? " with z" : " without z") + ", seed " + std::to_string(seed));
+          Random random(seed);
+          const Scene scene = random_scene(random, subject(), regime);
+          check(scene, random_law(random, subject(), has_null_space));
+        }
+      }
+    }
+  }
+
+  /// Singular: stretched, or, where that is as singular, with joints folded back.
+  static Scene singular_scene(Random& random) {
+    Scene scene = random_scene(random, subject(), Regime::kRegular);
+    const bool foldable = GetParam().singular.isZero();
+    for (Eigen::Index i = 1; i < scene.q.size(); ++i) {
+      const bool folded = random.uniform(0.0, 1.0) < 0.25;
+      scene.q(i) = GetParam().singular(i) + (foldable && folded ? kPi : 0.0);
+    }
+    return scene;
+  }
+
+  /// Calls check(scene, law) in singular states and around them, at every distance down to none.
+  template <typename Check>
+  static void around_singular_states(Check&& check) {
+    for (const bool has_null_space : {false, true}) {
+      for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        SCOPED_TRACE(std::string(has_null_space ? "with z" : "without z") + ", seed " + std::to_string(seed));
+        Random random(seed);
+        Scene scene = singular_scene(random);
+        const Law law = random_law(random, subject(), has_null_space);
+        const Eigen::VectorXd direction = random.uniform(scene.q.size(), -1.0, 1.0);
+        const Eigen::VectorXd singular = scene.q;
+        const double radius = random.uniform(0.03, 0.2);
+        for (const double distance : {0.0, 1e-15, 1e-10, 1e-6, 1e-3, 0.03, 0.1, 0.3}) {
+          scene.q = singular + distance * direction;
+          check(scene, with_radius(law, radius));
+        }
+      }
+    }
+  }
+
+  /// Round-off to expect in Δ/ε², whose eigenvalues are those of JJᵀ.
+  static double round_off(double radius) { return 64.0 * subject().epsilon / (radius * radius); }
+};
+
+/// Exactly none while σ_min ≥ ε, even by a hair: the answer is what it is without damping, to the last bit; and a hair
+/// beyond there is some.
+TEST_P(Damping, is_exactly_none_outside_the_radius) {
+  in_regular_states([](const Scene& scene, const Law& law) {
+    const Outcome plain = resolve(law, scene);
+    ASSERT_EQ(plain.status, Status::kOk);
+    const double border = distance_to_singular(plain.at.J);
+    const double hair = round_off(border);
+    ASSERT_LT(hair, 0.1);
+    for (const double share : {0.01, 0.5, 1.0 - hair}) {
+      const Outcome outside = resolve(with_radius(law, share * border), scene);
+      EXPECT_EQ(outside.status, Status::kOk) << share;
+      EXPECT_TRUE(same_bits(outside.u, plain.u)) << share;
+    }
+    EXPECT_EQ(resolve(with_radius(law, (1.0 + hair) * border), scene).status, Status::kDamped);
+  });
+}
+
+/// JW⁻¹Jᵀ + Δ inverted and the brake in the null space, wherever the arm is.
+TEST_P(Damping, equals_its_definition) {
+  around_singular_states([](const Scene& scene, const Law& law) {
+    const Outcome outcome = resolve(law, scene);
+    const double border = distance_to_singular(outcome.at.J);
+    const double hair = round_off(law.singular_radius);
+    if (std::abs(border / law.singular_radius - 1.0) > hair) {
+      EXPECT_EQ(outcome.status, border < law.singular_radius ? Status::kDamped : Status::kOk);
+    }
+    const Expected expected = damped(law, outcome.at);
+    if (subject().epsilon < 1e-10) {
+      EXPECT_LE(hair, 1e-9) << "the scene is too hard for the promised 1e-9";
+    }
+    EXPECT_LE(static_cast<double>((outcome.u - expected.u).norm()), hair * expected.size);
+  });
+}
+
+/// ‖J⁺‖ ≤ 1.17/ε, read off the answers to unit velocities. (Of the schemes, MVN's answer is J⁺xd.)
+TEST_P(Damping, bounds_the_joint_velocities) {
+  if (subject().kind != Kind::kMVN) return;
+  around_singular_states([](Scene scene, Law law) {
+    law.k = 0.0;
+    law.has_null_space = false;
+    RealMatrix Jp(scene.q.size(), scene.xd.size());
+    double edge = 0.0;
+    for (Eigen::Index i = 0; i < scene.xd.size(); ++i) {
+      scene.xd = Eigen::VectorXd::Unit(scene.xd.size(), i);
+      const Outcome outcome = resolve(law, scene);
+      Jp.col(i) = outcome.u;
+      edge = law.singular_radius * static_cast<double>(outcome.at.J.norm());
+    }
+    EXPECT_LE(static_cast<double>(spectrum(Jp).singularValues()(0)), 1.17 / edge);
+  });
+}
+
+/// Never NaN, and never without an answer, however small the radius that the Scalar can resolve.
+TEST_P(Damping, always_has_an_answer) {
+  around_singular_states([](const Scene& scene, const Law& law) {
+    const double smallest = 32.0 * std::sqrt(subject().epsilon);
+    for (const double radius : {smallest, 1e-2, 1.0}) {
+      const Outcome outcome = resolve(with_radius(law, radius), scene);
+      EXPECT_FALSE(failed(outcome.status)) << radius << ": " << message(outcome.status);
+      EXPECT_FALSE(outcome.untouched()) << radius;
+      EXPECT_TRUE(outcome.u.cast<double>().allFinite()) << radius;
+    }
+  });
+}
+
+/// What is not finite is refused, damped or not.
+TEST_P(Damping, does_not_hide_what_is_not_finite) {
+  Random random(1);
+  const Law law = with_radius(random_law(random, subject(), true), 0.1);
+  const Scene good = singular_scene(random);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (Eigen::VectorXd Scene::*member : {&Scene::q, subject().level == Level::kVelocity ? &Scene::xd : &Scene::qd}) {
+      Scene scene = good;
+      (scene.*member)(1) = bad;
+      const Outcome outcome = resolve(law, scene);
+      EXPECT_EQ(outcome.status, Status::kNotFinite);
+      EXPECT_TRUE(outcome.untouched());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(every, Damping, ::testing::ValuesIn(places()),
+                         [](const auto& each) { return each.param.subject.name; });
+
+/// The answer along a straight line of postures, q = singular + s direction, which enters the radius at s = ±kEdge.
+class SmoothDamping : public Damping {
+ protected:
+  static constexpr double kEdge = 0.2;
+
+  void SetUp() override {
+    for (std::uint32_t seed = 0;; ++seed) {
+      Random random(seed);
+      scene_ = singular_scene(random);
+      direction_ = random.uniform(scene_.q.size(), -1.0, 1.0);
+      law_ = random_law(random, subject(), true);
+      law_.alpha = std::clamp(law_.alpha, 0.1, 0.9);
+      const double radius = distance_to_singular(at(kEdge).at.J);
+      law_ = with_radius(law_, radius);
+      if (radius > 0.02 && radius < 0.3) return;
+    }
+  }
+
+  [[nodiscard]] Outcome at(double s) const {
+    Scene scene = scene_;
+    scene.q += s * direction_;
+    return resolve(law_, scene);
+  }
+
+  [[nodiscard]] Eigen::VectorXd answer(double s) const { return at(s).u.cast<double>(); }
+
+  /// Largest difference quotient over grid steps of h.
+  [[nodiscard]] double steepest(double h) const {
+    double steepest = 0.0;
+    Eigen::VectorXd before = answer(-2.0 * kEdge);
+    for (double s = -2.0 * kEdge + h; s < 2.0 * kEdge; s += h) {
+      const Eigen::VectorXd here = answer(s);
+      steepest = std::max(steepest, (here - before).norm() / h);
+      before = here;
+    }
+    return steepest;
+  }
+
+  /// How much the second difference quotients on both sides of s differ.
+  [[nodiscard]] double kink(double s, double h) const {
+    return (answer(s + 2.0 * h) - 3.0 * answer(s + h) + 3.0 * answer(s) - answer(s - h)).norm() / (h * h);
+  }
+
+  Scene scene_;
+  Law law_;
+  Eigen::VectorXd direction_;
+};
+
+/// No jump: difference quotients stay bounded as steps shrink.
+TEST_P(SmoothDamping, answers_without_a_jump) {
+  ASSERT_EQ(at(0.0).status, Status::kDamped);
+  ASSERT_EQ(at(1.01 * kEdge).status, Status::kOk) << "the line leaves the radius";
+  EXPECT_LE(steepest(5e-4), 1.25 * steepest(2e-3));
+}
+
+/// Two continuous derivatives, in the singular posture, where the damping sets in, and in between: second difference
+/// quotients of both sides come together as the step shrinks.
+TEST_P(SmoothDamping, answers_with_two_continuous_derivatives) {
+  for (const double s : {0.0, kEdge, -kEdge, 0.37 * kEdge}) {
+    const double coarse = std::max({kink(s, 4e-3), kink(s, 3e-3), kink(s, 2e-3)});
+    const double h = 2.5e-4;
+    const double noise = 1e-11 * answer(s).norm() / (h * h);
+    EXPECT_LE(kink(s, h), 0.25 * coarse + noise) << "s = " << s;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(every, SmoothDamping, ::testing::ValuesIn(places_in_double()),
+                         [](const auto& each) { return each.param.subject.name; });
+
+/// U diag(sigma) Vᵀ, U and V random: J with these singular values.
+RealMatrix with_singular_values(Random& random, const RealVector& sigma, Eigen::Index n) {
+  const Eigen::Index m = sigma.size();
+  const RealMatrix U = real(random.uniform(m, m, -1.0, 1.0)).householderQr().householderQ();
+  const RealMatrix V = real(random.uniform(n, n, -1.0, 1.0)).householderQr().householderQ();
+  return U * sigma.asDiagonal() * V.leftCols(m).transpose();
+}
+
+/// W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹.
+template <int M, int N, typename Scalar, typename Weights>
+RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>& damping,
+                          const Matrix<M, N, Scalar>& J) {
+  const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
+  DampedGram<M, N, Scalar> gram(damping, J);
+  EXPECT_FALSE(failed(gram.factor(weights, WinvJt)));
+  Matrix<M, M, Scalar> inverse;
+  for (int i = 0; i < M; ++i) inverse.col(i) = gram.solve(Vector<M, Scalar>::Unit(i));
+  return real(WinvJt) * real(inverse);
+}
+
+/// Of M singular values in N columns.
+template <int M_, int N_, typename Scalar_ = double>
+struct Shape {
+  static constexpr int M = M_;
+  static constexpr int N = N_;
+  using Scalar = Scalar_;
+};
+
+template <typename Shape>
+struct Spectra : ::testing::Test {
+  static constexpr int M = Shape::M;
+  static constexpr int N = Shape::N;
+  using Number = typename Shape::Scalar;
+
+  /// Calls check(J, random) on matrices with none, some and all but one of their singular values below about scale,
+  /// and down to zero.
+  template <typename Check>
+  static void everywhere(double scale, Check&& check) {
+    for (std::uint32_t seed = 0; seed < 300; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      Random random(seed);
+      RealVector sigma = real(random.uniform(M, 0.5, 2.0));
+      for (std::uint32_t i = 1; i < M; ++i) {
+        const std::uint32_t kind = (seed >> i) % 4;
+        if (kind == 1) sigma(i) = static_cast<Real>(scale * random.uniform(0.0, 1.5));
+        if (kind == 2) sigma(i) = static_cast<Real>(scale * std::pow(10.0, random.uniform(-16.0, 0.0)));
+        if (kind == 3) sigma(i) = 0;
+      }
+      check(Matrix<M, N, Number>(with_singular_values(random, sigma, N).template cast<Number>()), random);
+    }
+  }
+
+  static constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Number>::epsilon());
+};
+
+using Shapes = ::testing::Types<Shape<2, 2>, Shape<2, 4>, Shape<3, 4>, Shape<3, 7>, Shape<6, 6>, Shape<6, 7>,
+                                Shape<2, 4, float>, Shape<6, 7, float>>;
+
+struct ShapeNames {
+  template <typename Shape>
+  static std::string GetName(int) {
+    const std::string size = "m" + std::to_string(Shape::M) + "_n" + std::to_string(Shape::N);
+    return std::is_same_v<typename Shape::Scalar, float> ? size + "_float" : size;
+  }
+};
+TYPED_TEST_SUITE(Spectra, Shapes, ShapeNames);
+
+/// ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, however many directions are lost, and no smaller bound would do; with weights
+/// ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
+TYPED_TEST(Spectra, bound_the_damped_inverse) {
+  using Fixture = TestFixture;
+  using Scalar = typename Fixture::Number;
+  const SingularDamping<Scalar> damping(Scalar(0.05));
+  const double slack = 1.0 + 1e3 * Fixture::kEpsilon;
+  double largest = 0.0;
+  Fixture::everywhere(0.1, [&](const auto& J, Random& random) {
+    const double edge = 0.05 * static_cast<double>(J.norm());
+    const double gain =
+        edge * static_cast<double>(spectrum(damped_inverse(UnitWeights{}, damping, J)).singularValues()(0));
+    EXPECT_LE(gain, 1.17 * slack);
+    largest = std::max(largest, gain);
+
+    const Vector<Fixture::N, Scalar> w = random.uniform(Fixture::N, 0.5, 8.0).template cast<Scalar>();
+    const DiagonalWeights<Fixture::N, Scalar> weights(w);
+    const double spread = std::sqrt(static_cast<double>(w.maxCoeff() / w.minCoeff()));
+    const RealMatrix weighted = damped_inverse(weights, damping, J);
+    EXPECT_LE(edge * static_cast<double>(spectrum(weighted).singularValues()(0)), 1.28 * spread * slack);
+  });
+  EXPECT_GT(largest, 1.16);
+}
+
+/// σ_min/√M ≤ bound ≤ σ_min, and 0 where a direction is lost.
+TYPED_TEST(Spectra, have_a_bound_below_the_least_singular_value) {
+  using Fixture = TestFixture;
+  int lost = 0;
+  Fixture::everywhere(0.1, [&](const auto& J, Random&) {
+    const auto bound = static_cast<double>(least_singular_value_bound(J));
+    const double sigma = least_singular_value(real(J));
+    const double relative = sigma / static_cast<double>(J.norm());
+    // The bound is of JJᵀ, in which round-off takes σ² for its own: σ is known to √epsilon.
+    const double round_off = 64.0 * Fixture::kEpsilon / (relative * relative);
+    if (relative < 4.0 * Fixture::kEpsilon) {
+      EXPECT_LE(bound, 2.0 * std::sqrt(Fixture::kEpsilon) * static_cast<double>(J.norm()));
+      ++lost;
+    } else if (round_off < 0.1) {
+      EXPECT_LE(bound, (1.0 + round_off) * sigma);
+      EXPECT_GE(bound, (1.0 - round_off) * sigma / std::sqrt(Fixture::M));
+    }
+  });
+  EXPECT_GT(lost, 0);
+}
+
+/// Cholesky::inverse_trace, on which the above stands.
+TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
+  using Fixture = TestFixture;
+  using Gram = Matrix<Fixture::M, Fixture::M, typename Fixture::Number>;
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Gram A = random.positive_definite(Fixture::M).template cast<typename Fixture::Number>();
+    Cholesky<Fixture::M, typename Fixture::Number> cholesky;
+    ASSERT_EQ(cholesky.factor(A), Status::kOk);
+    const auto expected = static_cast<double>(real(A).inverse().trace());
+    EXPECT_NEAR(static_cast<double>(cholesky.inverse_trace()), expected, 256.0 * Fixture::kEpsilon * expected);
+  }
+}
+
+template <typename Scheme>
+Recording<4> paper_run(Figure figure, const Scheme& scheme) {
+  const TimeGrid<> grid(kDuration, 1e-3);
+  switch (figure) {
+    case Figure::kCircle: return recorded(paper_arm(), paper_circle(), scheme, paper_start(), grid);
+    case Figure::kLissajous: return recorded(paper_arm(), paper_lissajous(), scheme, paper_start(), grid);
+    case Figure::kTricuspid: return recorded(paper_arm(), paper_tricuspid(), scheme, paper_start(), grid);
+  }
+  return {};
+}
+
+/// The paper's motions are far from singular: not one bit of them is another.
+TEST(DampedMotion, of_the_paper_is_bit_for_bit_the_paper_s) {
+  for (const PaperCase& each : kPaperCases) {
+    FPBM<4> scheme(each.alpha, DiagonalWeights<4>(Vector<4>(each.weights.data())), each.k1, each.k2);
+    const Recording<4> plain = paper_run(each.figure, scheme);
+    scheme.singular = SingularDamping<>();
+    const Recording<4> run = paper_run(each.figure, scheme);
+    ASSERT_EQ(run.result.status, Status::kOk);
+    ASSERT_EQ(run.samples.size(), plain.samples.size());
+    for (std::size_t i = 0; i < run.samples.size(); ++i) {
+      const auto same = [&](const auto& member) {
+        return std::memcmp(&(run.samples[i].*member), &(plain.samples[i].*member), sizeof(plain.samples[i].*member)) ==
+               0;
+      };
+      using Sample4 = Sample<Position<2>, 4>;
+      ASSERT_TRUE(same(&Sample4::q) && same(&Sample4::qd) && same(&Sample4::qdd) && same(&Sample4::error))
+          << each.where << ", sample " << i;
+    }
+  }
+}
+
+/// Calls check(name, scheme) with a scheme of each kind.
+template <typename Check>
+void with_every_scheme(Check&& check) {
+  const auto weights = paper_weights();
+  check("MVN", MVN<4>());
+  check("WMVN", WMVN<4>(weights, 5.0));
+  check("MAN", MAN<4>());
+  check("WMVNAcceleration", WMVNAcceleration<4>(weights));
+  check("Balanced", Balanced<4>(0.6, weights));
+  check("FPBM", paper_fpbm());
+}
+
+/// How near to singular an arm of four links of 1 m comes.
+double nearest_to_singular(const Recording<4>& run) {
+  double nearest = 1.0;
+  for (const auto& sample : run.samples) {
+    Kinematics<Position<2>, 4> kinematics;
+    paper_arm().kinematics(sample.q, kinematics);
+    nearest = std::min(nearest, distance_to_singular(real(kinematics.J)));
+  }
+  return nearest;
+}
+
+/// A path that enters the radius by a little is done to its end, and says that it was damped.
+TEST(DampedMotion, that_grazes_the_radius_is_done) {
+  with_every_scheme([](const char* name, auto scheme) {
+    SCOPED_TRACE(name);
+    const Recording<4> plain = paper_run(Figure::kCircle, scheme);
+    const double nearest = nearest_to_singular(plain);
+    scheme.singular = SingularDamping<>(0.999 * nearest);
+    EXPECT_EQ(paper_run(Figure::kCircle, scheme).result.status, Status::kOk);
+    scheme.singular = SingularDamping<>(1.01 * nearest);
+    const Recording<4> run = paper_run(Figure::kCircle, scheme);
+    EXPECT_EQ(run.result.status, Status::kDamped);
+    EXPECT_EQ(run.samples.size(), plain.samples.size());
+    EXPECT_LE(run.largest_error(), 1e-4);
+  });
+}
+
+/// A line that leaves the workspace: stopped where the tip leaves it, whatever the damping makes of the joints.
+TEST(DampedMotion, that_leaves_its_path_is_stopped) {
+  with_every_scheme([](const char* name, auto scheme) {
+    for (const double radius : {0.01, 0.05, 0.2}) {
+      for (const double dt : {1e-3, 1e-2}) {
+        for (std::uint32_t seed = 0; seed < 10; ++seed) {
+          SCOPED_TRACE(std::string(name) + ", radius " + std::to_string(radius) + ", dt " + std::to_string(dt) +
+                       ", seed " + std::to_string(seed));
+          Random random(seed);
+          const State<4> start{random.uniform(4, 0.2, 1.0), Vector<4>::Zero()};
+          const double direction = random.uniform(-kPi, kPi);
+          const Vector<2> way = 10.0 * Vector<2>(std::cos(direction), std::sin(direction));
+          const Path<Line<2>> path(Line<2>(way), 5.0);
+          scheme.singular = SingularDamping<>(radius);
+          const auto run = recorded(paper_arm(), path, scheme, start, TimeGrid<>(5.0, dt));
+          EXPECT_EQ(run.result.status, Status::kTaskLost) << message(run.result.status);
+          EXPECT_LE(run.largest_error(), 1.1 * kPi / 2.0 * way.norm() / 5.0 * dt);
+          for (const auto& sample : run.samples) ASSERT_TRUE(sample.qdd.allFinite() && sample.error.allFinite());
+        }
+      }
+    }
+  });
+}
+
+/// Largest joint speed [rad/s] after 30 s of FPBM drawn to a point 0.1 m out of reach, in a loop that goes on.
+double speed_at_the_edge(double brake, std::uint32_t seed) {
+  Random random(seed);
+  const auto arm = paper_arm();
+  const FPBM<4> scheme(0.6, paper_weights(), 4.0, 4.0, {}, SingularDamping<>(0.02, brake));
+  ClosedLoop<PlanarArm<4>, FPBM<4>, Position<2>> loop{arm, scheme, {}, {}, {}};
+  Matrix<4, 2> x = Matrix<4, 2>::Zero();
+  x.col(0) = random.uniform(4, 0.2, 1.2);
+  arm.kinematics(Vector<4>(x.col(0)), loop.kinematics);
+  const double direction = random.uniform(-kPi, kPi);
+  const Vector<2> way = 4.1 * Vector<2>(std::cos(direction), std::sin(direction)) - loop.kinematics.tip;
+  const Path<Line<2>> path(Line<2>(way), 5.0);
+  AnchoredPath<Path<Line<2>>> references(path, loop.kinematics.tip);
+  const auto derivative = [&](double t, const Matrix<4, 2>& at, Matrix<4, 2>& rate) noexcept {
+    return loop.evaluate(t < 5.0 ? references.motion(t, t) : references.hold(), at, rate);
+  };
+  for (int i = 0; i < 30000; ++i) {
+    if (failed(RK4::step(derivative, 1e-3 * i, 1e-3, x))) return std::numeric_limits<double>::infinity();
+  }
+  return x.col(1).cwiseAbs().maxCoeff();
+}
+
+/// Drawn to a target out of reach, the arm comes to rest at the edge; which is the brake's doing.
+TEST(DampedMotion, comes_to_rest_at_the_edge) {
+  for (std::uint32_t seed = 0; seed < 5; ++seed) {
+    EXPECT_LT(speed_at_the_edge(100.0, seed), 1e-3) << "seed " << seed;
+    EXPECT_GT(speed_at_the_edge(0.0, seed), 1e-2) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test
