@@ -66,6 +66,20 @@ class NoAllocation {
     in(FPBM<N, double, Dense>(0.6, dense, 1.0, 1.0, z), "FPBM, dense, with z");
   }
 
+  /// Secondary objectives round a scheme, one in the other.
+  static void in_any_wrapper() {
+    const PlanarArm<N> arm{Vector<N>(Vector<4>::Ones())};
+    const PlanarArm<2> elbow(Vector<2>::Ones());
+    const auto point = Reference<Position<2>>::hold(Vector<2>(1.83, 0.76));
+    const NullSpace<N> damped = NullSpace<N>{}.with_damping(2.0);
+    const FPBM<N> scheme(0.6, DiagonalWeights<N>(Vector<N>(Vector<4>::Ones())), 1.0, 1.0, damped);
+    in(ManipulabilityAscent(scheme, arm, 0.1), "ManipulabilityAscent");
+    in(SecondTask(scheme, elbow, point, 1.0, 0.1, 0.5), "SecondTask");
+    in(SecondTask(ManipulabilityAscent(MVN<N>(1.0), arm, 0.1), elbow, point, 0.0, 0.1, 0.5), "both, at velocity level");
+    in(ManipulabilityAscent(SecondTask(MVN<N>(1.0), elbow, point, 0.0, 0.1, 0.5), arm, 0.1),
+       "both, the other way round");
+  }
+
  private:
   template <typename Scheme>
   static void in(const Scheme& scheme, const char* name) {
@@ -81,9 +95,11 @@ class NoAllocation {
 
 TEST(NoAllocation, in_a_rollout_of_a_fixed_size) {
   NoAllocation<4>::in_any_scheme();
+  NoAllocation<4>::in_any_wrapper();
 }
 TEST(NoAllocation, in_a_rollout_of_a_size_chosen_at_run_time) {
   NoAllocation<Eigen::Dynamic>::in_any_scheme();
+  NoAllocation<Eigen::Dynamic>::in_any_wrapper();
 }
 
 /// Arms in space, poses, and every kind of path: waypoints take their memory when they are made.
@@ -114,6 +130,28 @@ TEST(NoAllocation, in_space) {
   chain.joints.insert(chain.joints.begin(), Joint<>{JointType::kPrismatic});
   chain.joints[0].mimic = {1, 0.1, 0.0};
   expect_none_in_space(CoupledArm<Eigen::Dynamic>(chain));
+}
+
+template <typename Arm>
+void expect_none_in_a_gaze(const Arm& arm) {
+  constexpr int N = Arm::kDof;
+  Vector<N> q0 = Vector<N>::Zero(arm.dof());
+  q0 << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
+  const Gaze gaze(arm, Vector<3>(0.1, 0.1, -1.0));
+  const auto ahead = Reference<Position<2>>::hold(Vector<2>::Zero());
+  const SecondTask scheme(MVN<N>(1.0), gaze, ahead, 0.0, 1.0);
+  const InPlane path(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
+  const State<N> start{q0, 0.0 * q0};
+  const TimeGrid<> grid(5.0, 5.0 / kSteps);
+  const AllocationWatch watch;
+  const auto result = rollout(arm, path, scheme, start, grid, [](const auto&) {});
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_EQ(result.status, Status::kOk);
+}
+
+TEST(NoAllocation, in_a_gaze) {
+  expect_none_in_a_gaze(SerialArm<7>(presets::panda()));
+  expect_none_in_a_gaze(SerialArm<Eigen::Dynamic>(presets::panda()));
 }
 
 /// A motion that has to stop does so without an allocation as well.

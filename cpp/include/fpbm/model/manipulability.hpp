@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/model/kinematics.hpp"
+
+namespace fpbm {
+
+/// Manipulability w = √det(JJᵀ) of a task Jacobian (Yoshikawa 1985): the volume that its rows span, 0 at a singular
+/// posture. In the units of J's rows, multiplied.
+///
+/// As base times height, row by row, which keeps its digits near singular postures.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Scalar manipulability(const Matrix<M, N, Scalar>& J) noexcept {
+  using std::sqrt;
+  Matrix<M, N, Scalar> rows = J;
+  Scalar volume(1);
+  for (Eigen::Index i = 0; i < M; ++i) {
+    const Scalar square = rows.row(i).squaredNorm();
+    volume *= sqrt(square);
+    if (!(square > Scalar(0))) continue;
+    for (Eigen::Index j = i + 1; j < M; ++j) {
+      const Scalar along = rows.row(j).dot(rows.row(i)) / square;
+      rows.row(j) -= along * rows.row(i);
+    }
+  }
+  return volume;
+}
+
+/// Gradient of an arm's manipulability in a task space: ∂w/∂q_k = w tr(J⁺ ∂J/∂q_k), by n + 1 calls of its kinematics,
+/// since ∂J/∂q_k is dJ/dt along the k-th joint alone. Zero at a singular posture, where w has no gradient.
+template <typename Space, typename Arm>
+[[nodiscard]] Vector<Arm::kDof, typename Arm::Scalar> manipulability_gradient(
+    const Arm& arm, const Vector<Arm::kDof, typename Arm::Scalar>& q) noexcept {
+  using Scalar = typename Arm::Scalar;
+  constexpr int M = Space::kRows;
+  constexpr int N = Arm::kDof;
+  Vector<N, Scalar> gradient = Vector<N, Scalar>::Zero(q.size());
+  Kinematics<Space, N, Scalar> kinematics;
+  arm.kinematics(q, kinematics);
+  Cholesky<M, Scalar> gram;
+  if (gram.factor(kinematics.J.lazyProduct(kinematics.J.transpose())) != Status::kOk) return gradient;
+
+  Matrix<M, N, Scalar> scaled = kinematics.J;  // w times the transpose of J⁺.
+  const Scalar w = manipulability(kinematics.J);
+  for (Eigen::Index j = 0; j < q.size(); ++j) scaled.col(j) = w * gram.solve(kinematics.J.col(j));
+  Vector<N, Scalar> along = gradient;
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    along(k) = Scalar(1);
+    arm.kinematics(q, along, kinematics);
+    along(k) = Scalar(0);
+    gradient(k) = scaled.cwiseProduct(kinematics.Jd).sum();
+  }
+  return gradient;
+}
+
+}  // namespace fpbm

@@ -1,0 +1,172 @@
+#include "fpbm/model/manipulability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "fpbm/resolver/manipulability_ascent.hpp"
+#include "support/arms.hpp"
+#include "support/paper.hpp"
+#include "support/recording.hpp"
+#include "support/textbook.hpp"
+
+/// w = √det(JJᵀ), its gradient, and schemes that climb it.
+namespace fpbm::test {
+namespace {
+
+template <typename Space, typename Arm>
+Real manipulability_as_written(const Arm& arm, const Vector<Arm::kDof>& q) {
+  Kinematics<Space, Arm::kDof> kinematics;
+  arm.kinematics(q, kinematics);
+  const RealMatrix J = real(kinematics.J);
+  return std::sqrt((J * J.transpose()).determinant());
+}
+
+TEST(Manipulability, is_the_root_of_the_determinant) {
+  on_every_arm([](const auto& each, const auto& q, const auto&) {
+    using Space = typename std::decay_t<decltype(each)>::Space;
+    Kinematics<Space, std::decay_t<decltype(q)>::RowsAtCompileTime> kinematics;
+    each.arm.kinematics(q, kinematics);
+    const Real expected = manipulability_as_written<Space>(each.arm, q);
+    EXPECT_NEAR(manipulability(kinematics.J), static_cast<double>(expected), 1e-13 * kinematics.J.norm());
+  });
+}
+
+/// Two links of 1 m: w = |sin q₂|, of which the determinant would lose all digits here.
+TEST(Manipulability, keeps_its_digits_near_singular_postures) {
+  const PlanarArm<2> arm(Vector<2>::Ones());
+  Kinematics<Position<2>, 2> kinematics;
+  for (const double bend : {1e-3, 1e-6, 1e-9}) {
+    arm.kinematics(Vector<2>(0.0, bend), kinematics);
+    EXPECT_NEAR(manipulability(kinematics.J), bend, 1e-6 * bend);
+  }
+  arm.kinematics(Vector<2>::Zero(), kinematics);
+  EXPECT_EQ(manipulability(kinematics.J), 0.0);
+  EXPECT_EQ(manipulability_gradient<Position<2>>(arm, Vector<2>(0.0, 0.0)), Vector<2>(0.0, 0.0));
+  EXPECT_NEAR(manipulability_gradient<Position<2>>(arm, Vector<2>(0.4, 0.3))(1), std::cos(0.3), 1e-14);
+}
+
+TEST(Manipulability, gradient_is_its_slope) {
+  on_every_arm([](const auto& each, const auto& q, const auto&) {
+    using Space = typename std::decay_t<decltype(each)>::Space;
+    using Joints = std::decay_t<decltype(q)>;
+    const Joints gradient = manipulability_gradient<Space>(each.arm, q);
+    ASSERT_EQ(gradient.size(), q.size());
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      constexpr double kStep = 1e-5;
+      const Joints step = kStep * Joints::Unit(q.size(), k);
+      const Real slope = (manipulability_as_written<Space>(each.arm, q + step) -
+                          manipulability_as_written<Space>(each.arm, q - step)) /
+                         (2 * static_cast<Real>(kStep));
+      EXPECT_NEAR(gradient(k), static_cast<double>(slope), 1e-7) << "joint " << k;
+    }
+  });
+}
+
+/// u + gain N∇w with the projector N = I − J⁺J formed, at either level; J u is the scheme's own.
+TEST(ManipulabilityAscent, equals_the_textbook) {
+  on_every_arm([](const auto& each, const auto& q, const auto& qd) {
+    using Space = typename std::decay_t<decltype(each)>::Space;
+    using Joints = std::decay_t<decltype(q)>;
+    constexpr int N = Joints::RowsAtCompileTime;
+    Kinematics<Space, N> kinematics;
+    each.arm.kinematics(q, qd, kinematics);
+    Random random(7);
+    const auto reference = random_reference(random, kinematics);
+    const State<N> state{q, qd};
+    const auto check = [&](const auto& scheme) {
+      Joints own = q;
+      Joints u = q;
+      ASSERT_EQ(scheme.resolve(kinematics, reference, state, own), Status::kOk);
+      const ManipulabilityAscent ascent(scheme, each.arm, 3.0);
+      ascent.require_dof(q.size());
+      ASSERT_EQ(ascent.resolve(kinematics, reference, state, u), Status::kOk);
+      const RealMatrix J = real(kinematics.J);
+      const RealMatrix N_E = RealMatrix::Identity(q.size(), q.size()) - pseudoinverse(J) * J;
+      const RealVector added = 3 * N_E * real(manipulability_gradient<Space>(each.arm, q));
+      EXPECT_LE(static_cast<double>((real(u) - real(own) - added).norm()), 1e-11 * (1.0 + own.norm()));
+      EXPECT_LE((kinematics.J * (u - own)).norm(), 1e-12 * (1.0 + own.norm()));
+    };
+    check(MVN<N>(1.0));
+    check(FPBM<N>(0.6, DiagonalWeights<N>(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
+  });
+}
+
+TEST(ManipulabilityAscent, commutes_with_what_adds) {
+  const PlanarArm<4> arm = paper_arm();
+  const State<4> state{paper_start().q, Vector<4>(0.1, 0.2, -0.3, 0.1)};
+  Kinematics<Position<2>, 4> kinematics;
+  arm.kinematics(state.q, state.qd, kinematics);
+  const auto reference = Reference<Position<2>>::hold(kinematics.tip);
+  const auto answer = [&](const auto& scheme) {
+    Vector<4> u;
+    EXPECT_EQ(scheme.resolve(kinematics, reference, state, u), Status::kOk);
+    return u;
+  };
+  const auto with = [&](const NullSpace<4>& z) { return paper_fpbm(z); };
+  const NullSpace<4> z = NullSpace<4>{}.with_damping(2.0).with_rest_posture(Vector<4>::Ones(), 1.0);
+  const Vector<4> bare = answer(with({}));
+  const Vector<4> sum = answer(with(z)) + answer(ManipulabilityAscent(with({}), arm, 2.0)) - bare;
+  EXPECT_LE((answer(ManipulabilityAscent(with(z), arm, 2.0)) - sum).norm(), 1e-12);
+  const ManipulabilityAscent once(with({}), arm, 0.5);
+  EXPECT_LE((answer(ManipulabilityAscent(once, arm, 1.5)) - answer(ManipulabilityAscent(with({}), arm, 2.0))).norm(),
+            1e-12);
+  EXPECT_EQ(answer(ManipulabilityAscent(with({}), arm, 0.0)), bare);
+}
+
+TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
+  const PlanarArm<Eigen::Dynamic> arm(Vector<4>::Ones());
+  const MVN<Eigen::Dynamic> scheme;
+  for (const double gain : {-1.0, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(complaint([&] { ManipulabilityAscent(scheme, arm, gain); }).find("manipulability_gain = "),
+              std::string::npos);
+  }
+  EXPECT_NE(
+      complaint([&] { ManipulabilityAscent(scheme, arm, 1.0).require_dof(5); }).find("has 4 entries: must have 5"),
+      std::string::npos);
+  const MVN<Eigen::Dynamic> narrow(0.0, NullSpace<Eigen::Dynamic>{}.with_free_choice(Vector<3>::Ones()));
+  EXPECT_NE(complaint([&] { ManipulabilityAscent(narrow, arm, 1.0).require_dof(4); }), "");
+}
+
+/// A posture that the scheme refuses, it refuses.
+TEST(ManipulabilityAscent, hands_failures_on) {
+  const PlanarArm<4> arm = paper_arm();
+  Kinematics<Position<2>, 4> kinematics;
+  const State<4> straight{Vector<4>::Zero(), Vector<4>::Zero()};
+  arm.kinematics(straight.q, straight.qd, kinematics);
+  Vector<4> u = Vector<4>::Constant(42.0);
+  const auto reference = Reference<Position<2>>::hold(kinematics.tip);
+  EXPECT_EQ(ManipulabilityAscent(paper_fpbm(), arm, 1.0).resolve(kinematics, reference, straight, u),
+            Status::kSingular);
+  EXPECT_EQ(u, Vector<4>::Constant(42.0));
+}
+
+/// Round the circle and a hold, at either level: w ends higher, at the top of what the self-motion can reach, and the
+/// tip does not notice.
+template <typename Scheme>
+void expect_to_climb(const Scheme& scheme, double gain) {
+  const PlanarArm<4> arm = paper_arm();
+  const TimeGrid<> grid(kDuration, 5e-3, 2.0 * kDuration);
+  const auto without = recorded(arm, paper_circle(), scheme, paper_start(), grid);
+  const auto with = recorded(arm, paper_circle(), ManipulabilityAscent(scheme, arm, gain), paper_start(), grid);
+  ASSERT_EQ(with.result.status, Status::kOk);
+  EXPECT_LE(with.largest_error(), 1e-8);
+  const Vector<4> end = with.result.last.q;
+  EXPECT_GT(manipulability_as_written<Position<2>>(arm, end),
+            1.02L * manipulability_as_written<Position<2>>(arm, without.result.last.q));
+  Kinematics<Position<2>, 4> kinematics;
+  arm.kinematics(end, kinematics);
+  const auto Z = null_basis(kinematics.J);
+  EXPECT_LE((Z.transpose() * manipulability_gradient<Position<2>>(arm, end)).norm(), 1e-4);
+  EXPECT_LE(with.result.last.qd.norm(), 1e-3);
+}
+
+TEST(ManipulabilityAscent, climbs_and_leaves_the_tip_alone) {
+  expect_to_climb(MVN<4>(1.0), 0.2);
+  expect_to_climb(paper_fpbm(NullSpace<4>{}.with_damping(3.0)), 0.5);
+}
+
+}  // namespace
+}  // namespace fpbm::test

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "fpbm/fpbm.hpp"
+#include "support/random.hpp"
+
+/// One arm of every kind, for what must hold on all of them.
+namespace fpbm::test {
+
+/// The Panda on a rail along y.
+[[nodiscard]] inline Chain<> panda_on_rail() {
+  Chain<> chain = presets::panda();
+  Joint<> rail;
+  rail.type = JointType::kPrismatic;
+  rail.axis = Vector<3>::UnitY();
+  rail.bounds = {-1.0, 1.0, 1.0, 5.0};
+  chain.joints.insert(chain.joints.begin(), rail);
+  return chain;
+}
+
+/// The same, its last joint geared to the first of the Panda's.
+[[nodiscard]] inline Chain<> coupled_panda() {
+  Chain<> chain = panda_on_rail();
+  chain.joints.back().mimic = {1, -0.7, 0.3};
+  return chain;
+}
+
+/// An arm of a user's own: it has kinematics and no more.
+struct OwnArm {
+  using Scalar = double;
+  static constexpr int kDof = 4;
+
+  [[nodiscard]] static int dof() noexcept { return kDof; }
+  template <typename... Arguments>
+  void kinematics(Arguments&&... arguments) const noexcept {
+    planar.kinematics(std::forward<Arguments>(arguments)...);
+  }
+
+  PlanarArm<4> planar{Vector<4>(1.0, 0.8, 0.6, 0.4)};
+};
+
+template <typename Arm, typename Space_>
+struct ArmCase {
+  using Space = Space_;
+  std::string name;
+  Arm arm;
+};
+
+/// Calls check(case, q, qd) for each kind of arm and task, in random states.
+template <typename Check>
+void on_every_arm(Check&& check) {
+  constexpr int kOpen = Eigen::Dynamic;
+  const auto in_states = [&](const auto& each) {
+    using Joints = Vector<std::decay_t<decltype(each.arm)>::kDof>;
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+      SCOPED_TRACE(each.name + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const Joints q = random.uniform(each.arm.dof(), -1.5, 1.5);
+      const Joints qd = random.uniform(each.arm.dof(), -1.0, 1.0);
+      check(each, q, qd);
+    }
+  };
+  in_states(ArmCase<PlanarArm<4>, Position<2>>{"planar", PlanarArm<4>(Vector<4>::Ones())});
+  in_states(ArmCase<PlanarArm<kOpen>, PlanarPose>{"planar pose", PlanarArm<kOpen>(Vector<6>::Ones())});
+  in_states(ArmCase<OwnArm, Position<2>>{"own", OwnArm{}});
+  in_states(ArmCase<SerialArm<7>, Position<3>>{"panda", SerialArm<7>(presets::panda())});
+  in_states(ArmCase<SerialArm<7>, Pose>{"panda pose", SerialArm<7>(presets::panda())});
+  in_states(ArmCase<SerialArm<8>, Pose>{"rail", SerialArm<8>(panda_on_rail())});
+  in_states(ArmCase<SerialArm<kOpen>, Position<3>>{"rail, open", SerialArm<kOpen>(panda_on_rail())});
+  in_states(ArmCase<CoupledArm<7>, Pose>{"coupled", CoupledArm<7>(coupled_panda())});
+  in_states(ArmCase<CoupledArm<kOpen>, Position<3>>{"coupled, open", CoupledArm<kOpen>(coupled_panda())});
+}
+
+/// What is asked of a tip near where it is.
+template <typename Space, int N>
+[[nodiscard]] Reference<Space> random_reference(Random& random, const Kinematics<Space, N>& kinematics) {
+  constexpr int M = Space::kRows;
+  const Vector<M> error = random.uniform(M, -0.1, 0.1);
+  return {Space::template displace<double>(kinematics.tip, error), random.uniform(M, -0.5, 0.5),
+          random.uniform(M, -0.5, 0.5)};
+}
+
+/// The text of what throw_it() throws as std::invalid_argument, empty where it throws nothing.
+template <typename Throw>
+[[nodiscard]] std::string complaint(Throw&& throw_it) {
+  try {
+    throw_it();
+  } catch (const std::invalid_argument& caught) {
+    return caught.what();
+  }
+  return {};
+}
+
+}  // namespace fpbm::test
