@@ -17,19 +17,18 @@ enum class Level : unsigned char { kVelocity, kAcceleration };
 /// Damping kₙ [1/s] brings the self-motion to rest, the rest posture draws the arm to q_rest [rad] with stiffness kₚ
 /// ([1/s²], or [1/s] at velocity level), centring keeps the joints off their bounds, and c ([rad/s²], or [rad/s]) is
 /// the free choice in the general solutions (3) and (5). The with_… functions return a changed copy, in which their
-/// part joins what was there (a second damping takes the first one's place), and throw std::invalid_argument on a bad
-/// value.
+/// part is added to what was there, and throw std::invalid_argument on a bad value.
 ///
-/// Repetitive motion planning (Zhang, Wang and others, 2008 and later), by which a closed path leaves no drift in the
-/// joints, is the rest posture at the start: stiffness λ at velocity level; damping 2λ and stiffness λ², which is
-/// critical damping, at acceleration level.
+/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), by which a closed path leaves no drift in the
+/// joints, is the rest posture at the start: with stiffness λ at velocity level; with damping 2λ and stiffness λ²,
+/// which is critical damping, at acceleration level.
 template <int N, typename Scalar = double>
 class NullSpace {
  public:
   [[nodiscard]] NullSpace with_damping(Scalar damping) const {
     validation::require_non_negative("null_damping", static_cast<double>(damping));
     NullSpace changed = *this;
-    changed.damping_ = damping;
+    changed.damping_ += damping;
     return changed;
   }
 
