@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+// Stands in for libfranka's header of this name: only what the examples use, with an ideal robot behind it.
+namespace franka {
+
+struct RobotState {
+  std::array<double, 7> q{0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785};
+  std::array<double, 7> dq{};
+};
+
+class Duration {
+ public:
+  explicit Duration(std::uint64_t milliseconds) noexcept : milliseconds_(milliseconds) {}
+  [[nodiscard]] double toSec() const noexcept { return 1e-3 * static_cast<double>(milliseconds_); }
+  [[nodiscard]] std::uint64_t toMSec() const noexcept { return milliseconds_; }
+
+ private:
+  std::uint64_t milliseconds_;
+};
+
+}  // namespace franka
