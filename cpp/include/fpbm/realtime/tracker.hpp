@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "fpbm/integrator/closed_loop.hpp"
 #include "fpbm/integrator/rk4.hpp"
 #include "fpbm/realtime/correction.hpp"
@@ -12,6 +14,12 @@
 /// After construction nothing here allocates, throws, locks, does I/O or loops without a bound, whatever the numbers
 /// that are passed in, and the same inputs give the same bits. Where no motion can be found, the arm brakes.
 namespace fpbm {
+
+/// Whether a scheme is wrapped round another, which it calls `scheme`.
+template <typename Scheme, typename = void>
+inline constexpr bool kIsWrapper = false;
+template <typename Scheme>
+inline constexpr bool kIsWrapper<Scheme, std::void_t<decltype(Scheme::scheme)>> = true;
 
 /// Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
 ///
@@ -47,7 +55,7 @@ class Tracker {
     validation::require_joint_vector("q0", start.q, arm.dof());
     validation::require_joint_vector("qd0", start.qd, arm.dof());
     limits.require_viable(start);
-    if (scheme_.singular.radius() == Scalar(0)) scheme_.singular = options.singular;
+    damp(scheme_, options.singular);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -126,6 +134,16 @@ class Tracker {
 
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
     return {state.q, state.qd, Row::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
+  }
+
+  /// Gives a scheme its damping, whatever it is wrapped in, unless it has its own.
+  template <typename Any>
+  static void damp(Any& scheme, const SingularDamping<Scalar>& damping) noexcept {
+    if constexpr (kIsWrapper<Any>) {
+      damp(scheme.scheme, damping);
+    } else if (scheme.singular.radius() == Scalar(0)) {
+      scheme.singular = damping;
+    }
   }
 
   /// `reference(seconds)` is the reference so far into the tick.

@@ -1,0 +1,279 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "fpbm/realtime/tracker.hpp"
+#include "support/arms.hpp"
+
+/// Bounds on positions, velocities and accelerations hold at every tick, and there is always a way to keep them.
+namespace fpbm::test {
+namespace {
+
+constexpr double kTick = 1e-3;
+constexpr double kSlack = 1e-9;
+
+template <int N>
+[[nodiscard]] JointLimits<N> narrow_limits(Eigen::Index dof, Random& random) {
+  auto limits = JointLimits<N>::none(dof);
+  for (Eigen::Index i = 0; i < dof; ++i) {
+    const double middle = random.uniform(-1.0, 1.0);
+    const double reach = random.uniform(0.3, 2.0);
+    limits.set(i, {middle - reach, middle + reach, random.uniform(0.3, 3.0), random.uniform(2.0, 20.0)});
+  }
+  return limits;
+}
+
+/// A random state from which the joints can stop in time.
+template <Level kLevel, int N>
+[[nodiscard]] State<N> viable_state(const Limits<kLevel, N>& limits, Random& random) {
+  const auto& bounds = limits.bounds();
+  State<N> state{bounds.lower, 0.0 * bounds.lower};
+  for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+    state.q(i) = random.uniform(bounds.lower(i), bounds.upper(i));
+    state.q(i) = std::clamp(state.q(i), bounds.lower(i), bounds.upper(i));  // uniform() rounds to float.
+    const double room = 0.9 * (state.q(i) - bounds.lower(i));
+    const double left = 0.9 * (bounds.upper(i) - state.q(i));
+    const double braking = 2.0 * bounds.acceleration(i);
+    const double up = std::min(bounds.velocity(i), std::max(0.0, std::sqrt(braking * left) - 0.05));
+    const double down = std::min(bounds.velocity(i), std::max(0.0, std::sqrt(braking * room) - 0.05));
+    state.qd(i) = random.uniform(-0.95 * down, 0.95 * up);
+  }
+  return state;
+}
+
+/// By how much a tick breaks a bound, at most.
+template <int N, typename Result>
+[[nodiscard]] double violation(const JointLimits<N>& bounds, const State<N>& before, const Result& tick) {
+  const Vector<N> change = (tick.qd - before.qd) / kTick;
+  return std::max({(tick.q - bounds.upper).maxCoeff(), (bounds.lower - tick.q).maxCoeff(),
+                   (tick.qd.cwiseAbs() - bounds.velocity).maxCoeff(),
+                   (tick.qdd.cwiseAbs() - bounds.acceleration).maxCoeff(),
+                   (change.cwiseAbs() - bounds.acceleration).maxCoeff()});
+}
+
+/// A reference that asks for far too much: jumps, speeds and accelerations beyond any joint's.
+template <typename Space>
+[[nodiscard]] Reference<Space> wild_reference(Random& random, const typename Space::template Point<double>& tip) {
+  constexpr int M = Space::kRows;
+  const double size = std::pow(10.0, random.uniform(-2.0, 1.5));
+  const Vector<M> way = random.uniform(M, -size, size);
+  return {Space::template displace<double>(tip, way), random.uniform(M, -size, size), random.uniform(M, -size, size)};
+}
+
+struct Tally {
+  int rollouts = 0;
+  long ticks = 0;
+  long limited = 0;
+  long slowed = 0;
+  double worst = -std::numeric_limits<double>::infinity();
+};
+
+/// Random starts, references that change ten times in the course and violate every limit.
+template <typename Space, typename Arm, typename MakeScheme>
+void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& make_scheme, int rollouts, Tally& tally) {
+  constexpr int N = Arm::kDof;
+  for (int seed = 0; seed < rollouts; ++seed) {
+    Random random(static_cast<std::uint32_t>(seed));
+    const auto scheme = make_scheme(random, arm.dof());
+    const Limits<std::decay_t<decltype(scheme)>::kLevel, N> limits(bounds, kTick);
+    Tracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
+    auto reference = Reference<Space>::hold(tracker.tip());
+    for (int i = 0; i < 200; ++i) {
+      if (i % 20 == 0) reference = wild_reference<Space>(random, tracker.tip());
+      const State<N> before = tracker.state();
+      const auto tick = tracker.tick(reference);
+      ASSERT_TRUE(tick.q.allFinite() && tick.qd.allFinite() && tick.qdd.allFinite()) << "seed " << seed;
+      const double broken = violation(bounds, before, tick);
+      ASSERT_LE(broken, kSlack) << "seed " << seed << ", tick " << i;
+      ASSERT_FALSE(failed(tick.status));
+      ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);
+      tally.worst = std::max(tally.worst, broken);
+      tally.limited += tick.saturated != 0 ? 1 : 0;
+      tally.slowed += tick.status == Status::kSlowed ? 1 : 0;
+      ++tally.ticks;
+    }
+    ++tally.rollouts;
+  }
+}
+
+template <int N>
+[[nodiscard]] DiagonalWeights<N> random_weights(Random& random, Eigen::Index dof) {
+  return DiagonalWeights<N>(Vector<N>(random.uniform(dof, 0.5, 5.0)));
+}
+
+template <typename Space, typename Arm>
+void roll_every_scheme(const char* name, const Arm& arm, const JointLimits<Arm::kDof>& bounds, int rollouts) {
+  constexpr int N = Arm::kDof;
+  const auto z = NullSpace<N>{}.with_damping(2.0);
+  Tally tally;
+  roll<Space>(
+      arm, bounds,
+      [&](Random& random, Eigen::Index dof) {
+        return FPBM<N>(random.uniform(0.0, 1.0), random_weights<N>(random, dof), 20.0, 100.0, z);
+      },
+      3 * rollouts, tally);
+  roll<Space>(
+      arm, bounds, [&](Random&, Eigen::Index) { return MAN<N>(z); }, rollouts, tally);
+  roll<Space>(
+      arm, bounds,
+      [&](Random& random, Eigen::Index dof) { return WMVNAcceleration<N>(random_weights<N>(random, dof)); }, rollouts,
+      tally);
+  roll<Space>(
+      arm, bounds,
+      [&](Random& random, Eigen::Index dof) { return Balanced<N>(0.6, random_weights<N>(random, dof), z); }, rollouts,
+      tally);
+  roll<Space>(
+      arm, bounds, [&](Random&, Eigen::Index) { return MVN<N>(10.0); }, rollouts, tally);
+  roll<Space>(
+      arm, bounds, [&](Random& random, Eigen::Index dof) { return WMVN<N>(random_weights<N>(random, dof), 10.0); },
+      rollouts, tally);
+  std::printf("%s: %d rollouts, %ld ticks, %.0f %% limited, %.0f %% slowed, worst violation %.1e\n", name,
+              tally.rollouts, tally.ticks,
+              100.0 * static_cast<double>(tally.limited) / static_cast<double>(tally.ticks),
+              100.0 * static_cast<double>(tally.slowed) / static_cast<double>(tally.ticks), tally.worst);
+}
+
+/// 10,000 rollouts in all.
+TEST(Limits, hold_on_a_planar_arm) {
+  Random random(7);
+  roll_every_scheme<Position<2>>("planar, 4 joints", PlanarArm<4>(Vector<4>::Ones()), narrow_limits<4>(4, random), 500);
+}
+TEST(Limits, hold_on_the_panda) {
+  const SerialArm<7> panda(presets::panda());
+  roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), 500);
+}
+TEST(Limits, hold_on_a_rail) {
+  const SerialArm<Eigen::Dynamic> rail(panda_on_rail());
+  roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), 250);
+}
+
+/// One joint, every viable state near its end: driven against it as hard as can be it comes to rest there, and its
+/// velocity falls all the way: no chatter.
+TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
+  auto bounds = JointLimits<1>::none(1);
+  bounds.set(0, {-1.0, 1.0, 2.0, 10.0});
+  const Limits<Level::kAcceleration, 1> limits(bounds, kTick);
+  State<1> state{Vector<1>(0.0), Vector<1>(0.0)};
+  bool braking = false;
+  int changes = 0;
+  double last = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto box = limits.box(state);
+    ASSERT_LE(box.lower(0), box.upper(0));
+    const double a = box.upper(0);
+    if (a < 0.0) braking = true;
+    if (braking) {
+      ASSERT_LE(a, 1e-9) << i;
+    }
+    changes += a * last < -1e-9 ? 1 : 0;
+    last = a;
+    state.q(0) += kTick * (state.qd(0) + kTick / 2.0 * a);
+    state.qd(0) += kTick * a;
+    ASSERT_LE(state.q(0), 1.0 + 1e-12);
+    ASSERT_LE(state.qd(0), 2.0 + 1e-12);
+    ASSERT_GE(state.qd(0), -1e-12);
+  }
+  EXPECT_EQ(changes, 1);
+  EXPECT_NEAR(state.q(0), 1.0, 1e-6);
+  EXPECT_NEAR(state.qd(0), 0.0, 1e-6);
+}
+
+/// From every viable state some acceleration leads to a viable state: the box is never empty, and both of its ends are
+/// viable again.
+template <Level kLevel>
+void expect_invariance() {
+  for (std::uint32_t seed = 0; seed < 20000; ++seed) {
+    Random random(seed);
+    const Limits<kLevel, 3> limits(narrow_limits<3>(3, random), kTick);
+    const State<3> state = viable_state(limits, random);
+    ASSERT_NO_THROW(limits.require_viable(state));
+    const auto box = limits.box(state);
+    ASSERT_TRUE((box.lower.array() <= box.upper.array()).all()) << "seed " << seed;
+    for (const double share : {1e-6, 1.0 - 1e-6}) {  // Of the box's ends, but for round-off.
+      const Vector<3> u = (1.0 - share) * box.lower + share * box.upper;
+      State<3> next = state;
+      if constexpr (kLevel == Level::kAcceleration) {
+        next.q += kTick * (state.qd + kTick / 2.0 * u);
+        next.qd += kTick * u;
+      } else {
+        next.q += kTick * u;
+        next.qd = u;
+      }
+      const auto again = limits.box(next);
+      ASSERT_TRUE((again.lower.array() <= again.upper.array()).all()) << "seed " << seed;
+      ASSERT_TRUE(limits.admits(state, next)) << "seed " << seed;
+    }
+  }
+}
+TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
+  expect_invariance<Level::kAcceleration>();
+  expect_invariance<Level::kVelocity>();
+}
+
+/// Position-dependent velocity bounds of the kind that Franka prescribes for its FR3.
+TEST(Limits, keep_velocity_bounds_that_depend_on_position) {
+  auto bounds = JointLimits<1>::none(1);
+  bounds.set(0, {-2.7437, 2.7437, 2.62, 10.0});
+  Limits<Level::kAcceleration, 1> limits(bounds, kTick);
+  limits.set_upper_envelope(0, {2.75010, 0.30, 6.0});
+  limits.set_lower_envelope(0, {-2.75010, 0.30, 6.0});
+  for (const bool up : {true, false}) {
+    State<1> state{Vector<1>(0.0), Vector<1>(0.0)};
+    for (int i = 0; i < 5000; ++i) {
+      const auto box = limits.box(state);
+      const double a = up ? box.upper(0) : box.lower(0);
+      ASSERT_LE(std::abs(a), 10.0);
+      state.q(0) += kTick * (state.qd(0) + kTick / 2.0 * a);
+      state.qd(0) += kTick * a;
+      const double q = up ? state.q(0) : -state.q(0);
+      const double bound = std::min(2.62, std::max(0.0, -0.30 + std::sqrt(std::max(0.0, 12.0 * (2.75010 - q)))));
+      ASSERT_LE(std::abs(state.qd(0)), bound + 1e-12);
+      ASSERT_LE(std::abs(state.q(0)), 2.7437);
+    }
+    EXPECT_NEAR(std::abs(state.q(0)), 2.75010 - 0.09 / 12.0, 1e-6);
+  }
+}
+
+TEST(Limits, say_what_is_wrong_with_them) {
+  auto bounds = JointLimits<2>::none(2);
+  using Accelerations = Limits<Level::kAcceleration, 2>;
+  EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "");
+  bounds.set(1, {-1.0, 1.0, 2.0, std::numeric_limits<double>::infinity()});
+  EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }),
+            "limits.acceleration[1] = inf: must be finite where the joint's position or velocity is bounded: give one");
+  EXPECT_EQ(complaint([&] { Limits<Level::kVelocity, 2>(bounds, kTick); }), "");
+  bounds.set(1, {1.0, 1.0, 2.0, 5.0});
+  EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.lower[1] = 1: must be below limits.upper");
+  bounds.set(1, {-1.0, 1.0, 0.0, 5.0});
+  EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.velocity[1] = 0: must be positive");
+  bounds.set(1, {-1.0, 1.0, 2.0, -5.0});
+  EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.acceleration[1] = -5: must be positive");
+  bounds.set(1, {-1.0, 1.0, 2.0, 5.0});
+  Accelerations limits(bounds, kTick);
+  EXPECT_EQ(complaint([&] {
+              limits.set_upper_envelope(1, {1.0, 0.1, 6.0});
+            }),
+            "envelope[1].deceleration = 6: must be at most the joint's bound on acceleration");
+  EXPECT_EQ(complaint([&] {
+              limits.set_upper_envelope(1, {1.1, 0.1, 4.0});
+            }),
+            "envelope[1].end = 1.1: must be such that the joint stops within its range");
+  EXPECT_EQ(complaint([&] {
+              limits.set_upper_envelope(1, {1.0, 0.0, 4.0});
+            }),
+            "envelope[1].offset = 0: must be at least deceleration dt / 2");
+  EXPECT_EQ(complaint([&] {
+              limits.require_viable({Vector<2>(0.0, 1.5), Vector<2>::Zero()});
+            }),
+            "q0[1] = 1.5: must be within the joint's range");
+  EXPECT_EQ(complaint([&] {
+              limits.require_viable({Vector<2>(0.0, 0.9), Vector<2>(0.0, 1.5)});
+            }),
+            "qd0[1] = 1.5: must be slow enough for the joint to stop within its bounds");
+}
+
+}  // namespace
+}  // namespace fpbm::test
