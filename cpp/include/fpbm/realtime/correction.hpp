@@ -26,7 +26,7 @@ class Correction {
   void begin(const Twist& error) noexcept {
     error_ = error;
     const Scalar length = error.norm();
-    far_ = length > pull_;
+    far_ = !(length <= pull_);  // What is no number is not integrated either.
     if (far_) excess_ = (Scalar(1) - pull_ / length) * error;
   }
 
