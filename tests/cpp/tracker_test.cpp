@@ -1,0 +1,407 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "fpbm/realtime/tracker.hpp"
+#include "support/arms.hpp"
+
+/// One tick of a control loop: follows, slows, pauses, stops, comes to rest at the edge of its reach and comes back.
+namespace fpbm::test {
+namespace {
+
+constexpr double kTick = 1e-3;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+[[nodiscard]] Vector<7> bent() {
+  Vector<7> q;
+  q << 0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8;
+  return q;
+}
+
+/// What a person would use: damped self-motion and a posture to return to.
+[[nodiscard]] FPBM<7> settling(double k1 = 10.0, double k2 = 25.0) {
+  Vector<7> weights;
+  weights << 1, 2, 3, 4, 1, 1, 1;
+  const auto z = NullSpace<7>{}.with_damping(4.0).with_rest_posture(bent(), 4.0);
+  return {0.6, DiagonalWeights<7>(weights), k1, k2, z};
+}
+[[nodiscard]] MVN<7> settling_velocity() {
+  return MVN<7>(5.0, NullSpace<7>{}.with_rest_posture(bent(), 1.0));
+}
+
+[[nodiscard]] SerialArm<7> panda() {
+  return SerialArm<7>(presets::panda());
+}
+
+template <typename Space = Pose, typename Scheme = FPBM<7>>
+[[nodiscard]] auto panda_tracker(const Scheme& scheme, const TrackerOptions<>& options = {}) {
+  return Tracker(panda(), Space{}, scheme, bent(), options);
+}
+
+[[nodiscard]] auto circle(double duration = 4.0) {
+  return InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ());
+}
+[[nodiscard]] auto turning_circle(double duration = 4.0) {
+  return WithTurn(circle(duration), Vector<3>(0.1, 0.2, 0.3));
+}
+
+template <typename Space>
+[[nodiscard]] Reference<Space> moved(Reference<Space> reference, double forward) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    reference.x.p(0) += forward;
+  } else {
+    reference.x(0) += forward;
+  }
+  return reference;
+}
+
+/// A tick and what every tick must keep.
+template <typename AnyTracker, typename Goal>
+auto checked_tick(AnyTracker& tracker, Goal& goal) {
+  const auto bounds = tracker.arm().limits();
+  const auto before = tracker.state();
+  const auto tick = tracker.tick(goal);
+  EXPECT_LE((tick.q - bounds.upper).maxCoeff(), 1e-9);
+  EXPECT_LE((bounds.lower - tick.q).maxCoeff(), 1e-9);
+  EXPECT_LE((tick.qd.cwiseAbs() - bounds.velocity).maxCoeff(), 1e-9);
+  EXPECT_LE((tick.qdd.cwiseAbs() - bounds.acceleration).maxCoeff(), 1e-9);
+  EXPECT_LE(((tick.qd - before.qd).cwiseAbs() / kTick - bounds.acceleration).maxCoeff(), 1e-9);  // No jump in qd.
+  return tick;
+}
+
+template <typename Result>
+[[nodiscard]] bool same_bits(const Result& a, const Result& b) {
+  return std::memcmp(a.q.data(), b.q.data(), sizeof a.q) == 0 &&
+         std::memcmp(a.qd.data(), b.qd.data(), sizeof a.qd) == 0 &&
+         std::memcmp(a.qdd.data(), b.qdd.data(), sizeof a.qdd) == 0 && a.status == b.status && a.scale == b.scale &&
+         a.saturated == b.saturated && a.sigma == b.sigma;
+}
+
+TEST(Tracker, promises_not_to_throw) {
+  auto tracker = panda_tracker(settling());
+  auto reference = Reference<Pose>::hold(tracker.tip());
+  auto course = Course(turning_circle(), tracker.tip());
+  const Vector<7> q = bent();
+  static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(course)));
+  static_assert(noexcept(tracker.resolve_measured(q, q, reference)));
+  static_assert(noexcept(tracker.stop())&& noexcept(tracker.go_on())&& noexcept(tracker.state()));
+  static_assert(noexcept(tracker.tip()));
+  static_assert(noexcept(course.pause())&& noexcept(course.resume())&& noexcept(course.ahead(0.0)));
+  static_assert(noexcept(course.advance(0.0))&& noexcept(course.done())&& noexcept(course.time()));
+}
+
+/// Far from every limit a tick is a step of RK4, to the last bit.
+TEST(Tracker, takes_the_very_steps_of_a_rollout) {
+  const auto path = turning_circle();
+  std::vector<Vector<7>> q;
+  (void)rollout(panda(), path, settling(), State<7>{bent(), Vector<7>::Zero()}, TimeGrid<>(4.0, kTick),
+                [&](const auto& sample) { q.push_back(sample.q); });
+  ASSERT_EQ(q.size(), 4001U);
+  auto tracker = panda_tracker(settling());
+  Course course(path, tracker.tip());
+  for (int i = 0; i < 4000; ++i) {
+    const auto tick = checked_tick(tracker, course);
+    ASSERT_EQ(tick.status, Status::kOk);
+    ASSERT_EQ(tick.scale, 1.0);
+    ASSERT_EQ(tick.saturated, 0U);
+    ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-13) << i;
+    ASSERT_LE(tick.error.norm(), 1e-11);
+  }
+}
+
+TEST(Tracker, gives_the_same_bits_for_the_same_inputs) {
+  auto one = panda_tracker(settling());
+  auto two = panda_tracker(settling());
+  Random random(3);
+  auto reference = Reference<Pose>::hold(one.tip());
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 50 == 0) {
+      const Vector<6> way = random.uniform(6, -0.5, 0.5);
+      reference = {Pose::displace<double>(one.tip(), way), random.uniform(6, -1.0, 1.0), random.uniform(6, -1.0, 1.0)};
+    }
+    ASSERT_TRUE(same_bits(one.tick(reference), two.tick(reference))) << i;
+  }
+}
+
+/// Targets that change in mid-motion.
+template <typename Space, typename Scheme>
+void expect_to_reach_changing_targets(const Scheme& scheme) {
+  auto tracker = panda_tracker<Space>(scheme);
+  const auto home = Reference<Space>::hold(tracker.tip());
+  Random random(5);
+  for (int change = 0; change < 8; ++change) {
+    auto target = home;
+    const Vector<Space::kRows> way = random.uniform(Space::kRows, -0.15, 0.15);
+    target.x = Space::template displace<double>(home.x, way);
+    for (int i = 0; i < 300; ++i) checked_tick(tracker, target);
+  }
+  for (int i = 0; i < 8000; ++i) checked_tick(tracker, home);
+  EXPECT_LE(tracker.tick(home).error.norm(), 1e-9);
+  EXPECT_LE(tracker.state().qd.norm(), 1e-3);
+}
+TEST(Tracker, reaches_targets_that_change_on_the_fly) {
+  expect_to_reach_changing_targets<Pose>(settling());
+  expect_to_reach_changing_targets<Position<3>>(settling());
+  expect_to_reach_changing_targets<Pose>(settling_velocity());
+  expect_to_reach_changing_targets<Position<3>>(settling_velocity());
+}
+
+/// The tip stays on its path while the clock comes to rest and goes on again, even if one changes one's mind.
+TEST(Tracker, pauses_and_resumes_on_its_path) {
+  auto tracker = panda_tracker(settling());
+  Course course(turning_circle(), tracker.tip(), 0.5);
+  const auto go = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      const auto tick = checked_tick(tracker, course);
+      ASSERT_EQ(tick.status, Status::kOk);
+      // The path's end comes in mid-tick now, and its acceleration jumps there.
+      ASSERT_LE(tick.error.norm(), course.time() < 4.0 ? 1e-9 : 1e-5);
+    }
+  };
+  go(1500);
+  course.pause();
+  go(600);
+  const double paused = course.time();
+  EXPECT_NEAR(paused, 1.5 + 0.25, 1e-9);
+  EXPECT_EQ(course.ahead(0.0).xd.norm(), 0.0);
+  go(500);
+  EXPECT_EQ(course.time(), paused);
+  course.resume();
+  go(200);
+  course.pause();
+  go(100);
+  course.resume();
+  go(8000);
+  EXPECT_TRUE(course.done());
+  EXPECT_LE(Pose::difference<double>(course.ahead(0.0).x, tracker.tip()).norm(), 1e-9);
+}
+
+/// The reference's velocity is the derivative of its position, and its acceleration of its velocity, in every phase.
+TEST(Tracker, has_courses_that_are_smooth) {
+  Course course(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
+  const double h = 1e-5;
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 200) course.pause();
+    if (i == 300 || i == 420) course.resume();
+    if (i == 400) course.pause();
+    const auto before = course.ahead(-h);
+    const auto now = course.ahead(0.0);
+    const auto after = course.ahead(h);
+    const bool turning = i == 0 || i == 200 || i == 300 || i == 400 || i == 420 || course.done();
+    if (!turning) {
+      ASSERT_LE(((after.x - before.x) / (2.0 * h) - now.xd).norm(), 1e-8) << i;
+      ASSERT_LE(((after.xd - before.xd) / (2.0 * h) - now.xdd).norm(), 1e-6) << i;
+    }
+    const auto ahead = course.ahead(4e-3);
+    course.advance(4e-3);
+    ASSERT_LE((course.ahead(0.0).x - ahead.x).norm(), 1e-14) << i;
+    ASSERT_LE((course.ahead(0.0).xd - ahead.xd).norm(), 1e-13) << i;
+  }
+}
+
+/// A stop is as quick as the slowest joint's bound on acceleration allows, and keeps the joints' path straight.
+template <typename Scheme>
+void expect_to_stop(const Scheme& scheme) {
+  auto tracker = panda_tracker(scheme);
+  Course course(turning_circle(2.0), tracker.tip());
+  for (int i = 0; i < 900; ++i) checked_tick(tracker, course);
+  const State<7> moving = tracker.state();
+  const double time = course.time();
+  const Vector<7> bound = tracker.arm().limits().acceleration;
+  const double quickest = (moving.qd.cwiseAbs().array() / bound.array()).maxCoeff();
+  ASSERT_GT(moving.qd.norm(), 0.1);
+  tracker.stop();
+  for (int i = 0; i * kTick <= quickest + 2.0 * kTick; ++i) {
+    EXPECT_EQ(checked_tick(tracker, course).scale, 0.0);
+    const Vector<7> way = tracker.state().q - moving.q;
+    EXPECT_LE((way - way.norm() * moving.qd.normalized()).norm(), 1e-12);
+  }
+  EXPECT_EQ(tracker.state().qd.norm(), 0.0);
+  EXPECT_EQ(course.time(), time);
+  const Vector<7> rest = tracker.state().q;
+  for (int i = 0; i < 100; ++i) checked_tick(tracker, course);
+  EXPECT_EQ(tracker.state().q, rest);
+  tracker.go_on();
+  for (int i = 0; i < 8000; ++i) checked_tick(tracker, course);
+  EXPECT_TRUE(course.done());
+  EXPECT_LE(tracker.tick(course).error.norm(), 1e-9);
+}
+TEST(Tracker, stops_on_request_and_goes_on) {
+  expect_to_stop(settling());
+  expect_to_stop(settling_velocity());
+}
+
+/// A target out of reach, through the singular posture of the outstretched arm: at rest at the edge, then back.
+template <typename Space, typename Scheme>
+void expect_to_come_back(const char* name, const Scheme& scheme) {
+  for (const double forward : {0.4, 0.6, 0.9, 3.0}) {
+    SCOPED_TRACE(std::string(name) + ", " + std::to_string(forward) + " m");
+    auto tracker = panda_tracker<Space>(scheme);
+    const auto home = Reference<Space>::hold(tracker.tip());
+    auto far = moved(home, forward);
+    Status worst = Status::kOk;
+    for (int i = 0; i < 30000; ++i) {
+      const auto tick = checked_tick(tracker, far);
+      ASSERT_FALSE(failed(tick.status));
+      worst = worse(worst, tick.status);
+      if (i > 29000) {
+        ASSERT_LE(tick.qd.norm(), 2e-3) << i;
+        ASSERT_LE(tick.qdd.norm(), 2e-3) << i;
+      }
+    }
+    EXPECT_NE(worst, Status::kOk);
+    const double short_of = tracker.tick(far).error.norm();
+    EXPECT_GT(short_of, forward - 0.4);
+    for (int i = 0; i < 8000; ++i) checked_tick(tracker, home);
+    EXPECT_LE(tracker.tick(home).error.norm(), 1e-9);
+    EXPECT_LE(tracker.state().qd.norm(), 1e-3);
+    EXPECT_EQ(tracker.tick(home).status, Status::kOk);
+  }
+}
+TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
+  expect_to_come_back<Pose>("FPBM, pose", settling());
+  expect_to_come_back<Position<3>>("FPBM, position", settling());
+  expect_to_come_back<Pose>("MVN, pose", settling_velocity());
+  expect_to_come_back<Position<3>>("MVN, position", settling_velocity());
+}
+
+/// The answer for a measured state is the scheme's own where no limit is near, and within the box where one is; the
+/// tracker's own state does not move.
+TEST(Tracker, answers_for_a_measured_state) {
+  auto tracker = panda_tracker(settling());
+  const auto home = Reference<Pose>::hold(tracker.tip());
+  const Limits<Level::kAcceleration, 7> limits(panda().limits(), kTick);
+  Random random(11);
+  int plain = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const State<7> state{bent() + random.uniform(7, -0.2, 0.2), random.uniform(7, -1.5, 1.5)};
+    const auto target = moved(home, random.uniform(-0.1, 0.1));
+    const auto tick = tracker.resolve_measured(state.q, state.qd, target);
+    Kinematics<Pose, 7> kinematics;
+    panda().kinematics(state.q, state.qd, kinematics);
+    Vector<7> qdd = Vector<7>::Zero();
+    auto scheme = settling();
+    scheme.singular = SingularDamping<>();
+    const Vector<6> error = Pose::difference<double>(target.x, kinematics.tip);
+    auto near = target;
+    if (error.norm() > 0.1) near.x = Pose::displace<double>(kinematics.tip, 0.1 * error.normalized());
+    ASSERT_FALSE(failed(scheme.resolve(kinematics, near, state, qdd)));
+    const auto box = limits.box(state);
+    ASSERT_TRUE(box.contains(tick.qdd));
+    if (box.contains(qdd)) {
+      ASSERT_LE((tick.qdd - qdd).norm(), 1e-12 * qdd.norm());
+      ++plain;
+    } else {
+      ASSERT_NE(tick.saturated, 0U);
+      if (tick.scale == 1.0) {
+        ASSERT_LE((kinematics.J * (tick.qdd - qdd)).norm(), 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(plain, 100);
+  EXPECT_LT(plain, 1900);
+  EXPECT_EQ(tracker.state().q, bent());
+
+  const auto lost = tracker.resolve_measured(Vector<7>::Constant(kNan), Vector<7>::Zero(), home);
+  EXPECT_EQ(lost.status, Status::kNotFinite);
+  EXPECT_EQ(lost.qdd, Vector<7>(Vector<7>::Zero()));
+}
+
+/// A constant disturbance: without the integral an error stays, with it none does; and it does not wind up.
+TEST(Tracker, takes_away_what_a_constant_bias_leaves) {
+  Vector<7> bias;
+  bias << 0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1;
+  const auto steady_error = [&](double gain, int ticks, double blocked_until) {
+    auto tracker = panda_tracker(settling(), {kTick, 0.1, gain, 2.0});
+    const auto home = Reference<Pose>::hold(tracker.tip());
+    State<7> state = tracker.state();
+    double error = 0.0;
+    for (int i = 0; i < ticks; ++i) {
+      const bool blocked = i * kTick < blocked_until;
+      const auto tick = tracker.resolve_measured(state.q, state.qd, blocked ? moved(home, 0.08) : home);
+      if (blocked) continue;  // Something holds the arm.
+      state.q += kTick * state.qd;
+      state.qd += kTick * (tick.qdd + bias);
+      error = tick.error.norm();
+    }
+    return error;
+  };
+  EXPECT_GT(steady_error(0.0, 8000, 0.0), 1e-3);
+  EXPECT_LE(steady_error(50.0, 15000, 0.0), 1e-6);
+  EXPECT_LE(steady_error(50.0, 115000, 100.0), 1e-6);
+}
+
+/// Nonsense in the reference: the arm brakes, says why, and goes on when the nonsense is over.
+template <typename Scheme>
+void expect_to_brake_on_nonsense(const Scheme& scheme) {
+  auto tracker = panda_tracker(scheme);
+  const auto home = Reference<Pose>::hold(tracker.tip());
+  auto target = moved(home, 0.05);
+  for (int i = 0; i < 100; ++i) checked_tick(tracker, target);
+  ASSERT_GT(tracker.state().qd.norm(), 1e-2);
+  for (const double nonsense : {kNan, std::numeric_limits<double>::infinity(), 1e308}) {
+    auto bad = target;
+    bad.xd(2) = nonsense;
+    bad.xdd(1) = nonsense;
+    for (int i = 0; i < 300; ++i) {
+      const auto tick = checked_tick(tracker, bad);
+      ASSERT_TRUE(tick.q.allFinite() && tick.qd.allFinite() && tick.qdd.allFinite());
+    }
+    if (nonsense != 1e308) {
+      EXPECT_EQ(tracker.tick(bad).status, Status::kNotFinite);
+      EXPECT_EQ(tracker.state().qd.norm(), 0.0);
+    }
+  }
+  for (int i = 0; i < 6000; ++i) checked_tick(tracker, home);
+  EXPECT_LE(tracker.tick(home).error.norm(), 1e-9);
+}
+TEST(Tracker, brakes_on_nonsense) {
+  expect_to_brake_on_nonsense(settling());
+  expect_to_brake_on_nonsense(settling_velocity());
+}
+
+/// An hour at rest on a target, after a motion.
+TEST(Tracker, holds_at_rest_for_an_hour) {
+  const auto z = NullSpace<4>{}.with_damping(2.0);
+  const FPBM<4> scheme(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
+  Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
+  Course course(Path(Circle(0.3), 5.0), tracker.tip());
+  for (int i = 0; i < 65000; ++i) tracker.tick(course);
+  const Vector<4> start = tracker.state().q;
+  double fastest = 0.0;
+  for (int i = 0; i < 3600000; ++i) fastest = std::max(fastest, tracker.tick(course).qd.cwiseAbs().maxCoeff());
+  EXPECT_LE(fastest, 1e-9);
+  EXPECT_LE((tracker.state().q - start).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Tracker, says_what_is_wrong_with_its_arguments) {
+  const auto make = [](const TrackerOptions<>& options) {
+    return complaint([&] { (void)panda_tracker(settling(), options); });
+  };
+  EXPECT_EQ(make({}), "");
+  EXPECT_EQ(make({0.0}), "dt = 0: must be positive and finite");
+  EXPECT_EQ(make({kTick, -1.0}), "pull = -1: must be positive and finite");
+  EXPECT_EQ(make({kTick, 0.1, -1.0}), "integral_gain = -1: must be finite and not negative");
+  EXPECT_EQ(make({kTick, 0.1, 1.0, 0.0}), "integral_bound = 0: must be positive and finite");
+  Vector<7> q0 = bent();
+  q0(3) = 0.5;
+  EXPECT_EQ(complaint([&] { Tracker(panda(), Pose{}, settling(), q0); }),
+            "q0[3] = 0.5: must be within the joint's range");
+  const SerialArm<7> iiwa(presets::iiwa14());
+  EXPECT_EQ(complaint([&] { Tracker(iiwa, Pose{}, settling(), bent()); }),
+            "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
+  EXPECT_EQ(complaint([] { Course(circle(), Vector<3>(0, 0, 0), 0.0); }), "ramp = 0: must be positive and finite");
+  const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);
+  EXPECT_EQ(complaint([&] {
+              Tracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
+            }),
+            "limits' tick = 0.002: must be the tracker's dt");
+}
+
+}  // namespace
+}  // namespace fpbm::test
