@@ -10,12 +10,13 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python clang sanitize lint format stubs bench clean
+.PHONY: help demo test test-cpp test-python clang sanitize soak lint format stubs bench clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make test             build and run every test'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
+	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make lint             formatting, static analysis, types, stubs'
 	@echo 'make bench            build and run the benchmarks'
 	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
@@ -34,6 +35,14 @@ test-cpp clang sanitize:
 	cmake --preset $(preset)
 	cmake --build --preset $(preset)
 	ctest --preset $(preset)
+
+# A day at 1 kHz, or TICKS of it.
+soak: TICKS ?= 8.64e7
+soak:
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST)
+	cmake --preset release
+	cmake --build --preset release --target fpbm_soak
+	build/release/tests/cpp/fpbm_soak $(TICKS)
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest
@@ -60,6 +69,7 @@ bench: $(VENV)/package $(VENV)/test
 	cmake --preset bench
 	cmake --build --preset bench
 	build/bench/bench/bench_step --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true
+	build/bench/bench/bench_loop --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true
 	$(BIN)/python bench/simulate.py
 
 clean:

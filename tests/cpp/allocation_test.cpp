@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <vector>
 
@@ -152,6 +153,58 @@ void expect_none_in_a_gaze(const Arm& arm) {
 TEST(NoAllocation, in_a_gaze) {
   expect_none_in_a_gaze(SerialArm<7>(presets::panda()));
   expect_none_in_a_gaze(SerialArm<Eigen::Dynamic>(presets::panda()));
+}
+
+/// Every call of a control loop, with targets within reach and beyond every limit, and nonsense.
+template <typename Space, typename Arm, typename Scheme>
+void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
+  constexpr int N = Arm::kDof;
+  Vector<N> q0 = Vector<N>::Zero(arm.dof());
+  q0 << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
+  TrackerOptions<> options;
+  options.integral_gain = 1.0;
+  Tracker tracker(arm, Space{}, scheme, q0, options);
+  const auto home = Reference<Space>::hold(tracker.tip());
+  const InPlane circle(Path(Circle(0.05), 0.5), Vector<3>::UnitY(), Vector<3>::UnitZ());
+  const WithTurn turning(circle, Vector<3>(0.1, 0.2, 0.3));
+  const auto path = [&] {
+    if constexpr (std::is_same_v<Space, Pose>) {
+      return turning;
+    } else {
+      return circle;
+    }
+  }();
+  Course course(path, tracker.tip());
+  const AllocationWatch watch;
+  for (int i = 0; i < 2000; ++i) {
+    if (i == 100) course.pause();
+    if (i == 200) course.resume();
+    if (i == 300) tracker.stop();
+    if (i == 400) tracker.go_on();
+    (void)tracker.tick(course);
+    auto wild = home;
+    wild.xdd.setConstant(i % 100 == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.1 * i);
+    wild.xd.setConstant(i < 1000 ? 0.0 : 10.0);
+    if (i > 500) (void)tracker.tick(wild);
+    if constexpr (Scheme::kLevel == Level::kAcceleration) (void)tracker.resolve_measured(q0, tracker.state().qd, wild);
+  }
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_TRUE(tracker.state().q.allFinite() && course.done());
+}
+
+TEST(NoAllocation, in_a_control_loop) {
+  const SerialArm<7> fixed(presets::panda());
+  const SerialArm<Eigen::Dynamic> open(presets::panda());
+  const Vector<7> ones = Vector<7>::Ones();
+  const FPBM<7> fpbm(0.6, DiagonalWeights<7>(ones), 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
+  const FPBM<Eigen::Dynamic> fpbm_open(0.6, DiagonalWeights<Eigen::Dynamic>(ones), 10.0, 25.0);
+  expect_none_in_a_loop<Pose>(fixed, fpbm);
+  expect_none_in_a_loop<Position<3>>(fixed, fpbm);
+  expect_none_in_a_loop<Pose>(open, fpbm_open);
+  expect_none_in_a_loop<Position<3>>(open, fpbm_open);
+  expect_none_in_a_loop<Pose>(fixed, MVN<7>(5.0));
+  expect_none_in_a_loop<Position<3>>(open, MVN<Eigen::Dynamic>(5.0));
+  expect_none_in_a_loop<Pose>(fixed, ManipulabilityAscent(fpbm, fixed, 0.1));
 }
 
 /// A motion that has to stop does so without an allocation as well.
