@@ -21,6 +21,12 @@ inline constexpr bool kIsWrapper = false;
 template <typename Scheme>
 inline constexpr bool kIsWrapper<Scheme, std::void_t<decltype(Scheme::scheme)>> = true;
 
+/// Whether a scheme has a member `singular`, its damping near singular postures.
+template <typename Scheme, typename = void>
+inline constexpr bool kTakesDamping = false;
+template <typename Scheme>
+inline constexpr bool kTakesDamping<Scheme, std::void_t<decltype(Scheme::singular)>> = true;
+
 /// Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
 ///
 /// tick() integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities and
@@ -141,8 +147,8 @@ class Tracker {
   static void damp(Any& scheme, const SingularDamping<Scalar>& damping) noexcept {
     if constexpr (kIsWrapper<Any>) {
       damp(scheme.scheme, damping);
-    } else if (scheme.singular.radius() == Scalar(0)) {
-      scheme.singular = damping;
+    } else if constexpr (kTakesDamping<Any>) {
+      if (scheme.singular.radius() == Scalar(0)) scheme.singular = damping;
     }
   }
 
