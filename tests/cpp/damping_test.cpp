@@ -405,8 +405,7 @@ struct Spectra : ::testing::Test {
   static constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Number>::epsilon());
 };
 
-using Shapes = ::testing::Types<Shape<2, 2>, Shape<2, 4>, Shape<3, 4>, Shape<3, 7>, Shape<6, 6>, Shape<6, 7>,
-                                Shape<2, 4, float>, Shape<6, 7, float>>;
+using Shapes = ::testing::Types<Shape<2, 4>, Shape<3, 7>, Shape<6, 7>, Shape<6, 7, float>>;
 
 struct ShapeNames {
   template <typename Shape>
@@ -476,8 +475,7 @@ TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
   }
 }
 
-template <typename Scheme>
-Recording<4> paper_run(Figure figure, const Scheme& scheme) {
+Recording<4> paper_run(Figure figure, const FPBM<4>& scheme) {
   const TimeGrid<> grid(kDuration, 1e-3);
   switch (figure) {
     case Figure::kCircle: return recorded(paper_arm(), paper_circle(), scheme, paper_start(), grid);
@@ -535,35 +533,37 @@ double nearest_to_singular(const Recording<4>& run) {
 TEST(DampedMotion, that_grazes_the_radius_is_done) {
   with_every_scheme([](const char* name, auto scheme) {
     SCOPED_TRACE(name);
-    const Recording<4> plain = paper_run(Figure::kCircle, scheme);
+    const auto run_with = [&](double radius) {
+      scheme.singular = SingularDamping<>(radius);
+      return recorded(paper_arm(), paper_circle(), scheme, paper_start(), TimeGrid<>(kDuration, 1e-3));
+    };
+    const Recording<4> plain = run_with(0.0);
     const double nearest = nearest_to_singular(plain);
-    scheme.singular = SingularDamping<>(0.999 * nearest);
-    EXPECT_EQ(paper_run(Figure::kCircle, scheme).result.status, Status::kOk);
-    scheme.singular = SingularDamping<>(1.01 * nearest);
-    const Recording<4> run = paper_run(Figure::kCircle, scheme);
+    EXPECT_EQ(run_with(0.999 * nearest).result.status, Status::kOk);
+    const Recording<4> run = run_with(1.01 * nearest);
     EXPECT_EQ(run.result.status, Status::kDamped);
     EXPECT_EQ(run.samples.size(), plain.samples.size());
     EXPECT_LE(run.largest_error(), 1e-4);
   });
 }
 
-/// A line that leaves the workspace: stopped where the tip leaves it, whatever the damping makes of the joints.
+/// A circle too large for the workspace: stopped where the tip leaves it, whatever the damping makes of the joints.
 TEST(DampedMotion, that_leaves_its_path_is_stopped) {
-  with_every_scheme([](const char* name, auto scheme) {
+  const Path<Circle<>> path(Circle<>(4.5), 5.0);
+  const double fastest = path.sample(2.5).xd.norm();
+  with_every_scheme([&](const char* name, auto scheme) {
     for (const double radius : {0.01, 0.05, 0.2}) {
       for (const double dt : {1e-3, 1e-2}) {
         for (std::uint32_t seed = 0; seed < 10; ++seed) {
           SCOPED_TRACE(std::string(name) + ", radius " + std::to_string(radius) + ", dt " + std::to_string(dt) +
                        ", seed " + std::to_string(seed));
           Random random(seed);
-          const State<4> start{random.uniform(4, 0.2, 1.0), Vector<4>::Zero()};
-          const double direction = random.uniform(-kPi, kPi);
-          const Vector<2> way = 10.0 * Vector<2>(std::cos(direction), std::sin(direction));
-          const Path<Line<2>> path(Line<2>(way), 5.0);
+          State<4> start{random.uniform(4, 0.2, 1.0), Vector<4>::Zero()};
+          start.q(0) = random.uniform(-kPi, kPi);
           scheme.singular = SingularDamping<>(radius);
           const auto run = recorded(paper_arm(), path, scheme, start, TimeGrid<>(5.0, dt));
           EXPECT_EQ(run.result.status, Status::kTaskLost) << message(run.result.status);
-          EXPECT_LE(run.largest_error(), 1.1 * kPi / 2.0 * way.norm() / 5.0 * dt);
+          EXPECT_LE(run.largest_error(), 1.1 * fastest * dt);
           for (const auto& sample : run.samples) ASSERT_TRUE(sample.qdd.allFinite() && sample.error.allFinite());
         }
       }
