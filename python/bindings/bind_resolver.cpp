@@ -1,74 +1,27 @@
+#include <memory>
 #include <string>
 
-#include "arrays.hpp"
 #include "bindings.hpp"
 #include "kinematics.hpp"
 #include "py_arm.hpp"
-#include "text.hpp"
+#include "scheme_options.hpp"
+#include "whole_arm.hpp"
 
 #include <pybind11/native_enum.h>
 
 namespace fpbm::bindings {
 namespace {
 
-using Law = PyScheme::Law;
-
-/// Weights as a vector of n or a matrix of n x n; the library's own constructors check them.
-void set_weights(PyScheme& scheme, const ArrayLike& weights) {
-  const auto any = py::array::ensure(weights);
-  if (any && any.ndim() == 2) {
-    const PyScheme::Dense W = joint_matrix(weights, "weights");
-    (void)DenseWeights<kDynamic>(W);
-    scheme.weights = W;
-    scheme.repr += "weights=" + text(W);
-  } else {
-    PyErr_Clear();
-    const PyScheme::Diagonal w = joint_vector(weights, "weights");
-    (void)DiagonalWeights<kDynamic>(w);
-    scheme.weights = w;
-    scheme.repr += "weights=" + text(w);
-  }
-}
-
-/// The null-space options and the closing of repr; a trial visit checks all parameters against each other.
-PyScheme finish(PyScheme scheme, double null_damping, const OptionalArray& rest_posture, double null_stiffness,
-                const OptionalArray& c) {
-  const auto note = [&scheme](const std::string& option) {
-    if (scheme.repr.back() != '(') scheme.repr += ", ";
-    scheme.repr += option;
-  };
-  Eigen::Index dof = 0;
-  if (const auto* w = std::get_if<PyScheme::Diagonal>(&scheme.weights)) dof = w->size();
-  if (const auto* W = std::get_if<PyScheme::Dense>(&scheme.weights)) dof = W->rows();
-  scheme.null_damping = null_damping;
-  if (null_damping != 0.0) note("null_damping=" + text(null_damping));
-  scheme.null_stiffness = null_stiffness;
-  if (rest_posture) {
-    scheme.rest_posture = joint_vector(*rest_posture, "rest_posture");
-    if (dof == 0) dof = scheme.rest_posture->size();
-    note("rest_posture=" + text(*scheme.rest_posture) + ", null_stiffness=" + text(null_stiffness));
-  }
-  if (c) {
-    scheme.c = joint_vector(*c, "c");
-    if (dof == 0) dof = scheme.c->size();
-    note("c=" + text(*scheme.c));
-  }
-  scheme.repr += ")";
-  const int any_dof = dof == 0 ? 2 : static_cast<int>(dof);
-  scheme.visit<kDynamic>(any_dof, [](const auto&) {});
-  return scheme;
-}
-
-PyScheme begin(Law law, const std::string& name) {
-  PyScheme scheme{law};
-  scheme.repr = name + "(";
-  return scheme;
-}
-
-void set_gain(PyScheme& scheme, double k) {
-  scheme.k = k;
-  if (k != 0.0) scheme.repr += (scheme.repr.back() == '(' ? "k=" : ", k=") + text(k);
-}
+template <Level kLevel_>
+struct PySchemeAt : PyScheme {
+  static constexpr Level kLevel = kLevel_;
+};
+struct PyMVN : PySchemeAt<Level::kVelocity> {};
+struct PyWMVN : PySchemeAt<Level::kVelocity> {};
+struct PyMAN : PySchemeAt<Level::kAcceleration> {};
+struct PyWMVNAcceleration : PySchemeAt<Level::kAcceleration> {};
+struct PyBalanced : PySchemeAt<Level::kAcceleration> {};
+struct PyFPBM : PySchemeAt<Level::kAcceleration> {};
 
 [[noreturn]] void raise(Status status) {
   const py::object type = py::module_::import("fpbm_cpp._errors").attr("ResolutionError");
@@ -76,11 +29,19 @@ void set_gain(PyScheme& scheme, double k) {
   throw py::error_already_set();
 }
 
-/// One evaluation in a task space, where the kinematics are known.
-template <typename Space>
-Eigen::VectorXd resolve_task(const PyScheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
-                             const State<kDynamic>& state, const ArrayLike& x, const ArrayLike& xd,
-                             const OptionalArray& xdd) {
+template <typename Known>
+struct SpaceOfKinematics;
+template <typename Space, int N, typename Scalar>
+struct SpaceOfKinematics<Kinematics<Space, N, Scalar>> {
+  using type = Space;
+};
+template <typename Known>
+using SpaceOf = typename SpaceOfKinematics<Known>::type;
+
+/// One evaluation in a task space, of an arm or of known kinematics.
+template <typename Space, typename Source>
+Eigen::VectorXd resolve_task(const PyScheme& scheme, const Source& source, const State<kDynamic>& state,
+                             const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd) {
   constexpr int kRows = Space::kRows;
   require_redundant(kRows, static_cast<int>(state.q.size()));
   Reference<Space> reference{point<Space>(x, "x"), fixed_vector<kRows>(xd, "xd"), Vector<kRows>::Zero()};
@@ -90,9 +51,17 @@ Eigen::VectorXd resolve_task(const PyScheme& scheme, const Kinematics<Space, kDy
     throw std::invalid_argument("xdd: an acceleration-level scheme needs it");
   }
   Joints out = Joints::Zero(state.q.size());
-  const Status status = resolve(scheme, kinematics, reference, state, out);
-  if (status != Status::kOk) raise(status);
+  const Status status = resolve(scheme, source, reference, state, out);
+  if (failed(status)) raise(status);
   return out;
+}
+
+/// The arm's poses, where it has such in space.
+std::shared_ptr<const TaskModel<Pose>> poses_of(const PyArm& arm) {
+  return arm.visit("pose", [](const auto& model) -> std::shared_ptr<const TaskModel<Pose>> {
+    if constexpr (std::is_same_v<std::decay_t<decltype(model)>, TaskModel<Pose>>) return borrowed(model);
+    return nullptr;
+  });
 }
 
 Eigen::VectorXd resolve_for_arm(const PyScheme& scheme, const PyArm& arm, const ArrayLike& q, const ArrayLike& qd,
@@ -100,7 +69,9 @@ Eigen::VectorXd resolve_for_arm(const PyScheme& scheme, const PyArm& arm, const 
                                 const std::string& task) {
   const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
   return arm.visit(task, [&](const auto& model) {
-    return resolve_task(scheme, model.kinematics(state.q, state.qd), state, x, xd, xdd);
+    using Space = typename std::decay_t<decltype(model)>::Space;
+    const WholeArm<Space> whole{borrowed<TaskModel<Space>>(model), poses_of(arm), arm.limits()};
+    return resolve_task<Space>(scheme, whole, state, x, xd, xdd);
   });
 }
 
@@ -114,56 +85,176 @@ Eigen::VectorXd resolve_for_kinematics(const PyScheme& scheme, const PyKinematic
       [&](const auto& known) {
         const auto dof = static_cast<int>(known.J.cols());
         const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
-        return resolve_task(scheme, known, state, x, xd, xdd);
+        return resolve_task<SpaceOf<std::decay_t<decltype(known)>>>(scheme, known, state, x, xd, xdd);
       },
       kinematics.value);
 }
 
-constexpr const char* kVelocityOptions = R"(
-k : float
-    Position feedback gain [1/s]: xd + k (x - f(q)) in place of xd.
-rest_posture, null_stiffness : array_like, shape (n,), and float
-    Posture [rad] that the null space is drawn to, and how strongly [1/s].
-c : array_like, shape (n,)
-    The free choice in the general solution (3) [rad/s].
+/// The tip of an arm on a point.
+PyPointTask point_task(const PyArm& arm, const ArrayLike& x, double k1, double k2) {
+  validation::require_non_negative("k1", k1);
+  validation::require_non_negative("k2", k2);
+  return arm.visit("position", [&](const auto& model) -> PyPointTask {
+    using Space = typename std::decay_t<decltype(model)>::Space;
+    if constexpr (std::is_same_v<Space, Position<2>> || std::is_same_v<Space, Position<3>>) {
+      const auto at = point<Space>(x, "x");
+      return {{PySecondTask::Point<Space>{arm.positions<Space>(), arm.dof(), at}, k1, k2,
+               "SecondTask(arm of " + std::to_string(arm.dof()) + " joints, x=" + text(at) + ", k1=" + text(k1) +
+                   ", k2=" + text(k2) + ")"}};
+    }
+    throw std::invalid_argument("arm: must have positions");
+  });
+}
+
+PyGaze gaze(const ArrayLike& direction, double k1, double k2) {
+  validation::require_non_negative("k1", k1);
+  validation::require_non_negative("k2", k2);
+  const Vector<3> d = fixed_vector<3>(direction, "direction");
+  if (d.isZero(0.0)) validation::fail("direction", 0.0, "longer: it must point somewhere");
+  return {{PySecondTask::Direction{d}, k1, k2, "Gaze(" + text(d) + ", k1=" + text(k1) + ", k2=" + text(k2) + ")"}};
+}
+
+void bind_second_tasks(py::module_& m) {
+  py::class_<PyPointTask>(m, "SecondTask", R"(A point for a second arm's tip, in the null space of the first task.
+
+The second arm is of the first joints of the first one: its tip an elbow, say. The first task comes strictly first.
+
+Parameters
+----------
+arm : Arm
+    The second arm: PlanarArm(lengths[:k]), or SerialArm.from_joints(joints[:k]).
+x : array_like, shape (2,) or (3,)
+    Where its tip is to be, in the base frame [m].
+k1, k2 : float
+    Feedback gains on velocity [1/s], which velocity-level schemes do without, and position [1/s^2], or [1/s] at
+    velocity level; not negative.
 
 Raises
 ------
 ValueError
-    Where a parameter is out of range, not finite, or of the wrong shape.)";
+    Where an argument is out of range, not finite, or of the wrong shape.)")
+      .def(py::init(&point_task), py::arg("arm"), py::arg("x"), py::kw_only(), py::arg("k1") = 10.0,
+           py::arg("k2") = 25.0)
+      .def("__repr__", [](const PyPointTask& task) { return task.repr; });
+  py::class_<PyGaze>(m, "Gaze", R"(A direction for the tip's z axis, in the null space of the first task.
 
-constexpr const char* kAccelerationOptions = R"(
-null_damping : float
-    Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
-rest_posture, null_stiffness : array_like, shape (n,), and float
-    Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
-c : array_like, shape (n,)
-    The free choice in the general solution (5) [rad/s^2].
+Of an arm in space; the axis may still turn about itself. The first task comes strictly first.
+
+Parameters
+----------
+direction : array_like, shape (3,)
+    Where the axis is to point, in the base frame; its length does not matter.
+k1, k2 : float
+    Feedback gains on velocity [1/s], which velocity-level schemes do without, and direction [1/s^2], or [1/s] at
+    velocity level; not negative.
 
 Raises
 ------
 ValueError
-    Where a parameter is out of range, not finite, or of the wrong shape.)";
+    Where an argument is out of range, not finite, or of the wrong shape.)")
+      .def(py::init(&gaze), py::arg("direction"), py::kw_only(), py::arg("k1") = 10.0, py::arg("k2") = 25.0)
+      .def("__repr__", [](const PyGaze& task) { return task.repr; });
+}
 
-constexpr const char* kWeightsText = R"(
-weights : array_like, shape (n,) or (n, n)
-    Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.)";
+std::string text_of(const char* summary, const char* own, const char* options) {
+  return std::string(summary) + kParameters + own + options;
+}
 
-constexpr const char* kAlphaText = R"(
-alpha : float
-    Share of WMVN, in [0, 1]; MAN has the rest.)";
+void bind_velocity_schemes(py::module_& m) {
+  py::class_<PyMVN, PyScheme> mvn(
+      m, "MVN",
+      text_of("Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).", "", kVelocityOptions)
+          .c_str());
+  const auto make_mvn = [](double k) {
+    PyScheme scheme = begin(Law::kWMVN, "MVN");
+    set_gain(scheme, k);
+    return scheme;
+  };
+  define_init(mvn, +make_mvn, py::kw_only(), py::arg("k") = 0.0);
 
-constexpr const char* kParameters = "\n\nParameters\n----------";
+  py::class_<PyWMVN, PyScheme> wmvn(
+      m, "WMVN",
+      text_of("Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd.", kWeightsText, kVelocityOptions)
+          .c_str());
+  const auto make_wmvn = [](const ArrayLike& weights, double k) {
+    PyScheme scheme = begin(Law::kWMVN, "WMVN");
+    set_weights(scheme, weights);
+    set_gain(scheme, k);
+    return scheme;
+  };
+  define_init(wmvn, +make_wmvn, py::arg("weights"), py::kw_only(), py::arg("k") = 0.0);
+}
+
+PyScheme make_balanced(const char* name, double alpha, const ArrayLike& weights) {
+  PyScheme scheme = begin(Law::kFPBM, name);
+  scheme.alpha = alpha;
+  scheme.repr += "alpha=" + text(alpha) + ", ";
+  set_weights(scheme, weights);
+  return scheme;
+}
+
+void bind_acceleration_schemes(py::module_& m) {
+  py::class_<PyMAN, PyScheme> man(
+      m, "MAN",
+      text_of("Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5).", "",
+              kAccelerationOptions)
+          .c_str());
+  const auto make_man = [] { return begin(Law::kMAN, "MAN"); };
+  define_init(man, +make_man, py::kw_only());
+
+  py::class_<PyWMVNAcceleration, PyScheme> wmvn(
+      m, "WMVNAcceleration",
+      text_of("Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated.\n\n"
+              "qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.",
+              kWeightsText, kAccelerationOptions)
+          .c_str());
+  const auto make_wmvn = [](const ArrayLike& weights) {
+    PyScheme scheme = begin(Law::kFPBM, "WMVNAcceleration");
+    scheme.alpha = 1.0;
+    set_weights(scheme, weights);
+    return scheme;
+  };
+  define_init(wmvn, +make_wmvn, py::arg("weights"), py::kw_only());
+
+  py::class_<PyBalanced, PyScheme> balanced(
+      m, "Balanced",
+      text_of("Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9).",
+              (std::string(kAlphaText) + kWeightsText).c_str(), kAccelerationOptions)
+          .c_str());
+  const auto make = [](double alpha, const ArrayLike& weights) { return make_balanced("Balanced", alpha, weights); };
+  define_init(balanced, +make, py::arg("alpha"), py::arg("weights"), py::kw_only());
+
+  const std::string own = std::string(kAlphaText) + kWeightsText +
+                          "\nk1, k2 : float\n    Feedback gains on velocity [1/s] and position [1/s^2], not negative.";
+  py::class_<PyFPBM, PyScheme> fpbm(
+      m, "FPBM",
+      text_of("Feedback-added pseudoinverse-type balanced minimisation, (13).\n\n"
+              "The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so\n"
+              "that the tip error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.",
+              own.c_str(), kAccelerationOptions)
+          .c_str());
+  const auto make_fpbm = [](double alpha, const ArrayLike& weights, double k1, double k2) {
+    PyScheme scheme = make_balanced("FPBM", alpha, weights);
+    scheme.k1 = k1;
+    scheme.k2 = k2;
+    scheme.repr += ", k1=" + text(k1) + ", k2=" + text(k2);
+    return scheme;
+  };
+  define_init(fpbm, +make_fpbm, py::arg("alpha"), py::arg("weights"), py::arg("k1"), py::arg("k2"), py::kw_only());
+}
 
 }  // namespace
 
 void bind_resolver(py::module_& m) {
   py::native_enum<Status>(m, "Status", "enum.Enum", "What became of an evaluation or a rollout.")
       .value("OK", Status::kOk, "The motion is complete.")
+      .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
+      .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
       .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")
       .finalize();
+  m.def("failed", &failed, py::arg("status"), "Whether there is no result.");
   m.def("message", &message, py::arg("status"), "One sentence: what happened.");
   m.def("advice", &advice, py::arg("status"), "One sentence: what to do about it; empty for OK.");
 
@@ -204,105 +295,9 @@ ResolutionError
            "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.")
       .def("__repr__", [](const PyScheme& scheme) { return scheme.repr; });
 
-  struct PyMVN : PyScheme {};
-  py::class_<PyMVN, PyScheme>(m, "MVN",
-                              (std::string("Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).") +
-                               kParameters + kVelocityOptions)
-                                  .c_str())
-      .def(py::init([](double k, const OptionalArray& rest, double stiffness, const OptionalArray& c) {
-             PyScheme scheme = begin(Law::kWMVN, "MVN");
-             set_gain(scheme, k);
-             return PyMVN{finish(scheme, 0.0, rest, stiffness, c)};
-           }),
-           py::kw_only(), py::arg("k") = 0.0, py::arg("rest_posture") = py::none(), py::arg("null_stiffness") = 0.0,
-           py::arg("c") = py::none());
-
-  struct PyWMVN : PyScheme {};
-  py::class_<PyWMVN, PyScheme>(m, "WMVN",
-                               (std::string("Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd.") +
-                                kParameters + kWeightsText + kVelocityOptions)
-                                   .c_str())
-      .def(py::init([](const ArrayLike& weights, double k, const OptionalArray& rest, double stiffness,
-                       const OptionalArray& c) {
-             PyScheme scheme = begin(Law::kWMVN, "WMVN");
-             set_weights(scheme, weights);
-             set_gain(scheme, k);
-             return PyWMVN{finish(scheme, 0.0, rest, stiffness, c)};
-           }),
-           py::arg("weights"), py::kw_only(), py::arg("k") = 0.0, py::arg("rest_posture") = py::none(),
-           py::arg("null_stiffness") = 0.0, py::arg("c") = py::none());
-
-  struct PyMAN : PyScheme {};
-  py::class_<PyMAN, PyScheme>(
-      m, "MAN",
-      (std::string("Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5).") +
-       kParameters + kAccelerationOptions)
-          .c_str())
-      .def(py::init([](double damping, const OptionalArray& rest, double stiffness, const OptionalArray& c) {
-             return PyMAN{finish(begin(Law::kMAN, "MAN"), damping, rest, stiffness, c)};
-           }),
-           py::kw_only(), py::arg("null_damping") = 0.0, py::arg("rest_posture") = py::none(),
-           py::arg("null_stiffness") = 0.0, py::arg("c") = py::none());
-
-  struct PyWMVNAcceleration : PyScheme {};
-  py::class_<PyWMVNAcceleration, PyScheme>(
-      m, "WMVNAcceleration",
-      (std::string("Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated.\n\n"
-                   "qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.") +
-       kParameters + kWeightsText + kAccelerationOptions)
-          .c_str())
-      .def(py::init([](const ArrayLike& weights, double damping, const OptionalArray& rest, double stiffness,
-                       const OptionalArray& c) {
-             PyScheme scheme = begin(Law::kFPBM, "WMVNAcceleration");
-             scheme.alpha = 1.0;
-             set_weights(scheme, weights);
-             return PyWMVNAcceleration{finish(scheme, damping, rest, stiffness, c)};
-           }),
-           py::arg("weights"), py::kw_only(), py::arg("null_damping") = 0.0, py::arg("rest_posture") = py::none(),
-           py::arg("null_stiffness") = 0.0, py::arg("c") = py::none());
-
-  struct PyBalanced : PyScheme {};
-  py::class_<PyBalanced, PyScheme>(
-      m, "Balanced",
-      (std::string("Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9).") +
-       kParameters + kAlphaText + kWeightsText + kAccelerationOptions)
-          .c_str())
-      .def(py::init([](double alpha, const ArrayLike& weights, double damping, const OptionalArray& rest,
-                       double stiffness, const OptionalArray& c) {
-             PyScheme scheme = begin(Law::kFPBM, "Balanced");
-             scheme.alpha = alpha;
-             scheme.repr += "alpha=" + text(alpha) + ", ";
-             set_weights(scheme, weights);
-             return PyBalanced{finish(scheme, damping, rest, stiffness, c)};
-           }),
-           py::arg("alpha"), py::arg("weights"), py::kw_only(), py::arg("null_damping") = 0.0,
-           py::arg("rest_posture") = py::none(), py::arg("null_stiffness") = 0.0, py::arg("c") = py::none());
-
-  struct PyFPBM : PyScheme {};
-  py::class_<PyFPBM, PyScheme>(
-      m, "FPBM",
-      (std::string(
-           "Feedback-added pseudoinverse-type balanced minimisation, (13).\n\n"
-           "The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so\n"
-           "that the tip error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.") +
-       kParameters + kAlphaText + kWeightsText +
-       "\nk1, k2 : float\n    Feedback gains on velocity [1/s] and position [1/s^2], not negative." +
-       kAccelerationOptions)
-          .c_str())
-      .def(py::init([](double alpha, const ArrayLike& weights, double k1, double k2, double damping,
-                       const OptionalArray& rest, double stiffness, const OptionalArray& c) {
-             PyScheme scheme = begin(Law::kFPBM, "FPBM");
-             scheme.alpha = alpha;
-             scheme.k1 = k1;
-             scheme.k2 = k2;
-             scheme.repr += "alpha=" + text(alpha) + ", ";
-             set_weights(scheme, weights);
-             scheme.repr += ", k1=" + text(k1) + ", k2=" + text(k2);
-             return PyFPBM{finish(scheme, damping, rest, stiffness, c)};
-           }),
-           py::arg("alpha"), py::arg("weights"), py::arg("k1"), py::arg("k2"), py::kw_only(),
-           py::arg("null_damping") = 0.0, py::arg("rest_posture") = py::none(), py::arg("null_stiffness") = 0.0,
-           py::arg("c") = py::none());
+  bind_second_tasks(m);
+  bind_velocity_schemes(m);
+  bind_acceleration_schemes(m);
 }
 
 }  // namespace fpbm::bindings

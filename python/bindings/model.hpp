@@ -1,6 +1,6 @@
 #pragma once
 
-#include "arm.hpp"
+#include "whole_arm.hpp"
 
 namespace fpbm::bindings {
 
@@ -18,16 +18,27 @@ class Model final : public TaskModel<Space> {
   [[nodiscard]] RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
                                                  const State<kDynamic>& start, const TimeGrid<double>& grid,
                                                  const typename TaskModel<Space>::Buffers& buffers) const override {
+    if (scheme.has_wrappers()) return bindings::simulate(scheme, whole(), path, start, grid, buffers);
     const State<N> fixed{start.q, start.qd};
     const MotionBuffers<Space, N> record{buffers.t, buffers.q,     buffers.qd,   buffers.qdd,
                                          buffers.x, buffers.x_ref, buffers.error};
-    const RolloutResult<N> result = scheme.visit<N>(
-        arm_->dof(), [&](const auto& chosen) { return rollout(*arm_, path, chosen, fixed, grid, record); });
+    const RolloutResult<N> result = scheme.visit_core<N>(
+        arm_->limits(), [&](const auto& chosen) { return rollout(*arm_, path, chosen, fixed, grid, record); });
     return {result.status, result.time, {result.last.q, result.last.qd}, result.samples};
   }
 
  private:
   static constexpr int N = Arm::kDof;
+
+  [[nodiscard]] WholeArm<Space> whole() const {
+    using Poses = typename PoseOver<typename ArmTraits<Arm>::Positions>::type;
+    std::shared_ptr<const TaskModel<Pose>> poses;
+    if constexpr (std::is_same_v<Poses, Pose>) poses = std::make_shared<Model<Arm, Pose>>(arm_);
+    const JointLimits<N> limits = arm_->limits();
+    return {
+        borrowed<TaskModel<Space>>(*this), poses, {limits.lower, limits.upper, limits.velocity, limits.acceleration}};
+  }
+
   std::shared_ptr<const Arm> arm_;
 };
 

@@ -57,6 +57,12 @@ class PyArm {
         models_);
   }
 
+  /// The model of tip positions in Positions, for those that keep it. Throws std::bad_variant_access for another space.
+  template <typename Positions>
+  [[nodiscard]] std::shared_ptr<const TaskModel<Positions>> positions() const {
+    return std::get<ArmModels<Positions>>(models_).position;
+  }
+
  protected:
   template <typename Positions>
   PyArm(ArmModels<Positions> models, JointLimits<kDynamic> limits, std::vector<std::string> joint_names)

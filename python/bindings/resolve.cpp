@@ -1,4 +1,5 @@
 #include "kinematics.hpp"
+#include "objectives.hpp"
 
 namespace fpbm::bindings {
 
@@ -9,13 +10,49 @@ Status resolve(const PyScheme& scheme, const Kinematics<Space, kDynamic>& kinema
                                 [&](const auto& chosen) { return chosen.resolve(kinematics, reference, state, out); });
 }
 
+template <typename Space>
+Status resolve(const PyScheme& scheme, const WholeArm<Space>& arm, const Reference<Space>& reference,
+               const State<kDynamic>& state, Joints& out) {
+  const Kinematics<Space, kDynamic> kinematics = arm.model->kinematics(state.q, state.qd);
+  return visit_whole(scheme, arm, [&](const auto& whole) { return whole.resolve(kinematics, reference, state, out); });
+}
+
+template <typename Space>
+RolloutResult<kDynamic> simulate(const PyScheme& scheme, const WholeArm<Space>& arm, const AnyPath<Space>& path,
+                                 const State<kDynamic>& start, const TimeGrid<double>& grid,
+                                 const MotionBuffers<Space, kDynamic>& buffers) {
+  return visit_whole(scheme, arm, [&](const auto& whole) {
+    return rollout(AnyArm<Space>(arm.model, arm.dof()), path, whole, start, grid, buffers);
+  });
+}
+
 template Status resolve(const PyScheme&, const Kinematics<Position<2>, kDynamic>&, const Reference<Position<2>>&,
                         const State<kDynamic>&, Joints&);
+template Status resolve(const PyScheme&, const WholeArm<Position<2>>&, const Reference<Position<2>>&,
+                        const State<kDynamic>&, Joints&);
+template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Position<2>>&, const AnyPath<Position<2>>&,
+                                          const State<kDynamic>&, const TimeGrid<double>&,
+                                          const MotionBuffers<Position<2>, kDynamic>&);
 template Status resolve(const PyScheme&, const Kinematics<PlanarPose, kDynamic>&, const Reference<PlanarPose>&,
                         const State<kDynamic>&, Joints&);
+template Status resolve(const PyScheme&, const WholeArm<PlanarPose>&, const Reference<PlanarPose>&,
+                        const State<kDynamic>&, Joints&);
+template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<PlanarPose>&, const AnyPath<PlanarPose>&,
+                                          const State<kDynamic>&, const TimeGrid<double>&,
+                                          const MotionBuffers<PlanarPose, kDynamic>&);
 template Status resolve(const PyScheme&, const Kinematics<Position<3>, kDynamic>&, const Reference<Position<3>>&,
                         const State<kDynamic>&, Joints&);
+template Status resolve(const PyScheme&, const WholeArm<Position<3>>&, const Reference<Position<3>>&,
+                        const State<kDynamic>&, Joints&);
+template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Position<3>>&, const AnyPath<Position<3>>&,
+                                          const State<kDynamic>&, const TimeGrid<double>&,
+                                          const MotionBuffers<Position<3>, kDynamic>&);
 template Status resolve(const PyScheme&, const Kinematics<Pose, kDynamic>&, const Reference<Pose>&,
                         const State<kDynamic>&, Joints&);
+template Status resolve(const PyScheme&, const WholeArm<Pose>&, const Reference<Pose>&, const State<kDynamic>&,
+                        Joints&);
+template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Pose>&, const AnyPath<Pose>&,
+                                          const State<kDynamic>&, const TimeGrid<double>&,
+                                          const MotionBuffers<Pose, kDynamic>&);
 
 }  // namespace fpbm::bindings

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "fpbm/core/types.hpp"
@@ -12,7 +13,7 @@ inline std::string text(double value) {
   char buffer[32];
   for (int digits = 6; digits <= 17; ++digits) {
     std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
-    if (std::stod(buffer) == value) break;
+    if (std::strtod(buffer, nullptr) == value) break;
   }
   return buffer;
 }

@@ -14,6 +14,7 @@ __all__: list[str] = [
     "Balanced",
     "Circle",
     "FPBM",
+    "Gaze",
     "JointLimits",
     "Kinematics",
     "Line",
@@ -24,6 +25,7 @@ __all__: list[str] = [
     "Path",
     "PlanarArm",
     "Scheme",
+    "SecondTask",
     "SerialArm",
     "Status",
     "Tricuspid",
@@ -32,6 +34,7 @@ __all__: list[str] = [
     "Waypoints",
     "advice",
     "dh",
+    "failed",
     "message",
     "preset",
     "rotation",
@@ -400,9 +403,11 @@ class Status(enum.Enum):
     What became of an evaluation or a rollout.
     """
 
+    DAMPED = ...
     NOT_FINITE = ...
     OK = ...
     SINGULAR = ...
+    SLOWED = ...
     TASK_LOST = ...
 
 class Scheme:
@@ -469,6 +474,65 @@ class Scheme:
         'velocity' where resolve returns qd, 'acceleration' where it returns qdd.
         """
 
+class SecondTask:
+    """
+    A point for a second arm's tip, in the null space of the first task.
+
+    The second arm is of the first joints of the first one: its tip an elbow, say. The first task comes strictly first.
+
+    Parameters
+    ----------
+    arm : Arm
+        The second arm: PlanarArm(lengths[:k]), or SerialArm.from_joints(joints[:k]).
+    x : array_like, shape (2,) or (3,)
+        Where its tip is to be, in the base frame [m].
+    k1, k2 : float
+        Feedback gains on velocity [1/s], which velocity-level schemes do without, and position [1/s^2], or [1/s] at
+        velocity level; not negative.
+
+    Raises
+    ------
+    ValueError
+        Where an argument is out of range, not finite, or of the wrong shape.
+    """
+    def __init__(
+        self,
+        arm: Arm,
+        x: numpy.typing.ArrayLike,
+        *,
+        k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
+        k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+
+class Gaze:
+    """
+    A direction for the tip's z axis, in the null space of the first task.
+
+    Of an arm in space; the axis may still turn about itself. The first task comes strictly first.
+
+    Parameters
+    ----------
+    direction : array_like, shape (3,)
+        Where the axis is to point, in the base frame; its length does not matter.
+    k1, k2 : float
+        Feedback gains on velocity [1/s], which velocity-level schemes do without, and direction [1/s^2], or [1/s] at
+        velocity level; not negative.
+
+    Raises
+    ------
+    ValueError
+        Where an argument is out of range, not finite, or of the wrong shape.
+    """
+    def __init__(
+        self,
+        direction: numpy.typing.ArrayLike,
+        *,
+        k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
+        k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+
 class MVN(Scheme):
     """
     Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).
@@ -481,6 +545,19 @@ class MVN(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s].
     c : array_like, shape (n,)
         The free choice in the general solution (3) [rad/s].
+    joint_centring : float
+        Gain [rad^2/s] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985).
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -494,6 +571,11 @@ class MVN(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 class WMVN(Scheme):
@@ -510,6 +592,19 @@ class WMVN(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s].
     c : array_like, shape (n,)
         The free choice in the general solution (3) [rad/s].
+    joint_centring : float
+        Gain [rad^2/s] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985).
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -524,6 +619,11 @@ class WMVN(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 class MAN(Scheme):
@@ -538,6 +638,20 @@ class MAN(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
         The free choice in the general solution (5) [rad/s^2].
+    joint_centring : float
+        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
+        null_damping, without which it swings for ever.
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -551,6 +665,11 @@ class MAN(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 class WMVNAcceleration(Scheme):
@@ -569,6 +688,20 @@ class WMVNAcceleration(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
         The free choice in the general solution (5) [rad/s^2].
+    joint_centring : float
+        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
+        null_damping, without which it swings for ever.
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -583,6 +716,11 @@ class WMVNAcceleration(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 class Balanced(Scheme):
@@ -601,6 +739,20 @@ class Balanced(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
         The free choice in the general solution (5) [rad/s^2].
+    joint_centring : float
+        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
+        null_damping, without which it swings for ever.
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -616,6 +768,11 @@ class Balanced(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 class FPBM(Scheme):
@@ -639,6 +796,20 @@ class FPBM(Scheme):
         Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
     c : array_like, shape (n,)
         The free choice in the general solution (5) [rad/s^2].
+    joint_centring : float
+        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
+        arm's limits bound both ways (Liegeois, 1977).
+    manipulability_gain : float
+        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
+        null_damping, without which it swings for ever.
+    second_task : SecondTask or Gaze
+        What the null space does before all else: the rest of these options have what it leaves.
+    singular_radius, singular_brake : float
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
+        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+
+    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
+    and cannot be resolved from a Kinematics.
 
     Raises
     ------
@@ -656,6 +827,11 @@ class FPBM(Scheme):
         rest_posture: numpy.typing.ArrayLike | None = None,
         null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         c: numpy.typing.ArrayLike | None = None,
+        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        second_task: SecondTask | Gaze | None = None,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
 
 def advice(status: Status) -> str:
@@ -666,6 +842,11 @@ def advice(status: Status) -> str:
 def dh(
     table: numpy.typing.ArrayLike, convention: str, types: collections.abc.Sequence[str]
 ) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
+def failed(status: Status) -> bool:
+    """
+    Whether there is no result.
+    """
+
 def message(status: Status) -> str:
     """
     One sentence: what happened.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._core import PlanarArm, Status, advice, message
+from ._core import PlanarArm, Status, advice, failed, message
 from ._types import Array
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class RunStatus:
     Attributes
     ----------
     code : Status
-        Status.OK when the whole motion is done; otherwise why it stopped.
+        Status.OK, DAMPED or SLOWED when the whole motion is done; otherwise why it stopped.
     time : float
         Time of the last sample [s].
     q : numpy.ndarray, shape (n,)
@@ -38,7 +38,7 @@ class RunStatus:
     @property
     def ok(self) -> bool:
         """Whether the whole motion is done."""
-        return self.code is Status.OK
+        return not failed(self.code)
 
     @property
     def advice(self) -> str:
@@ -50,7 +50,8 @@ class RunStatus:
 
     def __str__(self) -> str:
         if self.ok:
-            return f"complete, t = {self.time:g} s"
+            remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
+            return f"complete, t = {self.time:g} s{remark}"
         where = np.array2string(self.q, precision=4, separator=", ")
         return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
 

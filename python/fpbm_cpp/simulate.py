@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._core import Arm, Path, Scheme, Status
+from ._core import Arm, Path, Scheme, failed
 from ._errors import ResolutionError
 from .run import Run, RunStatus
 
@@ -65,6 +65,6 @@ def simulate(
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
     run = Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task)
-    if code is not Status.OK and not partial:
+    if failed(code) and not partial:
         raise ResolutionError(code, str(status), run)
     return run
