@@ -96,7 +96,7 @@ class Tracker {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
     Result result = idle(measured);
-    if (!(q.allFinite() && qd.allFinite())) {
+    if (!moderate(measured)) {
       result.status = Status::kNotFinite;
       result.scale = Scalar(0);
       return result;
@@ -152,6 +152,11 @@ class Tracker {
     }
   }
 
+  /// Whether a state is finite, and so far from overflow that one can still brake from it.
+  [[nodiscard]] bool moderate(const JointState& state) const noexcept {
+    return state.q.allFinite() && Row(state.qd * (Scalar(4) / dt_)).allFinite();
+  }
+
   /// `reference(seconds)` is the reference so far into the tick.
   template <typename References>
   Result advance(References&& reference) noexcept {
@@ -175,7 +180,7 @@ class Tracker {
     } else {
       next.qd = (next.q - state_.q) / dt_;
     }
-    if (!(next.q.allFinite() && next.qd.allFinite())) result.status = Status::kNotFinite;
+    if (!moderate(next)) result.status = Status::kNotFinite;
     if (stopping_ || failed(result.status) || !limiter_.limits().admits(state_, next)) {
       Row wanted = next.qd;
       if constexpr (kSecondOrder) {
