@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= demo
+SECONDS ?= 600
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
 GTEST := /usr/include/gtest/gtest.h:libgtest-dev
@@ -17,6 +18,7 @@ help:
 	@echo 'make test             build and run every test'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make soak             a day of a control loop at 1 kHz'
+	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, types, stubs'
 	@echo 'make bench            build and run the benchmarks'
 	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
@@ -43,6 +45,16 @@ soak:
 	cmake --preset release
 	cmake --build --preset release --target fpbm_soak
 	build/release/tests/cpp/fpbm_soak $(TICKS)
+
+# The corpus stays in build/fuzz, so that the next run goes on from it.
+fuzz:
+	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
+	tools/need.sh $$(clang++ -print-file-name=libclang_rt.fuzzer-$$(uname -m).a):libclang-rt-dev
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	mkdir -p build/fuzz/corpus
+	build/fuzz/tests/fuzz/tracker_fuzz -max_total_time=$(SECONDS) -max_len=4096 -timeout=10 -verbosity=0 -print_final_stats=1 \
+	  -artifact_prefix=build/fuzz/ build/fuzz/corpus
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest
