@@ -45,6 +45,10 @@ TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   arm.kinematics(Vector<2>::Zero(), kinematics);
   EXPECT_EQ(manipulability(kinematics.J), 0.0);
   EXPECT_EQ(manipulability_gradient<Position<2>>(arm, Vector<2>(0.0, 0.0)), Vector<2>(0.0, 0.0));
+  for (const double turn : {0.1, 0.3, 0.7, 2.0}) {
+    const PlanarArm<4> straight(Vector<4>(1.0, 0.8, 0.6, 0.4));
+    EXPECT_EQ(manipulability_gradient<Position<2>>(straight, Vector<4>(turn, 0.0, 0.0, 0.0)), Vector<4>::Zero());
+  }
   EXPECT_NEAR(manipulability_gradient<Position<2>>(arm, Vector<2>(0.4, 0.3))(1), std::cos(0.3), 1e-14);
 }
 
