@@ -1,6 +1,6 @@
 // A Panda draws a circle under ros2_control: Tracker::tick() in a controller's update(), which commands joint positions
 // and can be paused and resumed by messages on ~/run.
-// Compiled and run against a stand-in of ros2_control (its interfaces of 2025) only, never on a robot.
+// Compiled and run against a stand-in of ros2_control (its interfaces since 4.27) only, never on a robot.
 
 #include <atomic>
 #include <controller_interface/controller_interface.hpp>
