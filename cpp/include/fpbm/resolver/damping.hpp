@@ -18,7 +18,8 @@ namespace fpbm {
 ///   Δ = Σ δ(σ_i) u_i u_iᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, 0 beyond,   ε = radius ‖J‖_F,
 ///
 /// where σ_i, u_i are singular values and left singular vectors of J. Δ is a spectral function of JJᵀ with two
-/// continuous derivatives, hence smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
+/// continuous derivatives, hence smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with
+/// weights, whose W⁻¹ has a largest diagonal entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 /// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd, so
 /// that an arm that is drawn to a target out of reach comes to rest at the edge.
 template <typename Scalar = double>
@@ -42,7 +43,8 @@ class SingularDamping {
   Scalar brake_;
 };
 
-/// Lower bound on the least singular value of J, at most √M times too low: 1/√tr((JJᵀ)⁻¹); 0 at a singular posture.
+/// Lower bound on the least singular value of J, at most √M times too low: 1/√tr((JJᵀ)⁻¹). At a singular posture it is
+/// 0 or what round-off in JJᵀ leaves, of the order of √epsilon ‖J‖_F.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
   using std::sqrt;
