@@ -1,0 +1,195 @@
+"""A Panda in MuJoCo, led by torques: it draws a circle, is pushed, reaches for what is too far and too near, goes home.
+
+Each millisecond Tracker.resolve_measured() turns the measured joints into an acceleration within their limits, and
+computed torque, tau = M(q) qdd + h(q, qd), is to realise it. The controller believes every mass and inertia to be 2 %
+greater than it is, and knows nothing of friction.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from math import pi
+from typing import Any
+
+import numpy as np
+from panda_mjcf import TORQUE, panda_mjcf
+
+import fpbm_cpp as fp
+
+try:
+    import mujoco
+except ModuleNotFoundError:
+    sys.exit("this example needs MuJoCo: pip install mujoco")
+
+ARM = fp.SerialArm.preset("panda")
+HOME = np.array([0, -pi / 4, 0, -3 * pi / 4, 0, pi / 2, pi / 4])  # [rad], the hand points down
+DT = 1e-3  # A tick of the controller [s].
+STEPS = 4  # Steps of the simulation in a tick.
+
+PHASES = {"circle": 0.0, "hold": 4.0, "push": 6.0, "too far": 9.0, "too near": 13.0, "home": 17.0}  # Beginnings [s].
+END = 21.0  # [s]
+CIRCLE = fp.Circle(0.12, 4.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
+START = ARM.forward(HOME)
+AWAY = {"too far": (0.5, 0.0, 0.0), "too near": (-0.35, 0.0, -0.35)}  # Leaps of the target from START [m].
+PUSH = (0.0, 30.0, 0.0)  # Force on link 4, at the elbow [N],
+PUSH_LASTS = 0.3  # and for how long [s].
+
+WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
+SCHEME = {"k1": 60, "k2": 900, "null_damping": 10, "rest_posture": HOME, "null_stiffness": 25}
+# A quarter of the gain k1 k2 at which it would be unstable. The bound is in rad/s² as well: in Coulomb's friction over
+# inertia the wrist has some 6 of it.
+INTEGRAL = {"integral_gain": 0.25 * 60 * 900, "integral_bound": 10.0}
+
+
+def margins() -> fp.JointLimits:
+    """A little less than the arm's limits: its acceleration is not quite the one it is told."""
+    real = ARM.limits
+    return fp.JointLimits(
+        lower=real.lower + 0.005,  # [rad]
+        upper=real.upper - 0.005,
+        velocity=0.995 * real.velocity,
+        acceleration=real.acceleration,
+    )
+
+
+def phase(t: float) -> str:
+    return [name for name, start in PHASES.items() if start <= t + DT / 2][-1]
+
+
+def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The target's pose, velocity and acceleration [m, s]; its orientation stays."""
+    way, velocity, acceleration = CIRCLE.sample(t)  # At rest from its end on.
+    x = START.copy()
+    x[:3, 3] += way + AWAY.get(phase(t), (0, 0, 0))
+    return x, np.append(velocity, np.zeros(3)), np.append(acceleration, np.zeros(3))
+
+
+@dataclass
+class Motion:
+    """Tip errors [m], [rad] and torques [Nm], a row a tick; joints [rad], [rad/s], a row a step of the simulation."""
+
+    tip: list[float] = field(default_factory=list)
+    turn: list[float] = field(default_factory=list)
+    torque: list[np.ndarray] = field(default_factory=list)
+    q: list[np.ndarray] = field(default_factory=list)
+    qd: list[np.ndarray] = field(default_factory=list)
+
+    def during(self, name: str, rows: str) -> np.ndarray:
+        """The rows of a phase."""
+        begins = [*PHASES.values(), END]
+        i = list(PHASES).index(name)
+        per_second = round((STEPS if rows in ("q", "qd") else 1) / DT)
+        return np.array(getattr(self, rows)[round(begins[i] * per_second) : round(begins[i + 1] * per_second)])
+
+    def clearance(self) -> tuple[np.ndarray, np.ndarray]:
+        """How far each joint stayed from its bounds, at any step, on position [rad] and on velocity [rad/s]."""
+        q, qd, real = np.array(self.q), np.array(self.qd), ARM.limits
+        return np.minimum(q - real.lower, real.upper - q).min(axis=0), (real.velocity - abs(qd)).min(axis=0)
+
+    def settled(self) -> float:
+        """Seconds from the push on until every joint stays below 0.01 rad/s and the tip within 1 mm."""
+        busy = (abs(self.during("push", "qd")[::STEPS]).max(axis=1) > 0.01) | (self.during("push", "tip") > 1e-3)
+        return float(DT * (np.flatnonzero(busy).max(initial=-1) + 1))
+
+
+def simulate(
+    *,
+    scheme: dict[str, Any] = SCHEME,
+    integral: dict[str, float] = INTEGRAL,
+    limits: fp.JointLimits | None = None,
+    inertia_error: float = 0.02,
+    friction: float = 1.0,
+    end: float = END,
+) -> Motion:
+    tracker = fp.Tracker(
+        ARM, fp.FPBM(0.6, WEIGHTS, **scheme), HOME, task="pose", dt=DT, limits=limits or margins(), **integral
+    )
+    arm = mujoco.MjModel.from_xml_string(panda_mjcf(friction=friction, timestep=DT / STEPS))
+    belief = mujoco.MjModel.from_xml_string(panda_mjcf(friction=0.0, inertia_error=inertia_error))
+    world, believed = mujoco.MjData(arm), mujoco.MjData(belief)
+    world.qpos[:] = HOME
+
+    motion = Motion()
+    torque = np.zeros(ARM.dof)
+    for t in DT * np.arange(round(end / DT)):
+        q, qd = world.qpos.copy(), world.qvel.copy()
+        tick = tracker.resolve_measured(q, qd, *reference(t))
+
+        believed.qpos[:], believed.qvel[:] = q, qd
+        mujoco.mj_forward(belief, believed)
+        mujoco.mj_mulM(belief, believed, torque, tick.qdd)
+        world.ctrl[:] = torque + believed.qfrc_bias  # The motors give no more than they can.
+
+        pushed = PHASES["push"] <= t < PHASES["push"] + PUSH_LASTS
+        world.body("link4").xfrc_applied[:3] = PUSH if pushed else (0, 0, 0)
+        for _ in range(STEPS):
+            mujoco.mj_step(arm, world)
+            motion.q.append(world.qpos.copy())
+            motion.qd.append(world.qvel.copy())
+        motion.torque.append(world.actuator_force.copy())
+        motion.tip.append(float(np.linalg.norm(tick.error[:3])))
+        motion.turn.append(float(np.linalg.norm(tick.error[3:])))
+    return motion
+
+
+def report(motion: Motion) -> None:
+    print("            tip error, mm            turn error, mrad         fastest joint, rad/s")
+    print("              rms      max   at end      rms      max   at end      max   at end")
+    for name in PHASES:
+        cells = []
+        for error in (1e3 * motion.during(name, "tip"), 1e3 * motion.during(name, "turn")):
+            cells += [np.sqrt(np.mean(error**2)), error.max(), error[-1]]
+        speed = abs(motion.during(name, "qd")).max(axis=1)
+        print(f"{name:9}", *(f"{cell:8.3f}" for cell in [*cells, speed.max(), speed[-1]]))
+
+    joints = motion.during("push", "q")
+    position, velocity = motion.clearance()
+    strain = abs(np.array(motion.torque)).max(axis=0)
+    moved = abs(joints - joints[0]).max()
+    print(f"\nthe push moved a joint by {moved:.3f} rad; at rest {motion.settled():.2f} s after it began")
+    print(f"nearest to a bound at any of {len(motion.q)} steps, joint by joint:")
+    print("  position, rad  ", *(f"{value:7.4f}" for value in position))
+    print("  velocity, rad/s", *(f"{value:7.4f}" for value in velocity))
+    print("greatest torque, Nm", *(f"{value:.1f}" for value in strain))
+
+
+def draw(motion: Motion) -> Any:
+    from matplotlib.figure import Figure
+
+    from fpbm_cpp.plot import OKABE_ITO
+
+    real = ARM.limits
+    q = (2 * np.array(motion.q[STEPS - 1 :: STEPS]) - real.upper - real.lower) / (real.upper - real.lower)
+    qd = np.array(motion.qd[STEPS - 1 :: STEPS]) / real.velocity
+    t = DT * np.arange(1, len(q) + 1)
+
+    figure = Figure(figsize=(8.0, 9.0), dpi=150, layout="constrained")
+    axes = figure.subplots(4, 1, sharex=True)
+    axes[0].semilogy(t, 1e3 * np.array(motion.tip), color="#D55E00", lw=1.2, label="position [mm]")
+    axes[0].semilogy(t, 1e3 * np.array(motion.turn), color="#0072B2", lw=1.0, label="orientation [mrad]")
+    axes[0].axhline(1.0, color="0.5", lw=0.8, ls="--")
+    axes[0].set(ylabel="tip error", ylim=(1e-3, 3e3))
+    axes[0].legend(loc="lower center", bbox_to_anchor=(0.62, 0.02), frameon=False)
+    torque = np.array(motion.torque) / np.array(TORQUE)
+    for panel, rows, label in zip(axes[1:], (q, qd, torque), ("position", "velocity", "torque")):
+        for i, color in enumerate(OKABE_ITO[: ARM.dof]):
+            panel.plot(t, rows[:, i], color=color, lw=1.1, label=f"joint {i + 1}")
+        for bound in (-1, 1):
+            panel.axhline(bound, color="black", lw=0.8, ls="--")
+        panel.set(ylabel=f"{label} / bounds", ylim=(-1.12, 1.12))
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=ARM.dof, frameon=False)
+    ends = [*PHASES.values(), END]
+    for i, name in enumerate(PHASES):
+        for panel in axes:
+            panel.axvspan(ends[i], ends[i + 1], color="0.93" if i % 2 else "white", zorder=0)
+        axes[0].text((ends[i] + ends[i + 1]) / 2, 1.02, name, transform=axes[0].get_xaxis_transform(), ha="center")
+    axes[-1].set(xlabel="time [s]", xlim=(0, END), xticks=ends)
+    figure.align_ylabels(axes)
+    return figure
+
+
+if __name__ == "__main__":
+    done = simulate()
+    report(done)
+    draw(done).savefig("mujoco_panda.png")

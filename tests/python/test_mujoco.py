@@ -1,0 +1,148 @@
+"""A Panda under computed torque in MuJoCo, with friction and masses that the controller does not know."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+mujoco = pytest.importorskip("mujoco")
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+example = importlib.import_module("08_mujoco_panda")
+panda_mjcf = importlib.import_module("panda_mjcf")
+
+HOME = example.HOME
+
+
+def model(**options):
+    compiled = mujoco.MjModel.from_xml_string(panda_mjcf.panda_mjcf(**options))
+    return compiled, mujoco.MjData(compiled)
+
+
+def states(count: int):
+    rng = np.random.default_rng(1)
+    limits = example.ARM.limits
+    for _ in range(count):
+        yield rng.uniform(limits.lower, limits.upper), rng.uniform(-limits.velocity, limits.velocity)
+
+
+def mass_matrix(compiled, data) -> np.ndarray:
+    columns = np.zeros((compiled.nv, compiled.nv))
+    for column, unit in zip(columns, np.eye(compiled.nv)):
+        mujoco.mj_mulM(compiled, data, column, unit)
+    return columns.T
+
+
+def test_the_model_is_the_arm():
+    compiled, data = model()
+    tip = data.site("tip")
+    J = np.zeros((6, 7))
+    for data.qpos[:], data.qvel[:] in states(1000):
+        mujoco.mj_forward(compiled, data)
+        T = example.ARM.forward(data.qpos)
+        mujoco.mj_jacSite(compiled, data, J[:3], J[3:], tip.id)
+        np.testing.assert_allclose(tip.xpos, T[:3, 3], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(tip.xmat.reshape(3, 3), T[:3, :3], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(J, example.ARM.jacobian(data.qpos, task="pose"), rtol=0, atol=1e-9)
+
+
+def test_the_dynamics_are_plausible():
+    compiled, data = model()
+    heavier, believed = model(inertia_error=0.02)
+    assert 15 < compiled.body_mass.sum() < 18  # [kg]; the data sheet says about 18 with the base.
+    for q, qd in states(100):
+        for m, d in ((compiled, data), (heavier, believed)):
+            d.qpos[:], d.qvel[:] = q, qd
+            mujoco.mj_forward(m, d)
+        M = mass_matrix(compiled, data)
+        np.testing.assert_allclose(M, M.T, atol=1e-12)
+        assert np.linalg.eigvalsh(M)[0] > panda_mjcf.ARMATURE / 2
+        np.testing.assert_allclose(mass_matrix(heavier, believed), 1.02 * M, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(believed.qfrc_bias, 1.02 * data.qfrc_bias, rtol=1e-9, atol=1e-12)
+
+
+def test_friction_holds_what_it_can():
+    compiled, data = model()
+    data.qpos[:] = HOME
+    mujoco.mj_forward(compiled, data)
+    for share in (0.9, 1.5):
+        data.qpos[:], data.qvel[:] = HOME, 0
+        for _ in range(400):  # 0.1 s under more torque than holds the arm
+            mujoco.mj_forward(compiled, data)
+            data.ctrl[:] = data.qfrc_bias + share * np.array(panda_mjcf.COULOMB) * np.eye(7)[4]
+            mujoco.mj_step(compiled, data)
+        assert (abs(data.qpos - HOME)[4] > 1e-4) == (share > 1)
+
+
+@pytest.fixture(scope="module")
+def motion():
+    return example.simulate()
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def last(motion, name: str, rows: str, seconds: float = 0.5) -> np.ndarray:
+    """The end of a phase."""
+    values = motion.during(name, rows)
+    per_tick = example.STEPS if rows in ("q", "qd") else 1
+    return values[-round(seconds / example.DT) * per_tick :]
+
+
+def test_the_tip_is_on_the_circle(motion):
+    assert rms(motion.during("circle", "tip")) < 1e-3  # [m]
+    assert last(motion, "hold", "tip").max() < 1e-4
+
+
+def test_the_arm_settles_after_the_push(motion):
+    joints = motion.during("push", "q")
+    assert abs(joints - joints[0]).max() > 0.1  # It was pushed indeed.
+    assert motion.settled() < 1.5  # [s]
+    assert last(motion, "push", "tip").max() < 1e-4
+
+
+def test_no_bound_is_broken_at_any_step(motion):
+    position, velocity = motion.clearance()
+    assert np.all(position > 0)
+    assert np.all(velocity > 0)
+    assert position.min() < 0.01  # Bounds were met indeed.
+    assert velocity.min() < 0.03
+    assert np.all(abs(np.array(motion.torque)).max(axis=0) < panda_mjcf.TORQUE)
+
+
+@pytest.mark.parametrize("name", ["too far", "too near"])
+def test_out_of_reach_the_arm_rests(motion, name):
+    tip = last(motion, name, "tip")
+    assert tip.min() > 0.05  # Out of reach indeed.
+    assert np.ptp(tip) < 1e-4
+    assert abs(last(motion, name, "qd")).max() < 0.03
+
+
+def test_within_reach_again_the_tip_is_there(motion):
+    assert last(motion, "home", "tip", 1.0).max() < 1e-3
+    assert abs(last(motion, "home", "qd")).max() < 0.01
+
+
+def test_without_limits_bounds_are_broken():
+    none = np.full(7, 1e3)
+    limits = fp.JointLimits(lower=-none, upper=none, velocity=none, acceleration=none)
+    position, velocity = example.simulate(limits=limits, end=11.0).clearance()
+    assert position.min() < -0.5
+    assert velocity.min() < -1
+
+
+def test_without_the_integral_an_error_stays():
+    motion = example.simulate(integral={}, end=6.0)
+    assert rms(motion.during("circle", "tip")) > 1e-3
+    assert last(motion, "hold", "tip").min() > 5e-4
+
+
+def test_a_fifth_of_the_mass_missing_is_too_much():
+    motion = example.simulate(inertia_error=-0.2, end=4.0)
+    assert rms(motion.during("circle", "tip")) > 1e-3
