@@ -21,7 +21,10 @@ class Bytes {
   }
 
   /// From 0 to 1.
-  double fraction() { return (256.0 * byte() + byte()) / 65535.0; }
+  double fraction() {
+    const double high = byte();
+    return (256.0 * high + byte()) / 65535.0;
+  }
 
   double within(double lower, double upper) { return lower + fraction() * (upper - lower); }
 

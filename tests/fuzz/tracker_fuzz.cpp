@@ -273,17 +273,15 @@ void run_any_scheme(Bytes& bytes, const Arm& arm, Space space) {
     wild = wild || !(w(i) >= 0.1 && w(i) <= 10.0);
   }
   const fpbm::DiagonalWeights<N> weights(w);
+  // Drawn before any of them is used: the order in which a call's arguments are evaluated is anyone's guess.
+  const double alpha = bytes.mostly(bytes.fraction());
+  const double k1 = any_gain(bytes, 100.0, wild);
+  const double k2 = any_gain(bytes, 1000.0, wild);
   switch (which % 4) {
-    case 0: {
-      const double alpha = bytes.mostly(bytes.fraction());
-      const double k1 = any_gain(bytes, 100.0, wild);
-      const double k2 = any_gain(bytes, 1000.0, wild);
-      return run(bytes, arm, space, fpbm::FPBM<N>(alpha, weights, k1, k2, null_space, damping), wild);
-    }
+    case 0: return run(bytes, arm, space, fpbm::FPBM<N>(alpha, weights, k1, k2, null_space, damping), wild);
     case 1: return run(bytes, arm, space, fpbm::MAN<N>(null_space, damping), wild);
-    case 2: return run(bytes, arm, space, fpbm::MVN<N>(any_gain(bytes, 50.0, wild), null_space, damping), wild);
-    default:
-      return run(bytes, arm, space, fpbm::WMVN<N>(weights, any_gain(bytes, 50.0, wild), null_space, damping), wild);
+    case 2: return run(bytes, arm, space, fpbm::MVN<N>(k1, null_space, damping), wild);
+    default: return run(bytes, arm, space, fpbm::WMVN<N>(weights, k1, null_space, damping), wild);
   }
 }
 
