@@ -134,17 +134,22 @@ TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
   EXPECT_NE(complaint([&] { ManipulabilityAscent(narrow, arm, 1.0).require_dof(4); }), "");
 }
 
-/// A posture that the scheme refuses, it refuses.
+/// What the scheme refuses, a posture or a reference, it refuses, and leaves u alone.
 TEST(ManipulabilityAscent, hands_failures_on) {
   const PlanarArm<4> arm = paper_arm();
-  Kinematics<Position<2>, 4> kinematics;
-  const State<4> straight{Vector<4>::Zero(), Vector<4>::Zero()};
-  arm.kinematics(straight.q, straight.qd, kinematics);
-  Vector<4> u = Vector<4>::Constant(42.0);
-  const auto reference = Reference<Position<2>>::hold(kinematics.tip);
-  EXPECT_EQ(ManipulabilityAscent(paper_fpbm(), arm, 1.0).resolve(kinematics, reference, straight, u),
-            Status::kSingular);
-  EXPECT_EQ(u, Vector<4>::Constant(42.0));
+  const auto attempt = [&](const Vector<4>& q, const Vector<2>& x) {
+    const State<4> state{q, Vector<4>::Zero()};
+    Kinematics<Position<2>, 4> kinematics;
+    arm.kinematics(state.q, state.qd, kinematics);
+    Vector<4> u = Vector<4>::Constant(42.0);
+    const Status status =
+        ManipulabilityAscent(paper_fpbm(), arm, 1.0).resolve(kinematics, Reference<Position<2>>::hold(x), state, u);
+    EXPECT_EQ(failed(status), u == Vector<4>::Constant(42.0));
+    return status;
+  };
+  EXPECT_EQ(attempt(paper_start().q, Vector<2>(3.0, 2.0)), Status::kOk);
+  EXPECT_EQ(attempt(Vector<4>::Zero(), Vector<2>(3.0, 2.0)), Status::kSingular);
+  EXPECT_EQ(attempt(paper_start().q, Vector<2>(kPi / 0.0, 2.0)), Status::kNotFinite);
 }
 
 /// Round the circle and a hold, at either level: w ends higher, at the top of what the self-motion can reach, and the
