@@ -18,7 +18,7 @@ using Joints = Vector<kDynamic>;
 
 /// An arm with a task in Space, behind its number of joints: every call ends in code made for just that number.
 template <typename Space_>
-class TaskModel {
+class TaskModel : public std::enable_shared_from_this<TaskModel<Space_>> {
  public:
   using Space = Space_;
   using Buffers = MotionBuffers<Space, kDynamic>;

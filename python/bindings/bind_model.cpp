@@ -49,6 +49,21 @@ Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& ti
   return chain;
 }
 
+Limits limits_of(const ArrayLike& lower, const ArrayLike& upper, const ArrayLike& velocity,
+                 const ArrayLike& acceleration) {
+  const Joints first = joint_vector(lower, "lower");
+  const auto bound = [&first](const ArrayLike& given, const char* name) {
+    const Joints values = joint_vector(given, name);
+    validation::require_size(name, values.size(), first.size());
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
+    }
+    return values;
+  };
+  return {bound(lower, "lower"), bound(upper, "upper"), bound(velocity, "velocity"),
+          bound(acceleration, "acceleration")};
+}
+
 using PlainChain = py::typing::Tuple<py::typing::List<py::typing::Dict<py::str, py::object>>, py::array_t<double>>;
 
 /// A chain as Python makes its joints from: a dictionary for each, and the tip.
@@ -130,7 +145,20 @@ angular, along the base frame's axes.)";
 void bind_model(py::module_& m) {
   m.attr("MAX_DOF") = kMaxDof;
 
-  py::class_<Limits>(m, "JointLimits", "Bounds of each joint's motion, infinite where there is none.")
+  py::class_<Limits>(m, "JointLimits", R"(Bounds of each joint's motion, infinite where there is none.
+
+Parameters
+----------
+lower, upper, velocity, acceleration : array_like, shape (n,)
+    Bounds on positions [rad], velocities either way [rad/s] and accelerations either way [rad/s^2]; [m] and so on for
+    prismatic joints.
+
+Raises
+------
+ValueError
+    Where one is not a number, or has another length.)")
+      .def(py::init(&limits_of), py::kw_only(), py::arg("lower"), py::arg("upper"), py::arg("velocity"),
+           py::arg("acceleration"))
       .def_property_readonly(
           "lower", [](const Limits& limits) { return Eigen::VectorXd(limits.lower); },
           "Lowest joint positions [rad] or [m], shape (n,).")

@@ -7,4 +7,5 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_task(m);
   fpbm::bindings::bind_resolver(m);
   fpbm::bindings::bind_sim(m);
+  fpbm::bindings::bind_realtime(m);
 }

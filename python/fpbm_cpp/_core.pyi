@@ -13,6 +13,7 @@ __all__: list[str] = [
     "Arm",
     "Balanced",
     "Circle",
+    "Course",
     "FPBM",
     "Gaze",
     "JointLimits",
@@ -28,6 +29,8 @@ __all__: list[str] = [
     "SecondTask",
     "SerialArm",
     "Status",
+    "Tick",
+    "Tracker",
     "Tricuspid",
     "WMVN",
     "WMVNAcceleration",
@@ -45,7 +48,26 @@ __all__: list[str] = [
 class JointLimits:
     """
     Bounds of each joint's motion, infinite where there is none.
+
+    Parameters
+    ----------
+    lower, upper, velocity, acceleration : array_like, shape (n,)
+        Bounds on positions [rad], velocities either way [rad/s] and accelerations either way [rad/s^2]; [m] and so on for
+        prismatic joints.
+
+    Raises
+    ------
+    ValueError
+        Where one is not a number, or has another length.
     """
+    def __init__(
+        self,
+        *,
+        lower: numpy.typing.ArrayLike,
+        upper: numpy.typing.ArrayLike,
+        velocity: numpy.typing.ArrayLike,
+        acceleration: numpy.typing.ArrayLike,
+    ) -> None: ...
     def __repr__(self) -> str: ...
     @property
     def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -833,6 +855,182 @@ class FPBM(Scheme):
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
     ) -> None: ...
+
+class Tick:
+    """
+    What one tick of a control loop did.
+    """
+    @property
+    def error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        x - f(q) at the tick's start [m, rad], shape (m,).
+        """
+    @property
+    def q(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).
+        """
+    @property
+    def qd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Its velocity [rad/s], shape (n,).
+        """
+    @property
+    def qdd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Mean acceleration over the tick [rad/s^2], shape (n,).
+        """
+    @property
+    def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Which joints are on a bound, shape (n,).
+        """
+    @property
+    def scale(self) -> float:
+        """
+        How much of the task the limits left, from 0 to 1.
+        """
+    @property
+    def sigma(self) -> float:
+        """
+        Lower bound on the least singular value of J at the tick's start, sqrt(m) times too low at most.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        What became of it; where it failed, why the arm brakes.
+        """
+
+class Course:
+    """
+    A path laid out from a tip, with a clock that can pause and resume; made by Tracker.course.
+    """
+    def pause(self) -> None:
+        """
+        Comes to rest on the path, within the course's ramp.
+        """
+    def resume(self) -> None:
+        """
+        Goes on along the path.
+        """
+    @property
+    def done(self) -> bool:
+        """
+        Whether path time has come to the path's end.
+        """
+    @property
+    def time(self) -> float:
+        """
+        Path time [s].
+        """
+
+class Tracker:
+    """
+    Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
+
+    tick integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities.
+    resolve_measured answers for a state measured just now, with the acceleration that a torque controller is to realise.
+    Never feed a measured state to tick. A scheme of velocity level is kept within the same limits.
+
+    Parameters
+    ----------
+    arm, scheme
+        What moves, and how.
+    q0 : array_like, shape (n,)
+        Joint positions at the start [rad], within the limits.
+    qd0 : array_like, shape (n,), optional
+        Joint velocities at the start [rad/s], zero unless given.
+    task : str
+        'position' or 'pose'.
+    dt : float
+        Length of a tick [s].
+    limits : JointLimits, optional
+        The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
+    pull : float
+        How far away the target may seem at most [m, rad]: a farther one pulls no harder.
+    integral_gain, integral_bound : float
+        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
+        [m/s^2] or [m/s]. Stable below k1 k2.
+    singular_radius, singular_brake : float
+        Damping near singular postures, where the scheme has none; 0 switches it off.
+
+    Raises
+    ------
+    ValueError
+        Where an argument is out of range, a limit is missing, or the start breaks one.
+    """
+    def __init__(
+        self,
+        arm: Arm,
+        scheme: Scheme,
+        q0: numpy.typing.ArrayLike,
+        *,
+        qd0: numpy.typing.ArrayLike | None = None,
+        task: str = "position",
+        dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
+        limits: JointLimits | None = None,
+        pull: typing.SupportsFloat | typing.SupportsIndex = 0.1,
+        integral_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        integral_bound: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+    ) -> None: ...
+    def course(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> Course:
+        """
+        A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+        """
+    def go_on(self) -> None:
+        """
+        Follows references again.
+        """
+    def resolve_measured(
+        self,
+        q: numpy.typing.ArrayLike,
+        qd: numpy.typing.ArrayLike,
+        x: numpy.typing.ArrayLike,
+        xd: numpy.typing.ArrayLike | None = None,
+        xdd: numpy.typing.ArrayLike | None = None,
+    ) -> Tick:
+        """
+        The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.
+        """
+    def stop(self) -> None:
+        """
+        Brings every joint to rest as fast as the limits allow, until go_on.
+        """
+    @typing.overload
+    def tick(self, course: Course) -> Tick:
+        """
+        One tick along a course, whose clock goes on with it.
+        """
+    @typing.overload
+    def tick(
+        self,
+        x: numpy.typing.ArrayLike,
+        xd: numpy.typing.ArrayLike | None = None,
+        xdd: numpy.typing.ArrayLike | None = None,
+    ) -> Tick:
+        """
+        One tick toward a reference, at rest unless its velocity and acceleration are given.
+
+        x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows first, in the base frame. Never fails:
+        where no motion can be found the arm brakes, and the tick's status says why.
+        """
+    @property
+    def q(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Joint positions of its own state [rad].
+        """
+    @property
+    def qd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Joint velocities of its own state [rad/s].
+        """
+    @property
+    def tip(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Where the tip of its own state is, in the base frame [m].
+        """
 
 def advice(status: Status) -> str:
     """

@@ -15,6 +15,8 @@ EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("[0-9][0-9]_*.py
 def test_example(example: Path, tmp_path: Path) -> None:
     if "plot" in example.read_text():
         pytest.importorskip("matplotlib")
+    if "mujoco" in example.read_text():
+        pytest.importorskip("mujoco")
     command = [sys.executable, str(example)]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
     assert result.returncode == 0, result.stderr
@@ -26,4 +28,5 @@ def test_example(example: Path, tmp_path: Path) -> None:
 
 def test_pairs() -> None:
     assert len(EXAMPLES) >= 5
-    assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES)
+    alone = {"08_mujoco_panda"}  # A simulator, driven from Python.
+    assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES if path.stem not in alone)

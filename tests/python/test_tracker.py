@@ -1,0 +1,199 @@
+"""The tracker from Python: what it follows, what it keeps, and how near its saturation comes to a solver's."""
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+DT = 1e-3
+BENT = np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8])
+
+
+@pytest.fixture(scope="module")
+def panda():
+    return fp.SerialArm.preset("panda")
+
+
+@pytest.fixture
+def settling():
+    return fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=4, rest_posture=BENT, null_stiffness=4)
+
+
+def is_viable(limits, q, qd):
+    """Whether each joint can still stop in time, by the envelope -A h/2 + sqrt(2 A (way + A h^2/8)) of either end."""
+    c = limits.acceleration * DT / 2
+
+    def stops(way, speed):
+        p = speed + c
+        return (way >= 0) & ((p <= 0) | (p**2 <= 2 * limits.acceleration * (way + c**2 / (2 * limits.acceleration))))
+
+    return (np.abs(qd) <= limits.velocity) & stops(limits.upper - q, qd) & stops(q - limits.lower, -qd)
+
+
+def box(limits, q, qd):
+    """The accelerations of each joint that lead to a viable state, by bisection from one that does."""
+    stop = np.clip(-qd / DT, -limits.acceleration, limits.acceleration)
+    ends = []
+    for far in (-limits.acceleration, limits.acceleration):
+        good, bad = stop.copy(), far.copy()
+        for _ in range(60):
+            a = (good + bad) / 2
+            viable = is_viable(limits, q + DT * (qd + DT / 2 * a), qd + DT * a)
+            good, bad = np.where(viable, a, good), np.where(viable, bad, a)
+        ends.append(np.where(is_viable(limits, q + DT * (qd + DT / 2 * far), qd + DT * far), far, good))
+    return ends
+
+
+def random_viable(rng, limits, speed):
+    while True:
+        q = rng.uniform(limits.lower, limits.upper)
+        qd = speed * rng.uniform(-limits.velocity, limits.velocity)
+        if is_viable(limits, q, qd).all():
+            return q, qd
+
+
+def narrow_limits():
+    return fp.JointLimits(
+        lower=[-2, -1.5, -1.5, -2], upper=[2, 1.5, 1.8, 2], velocity=[1, 1.5, 2, 2], acceleration=[5, 8, 10, 12]
+    )
+
+
+@pytest.mark.parametrize("case", ["panda pose", "panda position", "planar position"])
+def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
+    """Where some qdd keeps the box and the whole task, the tracker's does, to round-off; the solver is HiGHS."""
+    optimize = pytest.importorskip("scipy.optimize")
+    rng = np.random.default_rng(3)
+    task = case.split()[-1]
+    arm = panda if "panda" in case else fp.PlanarArm([1, 1, 1, 1])
+    limits = arm.limits if "panda" in case else narrow_limits()
+    n = arm.dof
+    middle = (limits.lower + limits.upper) / 2
+    scheme = fp.FPBM(0.6, rng.uniform(1, 4, n), 10, 25, null_damping=2, singular_radius=0.02)
+    tracker = fp.Tracker(arm, scheme, middle, task=task, limits=limits, pull=1e9)
+    met = feasible = agreed = 0
+    while feasible < 300:
+        q, qd = random_viable(rng, limits, speed=rng.uniform(0, 0.4))
+        m = len(arm.jacobian(q, task=task))
+        x = arm.forward(q) if task == "pose" else np.asarray(arm.forward(q))[..., :3, 3] if n == 7 else arm.forward(q)
+        xd, xdd = rng.uniform(-1, 1, (2, m)) * rng.uniform(0, 1)
+        tick = tracker.resolve_measured(q, qd, x, xd, xdd)
+        lower, upper = box(limits, q, qd)
+        assert (tick.qdd >= lower - 1e-6).all()
+        assert (tick.qdd <= upper + 1e-6).all()
+        wanted = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
+        if ((lower <= wanted) & (wanted <= upper)).all():
+            continue
+        met += 1
+        J = arm.jacobian(q, task=task)
+        answer = optimize.linprog(
+            np.zeros(n), A_eq=J, b_eq=J @ wanted, bounds=np.column_stack([lower, upper]), method="highs"
+        )
+        if answer.status != 0:
+            assert tick.scale < 1 + 1e-9
+            continue
+        feasible += 1
+        if tick.scale == 1:
+            agreed += 1
+            assert np.abs(J @ (tick.qdd - wanted)).max() < 1e-9 * max(1, np.abs(J @ wanted).max())
+            assert tick.status in (fp.Status.OK, fp.Status.DAMPED)
+    print(f"{case}: {met} states met a limit, in {feasible} the task is feasible, in {agreed} of these it was done")
+    assert agreed >= 0.99 * feasible
+
+
+def test_a_course_is_followed_paused_resumed_and_finished(panda, settling):
+    tracker = fp.Tracker(panda, settling, BENT, task="pose")
+    course = tracker.course(fp.Circle(0.05, 2.0).in_plane("yz"), ramp=0.2)
+    for i in range(4000):
+        if i == 500:
+            course.pause()
+        if i == 1000:
+            course.resume()
+        tick = tracker.tick(course)
+        assert tick.status is fp.Status.OK
+        assert np.abs(tick.error).max() < 1e-5
+    assert course.done
+    assert np.abs(tracker.qd).max() < 1e-2
+    np.testing.assert_array_equal(tick.q, tracker.q)
+
+
+def test_it_stops_and_goes_on(panda, settling):
+    tracker = fp.Tracker(panda, settling, BENT, task="position")
+    target = tracker.tip + np.array([0, 0.2, 0])
+    for _ in range(300):
+        tracker.tick(target)
+    assert np.abs(tracker.qd).max() > 0.05
+    tracker.stop()
+    for _ in range(300):
+        assert tracker.tick(target).scale == 0
+    assert (tracker.qd == 0).all()
+    tracker.go_on()
+    for _ in range(5000):
+        tick = tracker.tick(target)
+    assert np.abs(tick.error).max() < 1e-9
+
+
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+def test_out_of_reach_and_back(panda, settling, level):
+    scheme = settling if level == "acceleration" else fp.MVN(k=5, rest_posture=BENT, null_stiffness=1)
+    tracker = fp.Tracker(panda, scheme, BENT, task="position")
+    home = tracker.tip
+    limits = panda.limits
+    seen = set()
+    for target, ticks in ((home + np.array([0.6, 0, 0]), 8000), (home, 6000)):
+        for _ in range(ticks):
+            tick = tracker.tick(target)
+            seen.add(tick.status)
+            assert (np.abs(tick.qdd) <= limits.acceleration + 1e-9).all()
+            assert (np.abs(tick.qd) <= limits.velocity + 1e-9).all()
+            assert (tick.q <= limits.upper + 1e-9).all()
+            assert (tick.q >= limits.lower - 1e-9).all()
+        assert np.abs(tick.qd).max() < 2e-2
+    assert np.abs(tick.error).max() < 1e-9
+    assert seen == {fp.Status.OK, fp.Status.DAMPED, fp.Status.SLOWED}
+
+
+def test_objectives_that_need_the_arm(panda):
+    scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=4, manipulability_gain=1.0)
+    tracker = fp.Tracker(panda, scheme, BENT, task="position")
+    start = tracker.tip
+    before = np.linalg.svd(panda.jacobian(BENT))[1].prod()
+    for _ in range(3000):
+        tick = tracker.tick(start)
+    assert np.abs(tick.error).max() < 1e-9
+    assert np.linalg.svd(panda.jacobian(tracker.q))[1].prod() > before
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"dt": 0}, "dt = 0: must be positive"),
+        ({"pull": -1}, "pull = -1: must be positive"),
+        ({"integral_gain": -1}, "integral_gain = -1"),
+        ({"singular_radius": 2}, "singular_radius = 2"),
+        ({"task": "dance"}, "task = 'dance'"),
+        ({"limits": narrow_limits()}, "limits has 4 entries"),
+        ({"qd0": [9] * 7}, r"qd0\[0\] = 9: must be slow enough"),
+    ],
+)
+def test_bad_arguments(panda, settling, options, words):
+    with pytest.raises(ValueError, match=words):
+        fp.Tracker(panda, settling, BENT, **options)
+
+
+def test_a_missing_limit_is_named(settling):
+    with pytest.raises(ValueError, match=r"limits.acceleration\[0\] = inf: must be finite"):
+        fp.Tracker(fp.SerialArm.preset("iiwa14"), settling, BENT)
+
+
+def test_bad_references(panda, settling):
+    tracker = fp.Tracker(panda, settling, BENT)
+    with pytest.raises(ValueError, match="x has 2 entries"):
+        tracker.tick([0, 0])
+    with pytest.raises(ValueError, match=r"xd\[1\] = nan"):
+        tracker.tick([0, 0, 0], [0, np.nan, 0])
+    other = fp.Tracker(panda, settling, BENT, task="pose")
+    with pytest.raises(ValueError, match="laid out for another task"):
+        tracker.tick(other.course(fp.Circle(0.1, 1.0).in_plane("xy")))
+    slow = fp.Tracker(panda, fp.MVN(), BENT)
+    with pytest.raises(ValueError, match="velocity-level"):
+        slow.resolve_measured(BENT, np.zeros(7), slow.tip)
