@@ -53,7 +53,7 @@ fuzz:
 	cmake --preset fuzz
 	cmake --build --preset fuzz
 	mkdir -p build/fuzz/corpus
-	build/fuzz/tests/fuzz/tracker_fuzz -max_total_time=$(SECONDS) -max_len=4096 -len_control=0 -timeout=10 \
+	build/fuzz/tests/fuzz/tracker_fuzz -max_total_time=$(SECONDS) -max_len=1024 -len_control=0 -timeout=10 \
 	  -verbosity=0 -print_funcs=0 -print_final_stats=1 -artifact_prefix=build/fuzz/ build/fuzz/corpus
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
