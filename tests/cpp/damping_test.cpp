@@ -469,7 +469,7 @@ TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
   for (int i = 0; i < 100; ++i) {
     const Gram A = random.positive_definite(Fixture::M).template cast<typename Fixture::Number>();
     Cholesky<Fixture::M, typename Fixture::Number> cholesky;
-    ASSERT_EQ(cholesky.factor(A), Status::kOk);
+    if (cholesky.factor(A) != Status::kOk) FAIL();  // Which g++ sees through, unlike ASSERT_EQ.
     const auto expected = static_cast<double>(real(A).inverse().trace());
     EXPECT_NEAR(static_cast<double>(cholesky.inverse_trace()), expected, 256.0 * Fixture::kEpsilon * expected);
   }
