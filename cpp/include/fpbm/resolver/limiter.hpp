@@ -56,7 +56,8 @@ class Limiter {
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
     Row rest = Row::Zero(state.q.size());
     if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
-    found.u += share * share * (yielding<M, N, Scalar>(J, task, mu, rest, box) - found.u);
+    const Row yielded = yielding<M, N, Scalar>(J, task, mu, rest, box);
+    found.u = box.nearest(found.u + share * share * (yielded - found.u));  // Round-off may leave the box.
   }
 
   static constexpr Scalar kLittle = Scalar(0.1);  ///< Scale below which the arm yields.
