@@ -80,7 +80,7 @@ struct SecondTask {
   [[nodiscard]] Status resolve(const Kinematics<First, N, Scalar>& kinematics, const Reference<First, Scalar>& first,
                                const State<N, Scalar>& state, Vector<N, Scalar>& u) const noexcept {
     constexpr int M = Space::kRows;
-    constexpr int K = kNullity<First::kRows, N>;
+    constexpr int kFree = kNullity<First::kRows, N>;
     const Eigen::Index head = arm.dof();
     State<Arm::kDof, Scalar> seen{state.q.head(head), {}};
     if constexpr (kLevel == Level::kAcceleration) seen.qd = state.qd.head(head);
@@ -99,7 +99,7 @@ struct SecondTask {
     }
     r -= second.J.lazyProduct(result.head(head));
     const auto Z = null_basis(kinematics.J);
-    const Matrix<M, K, Scalar> A = second.J.lazyProduct(Z.topRows(head));
+    const Matrix<M, kFree, Scalar> A = second.J.lazyProduct(Z.topRows(head));
     result += Z.lazyProduct(damped_least_squares(A, r, radius * radius * second.J.squaredNorm()));
     if (!result.allFinite()) return Status::kNotFinite;
     u = result;
