@@ -208,10 +208,11 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     }
   }
 
-  // The past leaves no trace: where the tip is, it can be held. Joints without bounds may be too fast for that by now.
+  // The past leaves no trace: where the tip is, it can be held. Joints without bounds may be too fast or too far by
+  // now.
   tracker.go_on();
   const fpbm::State<N> before = tracker.state();
-  wild = wild || before.qd.norm() > 1e3;
+  wild = wild || before.qd.norm() > 1e3 || before.q.norm() > 1e6;
   const auto result = tracker.tick(fpbm::Reference<Space>::hold(tracker.tip()));
   checked(before, result);
   require(wild || result.status != fpbm::Status::kNotFinite, "a good reference gives a good tick again");
