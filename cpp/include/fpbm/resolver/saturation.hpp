@@ -83,9 +83,8 @@ class NullSpaceSaturation {
   using Free = Vector<kFree, Scalar>;
   using Square = Matrix<kFree, kFree, Scalar>;
   static constexpr int kMost = kFree == Eigen::Dynamic ? kMaxDof : (kFree > 0 ? kFree : 1);
-  /// Least square of the part of a joint's row of Z that lies outside the held joints' rows, for it to be held too:
-  /// with less, the others would be thrown about for next to nothing.
-  static constexpr Scalar kIndependent = Scalar(1e-4);
+  /// Least square of the part of a joint's row of Z that lies outside the held joints' rows, for it to be held too.
+  static constexpr Scalar kIndependent = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
   [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
 
