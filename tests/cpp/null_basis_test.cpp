@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -78,12 +79,25 @@ TEST_P(NullBasisOf, is_so_at_every_rank) {
   }
 }
 
+/// A row that fades away leaves no gap between a number and zero: not where its square is lost, either.
+TEST_P(NullBasisOf, is_so_while_a_row_fades) {
+  Random random(1);
+  const Eigen::MatrixXd A = random_matrix(random);
+  const double least = GetParam().epsilon < 1e-10 ? 1e-307 : 1e-37;
+  for (double scale = 1.0; scale > least; scale *= 0.5) {
+    SCOPED_TRACE("row 0 times " + std::to_string(std::log10(scale)) + " powers of ten");
+    Eigen::MatrixXd faded = A;
+    faded.row(0) *= scale;
+    expect_basis(faded);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(every, NullBasisOf,
                          ::testing::Values(erased<2, 2>("m2_n2"), erased<2, 4>("m2_n4"), erased<3, 7>("m3_n7"),
                                            erased<2, Eigen::Dynamic>("m2_dynamic_12", 2, 12),
                                            erased<6, Eigen::Dynamic>("m6_dynamic_32", 6, 32),
                                            erased<6, Eigen::Dynamic>("m6_dynamic_6", 6, 6),
-                                           erased<2, 4, float>("m2_n4_float")),
+                                           erased<2, 4, float>("m2_n4_float"), erased<6, 7, float>("m6_n7_float")),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace

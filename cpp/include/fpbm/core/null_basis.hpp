@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/types.hpp"
 
@@ -17,6 +18,8 @@ inline constexpr int kNullity = N == Eigen::Dynamic ? Eigen::Dynamic : N - M;
 template <int M, int N, typename Scalar>
 [[nodiscard]] Matrix<N, kNullity<M, N>, Scalar> null_basis(const Matrix<M, N, Scalar>& A) noexcept {
   using std::sqrt;
+  // A column of which less is left is zero: its square is lost in underflow, and the inverse of that is no number.
+  constexpr Scalar kLeast = std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
   const Eigen::Index n = A.cols();
   const Eigen::Index m = A.rows();
   Matrix<N, M, Scalar> V = A.transpose();  // Column k becomes the k-th reflection's vector, below row k − 1.
@@ -27,7 +30,7 @@ template <int M, int N, typename Scalar>
     const Scalar head = V(k, k);
     V(k, k) += head < Scalar(0) ? -sqrt(square) : sqrt(square);
     const Scalar length = square + sqrt(square) * (head < Scalar(0) ? -head : head);
-    beta(k) = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
+    beta(k) = length > kLeast ? Scalar(1) / length : Scalar(0);
     for (Eigen::Index j = k + 1; j < m; ++j) {
       Scalar along = Scalar(0);
       for (Eigen::Index i = k; i < n; ++i) along += V(i, k) * V(i, j);
