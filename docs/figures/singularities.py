@@ -113,8 +113,8 @@ TREATMENTS: dict[str, tuple[Callable[[Motion], Resolve], dict[str, Any]]] = {
     "constant damping": (wampler, {"color": "#E69F00", "lw": 1.4}),
     "damping by manipulability": (nakamura_hanafusa, {"color": "#009E73", "lw": 1.4, "ls": (0, (6, 1.5))}),
     "fpbm_cpp": (lambda motion: library(motion, singular_radius=RADIUS), {"color": "#0072B2", "lw": 2.0}),
-    "fpbm_cpp, no brake": (
-        lambda motion: library(motion, singular_radius=RADIUS, singular_brake=0.0),
+    "fpbm_cpp with a brake": (
+        lambda motion: library(motion, singular_radius=RADIUS, singular_brake=100.0),
         {"color": "#CC79A7", "lw": 1.2, "ls": (0, (4, 1, 1, 1))},
     ),
 }

@@ -6,24 +6,27 @@ namespace fpbm::bindings {
 template <typename Space>
 Status resolve(const PyScheme& scheme, const Kinematics<Space, kDynamic>& kinematics, const Reference<Space>& reference,
                const State<kDynamic>& state, Joints& out) {
-  return scheme.visit<kDynamic>(static_cast<int>(state.q.size()),
-                                [&](const auto& chosen) { return chosen.resolve(kinematics, reference, state, out); });
+  return std::visit([&](const auto& alone) { return alone.resolve(kinematics, reference, state, out); },
+                    scheme_alone<Space>(scheme, state.q.size()));
 }
 
 template <typename Space>
 Status resolve(const PyScheme& scheme, const WholeArm<Space>& arm, const Reference<Space>& reference,
                const State<kDynamic>& state, Joints& out) {
   const Kinematics<Space, kDynamic> kinematics = arm.model->kinematics(state.q, state.qd);
-  return visit_whole(scheme, arm, [&](const auto& whole) { return whole.resolve(kinematics, reference, state, out); });
+  return std::visit([&](const auto& whole) { return whole.resolve(kinematics, reference, state, out); },
+                    whole_scheme(scheme, arm));
 }
 
 template <typename Space>
 RolloutResult<kDynamic> simulate(const PyScheme& scheme, const WholeArm<Space>& arm, const AnyPath<Space>& path,
                                  const State<kDynamic>& start, const TimeGrid<double>& grid,
                                  const MotionBuffers<Space, kDynamic>& buffers) {
-  return visit_whole(scheme, arm, [&](const auto& whole) {
-    return rollout(AnyArm<Space>(arm.model, arm.dof()), path, whole, start, grid, buffers);
-  });
+  return std::visit(
+      [&](const auto& whole) {
+        return rollout(AnyArm<Space>(arm.model, arm.dof()), path, whole, start, grid, buffers);
+      },
+      whole_scheme(scheme, arm));
 }
 
 template Status resolve(const PyScheme&, const Kinematics<Position<2>, kDynamic>&, const Reference<Position<2>>&,

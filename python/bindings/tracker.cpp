@@ -39,13 +39,15 @@ template <typename Space>
 std::shared_ptr<LoopModel<Space>> make_loop(const WholeArm<Space>& arm, PyScheme scheme, const State<kDynamic>& start,
                                             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits) {
   if (scheme.singular.radius() == 0.0) scheme.singular = options.singular;
-  return visit_whole(scheme, arm, [&](const auto& chosen) -> std::shared_ptr<LoopModel<Space>> {
-    using Scheme = std::decay_t<decltype(chosen)>;
-    using AnyLoopOf = Loop<Space, Scheme>;
-    const Limits<Scheme::kLevel, kDynamic> kept(limits, options.dt);
-    return std::make_shared<AnyLoopOf>(
-        typename AnyLoopOf::AnyTracker({arm.model, arm.dof()}, Space{}, chosen, start, options, kept));
-  });
+  return std::visit(
+      [&](const auto& whole) -> std::shared_ptr<LoopModel<Space>> {
+        using Scheme = std::decay_t<decltype(whole)>;
+        using AnyLoopOf = Loop<Space, Scheme>;
+        const Limits<Scheme::kLevel, kDynamic> kept(limits, options.dt);
+        return std::make_shared<AnyLoopOf>(
+            typename AnyLoopOf::AnyTracker({arm.model, arm.dof()}, Space{}, whole, start, options, kept));
+      },
+      whole_scheme(scheme, arm));
 }
 
 template std::shared_ptr<LoopModel<Position<2>>> make_loop(const WholeArm<Position<2>>&, PyScheme,

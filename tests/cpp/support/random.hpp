@@ -6,6 +6,15 @@
 
 namespace fpbm::test {
 
+/// How many of so many trials are made: under a sanitizer, which makes a program some twenty times slower, a tenth.
+[[nodiscard]] constexpr int trials(int all) {
+#ifdef FPBM_SANITIZED
+  return all / 10;
+#else
+  return all;
+#endif
+}
+
 /// Random test material, the same in every run and on every machine.
 /// All numbers are floats, so that every Scalar under test starts from exactly the same data.
 class Random {

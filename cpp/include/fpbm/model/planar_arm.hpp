@@ -77,12 +77,18 @@ class PlanarArm {
         out.Jd(1, i) = -rate * y;
       }
     }
-    for (Eigen::Index i = n - 2; i >= 0; --i) {
-      out.J.col(i).template head<2>() += out.J.col(i + 1).template head<2>();
-      if constexpr (kWithRate) out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
+    Vector<2, Scalar> way = Vector<2, Scalar>::Zero();  // From a joint to the tip, turned by 90°.
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+      way += out.J.col(i).template head<2>();
+      out.J.col(i).template head<2>() = way;
     }
-    out.tip(0) = out.J(1, 0);
-    out.tip(1) = -out.J(0, 0);
+    out.tip(0) = way(1);
+    out.tip(1) = -way(0);
+    if constexpr (kWithRate) {
+      for (Eigen::Index i = n - 2; i >= 0; --i) {
+        out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
+      }
+    }
     if constexpr (kWithTurn) {
       out.tip(2) = angles(n - 1);
       out.J.row(2).setOnes();

@@ -1,33 +1,28 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
 #include "fpbm/core/cholesky.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/resolver/lost_directions.hpp"
 
 namespace fpbm {
 
 /// Damping near singular postures, so that every scheme stays bounded at and through them.
 ///
 /// In place of JW⁻¹Jᵀ the schemes invert JW⁻¹Jᵀ + Δ (damped least squares: Nakamura and Hanafusa 1986, Wampler 1986),
-/// with a Δ that acts only in the directions u_i that the tip is about to lose (numerical filtering: Maciejewski and
-/// Klein 1988; Chiaverini 1997):
+/// with the Δ of LostDirections, which acts only in what the tip is about to lose, and ε = radius ‖J‖_F. Δ is smooth in
+/// q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a largest diagonal
+/// entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
-///   Δ = Σ δ(σ_i) u_i u_iᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, 0 beyond,   ε = radius ‖J‖_F,
-///
-/// where σ_i, u_i are singular values and left singular vectors of J. Δ is a spectral function of JJᵀ with two
-/// continuous derivatives, hence smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with
-/// weights, whose W⁻¹ has a largest diagonal entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
-/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd, so
-/// that an arm that is drawn to a target out of reach comes to rest at the edge.
+/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd. Without
+/// null-space damping that is what lets an arm that is drawn to a target out of reach come to rest at the edge.
 template <typename Scalar = double>
 class SingularDamping {
  public:
   /// radius: share of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
   /// brake: damping of the null space at a singular posture [1/s]. Throws std::invalid_argument on a bad value.
-  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(100)) : radius_(radius), brake_(brake) {
+  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(0)) : radius_(radius), brake_(brake) {
     validation::require_fraction("singular_radius", static_cast<double>(radius));
     validation::require_non_negative("singular_brake", static_cast<double>(brake));
   }
@@ -65,7 +60,7 @@ class DampedGram {
   template <typename Weights, typename WinvJt>
   [[nodiscard]] Status factor(const Weights& weights, const WinvJt& weighted) noexcept {
     Matrix<M, M, Scalar> gram = J_.lazyProduct(weighted);
-    if (known_ && lost_ > Scalar(0)) return damped(gram);
+    if (lost_.count > Scalar(0)) return damped(gram);
     const Status status = cholesky_.factor(gram);
     if (known_ || damping_.radius() == Scalar(0) || status == Status::kNotFinite) return status;
 
@@ -74,41 +69,30 @@ class DampedGram {
     const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
     const Scalar bound = threshold * weights.template inverse_bound<Scalar>();
     if (status == Status::kOk && bound * cholesky_.inverse_trace() <= Scalar(1)) return status;
-    find_lost_directions(threshold);
-    return lost_ > Scalar(0) ? damped(gram) : status;
+    examine(threshold);
+    return lost_.count > Scalar(0) ? damped(gram) : status;
   }
 
   [[nodiscard]] Vector<M, Scalar> solve(const Vector<M, Scalar>& b) const noexcept { return cholesky_.solve(b); }
 
   /// Damping that the null space gains [1/s].
-  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
+  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_.count; }
 
  private:
   [[nodiscard]] Status damped(const Matrix<M, M, Scalar>& gram) noexcept {
-    const Status status = cholesky_.factor(gram + delta_);
+    const Status status = cholesky_.factor(gram + lost_.delta);
     return status == Status::kOk ? Status::kDamped : status;
   }
 
-  [[gnu::noinline]] void find_lost_directions(Scalar threshold) noexcept {
-    const Eigen::Matrix<Scalar, M, M> gram = J_.lazyProduct(J_.transpose());
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Scalar, M, M>> spectrum(gram);
-    delta_.setZero();
-    for (int i = 0; i < M; ++i) {
-      const Scalar gap = Scalar(1) - spectrum.eigenvalues()(i) / threshold;
-      if (!(gap > Scalar(0))) continue;
-      const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
-      const Vector<M, Scalar> u = spectrum.eigenvectors().col(i);
-      delta_ += (share * threshold) * u.lazyProduct(u.transpose());
-      lost_ += share;
-    }
+  [[gnu::noinline]] void examine(Scalar threshold) noexcept {
+    lost_ = LostDirections<M, Scalar>(J_.lazyProduct(J_.transpose()), threshold);
   }
 
   const SingularDamping<Scalar>& damping_;
   const Matrix<M, N, Scalar>& J_;
   Cholesky<M, Scalar> cholesky_;
-  bool known_ = false;          ///< Whether J has been examined.
-  Scalar lost_{0};              ///< tr Δ/ε²: about the number of lost directions.
-  Matrix<M, M, Scalar> delta_;  ///< Δ, where lost_ > 0.
+  bool known_ = false;  ///< Whether J has been examined.
+  LostDirections<M, Scalar> lost_;
 };
 
 }  // namespace fpbm

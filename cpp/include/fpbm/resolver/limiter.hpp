@@ -51,13 +51,14 @@ class Limiter {
     const Vector<M, Scalar> task = J.lazyProduct(wanted);
     Scalar left = found.scale;
     if constexpr (kLevel == Level::kVelocity) left = J.lazyProduct(found.u).dot(task) / task.squaredNorm();
-    const Scalar share = Scalar(1) - (left > Scalar(0) ? left : Scalar(0)) / kLittle;
-    if (!(share > Scalar(0))) return;
+    left = (left > Scalar(0) ? left : Scalar(0)) / kLittle;
+    if (!(left < Scalar(1))) return;
+    const Scalar share = (Scalar(1) - left * left) * (Scalar(1) - left * left);
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
     Row rest = Row::Zero(state.q.size());
     if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
     const Row yielded = yielding<M, N, Scalar>(J, task, mu, rest, box);
-    found.u = box.nearest(found.u + share * share * (yielded - found.u));  // Round-off may leave the box.
+    found.u = box.nearest(found.u + share * (yielded - found.u));  // Round-off may leave the box.
   }
 
   static constexpr Scalar kLittle = Scalar(0.1);  ///< Scale below which the arm yields.

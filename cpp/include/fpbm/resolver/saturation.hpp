@@ -84,7 +84,7 @@ class NullSpaceSaturation {
   using Square = Matrix<kFree, kFree, Scalar>;
   static constexpr int kMost = kFree == Eigen::Dynamic ? kMaxDof : (kFree > 0 ? kFree : 1);
   /// Least square of the part of a joint's row of Z that lies outside the held joints' rows, for it to be held too.
-  static constexpr Scalar kIndependent = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  static constexpr Scalar kIndependent = Scalar(1e-4);
 
   [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
 

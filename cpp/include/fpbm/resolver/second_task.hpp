@@ -1,37 +1,31 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
+#include "fpbm/core/cholesky.hpp"
 #include "fpbm/core/null_basis.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/resolver/feedback.hpp"
+#include "fpbm/resolver/lost_directions.hpp"
 #include "fpbm/resolver/null_space.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
 
-/// The least y among those that bring A y nearest to r, damped where A is nearly singular:
+/// The y of least norm among those that bring A y nearest to r, damped where A is nearly singular:
 ///
-///   y = Aᵀ(AAᵀ + Σ δ(σᵢ) uᵢuᵢᵀ)⁻¹r,   δ(σ) = ε²(1 − σ²/ε²)³ for σ < ε, 0 beyond,
+///   y = Aᵀ(AAᵀ + Δ)⁻¹r
 ///
-/// with σᵢ, uᵢ singular values and left singular vectors of A (damped least squares: Nakamura and Hanafusa 1986; in
-/// some directions only: Maciejewski and Klein 1988). Smooth in A; |y| ≤ 1.17 |r|/ε.
+/// with the Δ of LostDirections. Smooth in A; |y| ≤ 1.17 |r|/ε. Zero where ε is lost in round-off.
 template <int M, int K, typename Scalar>
 [[nodiscard]] Vector<K, Scalar> damped_least_squares(const Matrix<M, K, Scalar>& A, const Vector<M, Scalar>& r,
                                                      Scalar epsilon_squared) noexcept {
-  const Eigen::Matrix<Scalar, M, M> gram = A.lazyProduct(A.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Scalar, M, M>> spectrum(gram);
-  Vector<M, Scalar> lambda = Vector<M, Scalar>::Zero();
-  for (int i = 0; i < M; ++i) {
-    const Vector<M, Scalar> u = spectrum.eigenvectors().col(i);
-    Scalar square = spectrum.eigenvalues()(i);
-    const Scalar lost = epsilon_squared - square;
-    if (lost > Scalar(0)) square += lost * (lost / epsilon_squared) * (lost / epsilon_squared);
-    if (square != Scalar(0)) lambda += u.dot(r) / square * u;
+  const Matrix<M, M, Scalar> gram = A.lazyProduct(A.transpose());
+  Cholesky<M, Scalar> cholesky;
+  if (cholesky.factor(gram + LostDirections<M, Scalar>(gram, epsilon_squared).delta) != Status::kOk) {
+    return Vector<K, Scalar>::Zero(A.cols());
   }
-  return A.transpose().lazyProduct(lambda);
+  return A.transpose().lazyProduct(cholesky.solve(r));
 }
 
 /// A scheme with a second task in the null space of the first: the answer u of the scheme becomes u + Z y, where Z is

@@ -5,35 +5,32 @@
 
 namespace fpbm {
 
-/// The joint motion within a box that comes near J u = v where it cannot be had in any part: damped least squares,
+/// The joint motion within a box that comes near J u = v where it cannot be had in any part,
 ///
-///   min ‖J u − v‖² + μ ‖u − rest‖²,   u = rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest),
+///   min ‖J u − v‖² + μ ‖u − rest‖²,
 ///
-/// where joints that would leave the box are held on its border and the others solved for again; n passes at most.
-/// Returns rest, within the box, where there is no solution.
+/// from the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), cut to the box, by moving one joint after another to
+/// where it is best within its bounds (Gauss and Seidel), n rounds. A continuous function of all that goes in, unlike a
+/// guess at which joints are on their bounds: it does not chatter.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> yielding(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                          const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {
-  Matrix<M, N, Scalar> free = J;  // Columns of held joints are zero.
-  Vector<N, Scalar> u = rest;
-  for (Eigen::Index pass = 0; pass < J.cols(); ++pass) {
-    Matrix<M, M, Scalar> gram = free.lazyProduct(free.transpose());
-    gram.diagonal().array() += mu;
-    Cholesky<M, Scalar> cholesky;
-    if (cholesky.factor(gram) != Status::kOk) break;
-    const Vector<M, Scalar> left = v - J.lazyProduct(u);
-    const Vector<N, Scalar> wanted = u + free.transpose().lazyProduct(cholesky.solve(left));
-    const Vector<N, Scalar> kept = box.nearest(wanted);
-    bool all = true;
+  Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
+  gram.diagonal().array() += mu;
+  Cholesky<M, Scalar> cholesky;
+  if (cholesky.factor(gram) != Status::kOk) return box.nearest(rest);
+  const Vector<M, Scalar> missing = v - J.lazyProduct(rest);
+  Vector<N, Scalar> u = box.nearest(rest + J.transpose().lazyProduct(cholesky.solve(missing)));
+  Vector<M, Scalar> left = v - J.lazyProduct(u);
+  for (Eigen::Index round = 0; round < J.cols(); ++round) {
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      if (kept(i) == wanted(i)) continue;
-      u(i) = kept(i);
-      free.col(i).setZero();
-      all = false;
+      const Scalar slope = J.col(i).dot(left) + mu * (rest(i) - u(i));
+      const Scalar to = std::clamp(u(i) + slope / (J.col(i).squaredNorm() + mu), box.lower(i), box.upper(i));
+      left -= (to - u(i)) * J.col(i);
+      u(i) = to;
     }
-    if (all) return kept;
   }
-  return box.nearest(rest);
+  return u;
 }
 
 }  // namespace fpbm

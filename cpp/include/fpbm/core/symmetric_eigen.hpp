@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Eigenvalues and orthonormal eigenvectors (columns) of a small symmetric matrix: A = V diag(values) Vᵀ, unordered.
+///
+/// Cyclic Jacobi rotations, which are accurate to round-off in ‖A‖, quadratic at the end, and done after a fixed number
+/// of sweeps at the latest.
+template <int M, typename Scalar = double>
+struct SymmetricEigen {
+  Vector<M, Scalar> values;
+  Matrix<M, M, Scalar> vectors;
+
+  /// A: both triangles are read. What is not finite gives values that are not.
+  explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(Matrix<M, M, Scalar>::Identity()) {
+    Matrix<M, M, Scalar> D = A;
+    const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * A.cwiseAbs().maxCoeff();
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      bool done = true;
+      for (int p = 0; p < M; ++p) {
+        for (int q = p + 1; q < M; ++q) {
+          if (!(std::abs(D(p, q)) > negligible)) continue;
+          rotate(D, p, q);
+          done = false;
+        }
+      }
+      if (done) break;
+    }
+    values = D.diagonal();
+  }
+
+ private:
+  static constexpr int kSweeps = 12;  // Six are enough as a rule.
+
+  /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero.
+  void rotate(Matrix<M, M, Scalar>& D, int p, int q) noexcept {
+    using std::abs;
+    using std::sqrt;
+    const Scalar theta = (D(q, q) - D(p, p)) / (Scalar(2) * D(p, q));
+    const Scalar tangent =
+        (theta < Scalar(0) ? Scalar(-1) : Scalar(1)) / (abs(theta) + sqrt(theta * theta + Scalar(1)));
+    const Scalar c = Scalar(1) / sqrt(tangent * tangent + Scalar(1));
+    const Scalar s = tangent * c;
+    const auto turn = [c, s](Scalar& a, Scalar& b) noexcept {
+      const Scalar was = a;
+      a = c * was - s * b;
+      b = s * was + c * b;
+    };
+    for (int i = 0; i < M; ++i) turn(D(i, p), D(i, q));
+    for (int i = 0; i < M; ++i) turn(D(p, i), D(q, i));
+    for (int i = 0; i < M; ++i) turn(vectors(i, p), vectors(i, q));
+  }
+};
+
+}  // namespace fpbm
