@@ -113,8 +113,8 @@ TREATMENTS: dict[str, tuple[Callable[[Motion], Resolve], dict[str, Any]]] = {
     "constant damping": (wampler, {"color": "#E69F00", "lw": 1.4}),
     "damping by manipulability": (nakamura_hanafusa, {"color": "#009E73", "lw": 1.4, "ls": (0, (6, 1.5))}),
     "fpbm_cpp": (lambda motion: library(motion, singular_radius=RADIUS), {"color": "#0072B2", "lw": 2.0}),
-    "fpbm_cpp with a brake": (
-        lambda motion: library(motion, singular_radius=RADIUS, singular_brake=100.0),
+    "fpbm_cpp, no brake": (
+        lambda motion: library(motion, singular_radius=RADIUS, singular_brake=0.0),
         {"color": "#CC79A7", "lw": 1.2, "ls": (0, (4, 1, 1, 1))},
     ),
 }
@@ -218,9 +218,9 @@ def rest_at_the_edge() -> None:
     motion = to_the_edge(beyond=0.1, back=False)
     print("Four links, held to 10 cm beyond their reach: joint speed 30 s later [rad/s]")
     for null_damping in (0.0, NULL_DAMPING):
-        for brake in (0.0, 100.0):
+        for brake in (0.0, 10.0):
             done = run(motion, library(motion, null_damping, singular_radius=RADIUS, singular_brake=brake))
-            print(f"  null damping {null_damping:.0f}/s, brake {brake:3.0f}/s: {done['speed'][-1]:.1e}")
+            print(f"  null damping {null_damping:.0f}/s, brake {brake:2.0f}/s: {done['speed'][-1]:.1e}")
 
 
 def main() -> None:

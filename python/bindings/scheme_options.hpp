@@ -50,7 +50,7 @@ struct Options {
   double manipulability_gain = 0.0;
   std::optional<PySecondTask> second_task = std::nullopt;
   double singular_radius = 0.0;
-  double singular_brake = 0.0;
+  double singular_brake = 10.0;
 };
 
 /// The shared options and the closing of repr; a trial visit checks all parameters against each other.
@@ -120,8 +120,7 @@ second_task : SecondTask or Gaze
     What the null space does before all else: the rest of these options have what it leaves.
 singular_radius, singular_brake : float
     Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-    none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s], for those who
-    do not damp it everywhere.
+    none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
 manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
 and cannot be resolved from a Kinematics.
@@ -148,8 +147,7 @@ second_task : SecondTask or Gaze
     What the null space does before all else: the rest of these options have what it leaves.
 singular_radius, singular_brake : float
     Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-    none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s], for those who
-    do not damp it everywhere.
+    none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
 manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
 and cannot be resolved from a Kinematics.

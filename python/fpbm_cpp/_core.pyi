@@ -575,8 +575,8 @@ class MVN(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -597,7 +597,7 @@ class MVN(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class WMVN(Scheme):
@@ -622,8 +622,8 @@ class WMVN(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -645,7 +645,7 @@ class WMVN(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class MAN(Scheme):
@@ -669,8 +669,8 @@ class MAN(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -691,7 +691,7 @@ class MAN(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class WMVNAcceleration(Scheme):
@@ -719,8 +719,8 @@ class WMVNAcceleration(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -742,7 +742,7 @@ class WMVNAcceleration(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class Balanced(Scheme):
@@ -770,8 +770,8 @@ class Balanced(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -794,7 +794,7 @@ class Balanced(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class FPBM(Scheme):
@@ -827,8 +827,8 @@ class FPBM(Scheme):
     second_task : SecondTask or Gaze
         What the null space does before all else: the rest of these options have what it leaves.
     singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1], and of the null
-        space there [1/s]. A radius of 0 is none, and refuses singular postures; 0.02 is a good one.
+        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
+        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
 
     manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
     and cannot be resolved from a Kinematics.
@@ -853,7 +853,7 @@ class FPBM(Scheme):
         manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         second_task: SecondTask | Gaze | None = None,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
 class Tick:
@@ -973,7 +973,7 @@ class Tracker:
         integral_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         integral_bound: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 100.0,
+        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
     def course(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> Course:
         """

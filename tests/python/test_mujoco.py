@@ -116,6 +116,12 @@ def test_no_bound_is_broken_at_any_step(motion):
     assert np.all(abs(np.array(motion.torque)).max(axis=0) < panda_mjcf.TORQUE)
 
 
+def test_torques_do_not_chatter(motion):
+    change = np.diff(np.array(motion.torque), axis=0)
+    reversal = np.where(change[1:] * change[:-1] < 0, np.minimum(abs(change[1:]), abs(change[:-1])), 0)
+    assert (reversal.max(axis=1) > 0.5).sum() < 20  # [Nm], of 21,000 ticks
+
+
 @pytest.mark.parametrize("name", ["too far", "too near"])
 def test_out_of_reach_the_arm_rests(motion, name):
     tip = last(motion, name, "tip")

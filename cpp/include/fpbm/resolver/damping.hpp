@@ -15,14 +15,14 @@ namespace fpbm {
 /// q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a largest diagonal
 /// entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
-/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd. Without
-/// null-space damping that is what lets an arm that is drawn to a target out of reach come to rest at the edge.
+/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd, so
+/// that an arm that is drawn to a target out of reach comes to rest at the edge.
 template <typename Scalar = double>
 class SingularDamping {
  public:
   /// radius: share of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
   /// brake: damping of the null space at a singular posture [1/s]. Throws std::invalid_argument on a bad value.
-  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(0)) : radius_(radius), brake_(brake) {
+  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(10)) : radius_(radius), brake_(brake) {
     validation::require_fraction("singular_radius", static_cast<double>(radius));
     validation::require_non_negative("singular_brake", static_cast<double>(brake));
   }
