@@ -27,48 +27,58 @@ void expect_spectrum(const Matrix<M, M, Scalar>& A) {
   EXPECT_LE((values - known.eigenvalues()).cwiseAbs().maxCoeff(), slack * size);
 }
 
-template <typename Type>
-class SymmetricEigenLaws : public testing::Test {};
-template <int kRows, typename Number>
-struct Case {
-  static constexpr int M = kRows;
-  using Scalar = Number;
-};
-using Cases = testing::Types<Case<2, double>, Case<3, double>, Case<4, double>, Case<6, double>, Case<2, float>,
-                             Case<3, float>, Case<6, float>>;
-TYPED_TEST_SUITE(SymmetricEigenLaws, Cases);
+template <int M, typename Scalar>
+using Square = Matrix<M, M, Scalar>;
 
-TYPED_TEST(SymmetricEigenLaws, hold_for_gram_matrices_of_every_rank_and_scale) {
-  constexpr int M = TypeParam::M;
-  using Scalar = typename TypeParam::Scalar;
-  for (std::uint32_t seed = 0; seed < 500; ++seed) {
-    Random random(seed);
-    for (int rank = 0; rank <= M; ++rank) {
-      Matrix<M, M, Scalar> J = random.uniform(M, M, -1.0, 1.0).template cast<Scalar>();
-      J.rightCols(M - rank).setZero();
-      const Scalar scale = static_cast<Scalar>(std::pow(10.0, random.uniform(-8.0, 8.0)));
-      expect_spectrum<M, Scalar>(scale * (J * J.transpose()));
+/// Calls check with an empty matrix of every kind.
+template <typename Check>
+void on_every_size(Check&& check) {
+  check(Square<2, double>());
+  check(Square<3, double>());
+  check(Square<4, double>());
+  check(Square<6, double>());
+  check(Square<2, float>());
+  check(Square<3, float>());
+  check(Square<6, float>());
+}
+
+TEST(SymmetricEigen, hold_for_gram_matrices_of_every_rank_and_scale) {
+  on_every_size([]([[maybe_unused]] auto empty) {
+    constexpr int M = decltype(empty)::RowsAtCompileTime;
+    using Scalar = typename decltype(empty)::Scalar;
+    for (std::uint32_t seed = 0; seed < 500; ++seed) {
+      Random random(seed);
+      for (int rank = 0; rank <= M; ++rank) {
+        Square<M, Scalar> J = random.uniform(M, M, -1.0, 1.0).template cast<Scalar>();
+        J.rightCols(M - rank).setZero();
+        const Scalar scale = static_cast<Scalar>(std::pow(10.0, random.uniform(-8.0, 8.0)));
+        expect_spectrum<M, Scalar>(scale * (J * J.transpose()));
+      }
     }
-  }
+  });
 }
 
-TYPED_TEST(SymmetricEigenLaws, hold_where_eigenvalues_repeat) {
-  constexpr int M = TypeParam::M;
-  using Scalar = typename TypeParam::Scalar;
-  expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Zero());
-  expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Identity());
-  expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Ones());
+TEST(SymmetricEigen, hold_where_eigenvalues_repeat) {
+  on_every_size([]([[maybe_unused]] auto empty) {
+    constexpr int M = decltype(empty)::RowsAtCompileTime;
+    using Scalar = typename decltype(empty)::Scalar;
+    expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Zero());
+    expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Identity());
+    expect_spectrum<M, Scalar>(Matrix<M, M, Scalar>::Ones());
+  });
 }
 
-TYPED_TEST(SymmetricEigenLaws, end_on_what_is_not_finite) {
-  constexpr int M = TypeParam::M;
-  using Scalar = typename TypeParam::Scalar;
-  for (const Scalar nonsense : {std::numeric_limits<Scalar>::quiet_NaN(), std::numeric_limits<Scalar>::infinity()}) {
-    Matrix<M, M, Scalar> A = Matrix<M, M, Scalar>::Ones();
-    A(M - 1, M - 1) = nonsense;
-    const SymmetricEigen<M, Scalar> found(A);
-    EXPECT_FALSE(found.values.allFinite());
-  }
+TEST(SymmetricEigen, end_on_what_is_not_finite) {
+  on_every_size([]([[maybe_unused]] auto empty) {
+    constexpr int M = decltype(empty)::RowsAtCompileTime;
+    using Scalar = typename decltype(empty)::Scalar;
+    for (const Scalar nonsense : {std::numeric_limits<Scalar>::quiet_NaN(), std::numeric_limits<Scalar>::infinity()}) {
+      Matrix<M, M, Scalar> A = Matrix<M, M, Scalar>::Ones();
+      A(M - 1, M - 1) = nonsense;
+      const SymmetricEigen<M, Scalar> found(A);
+      EXPECT_FALSE(found.values.allFinite());
+    }
+  });
 }
 
 }  // namespace
