@@ -73,9 +73,9 @@ class NullSpaceSaturation {
         break;
       }
     }
-    for (int i = 0; i < count_; ++i) result.joints |= bit(held_[i]);
+    for (int i = 0; i < count(); ++i) result.joints |= bit(held_[i]);
     u = box.nearest(rest + scale_.cwiseProduct(u));
-    for (int i = 0; i < count_; ++i) u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
+    for (int i = 0; i < count(); ++i) u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
     return result;
   }
 
@@ -88,8 +88,11 @@ class NullSpaceSaturation {
 
   [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
 
+  /// How many joints are held. Never more than kMost, which the compiler is told.
+  [[nodiscard]] int count() const noexcept { return count_ < kMost ? count_ : kMost; }
+
   [[nodiscard]] bool active(Eigen::Index joint) const noexcept {
-    for (int i = 0; i < count_; ++i) {
+    for (int i = 0; i < count(); ++i) {
       if (held_[i] == joint) return true;
     }
     return false;
@@ -98,7 +101,7 @@ class NullSpaceSaturation {
   /// Z_heldᵀ = QR by Gram and Schmidt.
   void orthogonalise() noexcept {
     using std::sqrt;
-    for (int j = 0; j < count_; ++j) {
+    for (int j = 0; j < count(); ++j) {
       Free column = Z_.row(held_[j]).transpose();
       for (int i = 0; i < j; ++i) {
         R_(i, j) = Q_.col(i).dot(column);
@@ -116,14 +119,14 @@ class NullSpaceSaturation {
     if (count_ == 0) return rate;
     Free change = Free::Zero(Z_.cols());
     Free y(Z_.cols());
-    for (int j = 0; j < count_; ++j) {
+    for (int j = 0; j < count(); ++j) {
       y(j) = -goal(held_[j]);
       for (int i = 0; i < j; ++i) y(j) -= R_(i, j) * y(i);
       y(j) /= R_(j, j);
       change += y(j) * Q_.col(j);
     }
     rate += Z_.lazyProduct(change);
-    for (int j = 0; j < count_; ++j) rate(held_[j]) = Scalar(0);
+    for (int j = 0; j < count(); ++j) rate(held_[j]) = Scalar(0);
     return rate;
   }
 
@@ -131,7 +134,7 @@ class NullSpaceSaturation {
   [[nodiscard]] bool hold(Eigen::Index joint, bool above) noexcept {
     Free rest = Z_.row(joint).transpose();
     Free share(Z_.cols());  // Becomes c in Z_joint = Σ c_i Z_held(i) + rest.
-    for (int i = 0; i < count_; ++i) {
+    for (int i = 0; i < count(); ++i) {
       share(i) = Q_.col(i).dot(rest);
       rest -= share(i) * Q_.col(i);
     }
@@ -141,13 +144,13 @@ class NullSpaceSaturation {
       ++count_;
       return true;
     }
-    for (int i = count_ - 1; i >= 0; --i) {
-      for (int j = i + 1; j < count_; ++j) share(i) -= R_(i, j) * share(j);
+    for (int i = count() - 1; i >= 0; --i) {
+      for (int j = i + 1; j < count(); ++j) share(i) -= R_(i, j) * share(j);
       share(i) /= R_(i, i);
     }
     int leaving = -1;
     Scalar most = std::numeric_limits<Scalar>::epsilon();
-    for (int i = 0; i < count_; ++i) {
+    for (int i = 0; i < count(); ++i) {
       const Scalar inward = above_[i] == above ? share(i) : -share(i);
       if (inward > most) {
         most = inward;
