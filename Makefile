@@ -11,12 +11,13 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python clang sanitize fuzz soak lint format stubs bench clean
+.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make test             build and run every test'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
+	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, types, stubs'
@@ -32,7 +33,8 @@ test: test-cpp test-python
 test-cpp: preset = release
 clang: preset = clang
 sanitize: preset = sanitize
-test-cpp clang sanitize:
+nightly: preset = nightly
+test-cpp clang sanitize nightly:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang,$(preset)),clang++:clang)
 	cmake --preset $(preset)
 	cmake --build --preset $(preset)
