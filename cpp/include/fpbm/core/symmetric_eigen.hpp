@@ -18,13 +18,14 @@ struct SymmetricEigen {
 
   /// A: both triangles are read. What is not finite gives values that are not.
   explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(Matrix<M, M, Scalar>::Identity()) {
+    using std::abs;
     Matrix<M, M, Scalar> D = A;
     const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * A.cwiseAbs().maxCoeff();
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       bool done = true;
       for (int p = 0; p < M; ++p) {
         for (int q = p + 1; q < M; ++q) {
-          if (!(std::abs(D(p, q)) > negligible)) continue;
+          if (!(abs(D(p, q)) > negligible)) continue;
           rotate(D, p, q);
           done = false;
         }

@@ -45,23 +45,25 @@ class Limiter {
   }
 
  private:
+  /// Blends found with yielding(): found + (1 − (s/s₀)²)² (yielded − found), s being the scale and s₀ the little one
+  /// below which the arm yields. At velocity level s is what is left of the task's velocity.
   template <int M>
   void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box, const Row& wanted,
              Saturated<N, Scalar>& found) const noexcept {
     const Vector<M, Scalar> task = J.lazyProduct(wanted);
-    Scalar left = found.scale;
-    if constexpr (kLevel == Level::kVelocity) left = J.lazyProduct(found.u).dot(task) / task.squaredNorm();
-    left = (left > Scalar(0) ? left : Scalar(0)) / kLittle;
+    Scalar scale = found.scale;
+    if constexpr (kLevel == Level::kVelocity) scale = J.lazyProduct(found.u).dot(task) / task.squaredNorm();
+    const Scalar left = scale > Scalar(0) ? scale / kLittle : Scalar(0);
     if (!(left < Scalar(1))) return;
-    const Scalar share = (Scalar(1) - left * left) * (Scalar(1) - left * left);
+    const Scalar yields = Scalar(1) - left * left;
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
     Row rest = Row::Zero(state.q.size());
     if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
     const Row yielded = yielding<M, N, Scalar>(J, task, mu, rest, box);
-    found.u = box.nearest(found.u + share * (yielded - found.u));  // Round-off may leave the box.
+    found.u = box.nearest(found.u + yields * yields * (yielded - found.u));  // Round-off may leave the box.
   }
 
-  static constexpr Scalar kLittle = Scalar(0.1);  ///< Scale below which the arm yields.
+  static constexpr Scalar kLittle = Scalar(0.1);  ///< s₀, the scale below which the arm yields.
   static constexpr Scalar kRadius = Scalar(0.1);  ///< Damping then, as a share of ‖J‖_F,
   static constexpr Scalar kDamping = Scalar(10);  ///< and of what that leaves free [1/s].
 
