@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "fpbm/core/lanes.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 
@@ -10,24 +11,31 @@ namespace fpbm {
 /// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
 ///
 /// Loops run over compile-time bounds where M is fixed, so that the compiler unrolls them; no square root and
-/// M divisions in all.
-template <int M, typename Scalar = double>
+/// M divisions in all. Value = Lanes<Scalar, K> factorises K matrices at once.
+template <int M, typename Value = double>
 class Cholesky {
  public:
+  using Scalar = typename ScalarOf<Value>::type;
+
   /// Factorises A, of which only the lower triangle is read.
   /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
   /// where A is not finite.
-  [[nodiscard]] Status factor(const Matrix<M, M, Scalar>& A) noexcept {
+  [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
     const Eigen::Index m = A.rows();
-    const Scalar smallest = kPivotTolerance * A.diagonal().maxCoeff();
-    L_ = A;
+    L_.resize(m, m);
     reciprocal_.resize(m);
+    Value largest = A(0, 0);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      largest = larger(largest, A(i, i));
+      for (Eigen::Index j = 0; j <= i; ++j) L_(i, j) = A(i, j);
+    }
+    const Value smallest = kPivotTolerance * largest;
     for (Eigen::Index j = 0; j < m; ++j) {
-      const Scalar pivot = L_(j, j);
+      const Value pivot = L_(j, j);
       if (!(pivot > smallest)) return lost(A, j);
       reciprocal_(j) = Scalar(1) / pivot;
       for (Eigen::Index i = j + 1; i < m; ++i) {
-        const Scalar l = L_(i, j) * reciprocal_(j);
+        const Value l = L_(i, j) * reciprocal_(j);
         for (Eigen::Index k = j + 1; k <= i; ++k) L_(i, k) -= l * L_(k, j);
       }
       for (Eigen::Index i = j + 1; i < m; ++i) L_(i, j) *= reciprocal_(j);
@@ -39,9 +47,9 @@ class Cholesky {
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.
-  [[nodiscard]] Vector<M, Scalar> solve(const Vector<M, Scalar>& b) const noexcept {
+  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
     const Eigen::Index m = L_.rows();
-    Vector<M, Scalar> x = b;
+    Vector<M, Value> x = b;
     for (Eigen::Index i = 1; i < m; ++i) {
       for (Eigen::Index j = 0; j < i; ++j) x(i) -= L_(i, j) * x(j);
     }
@@ -53,34 +61,40 @@ class Cholesky {
   }
 
   /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, and by M times at most too low.
-  [[nodiscard]] Scalar inverse_trace() const noexcept {
+  [[nodiscard]] Value inverse_trace() const noexcept {
     const Eigen::Index m = L_.rows();
-    Matrix<M, M, Scalar> inverse = L_;  // Of L, below the diagonal.
-    Scalar trace = Scalar(0);
-    for (Eigen::Index i = 0; i < m; ++i) {
-      Scalar row = Scalar(1);
+    Matrix<M, M, Value> inverse;  // Of L, its sign changed, below the diagonal.
+    inverse.resize(m, m);
+    Value trace = reciprocal_(0);
+    for (Eigen::Index i = 1; i < m; ++i) {
+      Value row = reciprocal_(i);
       for (Eigen::Index j = 0; j < i; ++j) {
-        Scalar entry = L_(i, j);
-        for (Eigen::Index k = j + 1; k < i; ++k) entry += L_(i, k) * inverse(k, j);
-        inverse(i, j) = -entry;
-        row += entry * entry;
+        Value entry = L_(i, j);
+        for (Eigen::Index k = j + 1; k < i; ++k) entry -= L_(i, k) * inverse(k, j);
+        inverse(i, j) = entry;
+        row += entry * entry * reciprocal_(i);
       }
-      trace += row * reciprocal_(i);
+      trace += row;
     }
     return trace;
   }
 
  private:
-  [[nodiscard]] Status lost(const Matrix<M, M, Scalar>& A, Eigen::Index pivot) noexcept {
+  [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, Eigen::Index pivot) noexcept {
     lost_pivot_ = pivot;
-    return A.allFinite() ? Status::kSingular : Status::kNotFinite;
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        if (!is_finite(A(i, j))) return Status::kNotFinite;
+      }
+    }
+    return Status::kSingular;
   }
 
   /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
   static constexpr Scalar kPivotTolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
 
-  Matrix<M, M, Scalar> L_;        ///< Unit lower triangle, below the diagonal.
-  Vector<M, Scalar> reciprocal_;  ///< 1 / D.
+  Matrix<M, M, Value> L_;        ///< Unit lower triangle, below the diagonal.
+  Vector<M, Value> reciprocal_;  ///< 1 / D.
   Eigen::Index lost_pivot_ = 0;
 };
 

@@ -101,6 +101,17 @@ template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::atan2;
   using std::sqrt;
+  // A small turn, as errors are: sin|r| r/|r| times the series of arcsine, with neither root nor division.
+  const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  const Scalar z = s.squaredNorm() / Scalar(4);
+  if (R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0)) {
+    constexpr double kSeries[] = {6435.0 / 557056.0, 143.0 / 10240.0, 231.0 / 13312.0,
+                                  63.0 / 2816.0,     35.0 / 1152.0,   5.0 / 112.0,
+                                  3.0 / 40.0,        1.0 / 6.0,       1.0};
+    Scalar sum(0);
+    for (const double coefficient : kSeries) sum = sum * z + Scalar(coefficient);
+    return sum / Scalar(2) * s;
+  }
   const Vector<4, Scalar> q = quaternion(R);
   const Vector<3, Scalar> v = q.template tail<3>();
   const Scalar sine = sqrt(v.squaredNorm());

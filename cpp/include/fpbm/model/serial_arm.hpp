@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 #include "fpbm/core/rotation.hpp"
@@ -25,17 +27,28 @@ class SerialArm {
   /// not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
   explicit SerialArm(const Chain<Scalar>& chain)
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
-    // Each joint's frame is turned so that its axis is z: then all joints move alike.
+    turns_.setOnes(dof_);
+    offsets_.setZero(dof_);
     Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
-    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-      const Joint<Scalar>& joint = chain.joints[i];
+    for (Eigen::Index i = 0; i < dof_; ++i) {
+      const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
-      links_[i] = {turned_back * joint.placement.p, turned_back * joint.placement.R * to_axis};
+      const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
+      const Row3 p = turned_back * joint.placement.p;
       turned_back = to_axis.transpose();
-      slides_[i] = joint.type == JointType::kPrismatic;
-      limits_.set(static_cast<Eigen::Index>(i), joint.bounds);
+      if (i == 0) {
+        base_ = {p, R};
+      } else {
+        connect(i - 1, p, R);
+      }
+      if (joint.type == JointType::kPrismatic) {
+        turns_(i) = Scalar(0);
+        slides_ |= std::uint32_t(1) << i;
+      }
+      limits_.set(i, joint.bounds);
     }
-    tip_ = {turned_back * chain.tip.p, turned_back * chain.tip.R};
+    links_[static_cast<std::size_t>(dof_ - 1)] = {turned_back * chain.tip.p, Scalar(1), Scalar(0)};
+    tip_ = turned_back * chain.tip.R;
   }
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
@@ -56,70 +69,124 @@ class SerialArm {
 
  private:
   using Row3 = Vector<3, Scalar>;
+  using Rows3 = Matrix<N, 3, Scalar>;  ///< One row a joint, so that several joints are done at once.
+
+  /// From one joint's frame to the next one's, both with the joint's axis as z: a step, and a tilt about x.
+  struct Link {
+    Row3 step;
+    Scalar cosine;
+    Scalar sine;
+  };
+
+  /// Link i is p and R = Rz(β) Rx(tilt) Rz(γ), of which the turns about z are left to the joints.
+  void connect(Eigen::Index i, const Row3& p, const Matrix<3, 3, Scalar>& R) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    const bool tilted = R(0, 2) != Scalar(0) || R(1, 2) != Scalar(0);
+    const bool backward = R(1, 2) > Scalar(0);  // Then by a negative tilt: |β| ≤ π/2.
+    const Scalar beta = tilted ? (backward ? atan2(-R(0, 2), R(1, 2)) : atan2(R(0, 2), -R(1, 2))) : Scalar(0);
+    Matrix<3, 3, Scalar> back;
+    back << cos(beta), sin(beta), 0, -sin(beta), cos(beta), 0, 0, 0, 1;
+    const Matrix<3, 3, Scalar> rest = back * R;
+    links_[static_cast<std::size_t>(i)] = {back * p, rest(2, 2), -rest(1, 2)};
+    offsets_(i) += beta;
+    offsets_(i + 1) = atan2(-rest(0, 1), rest(0, 0));
+  }
+
+  [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
   /// Out along the chain for axes zᵢ, origins pᵢ and their rates; then column i of J is [zᵢ × (p − pᵢ); zᵢ] for a
   /// revolute joint, [zᵢ; 0] for a prismatic one, and column i of Jd its rate.
   template <bool kWithRate, typename Space>
-  void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-             Kinematics<Space, N, Scalar>& out) const noexcept {
+  [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
+                              Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithTurn = std::is_same_v<Space, Pose>;
     static_assert(kWithTurn || std::is_same_v<Space, Position<3>>, "a serial arm has tasks Position<3> and Pose");
-    out.J.resize(Space::kRows, dof_);
-    if constexpr (kWithRate) out.Jd.resize(Space::kRows, dof_);
+    const Vector<N, Scalar> angles = turns_.cwiseProduct(q) + offsets_;
     Vector<N, Scalar> sines;
     Vector<N, Scalar> cosines;
-    sincos(q, sines, cosines);
+    sincos(angles, sines, cosines);
 
-    std::array<Row3, kCapacity<N>> origins;
-    std::array<Row3, kCapacity<N>> velocities;
-    std::array<Row3, kCapacity<N>> axes;
-    std::array<Row3, kCapacity<N>> axis_rates;
-    Transform<Scalar> frame;
-    Row3 v = Row3::Zero();  // Of the frame's origin,
+    Rows3 axes(dof_, 3);
+    Rows3 arms(dof_, 3);  // First the origins, then from there to the tip;
+    Rows3 axis_rates(dof_, 3);
+    Rows3 arm_rates(dof_, 3);  // likewise.
+    Row3 p = base_.p;
+    Row3 x = base_.R.col(0);
+    Row3 y = base_.R.col(1);
+    Row3 z = base_.R.col(2);
+    Row3 v = Row3::Zero();  // Of p,
     Row3 w = Row3::Zero();  // and the frame's angular velocity.
     const auto advance = [&](const Row3& step) {
-      frame.p += step;
+      p += step;
       if constexpr (kWithRate) v += cross(w, step);
     };
     for (Eigen::Index i = 0; i < dof_; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      advance(frame.R.lazyProduct(links_[k].p));
-      frame.R = frame.R.lazyProduct(links_[k].R).eval();
-      const Row3 z = frame.R.col(2);
-      axes[k] = z;
-      if constexpr (kWithRate) axis_rates[k] = cross(w, z);
-      if (!slides_[k]) {
-        const Row3 x = frame.R.col(0);
-        frame.R.col(0) = cosines(i) * x + sines(i) * frame.R.col(1);
-        frame.R.col(1) = cosines(i) * frame.R.col(1) - sines(i) * x;
-        if constexpr (kWithRate) w += qd(i) * z;
-      } else {
+      const Link& link = links_[static_cast<std::size_t>(i)];
+      axes.row(i) = z;
+      if constexpr (kWithRate) axis_rates.row(i) = cross(w, z);
+      if (slides(i)) {
         advance(q(i) * z);
         if constexpr (kWithRate) v += qd(i) * z;
+      } else if constexpr (kWithRate) {
+        w += qd(i) * z;
       }
-      origins[k] = frame.p;
-      if constexpr (kWithRate) velocities[k] = v;
-    }
-    advance(frame.R.lazyProduct(tip_.p));
+      arms.row(i) = p;
+      if constexpr (kWithRate) arm_rates.row(i) = v;
 
-    for (Eigen::Index i = 0; i < dof_; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const bool turns = !slides_[k];
-      const Row3 arm = frame.p - origins[k];
-      out.J.col(i).template head<3>() = turns ? cross(axes[k], arm) : axes[k];
-      if constexpr (kWithTurn) out.J.col(i).template tail<3>() = turns ? axes[k] : Row3::Zero();
-      if constexpr (kWithRate) {
-        const Row3 rate = v - velocities[k];
-        out.Jd.col(i).template head<3>() =
-            turns ? Row3(cross(axis_rates[k], arm) + cross(axes[k], rate)) : axis_rates[k];
-        if constexpr (kWithTurn) out.Jd.col(i).template tail<3>() = turns ? axis_rates[k] : Row3::Zero();
-      }
+      const Row3 turned = cosines(i) * x + sines(i) * y;
+      y = cosines(i) * y - sines(i) * x;
+      x = turned;
+      advance(link.step(0) * x + link.step(1) * y + link.step(2) * z);
+      const Row3 tilted = link.cosine * y + link.sine * z;
+      z = link.cosine * z - link.sine * y;
+      y = tilted;
+    }
+
+    out.J.resize(Space::kRows, dof_);
+    tip_less(p, arms);
+    out.J.template topRows<3>() = cross_each(axes, arms).transpose();
+    if constexpr (kWithTurn) out.J.template bottomRows<3>() = axes.transpose();
+    if constexpr (kWithRate) {
+      out.Jd.resize(Space::kRows, dof_);
+      tip_less(v, arm_rates);
+      out.Jd.template topRows<3>() = (cross_each(axis_rates, arms) + cross_each(axes, arm_rates)).transpose();
+      if constexpr (kWithTurn) out.Jd.template bottomRows<3>() = axis_rates.transpose();
+    }
+    for (Eigen::Index i = 0; slides_ != 0 && i < dof_; ++i) {
+      if (!slides(i)) continue;
+      slide(axes.row(i), out.J.col(i));
+      if constexpr (kWithRate) slide(axis_rates.row(i), out.Jd.col(i));
     }
     if constexpr (kWithTurn) {
-      out.tip = {frame.p, frame.R.lazyProduct(tip_.R)};
+      Matrix<3, 3, Scalar> R;
+      R << x, y, z;
+      out.tip = {p, R.lazyProduct(tip_)};
     } else {
-      out.tip = frame.p;
+      out.tip = p;
     }
+  }
+
+  static void tip_less(const Row3& tip, Rows3& rows) noexcept {
+    for (int i = 0; i < 3; ++i) rows.col(i).array() = tip(i) - rows.col(i).array();
+  }
+
+  [[nodiscard]] static Rows3 cross_each(const Rows3& a, const Rows3& b) noexcept {
+    Rows3 result(a.rows(), 3);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      result.col(i) = a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
+    }
+    return result;
+  }
+
+  /// The column of a prismatic joint.
+  template <typename Axis, typename Column>
+  static void slide(const Axis& axis, Column&& column) noexcept {
+    column.setZero();
+    column.template head<3>() = axis;
   }
 
   /// A rotation that takes z to the axis.
@@ -138,9 +205,12 @@ class SerialArm {
   }
 
   Eigen::Index dof_;
-  std::array<Transform<Scalar>, kCapacity<N>> links_;
-  std::array<bool, kCapacity<N>> slides_{};
-  Transform<Scalar> tip_;
+  Transform<Scalar> base_;                ///< The first joint's frame at zero.
+  std::array<Link, kCapacity<N>> links_;  ///< Out of each joint's frame.
+  Vector<N, Scalar> turns_;               ///< 0 for a prismatic joint: a frame is turned by turns q + offset.
+  Vector<N, Scalar> offsets_;
+  std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
+  Matrix<3, 3, Scalar> tip_;  ///< The tip, seen from the last link's end.
   JointLimits<N, Scalar> limits_;
 };
 

@@ -14,7 +14,7 @@ namespace fpbm {
 ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
 ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z),
 ///
-/// with no pseudoinverse or projector formed. α = 0 without z, and α = 1, cost one factorisation only.
+/// with no pseudoinverse or projector formed, and both factorisations made side by side.
 /// Damped near singular postures, and then kDamped. Leaves qdd alone where it fails. Flattened, since a large
 /// translation unit may keep small calls apart.
 template <typename Space, int N, typename Scalar, typename Weights>
@@ -26,29 +26,23 @@ template <typename Space, int N, typename Scalar, typename Weights>
                                            Vector<N, Scalar>& qdd) noexcept {
   constexpr int M = Space::kRows;
   const auto& J = kinematics.J;
-  DampedGram<M, N, Scalar> gram(damping, J);
-  Vector<N, Scalar> result = Vector<N, Scalar>::Zero(J.cols());
-  Status status = Status::kOk;
+  const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
+  DampedGram<M, N, Lanes<Scalar, 2>> gram(damping, J);  // JJᵀ in the first lane, JW⁻¹Jᵀ in the second.
+  const Status status = gram.factor(UnitWeights{}, side_by_side<N, M, Scalar>(J.transpose(), WinvJt));
+  if (failed(status)) return status;
 
-  if (alpha != Scalar(1)) {
-    status = gram.factor(UnitWeights{}, J.transpose());
-    if (failed(status)) return status;
-    const Vector<M, Scalar> lambda1 = gram.solve(b);
-    result = (Scalar(1) - alpha) * J.transpose().lazyProduct(lambda1);
-  }
-  const bool has_z = null_space.template active<Level::kAcceleration>() || status == Status::kDamped;
-  if (alpha != Scalar(0) || has_z) {
-    const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
-    status = worse(status, gram.factor(weights, WinvJt));
-    if (failed(status)) return status;
-    const Vector<M, Scalar> mu = gram.solve(reference.xd);
-    const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
-    Vector<N, Scalar> u = weights.solve(Jdtmu);
-    if (has_z) u += null_space.template at<Level::kAcceleration>(state);
-    if (status == Status::kDamped) u -= gram.brake() * state.qd;
-    const Vector<M, Scalar> rest = alpha * b - J.lazyProduct(u);
-    result += u + WinvJt.lazyProduct(gram.solve(rest));
-  }
+  const Vector<M, Lanes<Scalar, 2>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
+  const Vector<M, Scalar> lambda1 = lane<M, 1, Scalar>(both, 0);
+  const Vector<M, Scalar> mu = lane<M, 1, Scalar>(both, 1);
+  const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
+  Vector<N, Scalar> u = weights.solve(Jdtmu);
+  if (null_space.template active<Level::kAcceleration>()) u += null_space.template at<Level::kAcceleration>(state);
+  if (status == Status::kDamped) u -= gram.brake() * state.qd;
+  const Vector<M, Scalar> rest = alpha * b - J.lazyProduct(u);
+  const Vector<M, Scalar> lambda2 = lane<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)), 1);
+
+  const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
+  const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + WinvJt.lazyProduct(lambda2);
   if (!result.allFinite()) return Status::kNotFinite;
   qdd = result;
   return status;

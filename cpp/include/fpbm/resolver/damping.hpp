@@ -49,50 +49,62 @@ template <int M, int N, typename Scalar>
   return Scalar(1) / sqrt(cholesky.inverse_trace());
 }
 
-/// Factors of the Gram matrices JW⁻¹Jᵀ of one J, damped where J is nearly singular.
-template <int M, int N, typename Scalar>
+/// The factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular; of several with different W, side by side,
+/// where Value is Lanes.
+template <int M, int N, typename Value>
 class DampedGram {
  public:
+  using Scalar = typename ScalarOf<Value>::type;
+
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
       : damping_(damping), J_(J) {}
 
-  /// Factorises JW⁻¹Jᵀ + Δ, of W⁻¹Jᵀ given. Returns kDamped where Δ is not zero, or why there is no factor.
-  template <typename Weights, typename WinvJt>
-  [[nodiscard]] Status factor(const Weights& weights, const WinvJt& weighted) noexcept {
-    Matrix<M, M, Scalar> gram = J_.lazyProduct(weighted);
-    if (lost_.count > Scalar(0)) return damped(gram);
+  /// Factorises JW⁻¹Jᵀ + Δ, of W⁻¹Jᵀ given; weights is W, that of the first lane. Returns kDamped where Δ is not zero,
+  /// or why there is no factor.
+  template <typename Weights>
+  [[nodiscard]] Status factor(const Weights& weights, const Matrix<N, M, Value>& weighted) noexcept {
+    Matrix<M, M, Value> gram;  // Its lower triangle.
+    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
+      Vector<N, Value> row;
+      row.resize(J_.cols());
+      for (Eigen::Index k = 0; k < J_.cols(); ++k) row(k) = splat<Value>(J_(i, k));
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        Value sum = row(0) * weighted(0, j);
+        for (Eigen::Index k = 1; k < J_.cols(); ++k) sum += row(k) * weighted(k, j);
+        gram(i, j) = sum;
+      }
+    }
     const Status status = cholesky_.factor(gram);
-    if (known_ || damping_.radius() == Scalar(0) || status == Status::kNotFinite) return status;
+    if (damping_.radius() == Scalar(0) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, which the factor at hand tells: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
-    known_ = true;
     const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
     const Scalar bound = threshold * weights.template inverse_bound<Scalar>();
-    if (status == Status::kOk && bound * cholesky_.inverse_trace() <= Scalar(1)) return status;
-    examine(threshold);
-    return lost_.count > Scalar(0) ? damped(gram) : status;
+    if (status == Status::kOk && bound * first(cholesky_.inverse_trace()) <= Scalar(1)) return status;
+    return damped(gram, threshold, status);
   }
 
-  [[nodiscard]] Vector<M, Scalar> solve(const Vector<M, Scalar>& b) const noexcept { return cholesky_.solve(b); }
+  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept { return cholesky_.solve(b); }
 
   /// Damping that the null space gains [1/s].
-  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_.count; }
+  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
-  [[nodiscard]] Status damped(const Matrix<M, M, Scalar>& gram) noexcept {
-    const Status status = cholesky_.factor(gram + lost_.delta);
+  [[nodiscard, gnu::noinline]] Status damped(Matrix<M, M, Value>& gram, Scalar threshold, Status undamped) noexcept {
+    const LostDirections<M, Scalar> lost(J_.lazyProduct(J_.transpose()), threshold);
+    lost_ = lost.count;
+    if (!(lost_ > Scalar(0))) return undamped;
+    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += splat<Value>(lost.delta(i, j));
+    }
+    const Status status = cholesky_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;
-  }
-
-  [[gnu::noinline]] void examine(Scalar threshold) noexcept {
-    lost_ = LostDirections<M, Scalar>(J_.lazyProduct(J_.transpose()), threshold);
   }
 
   const SingularDamping<Scalar>& damping_;
   const Matrix<M, N, Scalar>& J_;
-  Cholesky<M, Scalar> cholesky_;
-  bool known_ = false;  ///< Whether J has been examined.
-  LostDirections<M, Scalar> lost_;
+  Cholesky<M, Value> cholesky_;
+  Scalar lost_{0};  ///< tr Δ/ε²: about the number of lost directions.
 };
 
 }  // namespace fpbm

@@ -14,14 +14,11 @@ namespace fpbm {
 /// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};             ///< tr Δ/ε²: about how many there are.
-  Matrix<M, M, Scalar> delta;  ///< Δ, where they have been looked for.
-
-  LostDirections() noexcept = default;
+  Scalar count{0};                                            ///< tr Δ/ε²: about how many there are.
+  Matrix<M, M, Scalar> delta = Matrix<M, M, Scalar>::Zero();  ///< Δ
 
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept {
     const SymmetricEigen<M, Scalar> spectrum(gram);
-    delta.setZero();
     for (int i = 0; i < M; ++i) {
       const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
