@@ -55,7 +55,7 @@ class Cholesky {
     }
     for (Eigen::Index i = m - 1; i >= 0; --i) {
       x(i) *= reciprocal_(i);
-      for (Eigen::Index j = i + 1; j < m; ++j) x(i) -= L_(j, i) * x(j);
+      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_(j, i) * x(j);  // What is known last comes last.
     }
     return x;
   }

@@ -26,9 +26,8 @@ template <typename Space, int N, typename Scalar, typename Weights>
                                            Vector<N, Scalar>& qdd) noexcept {
   constexpr int M = Space::kRows;
   const auto& J = kinematics.J;
-  const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
   DampedGram<M, N, Lanes<Scalar, 2>> gram(damping, J);  // JJᵀ in the first lane, JW⁻¹Jᵀ in the second.
-  const Status status = gram.factor(UnitWeights{}, side_by_side<N, M, Scalar>(J.transpose(), WinvJt));
+  const Status status = gram.factor(UnitWeights{}, weights.with_unit(J));
   if (failed(status)) return status;
 
   const Vector<M, Lanes<Scalar, 2>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
@@ -42,7 +41,8 @@ template <typename Space, int N, typename Scalar, typename Weights>
   const Vector<M, Scalar> lambda2 = lane<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)), 1);
 
   const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
-  const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + WinvJt.lazyProduct(lambda2);
+  const Vector<N, Scalar> Jtlambda2 = J.transpose().lazyProduct(lambda2);
+  const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda2);
   if (!result.allFinite()) return Status::kNotFinite;
   qdd = result;
   return status;

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/lanes.hpp"
 #include "fpbm/core/validation.hpp"
 
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
 ///
 /// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
-/// too small. The resolvers ask for two things: solve(A) = W⁻¹A, and a bound on the largest eigenvalue of W⁻¹.
-/// require_dof throws std::invalid_argument where W is for another number of joints.
+/// too small. The resolvers ask for three things: solve(A) = W⁻¹A, with_unit(J) = Jᵀ and W⁻¹Jᵀ side by side, and a
+/// bound on the largest eigenvalue of W⁻¹. require_dof throws std::invalid_argument where W is for another number of
+/// joints.
 namespace fpbm {
 
 /// W = I.
@@ -22,6 +24,12 @@ struct UnitWeights {
   template <typename Derived>
   [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
     return A.derived();
+  }
+
+  template <int M, int N, typename Scalar>
+  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    const Matrix<N, M, Scalar> Jt = J.transpose();
+    return side_by_side<N, M, Scalar>(Jt, Jt);
   }
 };
 
@@ -46,6 +54,17 @@ class DiagonalWeights {
   template <typename Derived>
   [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
     return inverse_.asDiagonal() * A.derived();
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    Matrix<N, M, Lanes<Scalar, 2>> result;
+    result.resize(J.cols(), J.rows());
+    for (Eigen::Index i = 0; i < J.cols(); ++i) {
+      const auto weight = side_by_side(Scalar(1), inverse_(i));
+      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = splat<Lanes<Scalar, 2>>(J(j, i)) * weight;
+    }
+    return result;
   }
 
  private:
@@ -81,6 +100,11 @@ class DenseWeights {
   template <typename Derived>
   [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
     return inverse_.lazyProduct(A.derived());
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    return side_by_side<N, M, Scalar>(J.transpose(), solve(J.transpose()));
   }
 
  private:
