@@ -5,13 +5,14 @@
 #include "fpbm/core/lanes.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
 
 namespace fpbm {
 
 /// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
 ///
-/// Loops run over compile-time bounds where M is fixed, so that the compiler unrolls them; no square root and
-/// M divisions in all. Value = Lanes<Scalar, K> factorises K matrices at once.
+/// Written out without a loop where M is fixed and small; no square root and M divisions in all.
+/// Value = Lanes<Scalar, K> factorises K matrices at once.
 template <int M, typename Value = double>
 class Cholesky {
  public:
@@ -21,26 +22,26 @@ class Cholesky {
   /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
   /// where A is not finite.
   [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
-    const Eigen::Index m = A.rows();
-    L_.resize(m, m);
-    reciprocal_.resize(m);
+    size_ = A.rows();
+    const auto m = extent<M>(size_);
     Value largest = A(0, 0);
-    for (Eigen::Index i = 0; i < m; ++i) {
-      largest = larger(largest, A(i, i));
-      for (Eigen::Index j = 0; j <= i; ++j) L_(i, j) = A(i, j);
-    }
+    each(kFirst, m, [&](auto i) {
+      largest = larger(largest, A.coeff(i, i));
+      each(kFirst, next(i), [&](auto j) { L_[i][j] = A.coeff(i, j); });
+    });
     const Value smallest = kPivotTolerance * largest;
-    for (Eigen::Index j = 0; j < m; ++j) {
-      const Value pivot = L_(j, j);
-      if (!(pivot > smallest)) return lost(A, j);
-      reciprocal_(j) = Scalar(1) / pivot;
-      for (Eigen::Index i = j + 1; i < m; ++i) {
-        const Value l = L_(i, j) * reciprocal_(j);
-        for (Eigen::Index k = j + 1; k <= i; ++k) L_(i, k) -= l * L_(k, j);
-      }
-      for (Eigen::Index i = j + 1; i < m; ++i) L_(i, j) *= reciprocal_(j);
-    }
-    return Status::kOk;
+    bool regular = true;
+    each(kFirst, m, [&](auto j) {
+      const Value pivot = L_[j][j];
+      regular = regular & (pivot > smallest);
+      reciprocal_[j] = Scalar(1) / pivot;
+      each(next(j), m, [&](auto i) {
+        const Value l = L_[i][j] * reciprocal_[j];
+        each(next(j), next(i), [&](auto k) { L_[i][k] -= l * L_[k][j]; });
+      });
+      each(next(j), m, [&](auto i) { L_[i][j] *= reciprocal_[j]; });
+    });
+    return regular ? Status::kOk : lost(A, smallest);
   }
 
   /// Row in which factor() lost its pivot, the leading rows before it being positive definite.
@@ -48,40 +49,41 @@ class Cholesky {
 
   /// Solution x of A x = b.
   [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
-    const Eigen::Index m = L_.rows();
+    const auto m = extent<M>(size_);
     Vector<M, Value> x = b;
-    for (Eigen::Index i = 1; i < m; ++i) {
-      for (Eigen::Index j = 0; j < i; ++j) x(i) -= L_(i, j) * x(j);
-    }
+    each(kFirst, m, [&](auto i) { each(kFirst, i, [&](auto j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
     for (Eigen::Index i = m - 1; i >= 0; --i) {
-      x(i) *= reciprocal_(i);
-      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_(j, i) * x(j);  // What is known last comes last.
+      x(i) *= reciprocal_[i];
+      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // What is known last comes last.
     }
     return x;
   }
 
   /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, and by M times at most too low.
   [[nodiscard]] Value inverse_trace() const noexcept {
-    const Eigen::Index m = L_.rows();
-    Matrix<M, M, Value> inverse;  // Of L, its sign changed, below the diagonal.
-    inverse.resize(m, m);
-    Value trace = reciprocal_(0);
-    for (Eigen::Index i = 1; i < m; ++i) {
-      Value row = reciprocal_(i);
-      for (Eigen::Index j = 0; j < i; ++j) {
-        Value entry = L_(i, j);
-        for (Eigen::Index k = j + 1; k < i; ++k) entry -= L_(i, k) * inverse(k, j);
-        inverse(i, j) = entry;
-        row += entry * entry * reciprocal_(i);
-      }
+    const auto m = extent<M>(size_);
+    Value inverse[kCapacity<M>][kCapacity<M>];  // Of L, its sign changed, below the diagonal.
+    Value trace = reciprocal_[0];
+    each(next(kFirst), m, [&](auto i) {
+      Value row = reciprocal_[i];
+      each(kFirst, i, [&](auto j) {
+        Value entry = L_[i][j];
+        each(next(j), i, [&](auto k) { entry -= L_[i][k] * inverse[k][j]; });
+        inverse[i][j] = entry;
+        row += entry * entry * reciprocal_[i];
+      });
       trace += row;
-    }
+    });
     return trace;
   }
 
  private:
-  [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, Eigen::Index pivot) noexcept {
-    lost_pivot_ = pivot;
+  [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, const Value& smallest) noexcept {
+    const Value one = splat<Value>(Scalar(1));
+    for (lost_pivot_ = 0; lost_pivot_ + 1 < size_; ++lost_pivot_) {
+      const Value& reciprocal = reciprocal_[lost_pivot_];
+      if (!(reciprocal > splat<Value>(Scalar(0)) && one > smallest * reciprocal)) break;
+    }
     for (Eigen::Index i = 0; i < A.rows(); ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) {
         if (!is_finite(A(i, j))) return Status::kNotFinite;
@@ -92,9 +94,11 @@ class Cholesky {
 
   /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
   static constexpr Scalar kPivotTolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  static constexpr Constant<0> kFirst{};
 
-  Matrix<M, M, Value> L_;        ///< Unit lower triangle, below the diagonal.
-  Vector<M, Value> reciprocal_;  ///< 1 / D.
+  Value L_[kCapacity<M>][kCapacity<M>];  ///< Unit lower triangle, below the diagonal.
+  Value reciprocal_[kCapacity<M>];       ///< 1 / D.
+  Eigen::Index size_ = 0;
   Eigen::Index lost_pivot_ = 0;
 };
 

@@ -66,7 +66,7 @@ template <typename Value>
   if constexpr (std::is_same_v<Value, typename ScalarOf<Value>::type>) {
     return a;
   } else {
-    return {typename Value::Register{} + a};
+    return {a - typename Value::Register{}};  // Not +, since −0 + 0 is another number.
   }
 }
 

@@ -3,6 +3,7 @@
 #include "fpbm/core/cholesky.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/resolver/lost_directions.hpp"
 
@@ -64,16 +65,18 @@ class DampedGram {
   template <typename Weights>
   [[nodiscard]] Status factor(const Weights& weights, const Matrix<N, M, Value>& weighted) noexcept {
     Matrix<M, M, Value> gram;  // Its lower triangle.
-    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
-      Vector<N, Value> row;
-      row.resize(J_.cols());
-      for (Eigen::Index k = 0; k < J_.cols(); ++k) row(k) = splat<Value>(J_(i, k));
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        Value sum = row(0) * weighted(0, j);
-        for (Eigen::Index k = 1; k < J_.cols(); ++k) sum += row(k) * weighted(k, j);
-        gram(i, j) = sum;
-      }
-    }
+    const auto rows = extent<M>(J_.rows());
+    const auto columns = extent<N>(J_.cols());
+    constexpr Constant<0> kFirst{};
+    each(kFirst, rows, [&](auto i) {
+      Value row[kCapacity<N>];
+      each(kFirst, columns, [&](auto k) { row[k] = splat<Value>(J_.coeff(i, k)); });
+      each(kFirst, next(i), [&](auto j) {
+        Value sum = row[0] * weighted.coeff(0, j);
+        each(next(kFirst), columns, [&](auto k) { sum += row[k] * weighted.coeff(k, j); });
+        gram.coeffRef(i, j) = sum;
+      });
+    });
     const Status status = cholesky_.factor(gram);
     if (damping_.radius() == Scalar(0) || status == Status::kNotFinite) return status;
 
