@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace fpbm {
+
+/// An index that the compiler knows.
+template <Eigen::Index I>
+struct Constant {
+  constexpr operator Eigen::Index() const noexcept { return I; }
+};
+
+template <Eigen::Index I>
+[[nodiscard]] constexpr Constant<I + 1> next(Constant<I>) noexcept {
+  return {};
+}
+[[nodiscard]] constexpr Eigen::Index next(Eigen::Index i) noexcept {
+  return i + 1;
+}
+
+/// A size, of which N says at compile time what it is or that it is not known: a Constant where it is small and known.
+template <int N>
+[[nodiscard]] constexpr auto extent([[maybe_unused]] Eigen::Index size) noexcept {
+  constexpr int kUnrolled = 8;
+  if constexpr (N != Eigen::Dynamic && N <= kUnrolled) {
+    return Constant<N>{};
+  } else {
+    return N == Eigen::Dynamic ? size : Eigen::Index(N);
+  }
+}
+
+/// f(i) for i from first up to, but not including, last.
+template <typename F>
+void each(Eigen::Index first, Eigen::Index last, const F& f) noexcept {
+  for (Eigen::Index i = first; i < last; ++i) f(i);
+}
+
+/// Likewise, with each call written out and its i a Constant: no loop is left where f's own loops are of this kind.
+template <Eigen::Index First, Eigen::Index Last, typename F>
+[[gnu::always_inline]] inline void each(Constant<First>, Constant<Last>, const F& f) noexcept {
+  if constexpr (First < Last) {
+    f(Constant<First>{});
+    each(Constant<First + 1>{}, Constant<Last>{}, f);
+  }
+}
+
+}  // namespace fpbm
