@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "fpbm/core/lanes.hpp"
+#include "fpbm/core/pair.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
@@ -12,7 +12,7 @@ namespace fpbm {
 /// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
 ///
 /// Written out without a loop where M is fixed and small; no square root and M divisions in all.
-/// Value = Lanes<Scalar, K> factorises K matrices at once.
+/// Value = Pair<Scalar> factorises two matrices at once.
 template <int M, typename Value = double>
 class Cholesky {
  public:
@@ -20,29 +20,38 @@ class Cholesky {
 
   /// Factorises A, of which only the lower triangle is read.
   /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
-  /// where A is not finite.
+  /// where A is not finite. In lanes it returns kOk, and where there is no factor all solutions are NaN.
   [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
     size_ = A.rows();
     const auto m = extent<M>(size_);
+    using std::max;
     Value largest = A(0, 0);
     each(kFirst, m, [&](auto i) {
-      largest = larger(largest, A.coeff(i, i));
+      largest = max(largest, A.coeff(i, i));
       each(kFirst, next(i), [&](auto j) { L_[i][j] = A.coeff(i, j); });
     });
-    const Value smallest = kPivotTolerance * largest;
-    bool regular = true;
+    const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
+    Truth<Scalar> regular(true);
     each(kFirst, m, [&](auto j) {
       const Value pivot = L_[j][j];
-      regular = regular & (pivot > smallest);
-      reciprocal_[j] = Scalar(1) / pivot;
+      regular = regular && pivot > smallest;
+      reciprocal_[j] = Value(Scalar(1)) / pivot;
       each(next(j), m, [&](auto i) {
         const Value l = L_[i][j] * reciprocal_[j];
         each(next(j), next(i), [&](auto k) { L_[i][k] -= l * L_[k][j]; });
       });
       each(next(j), m, [&](auto i) { L_[i][j] *= reciprocal_[j]; });
     });
-    return regular ? Status::kOk : lost(A, smallest);
+    if constexpr (kInLanes<Scalar>) {
+      spoil_unless(regular);
+      return Status::kOk;
+    } else {
+      return regular ? Status::kOk : lost(A, smallest);
+    }
   }
+
+  /// Spoils all solutions in the lanes where truth does not hold.
+  void spoil_unless(const Truth<Scalar>& truth) noexcept { fpbm::spoil_unless(truth, reciprocal_[0]); }
 
   /// Row in which factor() lost its pivot, the leading rows before it being positive definite.
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
@@ -79,10 +88,10 @@ class Cholesky {
 
  private:
   [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, const Value& smallest) noexcept {
-    const Value one = splat<Value>(Scalar(1));
+    const Value one = Value(Scalar(1));
     for (lost_pivot_ = 0; lost_pivot_ + 1 < size_; ++lost_pivot_) {
       const Value& reciprocal = reciprocal_[lost_pivot_];
-      if (!(reciprocal > splat<Value>(Scalar(0)) && one > smallest * reciprocal)) break;
+      if (!(reciprocal > Value(Scalar(0)) && one > smallest * reciprocal)) break;
     }
     for (Eigen::Index i = 0; i < A.rows(); ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) {
@@ -93,7 +102,7 @@ class Cholesky {
   }
 
   /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
-  static constexpr Scalar kPivotTolerance = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
 
   Value L_[kCapacity<M>][kCapacity<M>];  ///< Unit lower triangle, below the diagonal.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "fpbm/core/sincos.hpp"
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -12,6 +13,11 @@ template <typename Scalar = double>
 struct Transform {
   Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin [m].
   Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the frame's axes.
+
+  template <typename Other>
+  [[nodiscard]] Transform<Other> cast() const noexcept {
+    return {p.template cast<Other>(), R.template cast<Other>()};
+  }
 
   /// Where b is, seen from where a is seen from.
   [[nodiscard]] friend Transform operator*(const Transform& a, const Transform& b) noexcept {
@@ -99,24 +105,34 @@ template <typename Scalar>
 /// Rotation vector of a rotation matrix, |r| ≤ π [rad]; the inverse of rotation().
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
-  using std::atan2;
-  using std::sqrt;
   // A small turn, as errors are: sin|r| r/|r| times the series of arcsine, with neither root nor division.
   const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const Scalar z = s.squaredNorm() / Scalar(4);
-  if (R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0)) {
-    constexpr double kSeries[] = {6435.0 / 557056.0, 143.0 / 10240.0, 231.0 / 13312.0,
-                                  63.0 / 2816.0,     35.0 / 1152.0,   5.0 / 112.0,
-                                  3.0 / 40.0,        1.0 / 6.0,       1.0};
-    Scalar sum(0);
-    for (const double coefficient : kSeries) sum = sum * z + Scalar(coefficient);
-    return sum / Scalar(2) * s;
+  constexpr double kSeries[] = {6435.0 / 557056.0, 143.0 / 10240.0, 231.0 / 13312.0,
+                                63.0 / 2816.0,     35.0 / 1152.0,   5.0 / 112.0,
+                                3.0 / 40.0,        1.0 / 6.0,       1.0};
+  Scalar sum(0);
+  for (const double coefficient : kSeries) sum = sum * z + Scalar(coefficient);
+  Vector<3, Scalar> r = sum / Scalar(2) * s;
+  const Truth<Scalar> small = R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0);
+  if (all_of(small)) return r;
+  if constexpr (kInLanes<Scalar>) {
+    for (std::size_t lane = 0; lane < z.size(); ++lane) {
+      if (small[lane]) continue;
+      const auto number = [lane](const Scalar& x) -> Number<Scalar> { return x[lane]; };
+      const Vector<3, Number<Scalar>> large = rotation_vector<Number<Scalar>>(R.unaryExpr(number));
+      for (int i = 0; i < 3; ++i) r(i)[lane] = large(i);
+    }
+    return r;
+  } else {
+    using std::atan2;
+    using std::sqrt;
+    const Vector<4, Scalar> q = quaternion(R);
+    const Vector<3, Scalar> v = q.template tail<3>();
+    const Scalar sine = sqrt(v.squaredNorm());
+    const Scalar scale = sine > Scalar(0) ? atan2(sine, q(0)) / sine : Scalar(1);
+    return Scalar(2) * scale * v;
   }
-  const Vector<4, Scalar> q = quaternion(R);
-  const Vector<3, Scalar> v = q.template tail<3>();
-  const Scalar sine = sqrt(v.squaredNorm());
-  const Scalar scale = sine > Scalar(0) ? atan2(sine, q(0)) / sine : Scalar(1);
-  return Scalar(2) * scale * v;
 }
 
 }  // namespace fpbm

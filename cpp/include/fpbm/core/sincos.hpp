@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -19,26 +20,10 @@ struct ReducedSinCos {
 
   static void evaluate(double x, double& sine, double& cosine) noexcept {
     constexpr double kRound = 6755399441055744.0;  // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits.
-    const double shifted = x * 6.36619772367581343e-01 + kRound;
-    const double k = shifted - kRound;
-    double r = x - k * 1.57079632673412561e+00;
-    r -= k * 6.07710050630396598e-11;
-    r -= k * 2.02226624879595063e-21;
-
-    const double z = r * r;
-    const double sin_tail =
-        -1.66666666666666297e-01 +
-        z * (8.33333333332211303e-03 +
-             z * (-1.98412698295848523e-04 +
-                  z * (2.75573136197019395e-06 + z * (-2.50507474905790061e-08 + z * 1.58962138989828173e-10))));
-    const double cos_tail =
-        4.16666666666665950e-02 +
-        z * (-1.38888888888730492e-03 +
-             z * (2.48015872888465437e-05 +
-                  z * (-2.75573141777659980e-07 + z * (2.08757006287165171e-09 - z * 1.13585252205869601e-11))));
-    const std::uint64_t sin_r = bits(r + r * z * sin_tail);
-    const double head = 1.0 - 0.5 * z;
-    const std::uint64_t cos_r = bits(head + (((1.0 - head) - 0.5 * z) + z * z * cos_tail));
+    const double shifted = x * kPerQuadrant + kRound;
+    const Reduced<double> reduced = reduce(x, shifted - kRound);
+    const std::uint64_t sin_r = bits(reduced.sine);
+    const std::uint64_t cos_r = bits(reduced.cosine);
 
     // Quadrant k mod 4: an odd one swaps sine and cosine, the upper bit of k and of k + 1 sets their signs.
     const std::uint64_t quadrant = bits(shifted);
@@ -47,7 +32,58 @@ struct ReducedSinCos {
     cosine = real(((cos_r & ~swap) | (sin_r & swap)) ^ (((quadrant + 1U) & 2U) << 62));
   }
 
+  /// In lanes, of which those beyond kReach give NaN.
+  template <typename Scalar>
+  static void evaluate(const Scalar& x, Scalar& sine, Scalar& cosine) noexcept {
+    const Scalar k = round(x * Scalar(kPerQuadrant));
+    const Reduced<Scalar> reduced = reduce(x, k);
+    const Scalar half = floor(k * Scalar(0.5));
+    const auto odd = k - Scalar(2) * half > Scalar(0.5);
+    const auto upper = half - Scalar(2) * floor(half * Scalar(0.5)) > Scalar(0.5);
+    sine = reduced.sine;
+    cosine = reduced.cosine;
+    where(odd, sine) = reduced.cosine;
+    where(odd, cosine) = reduced.sine;
+    where(upper, sine) = -sine;
+    where(upper != odd, cosine) = -cosine;
+    spoil_unless(abs(x) <= Scalar(kReach), sine);
+    spoil_unless(abs(x) <= Scalar(kReach), cosine);
+  }
+
  private:
+  static constexpr double kPerQuadrant = 6.36619772367581343e-01;
+
+  template <typename Scalar>
+  struct Reduced {
+    Scalar sine;
+    Scalar cosine;
+  };
+
+  /// Of r = x − k π/2.
+  template <typename Scalar>
+  static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
+    Scalar r = x - k * Scalar(1.57079632673412561e+00);
+    r -= k * Scalar(6.07710050630396598e-11);
+    r -= k * Scalar(2.02226624879595063e-21);
+
+    const Scalar z = r * r;
+    const Scalar sin_tail =
+        polynomial(z, {1.58962138989828173e-10, -2.50507474905790061e-08, 2.75573136197019395e-06,
+                       -1.98412698295848523e-04, 8.33333333332211303e-03, -1.66666666666666297e-01});
+    const Scalar cos_tail = polynomial(z, {-1.13585252205869601e-11, 2.08757006287165171e-09, -2.75573141777659980e-07,
+                                           2.48015872888465437e-05, -1.38888888888730492e-03, 4.16666666666665950e-02});
+    const Scalar head = Scalar(1) - Scalar(0.5) * z;
+    return {r + r * z * sin_tail, head + (((Scalar(1) - head) - Scalar(0.5) * z) + z * z * cos_tail)};
+  }
+
+  /// By Horner's rule, the highest power first.
+  template <typename Scalar>
+  static Scalar polynomial(const Scalar& z, const double (&coefficients)[6]) noexcept {
+    Scalar sum(coefficients[0]);
+    for (int i = 1; i < 6; ++i) sum = sum * z + Scalar(coefficients[i]);
+    return sum;
+  }
+
   static std::uint64_t bits(double value) noexcept {
     std::uint64_t result;
     std::memcpy(&result, &value, sizeof result);
@@ -72,7 +108,11 @@ template <typename Scalar>
 [[nodiscard]] SinCos<Scalar> sincos(Scalar angle) noexcept {
   using std::cos;
   using std::sin;
-  if constexpr (std::is_same_v<Scalar, double>) {
+  if constexpr (kInLanes<Scalar>) {
+    SinCos<Scalar> result;
+    ReducedSinCos::evaluate(angle, result.sin, result.cos);
+    return result;
+  } else if constexpr (std::is_same_v<Scalar, double>) {
     if (std::abs(angle) <= ReducedSinCos::kReach) {
       SinCos<double> result;
       ReducedSinCos::evaluate(angle, result.sin, result.cos);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 
 /// What constructors demand of their arguments. Each failure names the argument, the index and the value.
@@ -24,35 +25,53 @@ inline std::string element(const char* argument, Eigen::Index i, Eigen::Index j)
   return std::string(argument) + "[" + std::to_string(i) + ", " + std::to_string(j) + "]";
 }
 
-inline void require_positive(const std::string& argument, double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
+/// demand(number) for the number, or each of the numbers, that a Scalar is.
+template <typename Scalar, typename Demand>
+void each_number(const Scalar& value, Demand&& demand) {
+  if constexpr (kInLanes<Scalar>) {
+    for (std::size_t lane = 0; lane < value.size(); ++lane) demand(static_cast<double>(value[lane]));
+  } else {
+    demand(static_cast<double>(value));
+  }
 }
 
-inline void require_non_negative(const std::string& argument, double value) {
-  if (!(value >= 0.0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
+template <typename Scalar, typename = Truth<Scalar>>
+void require_positive(const std::string& argument, const Scalar& values) {
+  each_number(values, [&](double value) {
+    if (!(value > 0.0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
+  });
 }
 
-inline void require_finite(const std::string& argument, double value) {
-  if (!std::isfinite(value)) fail(argument, value, "finite");
+template <typename Scalar, typename = Truth<Scalar>>
+void require_non_negative(const std::string& argument, const Scalar& values) {
+  each_number(values, [&](double value) {
+    if (!(value >= 0.0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
+  });
+}
+
+template <typename Scalar, typename = Truth<Scalar>>
+void require_finite(const std::string& argument, const Scalar& values) {
+  each_number(values, [&](double value) {
+    if (!std::isfinite(value)) fail(argument, value, "finite");
+  });
 }
 
 /// Balance between two schemes: 0 ≤ value ≤ 1.
-inline void require_fraction(const std::string& argument, double value) {
-  if (!(value >= 0.0 && value <= 1.0)) fail(argument, value, "in [0, 1]");
+template <typename Scalar, typename = Truth<Scalar>>
+void require_fraction(const std::string& argument, const Scalar& values) {
+  each_number(values, [&](double value) {
+    if (!(value >= 0.0 && value <= 1.0)) fail(argument, value, "in [0, 1]");
+  });
 }
 
 template <typename Derived>
 void require_positive(const char* argument, const Eigen::MatrixBase<Derived>& values) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    require_positive(element(argument, i), static_cast<double>(values(i)));
-  }
+  for (Eigen::Index i = 0; i < values.size(); ++i) require_positive(element(argument, i), values(i));
 }
 
 template <typename Derived>
 void require_finite(const char* argument, const Eigen::MatrixBase<Derived>& values) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    require_finite(element(argument, i), static_cast<double>(values(i)));
-  }
+  for (Eigen::Index i = 0; i < values.size(); ++i) require_finite(element(argument, i), values(i));
 }
 
 inline void require_size(const char* argument, Eigen::Index size, Eigen::Index expected) {

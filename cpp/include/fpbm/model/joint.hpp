@@ -58,6 +58,12 @@ struct JointLimits {
     return {-infinite, infinite, infinite, infinite};
   }
 
+  template <typename Other>
+  [[nodiscard]] JointLimits<N, Other> cast() const {
+    return {lower.template cast<Other>(), upper.template cast<Other>(), velocity.template cast<Other>(),
+            acceleration.template cast<Other>()};
+  }
+
   /// Sets joint i's.
   void set(Eigen::Index i, const JointBounds<Scalar>& bounds) noexcept {
     lower(i) = bounds.lower;

@@ -27,6 +27,12 @@ class PlanarArm {
     validation::require_positive("lengths", lengths);
   }
 
+  /// The same arm for another Scalar.
+  template <typename Other>
+  [[nodiscard]] PlanarArm<N, Other> cast() const {
+    return PlanarArm<N, Other>(lengths_.template cast<Other>());
+  }
+
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
   [[nodiscard]] const Vector<N, Scalar>& lengths() const noexcept { return lengths_; }
 

@@ -51,6 +51,12 @@ class SerialArm {
     tip_ = turned_back * chain.tip.R;
   }
 
+  /// The same arm for another Scalar.
+  template <typename Other>
+  [[nodiscard]] SerialArm<N, Other> cast() const {
+    return SerialArm<N, Other>(*this);
+  }
+
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
@@ -68,6 +74,24 @@ class SerialArm {
   }
 
  private:
+  template <int, typename>
+  friend class SerialArm;
+
+  template <typename Other>
+  explicit SerialArm(const SerialArm<N, Other>& arm)
+      : dof_(arm.dof_),
+        base_(arm.base_.template cast<Scalar>()),
+        turns_(arm.turns_.template cast<Scalar>()),
+        offsets_(arm.offsets_.template cast<Scalar>()),
+        slides_(arm.slides_),
+        tip_(arm.tip_.template cast<Scalar>()),
+        limits_(arm.limits_.template cast<Scalar>()) {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      links_[i] = {arm.links_[i].step.template cast<Scalar>(), Scalar(arm.links_[i].cosine),
+                   Scalar(arm.links_[i].sine)};
+    }
+  }
+
   using Row3 = Vector<3, Scalar>;
   using Rows3 = Matrix<N, 3, Scalar>;  ///< One row a joint, so that several joints are done at once.
 

@@ -26,24 +26,24 @@ template <typename Space, int N, typename Scalar, typename Weights>
                                            Vector<N, Scalar>& qdd) noexcept {
   constexpr int M = Space::kRows;
   const auto& J = kinematics.J;
-  DampedGram<M, N, Lanes<Scalar, 2>> gram(damping, J);  // JJᵀ in the first lane, JW⁻¹Jᵀ in the second.
+  DampedGram<M, N, Pair<Scalar>> gram(damping, J);  // Of JJᵀ and JW⁻¹Jᵀ.
   const Status status = gram.factor(UnitWeights{}, weights.with_unit(J));
   if (failed(status)) return status;
 
-  const Vector<M, Lanes<Scalar, 2>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
-  const Vector<M, Scalar> lambda1 = lane<M, 1, Scalar>(both, 0);
-  const Vector<M, Scalar> mu = lane<M, 1, Scalar>(both, 1);
+  const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
+  const Vector<M, Scalar> lambda1 = first<M, 1, Scalar>(both);
+  const Vector<M, Scalar> mu = second<M, 1, Scalar>(both);
   const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
   Vector<N, Scalar> u = weights.solve(Jdtmu);
   if (null_space.template active<Level::kAcceleration>()) u += null_space.template at<Level::kAcceleration>(state);
   if (status == Status::kDamped) u -= gram.brake() * state.qd;
   const Vector<M, Scalar> rest = alpha * b - J.lazyProduct(u);
-  const Vector<M, Scalar> lambda2 = lane<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)), 1);
+  const Vector<M, Scalar> lambda2 = second<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)));
 
   const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
   const Vector<N, Scalar> Jtlambda2 = J.transpose().lazyProduct(lambda2);
   const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda2);
-  if (!result.allFinite()) return Status::kNotFinite;
+  if (!is_finite(result)) return Status::kNotFinite;
   qdd = result;
   return status;
 }

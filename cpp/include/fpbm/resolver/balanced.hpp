@@ -19,7 +19,7 @@ struct Balanced {
   Balanced(Scalar alpha_, const Weights& weights_, const NullSpace<N, Scalar>& null_space_ = {},
            const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
       : alpha(alpha_), weights(weights_), null_space(null_space_), singular(singular_) {
-    validation::require_fraction("alpha", static_cast<double>(alpha));
+    validation::require_fraction("alpha", alpha);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

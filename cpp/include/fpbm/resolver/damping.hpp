@@ -24,8 +24,8 @@ class SingularDamping {
   /// radius: share of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
   /// brake: damping of the null space at a singular posture [1/s]. Throws std::invalid_argument on a bad value.
   explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(10)) : radius_(radius), brake_(brake) {
-    validation::require_fraction("singular_radius", static_cast<double>(radius));
-    validation::require_non_negative("singular_brake", static_cast<double>(brake));
+    validation::require_fraction("singular_radius", radius);
+    validation::require_non_negative("singular_brake", brake);
   }
 
   /// None: the schemes' own law to the end, which refuses a singular posture. What every scheme starts with.
@@ -51,7 +51,7 @@ template <int M, int N, typename Scalar>
 }
 
 /// The factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular; of several with different W, side by side,
-/// where Value is Lanes.
+/// where Value is Pair<Scalar>.
 template <int M, int N, typename Value>
 class DampedGram {
  public:
@@ -60,8 +60,8 @@ class DampedGram {
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
       : damping_(damping), J_(J) {}
 
-  /// Factorises JW⁻¹Jᵀ + Δ, of W⁻¹Jᵀ given; weights is W, that of the first lane. Returns kDamped where Δ is not zero,
-  /// or why there is no factor.
+  /// Factorises JW⁻¹Jᵀ + Δ, of W⁻¹Jᵀ given; weights is W, that of the first of a pair. Returns kDamped where Δ is not
+  /// zero, or why there is no factor.
   template <typename Weights>
   [[nodiscard]] Status factor(const Weights& weights, const Matrix<N, M, Value>& weighted) noexcept {
     Matrix<M, M, Value> gram;  // Its lower triangle.
@@ -70,7 +70,7 @@ class DampedGram {
     constexpr Constant<0> kFirst{};
     each(kFirst, rows, [&](auto i) {
       Value row[kCapacity<N>];
-      each(kFirst, columns, [&](auto k) { row[k] = splat<Value>(J_.coeff(i, k)); });
+      each(kFirst, columns, [&](auto k) { row[k] = Value(J_.coeff(i, k)); });
       each(kFirst, next(i), [&](auto j) {
         Value sum = row[0] * weighted.coeff(0, j);
         each(next(kFirst), columns, [&](auto k) { sum += row[k] * weighted.coeff(k, j); });
@@ -78,13 +78,18 @@ class DampedGram {
       });
     });
     const Status status = cholesky_.factor(gram);
-    if (damping_.radius() == Scalar(0) || status == Status::kNotFinite) return status;
+    if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, which the factor at hand tells: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
     const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
     const Scalar bound = threshold * weights.template inverse_bound<Scalar>();
-    if (status == Status::kOk && bound * first(cholesky_.inverse_trace()) <= Scalar(1)) return status;
-    return damped(gram, threshold, status);
+    const Truth<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
+    if constexpr (kInLanes<Scalar>) {
+      cholesky_.spoil_unless(regular);
+      return status;
+    } else {
+      return status == Status::kOk && regular ? status : damped(gram, threshold, status);
+    }
   }
 
   [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept { return cholesky_.solve(b); }
@@ -98,7 +103,7 @@ class DampedGram {
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += splat<Value>(lost.delta(i, j));
+      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
     }
     const Status status = cholesky_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/task/reference.hpp"
@@ -11,7 +12,7 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> commanded_velocity(Scalar k, const Kinematics<Space, N, Scalar>& kinematics,
                                                               const Reference<Space, Scalar>& reference) noexcept {
   Vector<Space::kRows, Scalar> v = reference.xd;
-  if (k != Scalar(0)) v += k * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  if (!all_of(k == Scalar(0))) v += k * Space::template difference<Scalar>(reference.x, kinematics.tip);
   return v;
 }
 
@@ -22,8 +23,8 @@ template <typename Space, int N, typename Scalar>
                                                                   const Reference<Space, Scalar>& reference,
                                                                   const State<N, Scalar>& state) noexcept {
   Vector<Space::kRows, Scalar> b = reference.xdd - kinematics.Jd.lazyProduct(state.qd);
-  if (k1 != Scalar(0)) b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
-  if (k2 != Scalar(0)) b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  if (!all_of(k1 == Scalar(0))) b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
+  if (!all_of(k2 == Scalar(0))) b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
   return b;
 }
 

@@ -23,9 +23,9 @@ struct FPBM {
   FPBM(Scalar alpha_, const Weights& weights_, Scalar k1_, Scalar k2_, const NullSpace<N, Scalar>& null_space_ = {},
        const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
       : alpha(alpha_), weights(weights_), k1(k1_), k2(k2_), null_space(null_space_), singular(singular_) {
-    validation::require_fraction("alpha", static_cast<double>(alpha));
-    validation::require_non_negative("k1", static_cast<double>(k1));
-    validation::require_non_negative("k2", static_cast<double>(k2));
+    validation::require_fraction("alpha", alpha);
+    validation::require_non_negative("k1", k1);
+    validation::require_non_negative("k2", k2);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

@@ -32,7 +32,7 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights>
   } else {
     result = WinvJt.lazyProduct(gram.solve(v));
   }
-  if (!result.allFinite()) return Status::kNotFinite;
+  if (!is_finite(result)) return Status::kNotFinite;
   u = result;
   return status;
 }

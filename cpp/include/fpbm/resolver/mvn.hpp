@@ -19,7 +19,7 @@ struct MVN {
   explicit MVN(Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {},
                const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
       : k(k_), null_space(null_space_), singular(singular_) {
-    validation::require_non_negative("k", static_cast<double>(k));
+    validation::require_non_negative("k", k);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

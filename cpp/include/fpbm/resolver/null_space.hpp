@@ -26,7 +26,7 @@ template <int N, typename Scalar = double>
 class NullSpace {
  public:
   [[nodiscard]] NullSpace with_damping(Scalar damping) const {
-    validation::require_non_negative("null_damping", static_cast<double>(damping));
+    validation::require_non_negative("null_damping", damping);
     NullSpace changed = *this;
     changed.damping_ += damping;
     return changed;
@@ -34,7 +34,7 @@ class NullSpace {
 
   [[nodiscard]] NullSpace with_rest_posture(const Vector<N, Scalar>& q_rest, Scalar stiffness) const {
     validation::require_finite("rest_posture", q_rest);
-    validation::require_positive("null_stiffness", static_cast<double>(stiffness));
+    validation::require_positive("null_stiffness", stiffness);
     return with_spring(Vector<N, Scalar>::Constant(q_rest.size(), stiffness), q_rest);
   }
 
@@ -42,7 +42,7 @@ class NullSpace {
   /// q̄ = (l + u)/2 (Liégeois 1977), times k_c = gain [rad²/s²], or [rad²/s] at velocity level. A joint that lacks a
   /// bound takes no part.
   [[nodiscard]] NullSpace with_joint_centring(const JointLimits<N, Scalar>& limits, Scalar gain) const {
-    validation::require_positive("joint_centring", static_cast<double>(gain));
+    validation::require_positive("joint_centring", gain);
     const Eigen::Index dof = limits.lower.size();
     validation::require_size("limits.upper", limits.upper.size(), dof);
     Vector<N, Scalar> stiffness = Vector<N, Scalar>::Zero(dof);
@@ -73,7 +73,7 @@ class NullSpace {
   /// False where z is zero whatever the state.
   template <Level kLevel>
   [[nodiscard]] bool active() const noexcept {
-    return has_constant_ || (kLevel == Level::kAcceleration && damping_ != Scalar(0));
+    return has_constant_ || (kLevel == Level::kAcceleration && !all_of(damping_ == Scalar(0)));
   }
 
   /// z in this state.

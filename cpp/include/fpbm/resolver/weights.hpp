@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fpbm/core/cholesky.hpp"
-#include "fpbm/core/lanes.hpp"
+#include "fpbm/core/pair.hpp"
 #include "fpbm/core/validation.hpp"
 
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
@@ -27,7 +27,7 @@ struct UnitWeights {
   }
 
   template <int M, int N, typename Scalar>
-  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
     const Matrix<N, M, Scalar> Jt = J.transpose();
     return side_by_side<N, M, Scalar>(Jt, Jt);
   }
@@ -57,12 +57,12 @@ class DiagonalWeights {
   }
 
   template <int M>
-  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    Matrix<N, M, Lanes<Scalar, 2>> result;
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    Matrix<N, M, Pair<Scalar>> result;
     result.resize(J.cols(), J.rows());
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const auto weight = side_by_side(Scalar(1), inverse_(i));
-      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = splat<Lanes<Scalar, 2>>(J(j, i)) * weight;
+      const Pair<Scalar> weight(Scalar(1), inverse_(i));
+      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * weight;
     }
     return result;
   }
@@ -103,7 +103,7 @@ class DenseWeights {
   }
 
   template <int M>
-  [[nodiscard]] Matrix<N, M, Lanes<Scalar, 2>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
     return side_by_side<N, M, Scalar>(J.transpose(), solve(J.transpose()));
   }
 

@@ -19,7 +19,7 @@ struct WMVN {
   explicit WMVN(const Weights& weights_, Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {},
                 const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
       : weights(weights_), k(k_), null_space(null_space_), singular(singular_) {
-    validation::require_non_negative("k", static_cast<double>(k));
+    validation::require_non_negative("k", k);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

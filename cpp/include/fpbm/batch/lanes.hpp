@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <experimental/simd>
+#include <limits>
+
+/// K numbers in the lanes of vector registers, as many as it takes, for whatever is written for a Scalar: K arms, or K
+/// motions of an arm, at once. See core/truth.hpp for what becomes of branches.
+namespace fpbm {
+
+template <int K, typename Number = double>
+using Lanes = std::experimental::fixed_size_simd<Number, K>;
+
+}  // namespace fpbm
+
+template <typename Number, typename Abi>
+struct Eigen::NumTraits<std::experimental::simd<Number, Abi>>
+    : Eigen::GenericNumTraits<std::experimental::simd<Number, Abi>> {
+  using Self = std::experimental::simd<Number, Abi>;
+  using Real = Self;
+  using NonInteger = Self;
+  using Literal = Self;
+  using Nested = Self;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
+};
+
+/// A number times a vector of lanes.
+template <typename Number, typename Abi, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<Number, std::experimental::simd<Number, Abi>, Operation> {
+  using ReturnType = std::experimental::simd<Number, Abi>;
+};
