@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -22,7 +24,11 @@ using Chunk = py::typing::Tuple<py::array, Motions>;
 Array starts(const ArrayLike& q0s, int dof) {
   const auto any = py::array::ensure(q0s);
   PyErr_Clear();
-  if (!any || any.ndim() != 2) {
+  if (any && any.ndim() > 2) {
+    throw std::invalid_argument("q0s: must have shape (n,) or (K, n), got shape " +
+                                py::cast<std::string>(py::str(any.attr("shape"))));
+  }
+  if (!any || any.ndim() < 2) {
     const Joints q0 = joint_vector(q0s, "q0s", dof);
     Array row({py::ssize_t{1}, py::ssize_t{dof}});
     std::copy_n(q0.data(), dof, row.mutable_data());
@@ -55,6 +61,13 @@ py::typing::Tuple<Array, int> check_sweep(const PyArm& arm, const PyPath& path, 
     }
   });
   return py::make_tuple(rows, grid.samples());
+}
+
+/// Outcomes of motions that are yet to be run.
+py::array not_run(py::ssize_t count) {
+  py::array_t<Outcome> outcomes(count);
+  std::fill_n(outcomes.mutable_data(), count, Outcome::of_nothing());
+  return outcomes;
 }
 
 /// Runs schemes[which[i]] from q0s[i] for every i, without the interpreter's lock.
@@ -107,6 +120,7 @@ void bind_sweep(py::module_& m) {
           "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "From any thread.");
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
         py::arg("hold"), py::arg("task"));
+  m.def("not_run", &not_run, py::arg("count"));
   m.def("sweep_chunk", &sweep_chunk, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("which"),
         py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("stop"));
 }

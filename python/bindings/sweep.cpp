@@ -1,25 +1,21 @@
 #include "sweep.hpp"
 
 #include <cstddef>
-#include <limits>
 
 namespace fpbm::bindings {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr Outcome kNothing{Outcome::kNotRun, 0, kNone, {kNone, kNone, kNone, kNone, kNone, kNone, kNone}};
 
 /// One motion by itself.
 template <typename Space>
 Outcome run(const TaskModel<Space>& model, const AnyPath<Space>& path, const TimeGrid<double>& grid,
             const Job<Space>& job, const std::atomic<bool>& stop) {
-  MotionSummary<> summary = kNothing.summary;
+  const Outcome nothing = Outcome::of_nothing();
+  MotionSummary<> summary = nothing.summary;
   const State<kDynamic> start{job.q0, Joints::Zero(job.q0.size())};
   const RolloutResult<kDynamic> result = model.simulate(*job.scheme, path, start, grid, {job.buffers, &summary, &stop});
   const bool stopped = !failed(result.status) && result.samples < grid.samples();
-  if (stopped) return kNothing;
-  return {static_cast<int>(result.status), result.samples, result.time,
-          result.samples > 0 ? summary : kNothing.summary};
+  if (stopped) return nothing;
+  return {static_cast<int>(result.status), result.samples, result.time, result.samples > 0 ? summary : nothing.summary};
 }
 
 }  // namespace
@@ -28,7 +24,7 @@ template <typename Space>
 void sweep(const TaskModel<Space>& model, const AnyPath<Space>& path, const TimeGrid<double>& grid,
            const std::vector<Job<Space>>& jobs, const std::atomic<bool>& stop, Outcome* outcomes) {
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    outcomes[i] = stop.load(std::memory_order_relaxed) ? kNothing : run(model, path, grid, jobs[i], stop);
+    outcomes[i] = stop.load(std::memory_order_relaxed) ? Outcome::of_nothing() : run(model, path, grid, jobs[i], stop);
   }
 }
 

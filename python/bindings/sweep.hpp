@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <vector>
 
 #include "arm.hpp"
@@ -18,6 +19,10 @@ struct Job {
 /// What became of it. Not a number where there is none: of a motion that was not run, or has no sample.
 struct Outcome {
   static constexpr int kNotRun = -1;
+  [[nodiscard]] static Outcome of_nothing() noexcept {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNotRun, 0, kNone, {kNone, kNone, kNone, kNone, kNone, kNone, kNone}};
+  }
 
   int status;  ///< A Status, or kNotRun.
   int samples;
