@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pybind11/typing.h>
+
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -41,7 +43,7 @@ template <typename Thing, typename... Arguments>
 
 /// __reduce__ of a thing that has a recipe.
 template <typename Thing>
-[[nodiscard]] py::tuple reduce(const Thing& thing) {
+[[nodiscard]] py::typing::Tuple<py::object, py::ellipsis> reduce(const Thing& thing) {
   return py::make_tuple(thing.recipe->call, py::tuple());
 }
 

@@ -58,24 +58,22 @@ class Plan:
         """The sweep of all outcomes, and of each motion's arrays where the whole motions are wanted."""
         shape = len(self.schemes), len(self.starts)
         status = STATUSES[outcomes["status"]]
-        motions = None
+        motions = np.full(len(self), None, dtype=object)
         if self.motions:
-            motions = np.full(len(self), None, dtype=object)
             for i in np.flatnonzero(outcomes["status"] >= 0):
                 _, samples, time, _ = outcomes[i]
                 k, j = divmod(i, len(self.starts))
                 at = self.starts[j], self.arm, self.path, self.schemes[k], self.task
                 motions[i] = make_run(status[i], float(time), int(samples), arrays[i], *at)
-            motions = motions.reshape(shape)
         summary = outcomes["summary"]
         return Sweep(
             status=status.reshape(shape),
             time=outcomes["time"].reshape(shape).copy(),
-            motions=motions,
+            motions=motions.reshape(shape) if self.motions else None,
             arm=self.arm,
             path=self.path,
             schemes=self.schemes,
             q0s=self.starts,
             task=self.task,
-            **{name: summary[name].reshape(shape).copy() for name in summary.dtype.names},
+            **{name: summary[name].reshape(shape).copy() for name in summary.dtype.names or ()},
         )

@@ -67,7 +67,8 @@ class Sweep:
     @property
     def ok(self) -> NDArray[np.bool_]:
         """Which motions are complete."""
-        return np.isin(self.status, [status for status in Status if not failed(status)])
+        good = [status for status in Status if not failed(status)]
+        return np.isin(self.status, np.array(good, dtype=object))
 
     def __str__(self) -> str:
         """One line for each scheme: how many motions are complete, and the worst of those."""

@@ -184,12 +184,13 @@ def test_motions_that_fail_say_so(arm, q0):
     assert "0 of 2 complete" in str(sweep)
 
 
-def test_damped_motions_are_complete(arm, q0):
-    line = fp.Line([0.6, 0.0], 1.0)
-    sweep = fp.sweep(arm, line, fp.FPBM(0.6, [1, 1, 1, 1], 10, 25, singular_radius=0.2), q0)
-    assert sweep.status[0, 0] is fp.simulate(arm, line, sweep.schemes[0], q0).status.code
-    assert sweep.status[0, 0] is fp.Status.DAMPED
-    assert sweep.ok[0, 0]
+def test_damped_motions_are_complete():
+    arm = fp.PlanarArm([1.0, 0.8, 0.6, 0.4])
+    scheme = fp.FPBM(0.6, np.ones(4), 10, 25, singular_radius=0.05, null_damping=2.0)
+    q0s = [[-0.3, 0.6, -0.6, 0.6], [-0.6, 1.2, -1.2, 1.2]]
+    sweep = fp.sweep(arm, fp.Line([0.055, 0.0], 2.0), scheme, q0s)
+    assert list(sweep.status[0]) == [fp.Status.DAMPED, fp.Status.OK]
+    assert sweep.ok.all()
 
 
 def test_progress_is_told(arm, reference):
@@ -261,67 +262,55 @@ def test_interruption_keeps_what_is_finished(arm, reference):
             assert np.isnan(values[~sweep.done]).all()
 
 
-@pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
-@pytest.mark.parametrize("executor", ["None", "ThreadPoolExecutor(2)"])
-@pytest.mark.parametrize("hold", [0.0, 5000.0], ids=["many motions", "long motions"])
-def test_ctrl_c_stops_at_once(executor, hold):
-    """Also in the midst of a motion of millions of steps."""
-    script = f"""
-import numpy as np
-import fpbm_cpp as fp
-from concurrent.futures import ThreadPoolExecutor
-
-q0s = np.tile(np.pi / np.array([12, 12, 15, 15]), (2000, 1))
-print("begun", flush=True)
-try:
-    fp.sweep(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.45, 10.0), fp.MVN(), q0s, hold={hold}, executor={executor})
-except fp.SweepInterrupted as interrupted:
-    print("ended", interrupted.sweep.done.sum(), flush=True)
-"""
-    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
-    assert child.stdout.readline() == "begun\n"
-    time.sleep(1.0)
-    begin = time.perf_counter()
-    child.send_signal(signal.SIGINT)
-    said, done = child.stdout.readline().split()
-    elapsed = time.perf_counter() - begin
-    assert child.wait(10) == 0
+def interrupted(script, *arguments):
+    """Sends Ctrl-C a second after a script says 'begun': how many motions it says are done, and how soon [s]."""
+    command = [sys.executable, str(script), *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as child:
+        assert child.stdout.readline() == "begun\n"
+        time.sleep(1.0)
+        begin = time.perf_counter()
+        child.send_signal(signal.SIGINT)
+        said, done = child.stdout.readline().split()
+        elapsed = time.perf_counter() - begin
+        assert child.wait(30) == 0
     assert said == "ended"
-    assert (int(done) > 0) == (hold == 0.0)
-    assert elapsed < 0.5
+    return int(done), elapsed
 
 
-@pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
-def test_ctrl_c_does_not_wait_for_other_processes(tmp_path):
-    script = tmp_path / "interrupted.py"
-    script.write_text("""
+SCRIPT = """
+import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import nullcontext
 import numpy as np
 import fpbm_cpp as fp
-from concurrent.futures import ProcessPoolExecutor
 
-def main():
+def main(executor, hold):
     q0s = np.tile(np.pi / np.array([12, 12, 15, 15]), (5000, 1))
-    with ProcessPoolExecutor(2) as processes:
-        processes.submit(int).result()
+    with eval(executor) as pool:
+        if pool is not None:
+            pool.submit(int).result()
         print("begun", flush=True)
         try:
-            fp.sweep(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.45, 10.0), fp.MVN(), q0s, executor=processes)
+            fp.sweep(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.45, 10.0), fp.MVN(), q0s, hold=float(hold), executor=pool)
         except fp.SweepInterrupted as interrupted:
             print("ended", interrupted.sweep.done.sum(), flush=True)
 
 if __name__ == "__main__":
-    main()
-""")
-    child = subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True)
-    assert child.stdout.readline() == "begun\n"
-    time.sleep(1.5)
-    begin = time.perf_counter()
-    child.send_signal(signal.SIGINT)
-    said, done = child.stdout.readline().split()
-    elapsed = time.perf_counter() - begin
-    assert child.wait(30) == 0
-    assert said == "ended"
-    assert int(done) > 0
+    main(*sys.argv[1:])
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
+@pytest.mark.parametrize("executor", ["nullcontext()", "ThreadPoolExecutor(2)", "ProcessPoolExecutor(2)"])
+@pytest.mark.parametrize("hold", [0.0, 5000.0], ids=["many motions", "long motions"])
+def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
+    """Also in the midst of a motion of millions of steps, unless in another process, which is not waited for."""
+    if "Process" in executor and hold > 0:
+        pytest.skip("a process ends the chunk that it has begun")
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    done, elapsed = interrupted(script, executor, hold)
+    assert (0 < done < 5000) if hold == 0.0 else done == 0
     assert elapsed < 0.5
 
 
