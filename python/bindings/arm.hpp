@@ -6,9 +6,9 @@
 #include "fpbm/model/coupled_arm.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
-#include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "path.hpp"
+#include "recorder.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {
@@ -21,7 +21,6 @@ template <typename Space_>
 class TaskModel : public std::enable_shared_from_this<TaskModel<Space_>> {
  public:
   using Space = Space_;
-  using Buffers = MotionBuffers<Space, kDynamic>;
 
   TaskModel() = default;
   TaskModel(const TaskModel&) = delete;
@@ -31,7 +30,9 @@ class TaskModel : public std::enable_shared_from_this<TaskModel<Space_>> {
   [[nodiscard]] virtual Kinematics<Space, kDynamic> kinematics(const Joints& q, const Joints& qd) const = 0;
   [[nodiscard]] virtual RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
                                                          const State<kDynamic>& start, const TimeGrid<double>& grid,
-                                                         const Buffers& buffers) const = 0;
+                                                         const Wanted<Space>& wanted) const = 0;
+  /// Throws std::invalid_argument where a parameter of the scheme does not fit the arm.
+  virtual void require(const PyScheme& scheme) const = 0;
 };
 
 /// An arm with each of its tasks.

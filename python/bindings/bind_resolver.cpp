@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "kinematics.hpp"
 #include "py_arm.hpp"
+#include "recipe.hpp"
 #include "scheme_options.hpp"
 #include "whole_arm.hpp"
 
@@ -100,7 +101,9 @@ PyPointTask point_task(const PyArm& arm, const ArrayLike& x, double k1, double k
       const auto at = point<Space>(x, "x");
       return {{PySecondTask::Point<Space>{arm.positions<Space>(), arm.dof(), at}, k1, k2,
                "SecondTask(arm of " + std::to_string(arm.dof()) + " joints, x=" + text(at) + ", k1=" + text(k1) +
-                   ", k2=" + text(k2) + ")"}};
+                   ", k2=" + text(k2) + ")",
+               recipe(py::type::of<PyPointTask>(), py::cast(arm, py::return_value_policy::reference), at,
+                      py::arg("k1") = k1, py::arg("k2") = k2)}};
     }
     throw std::invalid_argument("arm: must have positions");
   });
@@ -111,7 +114,8 @@ PyGaze gaze(const ArrayLike& direction, double k1, double k2) {
   validation::require_non_negative("k2", k2);
   const Vector<3> d = fixed_vector<3>(direction, "direction");
   if (d.isZero(0.0)) validation::fail("direction", 0.0, "longer: it must point somewhere");
-  return {{PySecondTask::Direction{d}, k1, k2, "Gaze(" + text(d) + ", k1=" + text(k1) + ", k2=" + text(k2) + ")"}};
+  return {{PySecondTask::Direction{d}, k1, k2, "Gaze(" + text(d) + ", k1=" + text(k1) + ", k2=" + text(k2) + ")",
+           recipe(py::type::of<PyGaze>(), d, py::arg("k1") = k1, py::arg("k2") = k2)}};
 }
 
 void bind_second_tasks(py::module_& m) {
@@ -135,6 +139,7 @@ ValueError
     Where an argument is out of range, not finite, or of the wrong shape.)")
       .def(py::init(&point_task), py::arg("arm"), py::arg("x"), py::kw_only(), py::arg("k1") = 10.0,
            py::arg("k2") = 25.0)
+      .def("__reduce__", &reduce<PyPointTask>)
       .def("__repr__", [](const PyPointTask& task) { return task.repr; });
   py::class_<PyGaze>(m, "Gaze", R"(A direction for the tip's z axis, in the null space of the first task.
 
@@ -153,6 +158,7 @@ Raises
 ValueError
     Where an argument is out of range, not finite, or of the wrong shape.)")
       .def(py::init(&gaze), py::arg("direction"), py::kw_only(), py::arg("k1") = 10.0, py::arg("k2") = 25.0)
+      .def("__reduce__", &reduce<PyGaze>)
       .def("__repr__", [](const PyGaze& task) { return task.repr; });
 }
 
@@ -293,6 +299,7 @@ ResolutionError
       .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
            py::arg("xd"), py::arg("xdd") = py::none(),
            "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.")
+      .def("__reduce__", &reduce<PyScheme>)
       .def("__repr__", [](const PyScheme& scheme) { return scheme.repr; });
 
   bind_second_tasks(m);

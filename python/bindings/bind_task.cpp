@@ -11,6 +11,7 @@
 #include "fpbm/task/waypoints.hpp"
 #include "fpbm/task/with_turn.hpp"
 #include "path.hpp"
+#include "recipe.hpp"
 #include "text.hpp"
 
 namespace fpbm::bindings {
@@ -26,12 +27,16 @@ auto visit_time_law(const std::string& name, Visitor&& visitor) {
   throw std::invalid_argument("time_law = '" + name + "': must be 'sin_squared', 'quintic' or 'constant_speed'");
 }
 
-/// A shape run through under a time law: "Name(first, …, duration=T, time_law='law')".
-template <typename Shape>
-PyPath make_path(const Shape& shape, double duration, const std::string& law, const std::string& head) {
+/// A shape run through under a time law: "Name(first, …, duration=T, time_law='law')", which is Type(first, duration,
+/// time_law=law, others...).
+template <typename Type, typename Shape, typename First, typename... Others>
+Type make_path(const Shape& shape, double duration, const std::string& law, const std::string& head, const First& first,
+               Others&&... others) {
   return visit_time_law(law, [&](const auto& chosen) {
-    return PyPath{AnyPath<typename Shape::Space>(Path(shape, duration, chosen)),
-                  head + ", duration=" + text(duration) + ", time_law='" + law + "')"};
+    return Type{
+        {AnyPath<typename Shape::Space>(Path(shape, duration, chosen)),
+         head + ", duration=" + text(duration) + ", time_law='" + law + "')",
+         recipe(py::type::of<Type>(), first, duration, py::arg("time_law") = law, std::forward<Others>(others)...)}};
   });
 }
 
@@ -57,7 +62,8 @@ PyPath in_plane(const PyPath& path, const py::object& plane) {
   const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.path);
   if (flat == nullptr) throw std::invalid_argument("in_plane: the path must be one of positions in a plane");
   return {AnyPath<Position<3>>(InPlane(*flat, u, v)),
-          path.repr + ".in_plane(" + py::cast<std::string>(py::repr(plane)) + ")"};
+          path.repr + ".in_plane(" + py::cast<std::string>(py::repr(plane)) + ")",
+          recipe_of_method("in_plane", path, copy_of(plane))};
 }
 
 PyPath with_turn(const PyPath& path, const ArrayLike& turn, const std::string& law) {
@@ -75,7 +81,8 @@ PyPath with_turn(const PyPath& path, const ArrayLike& turn, const std::string& l
               r = fixed_vector<3>(turn, "turn");
             }
             return {AnyPath<typename Turned::Space>(Turned(positions, r, chosen)),
-                    path.repr + ".with_turn(" + py::cast<std::string>(py::repr(turn)) + ", time_law='" + law + "')"};
+                    path.repr + ".with_turn(" + py::cast<std::string>(py::repr(turn)) + ", time_law='" + law + "')",
+                    recipe_of_method("with_turn", path, copy_of(turn), py::arg("time_law") = law)};
           } else {
             throw std::invalid_argument("with_turn: the path turns the tip already");
           }
@@ -89,7 +96,7 @@ PyPath then(const PyPath& first, const PyPath& second) {
   const auto in = [&](auto tag) {
     using Space = decltype(tag);
     return PyPath{AnyPath<Space>(Sequence(first.as<Space>(), second.as<Space>())),
-                  first.repr + ".then(" + second.repr + ")"};
+                  first.repr + ".then(" + second.repr + ")", recipe_of_method("then", first, second)};
   };
   const auto among = [&](std::size_t kind) { return first.path.index() == kind || second.path.index() == kind; };
   if (among(3)) return in(Pose{});
@@ -105,7 +112,8 @@ PyPath make_waypoints(const std::vector<typename Space::template Point<double>>&
                       const std::optional<TipBounds<>>& bounds) {
   const auto described = [&points](const Waypoints<Space>& path) {
     return PyPath{AnyPath<Space>(path),
-                  "Waypoints(<" + std::to_string(points.size()) + " points>, duration=" + text(path.duration()) + ")"};
+                  "Waypoints(<" + std::to_string(points.size()) + " points>, duration=" + text(path.duration()) + ")",
+                  nullptr};
   };
   if (duration) return described(Waypoints<Space>::lasting(points, *duration));
   if (bounds) return described(Waypoints<Space>::within(points, *bounds));
@@ -190,6 +198,7 @@ shape (2, 3).)")
 turn: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the orientation that
 the tip starts in. To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the orientation.)")
       .def("then", &then, py::arg("path"), "This path, and from its end another.")
+      .def("__reduce__", &reduce<PyPath>)
       .def("__repr__", [](const PyPath& path) { return path.repr; });
 
   const auto law = py::arg("time_law") = "sin_squared";
@@ -213,7 +222,7 @@ Raises
 ValueError
     Where a number is not positive and finite, or the time law is unknown.)")
       .def(py::init([](double radius, double duration, const std::string& name) {
-             return PyCircle{make_path(Circle<double>(radius), duration, name, "Circle(" + text(radius))};
+             return make_path<PyCircle>(Circle<double>(radius), duration, name, "Circle(" + text(radius), radius);
            }),
            py::arg("radius"), py::arg("duration"), py::kw_only(), law);
 
@@ -244,9 +253,10 @@ ValueError
              const bool one = py::isinstance<py::float_>(amplitude) || py::isinstance<py::int_>(amplitude);
              const Vector<2> both =
                  one ? Vector<2>::Constant(py::cast<double>(amplitude)) : fixed_vector<2>(amplitude, "amplitude");
-             return PyLissajous{make_path(
+             return make_path<PyLissajous>(
                  Lissajous<double>(both, frequencies, phase), duration, name,
-                 "Lissajous(" + text(both) + ", frequencies=" + text(frequencies) + ", phase=" + text(phase))};
+                 "Lissajous(" + text(both) + ", frequencies=" + text(frequencies) + ", phase=" + text(phase), both,
+                 py::arg("frequencies") = frequencies, py::arg("phase") = phase);
            }),
            py::arg("amplitude"), py::arg("duration"), py::kw_only(), py::arg("frequencies") = Vector<2, int>(2, 1),
            py::arg("phase") = kTurn / 12.0, law);
@@ -270,7 +280,7 @@ Raises
 ValueError
     Where a number is not positive and finite, or the time law is unknown.)")
       .def(py::init([](double size, double duration, const std::string& name) {
-             return PyTricuspid{make_path(Tricuspid<double>(size), duration, name, "Tricuspid(" + text(size))};
+             return make_path<PyTricuspid>(Tricuspid<double>(size), duration, name, "Tricuspid(" + text(size), size);
            }),
            py::arg("size"), py::arg("duration"), py::kw_only(), law);
 
@@ -293,10 +303,10 @@ ValueError
       .def(py::init([](const ArrayLike& displacement, double duration, const std::string& name) {
              if (real_array(displacement, "displacement", 1).size() == 3) {
                const Vector<3> d = fixed_vector<3>(displacement, "displacement");
-               return PyLine{make_path(Line<3>(d), duration, name, "Line(" + text(d))};
+               return make_path<PyLine>(Line<3>(d), duration, name, "Line(" + text(d), d);
              }
              const Vector<2> d = fixed_vector<2>(displacement, "displacement");
-             return PyLine{make_path(Line<2>(d), duration, name, "Line(" + text(d))};
+             return make_path<PyLine>(Line<2>(d), duration, name, "Line(" + text(d), d);
            }),
            py::arg("displacement"), py::arg("duration"), py::kw_only(), law);
 
@@ -326,7 +336,12 @@ ValueError
       .def(py::init([](const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
                        const std::optional<double>& speed, const std::optional<double>& acceleration,
                        const std::optional<double>& turn_rate, const std::optional<double>& turn_acceleration) {
-             return PyWaypoints{waypoints(points, duration, times, speed, acceleration, turn_rate, turn_acceleration)};
+             PyWaypoints path{waypoints(points, duration, times, speed, acceleration, turn_rate, turn_acceleration)};
+             path.recipe = recipe(py::type::of<PyWaypoints>(), copy_of(points), py::arg("duration") = duration,
+                                  py::arg("times") = copy_of(times), py::arg("speed") = speed,
+                                  py::arg("acceleration") = acceleration, py::arg("turn_rate") = turn_rate,
+                                  py::arg("turn_acceleration") = turn_acceleration);
+             return path;
            }),
            py::arg("points"), py::kw_only(), py::arg("duration") = py::none(), py::arg("times") = py::none(),
            py::arg("speed") = py::none(), py::arg("acceleration") = py::none(), py::arg("turn_rate") = py::none(),

@@ -17,15 +17,17 @@ class Model final : public TaskModel<Space> {
 
   [[nodiscard]] RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
                                                  const State<kDynamic>& start, const TimeGrid<double>& grid,
-                                                 const typename TaskModel<Space>::Buffers& buffers) const override {
-    if (scheme.has_wrappers()) return bindings::simulate(scheme, whole(), path, start, grid, buffers);
+                                                 const Wanted<Space>& wanted) const override {
+    if (scheme.has_wrappers()) return bindings::simulate(scheme, whole(), path, start, grid, wanted);
     const State<N> fixed{start.q, start.qd};
-    const MotionBuffers<Space, N> record{buffers.t, buffers.q,     buffers.qd,   buffers.qdd,
-                                         buffers.x, buffers.x_ref, buffers.error};
+    Recorder<Space, N> record(wanted, scheme.level());
     const RolloutResult<N> result = scheme.visit_core<N>(
         arm_->limits(), [&](const auto& chosen) { return rollout(*arm_, path, chosen, fixed, grid, record); });
+    record.finish();
     return {result.status, result.time, {result.last.q, result.last.qd}, result.samples};
   }
+
+  void require(const PyScheme& scheme) const override { bindings::require(scheme, whole()); }
 
  private:
   static constexpr int N = Arm::kDof;

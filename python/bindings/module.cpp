@@ -7,5 +7,6 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_task(m);
   fpbm::bindings::bind_resolver(m);
   fpbm::bindings::bind_sim(m);
+  fpbm::bindings::bind_sweep(m);
   fpbm::bindings::bind_realtime(m);
 }

@@ -46,10 +46,13 @@ class AnyPath {
   double duration_;
 };
 
+struct Recipe;
+
 /// A path as Python sees it, in the task space that it was made in, and how it was made.
 struct PyPath {
   std::variant<AnyPath<Position<2>>, AnyPath<PlanarPose>, AnyPath<Position<3>>, AnyPath<Pose>> path;
   std::string repr;
+  std::shared_ptr<const Recipe> recipe;
 
   [[nodiscard]] double duration() const {
     return std::visit([](const auto& any) { return any.duration(); }, path);

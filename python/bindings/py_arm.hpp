@@ -40,6 +40,8 @@ inline void require_redundant(int rows, int dof) {
 /// An arm as Python sees it.
 class PyArm {
  public:
+  virtual ~PyArm() = default;  // So that an arm is known in Python as what it was made.
+
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(limits_.lower.size()); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return limits_; }
   [[nodiscard]] const std::vector<std::string>& joint_names() const noexcept { return joint_names_; }

@@ -21,12 +21,18 @@ Status resolve(const PyScheme& scheme, const WholeArm<Space>& arm, const Referen
 template <typename Space>
 RolloutResult<kDynamic> simulate(const PyScheme& scheme, const WholeArm<Space>& arm, const AnyPath<Space>& path,
                                  const State<kDynamic>& start, const TimeGrid<double>& grid,
-                                 const MotionBuffers<Space, kDynamic>& buffers) {
-  return std::visit(
-      [&](const auto& whole) {
-        return rollout(AnyArm<Space>(arm.model, arm.dof()), path, whole, start, grid, buffers);
-      },
+                                 const Wanted<Space>& wanted) {
+  Recorder<Space, kDynamic> record(wanted, scheme.level());
+  const auto result = std::visit(
+      [&](const auto& whole) { return rollout(AnyArm<Space>(arm.model, arm.dof()), path, whole, start, grid, record); },
       whole_scheme(scheme, arm));
+  record.finish();
+  return result;
+}
+
+template <typename Space>
+void require(const PyScheme& scheme, const WholeArm<Space>& arm) {
+  (void)whole_scheme(scheme, arm);
 }
 
 template Status resolve(const PyScheme&, const Kinematics<Position<2>, kDynamic>&, const Reference<Position<2>>&,
@@ -34,28 +40,28 @@ template Status resolve(const PyScheme&, const Kinematics<Position<2>, kDynamic>
 template Status resolve(const PyScheme&, const WholeArm<Position<2>>&, const Reference<Position<2>>&,
                         const State<kDynamic>&, Joints&);
 template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Position<2>>&, const AnyPath<Position<2>>&,
-                                          const State<kDynamic>&, const TimeGrid<double>&,
-                                          const MotionBuffers<Position<2>, kDynamic>&);
+                                          const State<kDynamic>&, const TimeGrid<double>&, const Wanted<Position<2>>&);
+template void require(const PyScheme&, const WholeArm<Position<2>>&);
 template Status resolve(const PyScheme&, const Kinematics<PlanarPose, kDynamic>&, const Reference<PlanarPose>&,
                         const State<kDynamic>&, Joints&);
 template Status resolve(const PyScheme&, const WholeArm<PlanarPose>&, const Reference<PlanarPose>&,
                         const State<kDynamic>&, Joints&);
 template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<PlanarPose>&, const AnyPath<PlanarPose>&,
-                                          const State<kDynamic>&, const TimeGrid<double>&,
-                                          const MotionBuffers<PlanarPose, kDynamic>&);
+                                          const State<kDynamic>&, const TimeGrid<double>&, const Wanted<PlanarPose>&);
+template void require(const PyScheme&, const WholeArm<PlanarPose>&);
 template Status resolve(const PyScheme&, const Kinematics<Position<3>, kDynamic>&, const Reference<Position<3>>&,
                         const State<kDynamic>&, Joints&);
 template Status resolve(const PyScheme&, const WholeArm<Position<3>>&, const Reference<Position<3>>&,
                         const State<kDynamic>&, Joints&);
 template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Position<3>>&, const AnyPath<Position<3>>&,
-                                          const State<kDynamic>&, const TimeGrid<double>&,
-                                          const MotionBuffers<Position<3>, kDynamic>&);
+                                          const State<kDynamic>&, const TimeGrid<double>&, const Wanted<Position<3>>&);
+template void require(const PyScheme&, const WholeArm<Position<3>>&);
 template Status resolve(const PyScheme&, const Kinematics<Pose, kDynamic>&, const Reference<Pose>&,
                         const State<kDynamic>&, Joints&);
 template Status resolve(const PyScheme&, const WholeArm<Pose>&, const Reference<Pose>&, const State<kDynamic>&,
                         Joints&);
 template RolloutResult<kDynamic> simulate(const PyScheme&, const WholeArm<Pose>&, const AnyPath<Pose>&,
-                                          const State<kDynamic>&, const TimeGrid<double>&,
-                                          const MotionBuffers<Pose, kDynamic>&);
+                                          const State<kDynamic>&, const TimeGrid<double>&, const Wanted<Pose>&);
+template void require(const PyScheme&, const WholeArm<Pose>&);
 
 }  // namespace fpbm::bindings

@@ -13,6 +13,7 @@ namespace fpbm::bindings {
 
 template <typename Space>
 class TaskModel;
+struct Recipe;
 
 /// A second task as Python sees it: the tip of another arm on a point, or the tip's z axis along a direction.
 struct PySecondTask {
@@ -30,6 +31,7 @@ struct PySecondTask {
   double k1;
   double k2;
   std::string repr;
+  std::shared_ptr<const Recipe> recipe;
 };
 
 /// A scheme as Python sees it: its parameters, before the number of joints is known.
@@ -56,6 +58,7 @@ struct PyScheme {
   std::optional<PySecondTask> second_task = std::nullopt;
   SingularDamping<> singular = SingularDamping<>::off();
   std::string repr = {};
+  std::shared_ptr<const Recipe> recipe = nullptr;
 
   [[nodiscard]] Level level() const noexcept { return law == Law::kWMVN ? Level::kVelocity : Level::kAcceleration; }
 

@@ -32,7 +32,10 @@ template <typename Space>
 template <typename Space>
 [[nodiscard]] RolloutResult<kDynamic> simulate(const PyScheme& scheme, const WholeArm<Space>& arm,
                                                const AnyPath<Space>& path, const State<kDynamic>& start,
-                                               const TimeGrid<double>& grid,
-                                               const MotionBuffers<Space, kDynamic>& buffers);
+                                               const TimeGrid<double>& grid, const Wanted<Space>& wanted);
+
+/// Throws std::invalid_argument where a parameter of the scheme does not fit the arm.
+template <typename Space>
+void require(const PyScheme& scheme, const WholeArm<Space>& arm);
 
 }  // namespace fpbm::bindings

@@ -35,11 +35,13 @@ from ._core import (
     rotation,
     rotation_vector,
 )
-from ._errors import ResolutionError
+from ._errors import ResolutionError, SweepInterrupted
 from .joint import Joint
 from .run import Run, RunStatus
 from .serial_arm import SerialArm
 from .simulate import simulate
+from .sweep import sweep
+from .sweep_result import Sweep
 
 __all__ = [
     "FPBM",
@@ -66,6 +68,8 @@ __all__ = [
     "SecondTask",
     "SerialArm",
     "Status",
+    "Sweep",
+    "SweepInterrupted",
     "Tick",
     "Tracker",
     "Tricuspid",
@@ -76,4 +80,5 @@ __all__ = [
     "rotation",
     "rotation_vector",
     "simulate",
+    "sweep",
 ]

@@ -29,6 +29,7 @@ __all__: list[str] = [
     "SecondTask",
     "SerialArm",
     "Status",
+    "Stop",
     "Tick",
     "Tracker",
     "Tricuspid",
@@ -36,13 +37,16 @@ __all__: list[str] = [
     "WMVNAcceleration",
     "Waypoints",
     "advice",
+    "check_sweep",
     "dh",
     "failed",
     "message",
+    "not_run",
     "preset",
     "rotation",
     "rotation_vector",
     "simulate",
+    "sweep_chunk",
 ]
 
 class JointLimits:
@@ -231,6 +235,7 @@ class Path:
     The time laws give the fraction done, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose acceleration
     steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there; 'constant_speed', tau.
     """
+    def __reduce__(self) -> tuple[typing.Any, ...]: ...
     def __repr__(self) -> str: ...
     def in_plane(self, plane: typing.Any) -> Path:
         """
@@ -436,6 +441,7 @@ class Scheme:
     """
     A redundancy resolution scheme: what all of them can do.
     """
+    def __reduce__(self) -> tuple[typing.Any, ...]: ...
     def __repr__(self) -> str: ...
     @typing.overload
     def resolve(
@@ -525,6 +531,7 @@ class SecondTask:
         k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
         k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
     ) -> None: ...
+    def __reduce__(self) -> tuple[typing.Any, ...]: ...
     def __repr__(self) -> str: ...
 
 class Gaze:
@@ -553,6 +560,7 @@ class Gaze:
         k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
         k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
     ) -> None: ...
+    def __reduce__(self) -> tuple[typing.Any, ...]: ...
     def __repr__(self) -> str: ...
 
 class MVN(Scheme):
@@ -856,6 +864,16 @@ class FPBM(Scheme):
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
 
+class Stop:
+    """
+    A word to all motions of a sweep in this process: set() ends them within a sample.
+    """
+    def __init__(self) -> None: ...
+    def set(self) -> None:
+        """
+        From any thread.
+        """
+
 class Tick:
     """
     What one tick of a control loop did.
@@ -1037,6 +1055,15 @@ def advice(status: Status) -> str:
     One sentence: what to do about it; empty for OK.
     """
 
+def check_sweep(
+    arm: Arm,
+    path: Path,
+    schemes: collections.abc.Sequence[Scheme],
+    q0s: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    hold: typing.SupportsFloat | typing.SupportsIndex,
+    task: str,
+) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
 def dh(
     table: numpy.typing.ArrayLike, convention: str, types: collections.abc.Sequence[str]
 ) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
@@ -1050,6 +1077,7 @@ def message(status: Status) -> str:
     One sentence: what happened.
     """
 
+def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
     """
@@ -1082,6 +1110,31 @@ def simulate(
         numpy.typing.NDArray[numpy.float64],
         numpy.typing.NDArray[numpy.float64],
         numpy.typing.NDArray[numpy.float64],
+    ],
+]: ...
+def sweep_chunk(
+    arm: Arm,
+    path: Path,
+    schemes: collections.abc.Sequence[Scheme],
+    which: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    q0s: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    hold: typing.SupportsFloat | typing.SupportsIndex,
+    task: str,
+    motions: bool,
+    stop: Stop,
+) -> tuple[
+    numpy.ndarray,
+    list[
+        tuple[
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+            numpy.typing.NDArray[numpy.float64],
+        ]
     ],
 ]: ...
 

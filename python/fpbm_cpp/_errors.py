@@ -8,6 +8,7 @@ from ._core import Status, advice, message
 
 if TYPE_CHECKING:
     from .run import Run
+    from .sweep_result import Sweep
 
 
 class ResolutionError(RuntimeError):
@@ -25,3 +26,17 @@ class ResolutionError(RuntimeError):
         super().__init__(text or f"{message(status)}. {advice(status)}")
         self.status = status
         self.run = run
+
+
+class SweepInterrupted(KeyboardInterrupt):
+    """A sweep was stopped by Ctrl-C.
+
+    Attributes
+    ----------
+    sweep : Sweep
+        What was finished until then; sweep.done says which motions.
+    """
+
+    def __init__(self, sweep: Sweep) -> None:
+        super().__init__(f"interrupted after {int(sweep.done.sum())} of {sweep.done.size} motions")
+        self.sweep = sweep

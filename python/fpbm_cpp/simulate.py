@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._core import Arm, Path, Scheme, failed
+from ._core import Arm, Path, Scheme, Status, failed
 from ._errors import ResolutionError
+from ._types import Array
 from .run import Run, RunStatus
 
 
@@ -60,11 +61,26 @@ def simulate(
     if qd0 is None:
         qd0 = np.zeros(arm.dof)
     code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold, task)
+    run = make_run(code, time, samples, arrays, q0, arm, path, scheme, task)
+    if failed(code) and not partial:
+        raise ResolutionError(code, str(run.status), run)
+    return run
+
+
+def make_run(
+    code: Status,
+    time: float,
+    samples: int,
+    arrays: tuple[Array, ...],
+    q0: ArrayLike,
+    arm: Arm,
+    path: Path,
+    scheme: Scheme,
+    task: str,
+) -> Run:
+    """A run of what the compiled part gives: arrays of which the first `samples` rows are filled."""
     t, q, qd, qdd, x, x_ref, error = (array if samples == len(array) else array[:samples].copy() for array in arrays)
     if scheme.level == "velocity" and samples > 1:
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
-    run = Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task)
-    if failed(code) and not partial:
-        raise ResolutionError(code, str(status), run)
-    return run
+    return Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task)

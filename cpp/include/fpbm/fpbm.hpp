@@ -47,6 +47,7 @@
 #include "fpbm/sim/anchored_path.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/rollout.hpp"
+#include "fpbm/sim/summary.hpp"
 #include "fpbm/sim/time_grid.hpp"
 #include "fpbm/sim/watch.hpp"
 #include "fpbm/task/curve.hpp"

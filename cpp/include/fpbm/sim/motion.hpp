@@ -18,6 +18,7 @@ struct Sample {
   typename Space::template Point<Scalar> tip;  ///< f(q) [m, rad]
   Reference<Space, Scalar> reference;
   Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m, rad]
+  Matrix<Space::kRows, N, Scalar> J;   ///< Task Jacobian at q.
 };
 
 /// A recorder that writes samples row by row into the caller's buffers; a null buffer is left out.

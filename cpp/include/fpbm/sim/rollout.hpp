@@ -25,14 +25,25 @@ struct RolloutResult {
   int samples;            ///< Samples recorded.
 };
 
+/// Shows a recorder a sample; false where it wants no more.
+template <typename Recorder, typename Sample>
+[[nodiscard]] bool show(Recorder& record, const Sample& sample) {
+  if constexpr (std::is_same_v<decltype(record(sample)), bool>) {
+    return record(sample);
+  } else {
+    record(sample);
+    return true;
+  }
+}
+
 /// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
 ///
 /// The path is a displacement from where the tip starts. Where damping at a singular posture makes the tip miss its
 /// path, the motion stops with kTaskLost; a loop that must go on is the Tracker's. Velocity-level schemes integrate q
 /// (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
-/// noexcept. Throws std::invalid_argument where the scheme or start does not fit the arm, the grid does not fit the
-/// path, or start is not finite, before anything is recorded; from then on nothing throws or allocates, and what goes
-/// wrong is in the result.
+/// noexcept; where it returns a bool, false ends the motion there, its status still good. Throws std::invalid_argument
+/// where the scheme or start does not fit the arm, the grid does not fit the path, or start is not finite, before
+/// anything is recorded; from then on nothing throws or allocates, and what goes wrong is in the result.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
@@ -85,9 +96,16 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.time = t;
     result.last = loop.state;
     result.samples = i + 1;
-    record(Sample<Space, Arm::kDof, Scalar>{i, t, loop.state.q, loop.state.qd, loop.qdd, loop.kinematics.tip, reference,
-                                            Space::template difference<Scalar>(reference.x, loop.kinematics.tip)});
-    if (last) break;
+    const Sample<Space, Arm::kDof, Scalar> sample{i,
+                                                  t,
+                                                  loop.state.q,
+                                                  loop.state.qd,
+                                                  loop.qdd,
+                                                  loop.kinematics.tip,
+                                                  reference,
+                                                  Space::template difference<Scalar>(reference.x, loop.kinematics.tip),
+                                                  loop.kinematics.J};
+    if (!show(record, sample) || last) break;
     result.status = worse(result.status, RK4::step(derivative, t, grid.dt(), dx, x));
     if (failed(result.status)) break;
   }

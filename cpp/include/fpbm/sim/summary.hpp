@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "fpbm/core/lanes.hpp"
+#include "fpbm/core/space.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/model/manipulability.hpp"
+#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/sim/motion.hpp"
+
+namespace fpbm {
+
+/// What a motion comes to. Of joint vectors it is the largest entry by size, ‖·‖∞; largest and peak are over time.
+template <typename Scalar = double>
+struct MotionSummary {
+  Scalar largest_error;       ///< Distance of the tip from its reference [m].
+  Scalar largest_turn_error;  ///< Angle between the tip's orientation and its reference [rad]; 0 where it is free.
+  Scalar peak_velocity;       ///< [rad/s], or [m/s] for a prismatic joint, as everywhere below
+  Scalar final_velocity;
+  Scalar peak_acceleration;  ///< [rad/s²]
+  Scalar final_acceleration;
+  Scalar manipulability;  ///< The least √det(JJᵀ) (Yoshikawa 1985).
+};
+
+/// A recorder that sums a motion up, sample by sample, and stores none.
+///
+/// At velocity level, where no scheme gives them, accelerations are differences of the velocities: central ones, and
+/// one-sided at both ends. No branch depends on a number of the motion, so that a Scalar may be many side by side.
+template <typename Space, int N, typename Scalar = double>
+class Summary {
+ public:
+  explicit Summary(Level level) noexcept : level_(level) {}
+
+  void operator()(const Sample<Space, N, Scalar>& sample) noexcept {
+    constexpr int kTurns = Space::kRows - kLinear;
+    square_ = larger(square_, Scalar(sample.error.template head<kLinear>().squaredNorm()));
+    if constexpr (kTurns > 0) {
+      turn_square_ = larger(turn_square_, Scalar(sample.error.template tail<kTurns>().squaredNorm()));
+    }
+    velocity_ = size(sample.qd);
+    peak_velocity_ = larger(peak_velocity_, velocity_);
+    if (level_ == Level::kAcceleration) {
+      acceleration_ = size(sample.qdd);
+      peak_acceleration_ = larger(peak_acceleration_, acceleration_);
+    } else {
+      differentiate(sample);
+    }
+    least_ = larger(least_, Scalar(-manipulability(sample.J)));
+  }
+
+  /// Of the samples so far; of none, zeros and a manipulability of infinity.
+  [[nodiscard]] MotionSummary<Scalar> result() const noexcept {
+    using std::sqrt;
+    return {sqrt(square_),
+            sqrt(turn_square_),
+            peak_velocity_,
+            velocity_,
+            larger(peak_acceleration_, acceleration_),
+            acceleration_,
+            -least_};
+  }
+
+ private:
+  static constexpr int kLinear = std::is_same_v<Space, PlanarPose> ? 2 : Space::kRows < 3 ? Space::kRows : 3;
+
+  /// ‖a‖∞
+  [[nodiscard]] static Scalar size(const Vector<N, Scalar>& a) noexcept {
+    Scalar result(0);
+    for (Eigen::Index i = 0; i < a.size(); ++i) result = larger(result, larger(a(i), Scalar(-a(i))));
+    return result;
+  }
+
+  /// The slope across the last two steps is of the sample between, the one across the last of the end so far.
+  void differentiate(const Sample<Space, N, Scalar>& sample) noexcept {
+    if (sample.index > 0) {
+      const Scalar h = sample.t - t_;
+      acceleration_ = size((sample.qd - qd_) / h);
+      const Scalar inner = sample.index > 1 ? size((sample.qd - qd_before_) / (h + h)) : acceleration_;
+      peak_acceleration_ = larger(peak_acceleration_, inner);
+    }
+    qd_before_ = sample.index > 0 ? qd_ : sample.qd;
+    qd_ = sample.qd;
+    t_ = sample.t;
+  }
+
+  Level level_;
+  Scalar square_{0};
+  Scalar turn_square_{0};
+  Scalar velocity_{0};
+  Scalar peak_velocity_{0};
+  Scalar acceleration_{0};
+  Scalar peak_acceleration_{0};
+  Scalar least_ = splat<Scalar>(-std::numeric_limits<typename ScalarOf<Scalar>::type>::infinity());
+  Scalar t_{0};
+  Vector<N, Scalar> qd_;
+  Vector<N, Scalar> qd_before_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,79 @@
+"""All motions of a sweep, how they are shared out, and what they come to together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._chunks import Chunk
+from ._core import Arm, Path, Scheme, Status
+from ._types import Array
+from .simulate import make_run
+from .sweep_result import Sweep
+
+# Motions of a chunk come in multiples of GROUP. There are to be CHUNKS at least, for many workers to share, and none is
+# to be of more than SAMPLES samples, some tenths of a second's work. The number of workers does not come in.
+GROUP, CHUNKS, SAMPLES = 4, 64, 200_000
+
+# By their numbers in the compiled part; the last, at -1, of a motion that was not run.
+STATUSES = np.array([*Status, None], dtype=object)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Every scheme from every start: motion i is of schemes[i // K] from starts[i % K], with K starts."""
+
+    arm: Arm
+    path: Path
+    schemes: tuple[Scheme, ...]
+    starts: Array
+    dt: float
+    hold: float
+    task: str
+    motions: bool
+    samples: int
+
+    def __len__(self) -> int:
+        return len(self.schemes) * len(self.starts)
+
+    def parts(self) -> list[slice]:
+        """The motions of each chunk, of one scheme unless its motions are too few to fill a chunk."""
+        size = min(-(-len(self) // CHUNKS), max(1, SAMPLES // self.samples))
+        size = GROUP * -(-size // GROUP)
+        row = len(self) if len(self.starts) < size else len(self.starts)
+        ends = range(row, len(self) + 1, row)
+        return [slice(i, min(i + size, end)) for end in ends for i in range(end - row, end, size)]
+
+    def chunk(self, part: slice) -> Chunk:
+        """What a worker needs to run these motions."""
+        law, start = np.divmod(np.arange(part.start, part.stop), len(self.starts))
+        schemes, which = list(self.schemes[law[0] : law[-1] + 1]), (law - law[0]).tolist()
+        how = self.dt, self.hold, self.task, self.motions
+        return Chunk(self.arm, self.path, schemes, which, self.starts[start], *how)
+
+    def result(self, outcomes: NDArray[Any], arrays: list[Any]) -> Sweep:
+        """The sweep of all outcomes, and of each motion's arrays where the whole motions are wanted."""
+        shape = len(self.schemes), len(self.starts)
+        status = STATUSES[outcomes["status"]]
+        motions = np.full(len(self), None, dtype=object)
+        if self.motions:
+            for i in np.flatnonzero(outcomes["status"] >= 0):
+                _, samples, time, _ = outcomes[i]
+                k, j = divmod(i, len(self.starts))
+                at = self.starts[j], self.arm, self.path, self.schemes[k], self.task
+                motions[i] = make_run(status[i], float(time), int(samples), arrays[i], *at)
+        summary = outcomes["summary"]
+        return Sweep(
+            status=status.reshape(shape),
+            time=outcomes["time"].reshape(shape).copy(),
+            motions=motions.reshape(shape) if self.motions else None,
+            arm=self.arm,
+            path=self.path,
+            schemes=self.schemes,
+            q0s=self.starts,
+            task=self.task,
+            **{name: summary[name].reshape(shape).copy() for name in summary.dtype.names or ()},
+        )

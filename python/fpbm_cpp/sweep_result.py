@@ -1,0 +1,92 @@
+"""What many motions come to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import Status, failed
+from ._types import Array
+
+if TYPE_CHECKING:
+    from ._core import Arm, Path, Scheme
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Sweep:
+    """Key figures of every scheme from every start: arrays of shape (S, K), of S schemes from K starts.
+
+    Of joint vectors they are the largest entry by size; largest and peak are over time. Not a number where there is
+    none: of a motion that was not run, or stopped before its first sample.
+
+    Attributes
+    ----------
+    status : numpy.ndarray of Status
+        How each motion ended; None where it was not run.
+    time : numpy.ndarray
+        Time of its last sample [s].
+    largest_error, largest_turn_error : numpy.ndarray
+        Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
+        which is 0 where the task leaves it free.
+    peak_velocity, final_velocity : numpy.ndarray
+        Of the joints [rad/s], or [m/s] where one slides.
+    peak_acceleration, final_acceleration : numpy.ndarray
+        Of the joints [rad/s^2], [m/s^2]; at velocity level, finite differences of the velocities.
+    manipulability : numpy.ndarray
+        The least sqrt(det(J J')) of the task on the way (Yoshikawa, 1985).
+    motions : numpy.ndarray of Run, or None
+        The whole motions where they were asked for; None where one was not run.
+    arm, path, schemes, q0s, task
+        What moved, along what, how, from where, and as what task: S schemes, and starts of shape (K, n).
+    """
+
+    status: NDArray[Any]
+    time: Array
+    largest_error: Array
+    largest_turn_error: Array
+    peak_velocity: Array
+    final_velocity: Array
+    peak_acceleration: Array
+    final_acceleration: Array
+    manipulability: Array
+    motions: NDArray[Any] | None
+    arm: Arm
+    path: Path
+    schemes: tuple[Scheme, ...]
+    q0s: Array
+    task: str
+
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """Which motions were run, whatever became of them; all, unless the sweep was interrupted."""
+        return ~np.isnan(self.time)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which motions are complete."""
+        good = [status for status in Status if not failed(status)]
+        return np.isin(self.status, np.array(good, dtype=object))
+
+    def __str__(self) -> str:
+        """One line for each scheme: how many motions are complete, and the worst of those."""
+        rows = [self._row(i) for i in range(len(self.schemes))]
+        return "\n".join([repr(self), *rows])
+
+    def _row(self, i: int) -> str:
+        scheme, ok = repr(self.schemes[i]), self.ok[i]
+        text = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
+        if not ok.any():
+            return text
+        return (
+            f"{text}; tip error up to {self.largest_error[i, ok].max():.1e} m,"
+            f" joints up to {self.peak_velocity[i, ok].max():.3g} rad/s,"
+            f" manipulability down to {self.manipulability[i, ok].min():.3g}"
+        )
+
+    def __repr__(self) -> str:
+        counts = {"complete": self.ok, "stopped early": self.done & ~self.ok, "not run": ~self.done}
+        parts = ", ".join(f"{int(mask.sum())} {name}" for name, mask in counts.items() if mask.any())
+        return f"<Sweep of {len(self.schemes)} schemes from {len(self.q0s)} starts: {parts}>"

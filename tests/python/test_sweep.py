@@ -1,0 +1,349 @@
+"""Sweeps: the same motions as simulate()'s, whoever runs them, and clear about what is not done."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+FIGURES = [
+    "time",
+    "largest_error",
+    "largest_turn_error",
+    "peak_velocity",
+    "final_velocity",
+    "peak_acceleration",
+    "final_acceleration",
+    "manipulability",
+]
+
+PANDA = fp.SerialArm.preset("panda")
+READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
+TURNED = fp.Circle(0.05, 1.0).in_plane("yz").with_turn([0.1, 0, 0.2])
+
+
+def every_scheme(n):
+    w = np.linspace(1, 2, n)
+    W = np.diag(w) + 0.1
+    rest = {"rest_posture": np.full(n, 0.3), "null_stiffness": 1.0}
+    return [
+        fp.MVN(),
+        fp.WMVN(w, k=5, **rest),
+        fp.WMVN(W, c=np.full(n, 0.1)),
+        fp.MAN(null_damping=1, singular_radius=0.02, singular_brake=5),
+        fp.WMVNAcceleration(w),
+        fp.Balanced(0.5, W),
+        fp.FPBM(0.6, w, 10, 25, null_damping=2, **rest),
+        fp.FPBM(0.6, w, 10, 25, joint_centring=0.1, manipulability_gain=0.2, null_damping=2),
+    ]
+
+
+CASES = {
+    "planar": (fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 1.0), "position", np.pi / np.array([12, 12, 15, 15])),
+    "planar pose": (fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 1.0), "pose", np.array([0.3, 0.9, 0.9, 0.5])),
+    "planar, 9 joints": (fp.PlanarArm(np.full(9, 0.5)), fp.Circle(0.2, 1.0), "position", np.full(9, 0.2)),
+    "panda": (PANDA, fp.Circle(0.05, 1.0), "position", READY),
+    "panda pose": (PANDA, TURNED, "pose", READY),
+}
+
+
+def same(a, b):
+    """The same sweep to the last bit."""
+    np.testing.assert_array_equal(a.status, b.status)
+    for name in FIGURES:
+        assert getattr(a, name).tobytes() == getattr(b, name).tobytes(), name
+
+
+def expect_run(sweep, i, k, run):
+    """Motion i, k is this run, summed up."""
+    size = np.abs(run.qd).max(axis=1)
+    assert sweep.status[i, k] is run.status.code
+    assert sweep.time[i, k] == run.status.time
+    expected = {
+        "largest_error": run.max_error(),
+        "largest_turn_error": run.max_turn_error(),
+        "peak_velocity": size.max(),
+        "final_velocity": size[-1],
+        "peak_acceleration": np.abs(run.qdd).max(),
+        "final_acceleration": np.abs(run.qdd[-1]).max(),
+        "manipulability": run.manipulability().min(),
+    }
+    tolerance = 1e-9 if run.scheme.level == "velocity" else 1e-12  # Of differences of velocities.
+    for name, value in expected.items():
+        np.testing.assert_allclose(getattr(sweep, name)[i, k], value, rtol=tolerance, atol=1e-15, err_msg=name)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_sweep_is_many_simulations(case):
+    arm, path, task, q0 = CASES[case]
+    schemes = every_scheme(arm.dof)
+    q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (3, arm.dof))
+    sweep = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True)
+    assert sweep.status.shape == sweep.motions.shape == (8, 3)
+    assert sweep.ok.all()
+    assert sweep.done.all()
+    assert (sweep.largest_error > 0).all()
+    assert ((sweep.largest_turn_error > 0) == (task == "pose")).all()
+    for i, scheme in enumerate(schemes):
+        for k, start in enumerate(q0s):
+            run = fp.simulate(arm, path, scheme, start, dt=0.01, hold=0.5, task=task)
+            expect_run(sweep, i, k, run)
+            motion = sweep.motions[i, k]
+            assert motion.scheme is scheme
+            assert str(motion.status) == str(run.status)
+            for name in ("t", "q", "qd", "qdd", "x", "x_ref", "error"):
+                assert getattr(motion, name).tobytes() == getattr(run, name).tobytes(), name
+
+
+def test_one_scheme_and_one_start(arm, circle, q0):
+    sweep = fp.sweep(arm, circle, fp.MVN(), q0, 0.01)
+    assert sweep.status.shape == sweep.time.shape == (1, 1)
+    assert sweep.q0s.shape == (1, 4)
+    assert len(sweep.schemes) == 1
+    assert sweep.motions is None
+    assert sweep.time[0, 0] == 10.0
+    assert repr(sweep) == "<Sweep of 1 schemes from 1 starts: 1 complete>"
+    assert "MVN(): 1 of 1 complete; tip error up to " in str(sweep)
+
+
+def large(arm, **how):
+    """Enough motions for many chunks; some stop early, some at once."""
+    rng = np.random.default_rng(1)
+    q0s = rng.uniform(-1.5, 1.5, (300, 4))
+    q0s[7] = 0.0
+    schemes = [fp.MVN(), fp.FPBM(0.6, [1, 2, 3, 4], 10, 25)]
+    return fp.sweep(arm, fp.Line([0.4, -0.3], 1.0), schemes, q0s, 0.01, **how)
+
+
+@pytest.fixture(scope="module")
+def reference(arm):
+    sweep = large(arm, workers=1)
+    assert 0 < (~sweep.ok).sum() < 300
+    assert sweep.done.all()
+    return sweep
+
+
+@pytest.mark.parametrize("workers", [2, 4, None])
+def test_workers_change_nothing(arm, reference, workers):
+    same(large(arm, workers=workers), reference)
+
+
+def test_executors_change_nothing(arm, reference):
+    with ThreadPoolExecutor(3) as threads:
+        same(large(arm, executor=threads), reference)
+    with ProcessPoolExecutor(2) as processes:
+        same(large(arm, executor=processes), reference)
+        same(large(arm, executor=processes), reference)  # It stays open.
+
+
+def test_dask_changes_nothing(arm, reference):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster:
+        client = cluster.get_client()
+        same(large(arm, executor=client.get_executor()), reference)
+
+
+def test_one_motion_at_a_time_changes_nothing(arm, reference):
+    for i, scheme in enumerate(reference.schemes):
+        for k in range(0, 300, 29):
+            alone = fp.sweep(arm, reference.path, scheme, reference.q0s[k], 0.01)
+            assert alone.status[0, 0] is reference.status[i, k]
+            for name in FIGURES:
+                assert getattr(alone, name)[0, 0].tobytes() == getattr(reference, name)[i, k].tobytes()
+
+
+def test_whole_motions_from_other_processes(arm, reference):
+    with ProcessPoolExecutor(1) as processes:
+        sweep = fp.sweep(arm, reference.path, fp.MVN(), reference.q0s[:9], 0.01, executor=processes, motions=True)
+    for k, motion in enumerate(sweep.motions[0]):
+        run = fp.simulate(arm, reference.path, fp.MVN(), reference.q0s[k], dt=0.01, partial=True)
+        assert motion.q.tobytes() == run.q.tobytes()
+        assert motion.arm is arm
+
+
+def test_motions_that_fail_say_so(arm, q0):
+    out = fp.Line([5, 0], 5.0, time_law="quintic")
+    sweep = fp.sweep(arm, out, [fp.MVN(), fp.MAN()], [q0, np.zeros(4)], motions=True)
+    assert not sweep.ok.any()
+    assert sweep.done.all()
+    assert (sweep.status[:, 1] == fp.Status.SINGULAR).all()
+    for i, scheme in enumerate(sweep.schemes):
+        expect_run(sweep, i, 0, fp.simulate(arm, out, scheme, q0, partial=True))
+    assert (sweep.time[:, 1] == 0).all()
+    assert np.isnan(sweep.largest_error[:, 1]).all()
+    assert np.isnan(sweep.manipulability[:, 1]).all()
+    assert len(sweep.motions[0, 1].t) == 0
+    assert "stopped after t = 0 s" in str(sweep.motions[0, 1].status)
+    assert repr(sweep) == "<Sweep of 2 schemes from 2 starts: 4 stopped early>"
+    assert "0 of 2 complete" in str(sweep)
+
+
+def test_damped_motions_are_complete():
+    arm = fp.PlanarArm([1.0, 0.8, 0.6, 0.4])
+    scheme = fp.FPBM(0.6, np.ones(4), 10, 25, singular_radius=0.05, null_damping=2.0)
+    q0s = [[-0.3, 0.6, -0.6, 0.6], [-0.6, 1.2, -1.2, 1.2]]
+    sweep = fp.sweep(arm, fp.Line([0.055, 0.0], 2.0), scheme, q0s)
+    assert list(sweep.status[0]) == [fp.Status.DAMPED, fp.Status.OK]
+    assert sweep.ok.all()
+
+
+def test_progress_is_told(arm, reference):
+    told = []
+    same(large(arm, progress=lambda done, total: told.append((done, total))), reference)
+    assert len(told) > 10
+    assert told == sorted(set(told))
+    assert told[-1] == (600, 600)
+    assert all(total == 600 for _, total in told)
+
+
+def test_progress_bar(arm, reference, capsys, monkeypatch):
+    pytest.importorskip("tqdm")
+    same(large(arm, progress=True), reference)
+    assert "600/600" in capsys.readouterr().err
+    same(large(arm, progress=False), reference)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ImportError, match=r'progress=True needs tqdm: pip install "fpbm_cpp\[progress\]"'):
+        large(arm, progress=True)
+
+
+def test_what_progress_raises_ends_the_sweep(arm):
+    def refuse(done, total):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        large(arm, progress=refuse)
+
+
+class Broken(Executor):
+    """Runs the first thing, and fails at the rest."""
+
+    def __init__(self):
+        self.futures = []
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        if self.futures:
+            future.set_exception(OSError("the network is down"))
+        else:
+            future.set_result(function(*args, **kwargs))
+        self.futures.append(future)
+        return future
+
+
+def test_what_an_executor_raises_is_passed_on(arm):
+    with pytest.raises(OSError, match="the network is down"):
+        large(arm, executor=Broken())
+
+
+def test_interruption_keeps_what_is_finished(arm, reference):
+    def interrupt(done, total):
+        if done > 100:
+            raise KeyboardInterrupt
+
+    for how in ({"workers": 2}, {"workers": 1}):
+        with pytest.raises(fp.SweepInterrupted, match=r"interrupted after \d+ of 600 motions") as caught:
+            large(arm, progress=interrupt, **how)
+        sweep = caught.value.sweep
+        assert isinstance(caught.value, KeyboardInterrupt)
+        assert 100 < sweep.done.sum() < 600
+        assert (sweep.status[~sweep.done] == None).all()  # noqa: E711
+        assert not sweep.ok[~sweep.done].any()
+        assert "not run" in repr(sweep)
+        for name in FIGURES:
+            values = getattr(sweep, name)
+            assert values[sweep.done].tobytes() == getattr(reference, name)[sweep.done].tobytes()
+            assert np.isnan(values[~sweep.done]).all()
+
+
+def interrupted(script, *arguments):
+    """Sends Ctrl-C a second after a script says 'begun': how many motions it says are done, and how soon [s]."""
+    command = [sys.executable, str(script), *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as child:
+        assert child.stdout.readline() == "begun\n"
+        time.sleep(1.0)
+        begin = time.perf_counter()
+        child.send_signal(signal.SIGINT)
+        said, done = child.stdout.readline().split()
+        elapsed = time.perf_counter() - begin
+        assert child.wait(30) == 0
+    assert said == "ended"
+    return int(done), elapsed
+
+
+SCRIPT = """
+import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import nullcontext
+import numpy as np
+import fpbm_cpp as fp
+
+def main(executor, hold):
+    q0s = np.tile(np.pi / np.array([12, 12, 15, 15]), (5000, 1))
+    with eval(executor) as pool:
+        if pool is not None:
+            pool.submit(int).result()
+        print("begun", flush=True)
+        try:
+            fp.sweep(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.45, 10.0), fp.MVN(), q0s, hold=float(hold), executor=pool)
+        except fp.SweepInterrupted as interrupted:
+            print("ended", interrupted.sweep.done.sum(), flush=True)
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
+@pytest.mark.parametrize("executor", ["nullcontext()", "ThreadPoolExecutor(2)", "ProcessPoolExecutor(2)"])
+@pytest.mark.parametrize("hold", [0.0, 5000.0], ids=["many motions", "long motions"])
+def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
+    """Also in the midst of a motion of millions of steps, unless in another process, which is not waited for."""
+    if "Process" in executor and hold > 0:
+        pytest.skip("a process ends the chunk that it has begun")
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    done, elapsed = interrupted(script, executor, hold)
+    assert (0 < done < 5000) if hold == 0.0 else done == 0
+    assert elapsed < 0.5
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"dt": 0}, "dt = 0: must be positive and finite"),
+        ({"dt": 0.003}, r"dt = 0.003: must be a divisor of duration = 10; the nearest is 0.0030003"),
+        ({"hold": -1}, "hold = -1"),
+        ({"q0s": [0, 0, 0]}, "q0s has 3 entries: must have 4"),
+        ({"q0s": [[0, 0, 0]]}, "a row of q0s has 3 entries: must have 4"),
+        ({"q0s": np.zeros((0, 4))}, "q0s: must have one row at least"),
+        ({"q0s": [[0, 0, 0, 0], [0, 0, 0, np.inf]]}, r"q0s\[1, 3\] = inf: must be finite"),
+        ({"q0s": [0, np.nan, 0, 0]}, r"q0s\[1\] = nan: must be finite"),
+        ({"q0s": np.zeros((1, 1, 4))}, r"q0s: must have shape \(n,\) or \(K, n\), got shape \(1, 1, 4\)"),
+        ({"q0s": "home"}, "q0s: must be real numbers"),
+        ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
+        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
+        ({"schemes": []}, "schemes: must be one at least"),
+        ({"schemes": [fp.MVN(), fp.WMVN([1, 2, 3])]}, r"schemes\[1\]: weights has 3 entries: must have 4"),
+        ({"schemes": fp.MAN(c=[0, 0])}, r"schemes\[0\]: c has 2 entries: must have 4"),
+        ({"workers": 0}, "workers = 0: must be 1 at least"),
+        ({"workers": 1, "executor": Broken()}, "workers: must be left out where there is an executor"),
+    ],
+)
+def test_bad_arguments(arm, circle, q0, change, words):
+    arguments = {"path": circle, "schemes": fp.MAN(), "q0s": q0} | change
+    with pytest.raises(ValueError, match=words):
+        fp.sweep(arm, **arguments)
+
+
+def test_bad_types(arm, circle, q0):
+    with pytest.raises(TypeError, match=r"schemes\[1\]: must be a Scheme, got str"):
+        fp.sweep(arm, circle, [fp.MVN(), "MAN"], q0)
+    with pytest.raises(ValueError, match="more rows than joints"):
+        fp.sweep(fp.PlanarArm([1, 1]), circle, fp.MVN(), [0.1, 0.2], task="pose")
