@@ -33,6 +33,10 @@ using Number = typename NumberOf<Scalar>::type;
   return truth;
 }
 
+[[nodiscard]] inline bool none_of(bool truth) noexcept {
+  return !truth;
+}
+
 /// What fails in some lanes becomes NaN there, and stays it; a single number's failure is its Status.
 template <typename Truths, typename Scalar>
 void spoil_unless([[maybe_unused]] const Truths& truth, [[maybe_unused]] Scalar& value) noexcept {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/cholesky.hpp"
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
 
@@ -14,15 +17,17 @@ namespace fpbm {
 /// As base times height, row by row, which keeps its digits near singular postures.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar manipulability(const Matrix<M, N, Scalar>& J) noexcept {
+  using std::max;
   using std::sqrt;
+  const Scalar tiny(std::numeric_limits<Number<Scalar>>::min());
   Matrix<M, N, Scalar> rows = J;
   Scalar volume(1);
   for (Eigen::Index i = 0; i < M; ++i) {
     const Scalar square = rows.row(i).squaredNorm();
     volume *= sqrt(square);
-    if (!(square > Scalar(0))) continue;
+    const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A row of zeros takes nothing from the others.
     for (Eigen::Index j = i + 1; j < M; ++j) {
-      const Scalar along = rows.row(j).dot(rows.row(i)) / square;
+      const Scalar along = rows.row(j).dot(rows.row(i)) * reciprocal;
       rows.row(j) -= along * rows.row(i);
     }
   }

@@ -9,21 +9,22 @@ namespace fpbm {
 ///
 /// A reference may jump where they meet (the paper's xdd does), so each step of an integrator asks its own segment.
 /// Remembers the last sample, since RK4 asks for each mid-point twice and for each end again as the next start.
-template <typename Path>
+/// In lanes, many arms follow one path, each from where its own tip starts.
+template <typename Path, typename Scalar = typename Path::Scalar>
 class AnchoredPath {
  public:
-  using Scalar = typename Path::Scalar;
+  using Time = typename Path::Scalar;
   using Space = typename Path::Space;
   using Point = typename Space::template Point<Scalar>;
 
   AnchoredPath(const Path& path, const Point& anchor) noexcept
-      : path_(path), anchor_(anchor), end_(anchor), time_(0), since_(0), last_(from_anchor(Scalar(0), Scalar(0))) {
+      : path_(path), anchor_(anchor), end_(anchor), time_(0), since_(0), last_(from_anchor(Time(0), Time(0))) {
     end_ = from_anchor(path.duration(), path.duration()).x;
   }
 
   /// Reference at t [s] of the motion, in an integrator's step that starts at since; the motion's last instant is T
   /// however t is rounded.
-  [[nodiscard]] const Reference<Space, Scalar>& motion(Scalar t, [[maybe_unused]] Scalar since) noexcept {
+  [[nodiscard]] const Reference<Space, Scalar>& motion(Time t, [[maybe_unused]] Time since) noexcept {
     bool known = t == time_;
     if constexpr (kHasPieces<Path>) known = known && since == since_;
     if (!known) {
@@ -38,8 +39,8 @@ class AnchoredPath {
   [[nodiscard]] Reference<Space, Scalar> hold() const noexcept { return Reference<Space, Scalar>::hold(end_); }
 
  private:
-  [[nodiscard]] Reference<Space, Scalar> from_anchor(Scalar t, Scalar since) const noexcept {
-    Reference<Space, Scalar> reference = sample_within(path_, t, since);
+  [[nodiscard]] Reference<Space, Scalar> from_anchor(Time t, Time since) const noexcept {
+    Reference<Space, Scalar> reference = sample_within(path_, t, since).template cast<Scalar>();
     reference.x = Space::template compose<Scalar>(anchor_, reference.x);
     return reference;
   }
@@ -47,8 +48,8 @@ class AnchoredPath {
   const Path& path_;
   Point anchor_;
   Point end_;
-  Scalar time_;
-  Scalar since_;
+  Time time_;
+  Time since_;
   Reference<Space, Scalar> last_;
 };
 

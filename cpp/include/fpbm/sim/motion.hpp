@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "fpbm/core/space.hpp"
+#include "fpbm/core/truth.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -11,7 +12,7 @@ namespace fpbm {
 template <typename Space, int N, typename Scalar = double>
 struct Sample {
   int index;
-  Scalar t;                                    ///< [s]
+  Number<Scalar> t;                            ///< [s]
   Vector<N, Scalar> q;                         ///< [rad], or [m] for a prismatic joint, as everywhere below
   Vector<N, Scalar> qd;                        ///< [rad/s]
   Vector<N, Scalar> qdd;                       ///< [rad/s²]; zero at velocity level, where no scheme gives it.

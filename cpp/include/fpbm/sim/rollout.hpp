@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "fpbm/core/status.hpp"
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/integrator/closed_loop.hpp"
 #include "fpbm/integrator/rk4.hpp"
@@ -20,7 +21,7 @@ namespace fpbm {
 template <int N, typename Scalar = double>
 struct RolloutResult {
   Status status;          ///< kOk or kDamped when the whole motion is done; otherwise why it stopped,
-  Scalar time;            ///< when [s],
+  Number<Scalar> time;    ///< when [s],
   State<N, Scalar> last;  ///< and where: the last good state.
   int samples;            ///< Samples recorded.
 };
@@ -44,15 +45,19 @@ template <typename Recorder, typename Sample>
 /// noexcept; where it returns a bool, false ends the motion there, its status still good. Throws std::invalid_argument
 /// where the scheme or start does not fit the arm, the grid does not fit the path, or start is not finite, before
 /// anything is recorded; from then on nothing throws or allocates, and what goes wrong is in the result.
+///
+/// In lanes, many motions go on side by side. One that is not regular all the way, because its scheme fails or is
+/// damped or its tip leaves its path, ends with a last q of NaN: to learn why and when, run it by itself.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
-                                                       const TimeGrid<typename Arm::Scalar>& grid, Recorder&& record) {
+                                                       const TimeGrid<Number<typename Arm::Scalar>>& grid, Recorder&& record) {
   using Scalar = typename Arm::Scalar;
+  using Time = Number<Scalar>;
   using Space = typename Path::Space;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
-  static_assert(std::is_same_v<typename Path::Scalar, Scalar>, "the path and the arm have one Scalar");
+  static_assert(std::is_same_v<typename Path::Scalar, Time>, "the path and the arm have one Scalar");
 
   if (grid.duration() != path.duration()) {
     validation::fail("grid duration", static_cast<double>(grid.duration()), "the duration of the path");
@@ -68,18 +73,18 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
 
   Loop loop{arm, scheme, {}, start, Vector<Arm::kDof, Scalar>::Zero(start.q.size())};
   arm.kinematics(start.q, loop.kinematics);
-  AnchoredPath<Path> references(path, loop.kinematics.tip);
+  AnchoredPath<Path, Scalar> references(path, loop.kinematics.tip);
 
   X dx = x;
   TaskWatch<Space, Arm::kDof, Scalar> watch(loop.kinematics.tip);
-  RolloutResult<Arm::kDof, Scalar> result{Status::kOk, Scalar(0), start, 0};
+  RolloutResult<Arm::kDof, Scalar> result{Status::kOk, Time(0), start, 0};
   for (int i = 0;; ++i) {
-    const Scalar t = grid.time(i);
+    const Time t = grid.time(i);
     const bool last = i == grid.steps();
     const bool moving = i < grid.motion_steps() || (last && grid.hold_steps() == 0);
     const Reference<Space, Scalar> arrived =
         i <= grid.motion_steps() ? references.motion(t, grid.time(i > 0 ? i - 1 : 0)) : references.hold();
-    const auto derivative = [&](Scalar stage_t, const X& stage_x, X& stage_dx) noexcept {
+    const auto derivative = [&](Time stage_t, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(moving ? references.motion(stage_t, t) : references.hold(), stage_x, stage_dx);
     };
 
@@ -87,10 +92,15 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = worse(result.status, status);
     if (failed(status)) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t, t) : references.hold();
-    if (!watch.template on_course<Scheme::kLevel>(loop.kinematics, arrived, reference, loop.state, loop.qdd, grid.dt(),
-                                                  status == Status::kDamped)) {
+    const Truth<Scalar> on_course = watch.template on_course<Scheme::kLevel>(
+        loop.kinematics, arrived, reference, loop.state, loop.qdd, grid.dt(), status == Status::kDamped);
+    if (none_of(on_course)) {
       result.status = Status::kTaskLost;
       break;
+    }
+    for (Eigen::Index j = 0; j < loop.state.q.size(); ++j) {
+      spoil_unless(on_course, x(j, 0));
+      spoil_unless(on_course, loop.state.q(j));
     }
 
     result.time = t;

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
-#include "fpbm/core/lanes.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/resolver/null_space.hpp"
@@ -35,30 +36,32 @@ class Summary {
   explicit Summary(Level level) noexcept : level_(level) {}
 
   void operator()(const Sample<Space, N, Scalar>& sample) noexcept {
+    using std::max;
     constexpr int kTurns = Space::kRows - kLinear;
-    square_ = larger(square_, Scalar(sample.error.template head<kLinear>().squaredNorm()));
+    square_ = max(square_, Scalar(sample.error.template head<kLinear>().squaredNorm()));
     if constexpr (kTurns > 0) {
-      turn_square_ = larger(turn_square_, Scalar(sample.error.template tail<kTurns>().squaredNorm()));
+      turn_square_ = max(turn_square_, Scalar(sample.error.template tail<kTurns>().squaredNorm()));
     }
     velocity_ = size(sample.qd);
-    peak_velocity_ = larger(peak_velocity_, velocity_);
+    peak_velocity_ = max(peak_velocity_, velocity_);
     if (level_ == Level::kAcceleration) {
       acceleration_ = size(sample.qdd);
-      peak_acceleration_ = larger(peak_acceleration_, acceleration_);
+      peak_acceleration_ = max(peak_acceleration_, acceleration_);
     } else {
       differentiate(sample);
     }
-    least_ = larger(least_, Scalar(-manipulability(sample.J)));
+    least_ = max(least_, Scalar(-manipulability(sample.J)));
   }
 
   /// Of the samples so far; of none, zeros and a manipulability of infinity.
   [[nodiscard]] MotionSummary<Scalar> result() const noexcept {
+    using std::max;
     using std::sqrt;
     return {sqrt(square_),
             sqrt(turn_square_),
             peak_velocity_,
             velocity_,
-            larger(peak_acceleration_, acceleration_),
+            max(peak_acceleration_, acceleration_),
             acceleration_,
             -least_};
   }
@@ -68,18 +71,21 @@ class Summary {
 
   /// ‖a‖∞
   [[nodiscard]] static Scalar size(const Vector<N, Scalar>& a) noexcept {
+    using std::abs;
+    using std::max;
     Scalar result(0);
-    for (Eigen::Index i = 0; i < a.size(); ++i) result = larger(result, larger(a(i), Scalar(-a(i))));
+    for (Eigen::Index i = 0; i < a.size(); ++i) result = max(result, Scalar(abs(a(i))));
     return result;
   }
 
   /// The slope across the last two steps is of the sample between, the one across the last of the end so far.
   void differentiate(const Sample<Space, N, Scalar>& sample) noexcept {
+    using std::max;
     if (sample.index > 0) {
-      const Scalar h = sample.t - t_;
-      acceleration_ = size((sample.qd - qd_) / h);
-      const Scalar inner = sample.index > 1 ? size((sample.qd - qd_before_) / (h + h)) : acceleration_;
-      peak_acceleration_ = larger(peak_acceleration_, inner);
+      const Number<Scalar> h = sample.t - t_;
+      acceleration_ = size((sample.qd - qd_) / Scalar(h));
+      const Scalar inner = sample.index > 1 ? size((sample.qd - qd_before_) / Scalar(h + h)) : acceleration_;
+      peak_acceleration_ = max(peak_acceleration_, inner);
     }
     qd_before_ = sample.index > 0 ? qd_ : sample.qd;
     qd_ = sample.qd;
@@ -93,8 +99,8 @@ class Summary {
   Scalar peak_velocity_{0};
   Scalar acceleration_{0};
   Scalar peak_acceleration_{0};
-  Scalar least_ = splat<Scalar>(-std::numeric_limits<typename ScalarOf<Scalar>::type>::infinity());
-  Scalar t_{0};
+  Scalar least_ = Scalar(-std::numeric_limits<Number<Scalar>>::infinity());
+  Number<Scalar> t_{0};
   Vector<N, Scalar> qd_;
   Vector<N, Scalar> qd_before_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fpbm/core/truth.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/resolver/null_space.hpp"
@@ -24,14 +25,15 @@ class ErrorWatch {
   /// Whether e came here by its rate of h seconds ago. travel is the way of the reference in between, turn the
   /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
   /// turn and h [s] are in e's units.
-  [[nodiscard]] bool follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
+  [[nodiscard]] Truth<Scalar> follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
                              Scalar size) const noexcept {
     using std::sqrt;
+    if (!started_) return Truth<Scalar>(true);
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
-    const Scalar expected = kTolerance * (travel + error.norm() + h * rate.norm());
-    const Scalar truncation = kTruncation * turn * (turn * turn) * (turn * turn) * size;
-    const Scalar round_off = sqrt(std::numeric_limits<Scalar>::epsilon()) * size;
-    return !started_ || growth <= expected + truncation + round_off;
+    const Scalar expected = Scalar(kTolerance) * (travel + error.norm() + h * rate.norm());
+    const Scalar truncation = Scalar(kTruncation) * turn * (turn * turn) * (turn * turn) * size;
+    const Scalar round_off = Scalar(sqrt(std::numeric_limits<Number<Scalar>>::epsilon())) * size;
+    return growth <= expected + truncation + round_off;
   }
 
   /// From here on: e and its rate, where the reference may have stepped since follows() was asked.
@@ -42,8 +44,8 @@ class ErrorWatch {
   }
 
  private:
-  static constexpr Scalar kTolerance = Scalar(0.1);
-  static constexpr Scalar kTruncation = Scalar(0.05);
+  static constexpr auto kTolerance = static_cast<Number<Scalar>>(0.1);
+  static constexpr auto kTruncation = static_cast<Number<Scalar>>(0.05);
 
   bool started_ = false;
   Row error_ = Row::Zero();
@@ -62,7 +64,7 @@ class TaskWatch {
   /// what it was led to, and reference, of which qdd is the answer, where it is led from here. They differ where a
   /// path's pieces meet. Where the scheme was damped, the reference must not outrun the tip by more than one step.
   template <Level kLevel>
-  [[nodiscard]] bool on_course(const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& arrived,
+  [[nodiscard]] Truth<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& arrived,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
     using Row = Vector<Space::kRows, Scalar>;
@@ -73,9 +75,9 @@ class TaskWatch {
     const Row e = Space::template difference<Scalar>(arrived.x, tip);
     const Row ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
-    bool follows = turn <= kLargestTurn && position_.follows(e, ed, h, travel, turn, reach);
+    Truth<Scalar> follows = turn <= Scalar(kLargestTurn) && position_.follows(e, ed, h, travel, turn, reach);
     if (damped) {
-      follows = follows && e.norm() <= undamped_error_ + kDampedSteps * travel;
+      follows = follows && e.norm() <= undamped_error_ + Scalar(kDampedSteps) * travel;
     } else {
       undamped_error_ = e.norm();
     }
@@ -93,10 +95,10 @@ class TaskWatch {
  private:
   /// How far a joint may move in one step at most, for the step to resolve the motion [rad], or [m] for a prismatic
   /// one.
-  static constexpr Scalar kLargestTurn = Scalar(0.25);
+  static constexpr auto kLargestTurn = static_cast<Number<Scalar>>(0.25);
 
   /// How far the tip may fall behind where the scheme is damped, in steps of the reference.
-  static constexpr Scalar kDampedSteps = Scalar(1.1);
+  static constexpr auto kDampedSteps = static_cast<Number<Scalar>>(1.1);
 
   Scalar undamped_error_{0};
   ErrorWatch<Space::kRows, Scalar> position_;

@@ -15,6 +15,11 @@ struct Reference {
   [[nodiscard]] static Reference hold(const typename Space::template Point<Scalar>& x) noexcept {
     return {x, Vector<Space::kRows, Scalar>::Zero(), Vector<Space::kRows, Scalar>::Zero()};
   }
+
+  template <typename Other>
+  [[nodiscard]] Reference<Space, Other> cast() const noexcept {
+    return {x.template cast<Other>(), xd.template cast<Other>(), xdd.template cast<Other>()};
+  }
 };
 
 }  // namespace fpbm
