@@ -9,7 +9,7 @@
 namespace fpbm {
 
 template <int K, typename Number = double>
-using Lanes = std::experimental::fixed_size_simd<Number, K>;
+using Lanes = std::experimental::simd<Number, std::experimental::simd_abi::deduce_t<Number, K>>;
 
 }  // namespace fpbm
 

@@ -170,12 +170,13 @@ class SerialArm {
 
     out.J.resize(Space::kRows, dof_);
     tip_less(p, arms);
-    out.J.template topRows<3>() = cross_each(axes, arms).transpose();
+    rows(out.J.template topRows<3>(), [&](int i) { return cross_row(axes, arms, i); });
     if constexpr (kWithTurn) out.J.template bottomRows<3>() = axes.transpose();
     if constexpr (kWithRate) {
       out.Jd.resize(Space::kRows, dof_);
       tip_less(v, arm_rates);
-      out.Jd.template topRows<3>() = (cross_each(axis_rates, arms) + cross_each(axes, arm_rates)).transpose();
+      rows(out.Jd.template topRows<3>(),
+           [&](int i) { return cross_row(axis_rates, arms, i) + cross_row(axes, arm_rates, i); });
       if constexpr (kWithTurn) out.Jd.template bottomRows<3>() = axis_rates.transpose();
     }
     for (Eigen::Index i = 0; slides_ != 0 && i < dof_; ++i) {
@@ -196,14 +197,23 @@ class SerialArm {
     for (int i = 0; i < 3; ++i) rows.col(i).array() = tip(i) - rows.col(i).array();
   }
 
-  [[nodiscard]] static Rows3 cross_each(const Rows3& a, const Rows3& b) noexcept {
-    Rows3 result(a.rows(), 3);
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const int k = (i + 2) % 3;
-      result.col(i) = a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
+  /// Entry i of all joints' a × b.
+  [[nodiscard]] static auto cross_row(const Rows3& a, const Rows3& b, int i) noexcept {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    return a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
+  }
+
+  /// Row i of the result is row(i), first gathered as a column where that makes vector code of it.
+  template <typename Result, typename Row>
+  void rows(Result result, const Row& row) const noexcept {
+    if constexpr (kInLanes<Scalar>) {
+      for (int i = 0; i < 3; ++i) result.row(i).transpose() = row(i);
+    } else {
+      Rows3 columns(dof_, 3);
+      for (int i = 0; i < 3; ++i) columns.col(i) = row(i);
+      result = columns.transpose();
     }
-    return result;
   }
 
   /// The column of a prismatic joint.
