@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "fpbm/model/chain.hpp"
@@ -7,6 +8,7 @@
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/sim/rollout.hpp"
+#include "outcome.hpp"
 #include "path.hpp"
 #include "recorder.hpp"
 #include "scheme.hpp"
@@ -31,6 +33,11 @@ class TaskModel : public std::enable_shared_from_this<TaskModel<Space_>> {
   [[nodiscard]] virtual RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
                                                          const State<kDynamic>& start, const TimeGrid<double>& grid,
                                                          const Wanted<Space>& wanted) const = 0;
+  /// How many motions of this arm go side by side; 1 where there is no such code for the arm or the processor.
+  [[nodiscard]] virtual int lanes() const noexcept = 0;
+  /// As many motions as there are lanes, as RunInLanes says.
+  virtual void run_in_lanes(const AnyPath<Space>& path, const TimeGrid<double>& grid, const PyScheme* const* schemes,
+                            const Joints* starts, const std::atomic<bool>& stop, Outcome* outcomes) const = 0;
   /// Throws std::invalid_argument where a parameter of the scheme does not fit the arm.
   virtual void require(const PyScheme& scheme) const = 0;
 };

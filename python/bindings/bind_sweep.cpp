@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "bindings.hpp"
+#include "lanes.hpp"
 #include "motion_arrays.hpp"
 #include "py_arm.hpp"
 #include "sweep.hpp"
@@ -108,6 +110,19 @@ Chunk sweep_chunk(const PyArm& arm, const PyPath& path, const Schemes& schemes, 
   });
 }
 
+/// Kinds of processor that this one is of, the best first, of those that there may be code in lanes for.
+std::vector<std::string> processor_kinds() {
+  std::vector<std::string> kinds;
+#if defined(__x86_64__) && defined(__GNUC__)
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+  if (avx2 && avx512) kinds.emplace_back("avx512");
+  if (avx2) kinds.emplace_back("avx2");
+#endif
+  return kinds;
+}
+
 }  // namespace
 
 void bind_sweep(py::module_& m) {
@@ -118,6 +133,14 @@ void bind_sweep(py::module_& m) {
       .def(py::init<>())
       .def(
           "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "From any thread.");
+  m.def("processor_kinds", &processor_kinds);
+  m.def(
+      "use_lanes",
+      [](const py::object& code) {
+        use_lane_code(code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer()));
+        return lane_code() == nullptr ? 1 : lane_code()->lanes;
+      },
+      py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
         py::arg("hold"), py::arg("task"));
   m.def("not_run", &not_run, py::arg("count"));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lanes.hpp"
 #include "whole_arm.hpp"
 
 namespace fpbm::bindings {
@@ -25,6 +26,15 @@ class Model final : public TaskModel<Space> {
         arm_->limits(), [&](const auto& chosen) { return rollout(*arm_, path, chosen, fixed, grid, record); });
     record.finish();
     return {result.status, result.time, {result.last.q, result.last.qd}, result.samples};
+  }
+
+  [[nodiscard]] int lanes() const noexcept override {
+    return bindings::run_in_lanes<Arm, Space>() == nullptr ? 1 : lane_code()->lanes;
+  }
+
+  void run_in_lanes(const AnyPath<Space>& path, const TimeGrid<double>& grid, const PyScheme* const* schemes,
+                    const Joints* starts, const std::atomic<bool>& stop, Outcome* outcomes) const override {
+    bindings::run_in_lanes<Arm, Space>()(*arm_, path, grid, schemes, starts, stop, outcomes);
   }
 
   void require(const PyScheme& scheme) const override { bindings::require(scheme, whole()); }

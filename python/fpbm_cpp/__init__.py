@@ -36,6 +36,7 @@ from ._core import (
     rotation_vector,
 )
 from ._errors import ResolutionError, SweepInterrupted
+from ._lanes import LANES
 from .joint import Joint
 from .run import Run, RunStatus
 from .serial_arm import SerialArm

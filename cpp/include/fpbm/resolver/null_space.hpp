@@ -65,6 +65,20 @@ class NullSpace {
     return with_constant(c);
   }
 
+  /// In lanes: get(lane) is each one's.
+  template <typename Get>
+  [[nodiscard]] static NullSpace side_by_side(const Get& get) {
+    NullSpace result;
+    const Eigen::Index dof = get(0).constant_.size();
+    result.damping_ = Scalar([&](auto lane) { return get(lane).damping_; });
+    for (std::size_t lane = 0; lane < Scalar::size(); ++lane) result.has_constant_ |= get(lane).has_constant_;
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      result.stiffness_(i) = Scalar([&](auto lane) { return get(lane).stiffness_(i); });
+      result.constant_(i) = Scalar([&](auto lane) { return get(lane).constant_(i); });
+    }
+    return result;
+  }
+
   /// Throws std::invalid_argument where z is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     if (has_constant_) validation::require_size("rest_posture, limits or c", constant_.size(), dof);
@@ -86,6 +100,9 @@ class NullSpace {
   }
 
  private:
+  template <int, typename>
+  friend class NullSpace;
+
   /// With stiffness ∘ (middle − q) more.
   [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
     NullSpace changed = with_constant(stiffness.cwiseProduct(middle));

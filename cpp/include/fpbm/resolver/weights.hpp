@@ -44,6 +44,17 @@ class DiagonalWeights {
     inverse_ = weights.minCoeff() * weights.cwiseInverse();
   }
 
+  /// In lanes: get(lane) is each one's.
+  template <typename Get>
+  [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
+    DiagonalWeights result;
+    result.inverse_.resize(get(0).inverse_.size());
+    for (Eigen::Index i = 0; i < result.inverse_.size(); ++i) {
+      result.inverse_(i) = Scalar([&](auto lane) { return get(lane).inverse_(i); });
+    }
+    return result;
+  }
+
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
 
   template <typename>
@@ -68,6 +79,11 @@ class DiagonalWeights {
   }
 
  private:
+  template <int, typename>
+  friend class DiagonalWeights;
+
+  DiagonalWeights() = default;
+
   Vector<N, Scalar> inverse_;
 };
 

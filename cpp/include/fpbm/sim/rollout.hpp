@@ -51,7 +51,8 @@ template <typename Recorder, typename Sample>
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
-                                                       const TimeGrid<Number<typename Arm::Scalar>>& grid, Recorder&& record) {
+                                                       const TimeGrid<Number<typename Arm::Scalar>>& grid,
+                                                       Recorder&& record) {
   using Scalar = typename Arm::Scalar;
   using Time = Number<Scalar>;
   using Space = typename Path::Space;

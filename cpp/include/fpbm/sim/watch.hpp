@@ -26,7 +26,7 @@ class ErrorWatch {
   /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
   /// turn and h [s] are in e's units.
   [[nodiscard]] Truth<Scalar> follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
-                             Scalar size) const noexcept {
+                                      Scalar size) const noexcept {
     using std::sqrt;
     if (!started_) return Truth<Scalar>(true);
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
@@ -64,9 +64,10 @@ class TaskWatch {
   /// what it was led to, and reference, of which qdd is the answer, where it is led from here. They differ where a
   /// path's pieces meet. Where the scheme was damped, the reference must not outrun the tip by more than one step.
   template <Level kLevel>
-  [[nodiscard]] Truth<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& arrived,
-                               const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
+  [[nodiscard]] Truth<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics,
+                                        const Reference<Space, Scalar>& arrived,
+                                        const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                                        [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
     using Row = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();
