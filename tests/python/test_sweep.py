@@ -242,6 +242,24 @@ def test_what_an_executor_raises_is_passed_on(arm):
         large(arm, executor=Broken())
 
 
+class AtOnce(Executor):
+    """Runs each thing as it is submitted."""
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        future.set_result(function(*args, **kwargs))
+        return future
+
+
+def test_interruption_keeps_what_is_finished_elsewhere(arm, reference):
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(fp.SweepInterrupted) as caught:
+        large(arm, executor=AtOnce(), progress=interrupt)
+    same(caught.value.sweep, reference)
+
+
 def test_interruption_keeps_what_is_finished(arm, reference):
     def interrupt(done, total):
         if done > 100:
