@@ -144,8 +144,8 @@ def test_executors_change_nothing(arm, reference):
 
 def test_dask_changes_nothing(arm, reference):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster:
-        client = cluster.get_client()
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         same(large(arm, executor=client.get_executor()), reference)
 
 
