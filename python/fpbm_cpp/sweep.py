@@ -69,6 +69,8 @@ def sweep(
     ------
     ValueError
         Where an argument is out of range, not finite, or of the wrong shape; nothing is run.
+    TypeError
+        Where one of the schemes is none.
     SweepInterrupted
         On Ctrl-C, a KeyboardInterrupt whose sweep holds what is finished.
     ImportError
