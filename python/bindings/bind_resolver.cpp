@@ -5,7 +5,7 @@
 #include "kinematics.hpp"
 #include "py_arm.hpp"
 #include "recipe.hpp"
-#include "scheme_options.hpp"
+#include "scheme_init.hpp"
 #include "whole_arm.hpp"
 
 #include <pybind11/native_enum.h>

@@ -39,9 +39,13 @@ def run_chunk(chunk: Chunk, stop: Stop | None = None) -> Result:
 
 
 def run_chunks(
-    chunks: Iterable[Chunk], executor: Executor | None, workers: int | None, take: Callable[[int, Result], object]
+    chunks: Iterable[Chunk],
+    executor: Executor | None,
+    workers: int | None,
+    take: Callable[[int, Result], object],
+    report: Callable[[int], object],
 ) -> None:
-    """Run all chunks, and take(i, result) in this thread as they arrive.
+    """Run all chunks; take(i, result) in this thread as they arrive, and report() how many motions are done.
 
     Where that is interrupted or fails, what has not begun is cancelled, what runs in this process stops within a
     sample, and what other processes run is left to them. On KeyboardInterrupt, all that is finished is still taken,
@@ -49,11 +53,12 @@ def run_chunks(
     """
     if executor is None:
         with ThreadPoolExecutor(workers or os.cpu_count()) as threads:
-            run_chunks(chunks, threads, None, take)
+            run_chunks(chunks, threads, None, take, report)
         return
     stop = Stop() if isinstance(executor, ThreadPoolExecutor) else None
     pending: dict[Future[Result], int] = {}
     arrived: SimpleQueue[Future[Result]] = SimpleQueue()
+    done = 0
     try:
         for i, chunk in enumerate(chunks):
             future = executor.submit(run_chunk, chunk) if stop is None else executor.submit(run_chunk, chunk, stop)
@@ -64,8 +69,11 @@ def run_chunks(
                 future = arrived.get(timeout=TICK)
             except Empty:
                 continue
-            take(pending[future], future.result())
+            result = future.result()
+            take(pending[future], result)
             del pending[future]
+            done += len(result[0])
+            report(done)
     except BaseException as error:
         if stop is not None:
             stop.set()

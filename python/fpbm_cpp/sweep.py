@@ -69,6 +69,8 @@ def sweep(
     ------
     ValueError
         Where an argument is out of range, not finite, or of the wrong shape; nothing is run.
+    TypeError
+        Where one of the schemes is none.
     SweepInterrupted
         On Ctrl-C, a KeyboardInterrupt whose sweep holds what is finished.
     ImportError
@@ -89,22 +91,15 @@ def sweep(
     parts = plan.parts()
     outcomes = _core.not_run(len(plan))
     arrays: list[Any] = [None] * len(plan)
-    taken: set[int] = set()
-    count = 0
+
+    def take(i: int, result: Result) -> None:
+        outcomes[parts[i]] = result[0]
+        if motions:
+            arrays[parts[i]] = result[1]
+
     try:
         with reporting(progress, len(plan)) as report:
-
-            def take(i: int, done: Result) -> None:
-                nonlocal count
-                outcomes[parts[i]] = done[0]
-                if motions:
-                    arrays[parts[i]] = done[1]
-                if i not in taken:
-                    taken.add(i)
-                    count += len(done[0])
-                    report(count)
-
-            run_chunks(map(plan.chunk, parts), executor, workers, take)
+            run_chunks(map(plan.chunk, parts), executor, workers, take, report)
     except KeyboardInterrupt:
         raise SweepInterrupted(plan.result(outcomes, arrays)) from None
     return plan.result(outcomes, arrays)

@@ -144,8 +144,8 @@ def test_executors_change_nothing(arm, reference):
 
 def test_dask_changes_nothing(arm, reference):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster:
-        client = cluster.get_client()
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         same(large(arm, executor=client.get_executor()), reference)
 
 
@@ -242,6 +242,24 @@ def test_what_an_executor_raises_is_passed_on(arm):
         large(arm, executor=Broken())
 
 
+class AtOnce(Executor):
+    """Runs each thing as it is submitted."""
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        future.set_result(function(*args, **kwargs))
+        return future
+
+
+def test_interruption_keeps_what_is_finished_elsewhere(arm, reference):
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(fp.SweepInterrupted) as caught:
+        large(arm, executor=AtOnce(), progress=interrupt)
+    same(caught.value.sweep, reference)
+
+
 def test_interruption_keeps_what_is_finished(arm, reference):
     def interrupt(done, total):
         if done > 100:
@@ -301,12 +319,18 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent otherwise there")
-@pytest.mark.parametrize("executor", ["nullcontext()", "ThreadPoolExecutor(2)", "ProcessPoolExecutor(2)"])
-@pytest.mark.parametrize("hold", [0.0, 5000.0], ids=["many motions", "long motions"])
+@pytest.mark.parametrize(
+    ("executor", "hold"),
+    [
+        ("nullcontext()", 0.0),
+        ("nullcontext()", 5000.0),
+        ("ThreadPoolExecutor(2)", 0.0),
+        ("ThreadPoolExecutor(2)", 5000.0),
+        ("ProcessPoolExecutor(2)", 0.0),
+    ],
+)
 def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
     """Also in the midst of a motion of millions of steps, unless in another process, which is not waited for."""
-    if "Process" in executor and hold > 0:
-        pytest.skip("a process ends the chunk that it has begun")
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)
     done, elapsed = interrupted(script, executor, hold)
