@@ -11,9 +11,7 @@ void add(const std::string& row) {
 
 template <typename Case>
 void add_resolve() {
-  for_each_law([](auto law) {
-    add<Resolve<Ours<Case, law()>>>("resolve/" + Case::name() + "/" + name(law));
-  });
+  for_each_law([](auto law) { add<Resolve<Ours<Case, law()>>>("resolve/" + Case::name() + "/" + name(law)); });
 }
 
 [[maybe_unused]] const bool kAdded = [] {

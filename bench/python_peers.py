@@ -217,10 +217,9 @@ def mjcf(case: Case) -> str:
         numbers = [" ".join(repr(float(v)) for v in values) for values in (frame[:3, 3], quaternion)]
         return f'pos="{numbers[0]}" quat="{numbers[1]}"'
 
-    bodies = "".join(
-        f'<body {place(np.asarray(joint.placement))}><joint axis="0 0 1"/><geom size="0.01" contype="0" conaffinity="0"/>'
-        for joint in case.joints
-    )
+    weight = '<geom size="0.01" contype="0" conaffinity="0"/>'
+    frames = [place(np.asarray(joint.placement)) for joint in case.joints]
+    bodies = "".join(f'<body {frame}><joint axis="0 0 1"/>{weight}' for frame in frames)
     ends = "</body>" * len(case.joints)
     return f'<mujoco><worldbody>{bodies}<site name="tip" {place(case.tip)}/>{ends}</worldbody></mujoco>'
 

@@ -8,8 +8,8 @@
 
 #include "jobs.hpp"
 
-// Rows of bench_step: part/arm/task/scheme/library. A solver is a library that does one scheme for one case: move() finds
-// tip, J and Jd of a state, resolve() the joints' motion. Each file of a library adds its own.
+// Rows of bench_step: part/arm/task/scheme/library. A solver is a library that does one scheme for one case: move()
+// finds tip, J and Jd of a state, resolve() the joints' motion. Each file of a library adds its own.
 namespace bench {
 
 template <typename Job>
@@ -30,7 +30,8 @@ void require_agreement(const std::string& row) {
     fpbm::Vector<Case::kDof> found = expected;
     ours.move(input);
     solver.move(input);
-    const bool solved = ours.resolve(input, expected) == fpbm::Status::kOk && solver.resolve(input, found) == fpbm::Status::kOk;
+    const bool solved =
+        ours.resolve(input, expected) == fpbm::Status::kOk && solver.resolve(input, found) == fpbm::Status::kOk;
     const double difference = (found - expected).norm() / expected.norm();
     if (!solved || !(difference <= 1e-9)) {
       std::fprintf(stderr, "%s answers otherwise, by %g\n", row.c_str(), difference);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
+
 #if defined(__x86_64__) && defined(__linux__)
 #include <link.h>
 #include <x86intrin.h>
@@ -15,8 +17,8 @@
 
 #include "jobs.hpp"
 
-// How long single calls take, each waited for: percentiles of many, in warm and in cold caches, as JSON. The timer's own
-// time is that of nothing (row "timer"); it is not taken off.
+// How long single calls take, each waited for: percentiles of many, in warm and in cold caches, as JSON. The timer's
+// own time is that of nothing (row "timer"); it is not taken off.
 namespace bench {
 namespace {
 
@@ -117,6 +119,13 @@ void evict(const Job& job) noexcept {
 }
 #endif
 
+/// How often the system took the processor away so far.
+long preemptions() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_nivcsw;
+}
+
 struct Options {
   double warm_calls = 1e7;
   double cold_calls = 1e5;
@@ -124,9 +133,24 @@ struct Options {
   bool first = true;
 };
 
-void print(const std::string& row, const char* caches, double calls, const Histogram& histogram, Options& options) {
-  std::printf("%s  {\"name\": \"%s\", \"caches\": \"%s\", \"calls\": %.0f", options.first ? "" : ",\n", row.c_str(),
-              caches, calls);
+template <typename Job>
+[[gnu::noinline]] void time_once(Job& job, Histogram& histogram) {
+  const std::uint64_t start = Clock::start();
+  job();
+  histogram.add(Clock::stop() - start);
+}
+
+/// Prepares and times the job so many times, and prints a row.
+template <typename Job, typename Prepare>
+void time_all(const std::string& row, const char* caches, double calls, Job& job, Prepare prepare, Options& options) {
+  Histogram histogram;
+  const long before = preemptions();
+  for (double i = 0; i < calls; ++i) {
+    prepare();
+    time_once(job, histogram);
+  }
+  std::printf("%s  {\"name\": \"%s\", \"caches\": \"%s\", \"calls\": %.0f, \"preempted\": %ld",
+              options.first ? "" : ",\n", row.c_str(), caches, calls, preemptions() - before);
   for (const auto& [name, fraction] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"worst", 1.0}}) {
     std::printf(", \"%s\": %.1f", name, options.tick * static_cast<double>(histogram.quantile(fraction)));
   }
@@ -136,26 +160,14 @@ void print(const std::string& row, const char* caches, double calls, const Histo
 }
 
 template <typename Job>
-[[gnu::noinline]] void time_once(Job& job, Histogram& histogram) {
-  const std::uint64_t start = Clock::start();
-  job();
-  histogram.add(Clock::stop() - start);
-}
-
-template <typename Job>
-void time_all(const std::string& row, Options& options) {
+void time_warm_and_cold(const std::string& row, Options& options) {
   Job job;
-  Histogram warm;
   for (int i = 0; i < 10000; ++i) job();
-  for (double i = 0; i < options.warm_calls; ++i) time_once(job, warm);
-  print(row, "warm", options.warm_calls, warm, options);
+  time_all(
+      row, "warm", options.warm_calls, job, [] {}, options);
 #ifdef FPBM_HAS_CLFLUSH
-  Histogram cold;
-  for (double i = 0; i < options.cold_calls; ++i) {
-    evict(job);
-    time_once(job, cold);
-  }
-  print(row, "cold", options.cold_calls, cold, options);
+  time_all(
+      row, "cold", options.cold_calls, job, [&job] { evict(job); }, options);
 #endif
 }
 
@@ -174,13 +186,13 @@ int main(int argc, char** argv) {
   using Planar4 = Case<Planar<4>, fpbm::Position<2>>;
   using PandaPosition = Case<Panda, fpbm::Position<3>>;
   std::printf("[\n");
-  time_all<Nothing>("timer", options);
-  time_all<Step<Ours<Planar4, Law::kMVN>>>("step/planar4/position/mvn", options);
-  time_all<Step<Ours<Planar4, Law::kFPBM>>>("step/planar4/position/fpbm", options);
-  time_all<Step<Ours<PandaPosition, Law::kFPBM>>>("step/panda/position/fpbm", options);
-  time_all<Step<Ours<PandaPose, Law::kMVN>>>("step/panda/pose/mvn", options);
-  time_all<Step<Ours<PandaPose, Law::kFPBM>>>("step/panda/pose/fpbm", options);
-  time_all<Measured>("loop/panda/pose/measured", options);
-  time_all<Tick>("loop/panda/pose/tick", options);
+  time_warm_and_cold<Nothing>("timer", options);
+  time_warm_and_cold<Step<Ours<Planar4, Law::kMVN>>>("step/planar4/position/mvn", options);
+  time_warm_and_cold<Step<Ours<Planar4, Law::kFPBM>>>("step/planar4/position/fpbm", options);
+  time_warm_and_cold<Step<Ours<PandaPosition, Law::kFPBM>>>("step/panda/position/fpbm", options);
+  time_warm_and_cold<Step<Ours<PandaPose, Law::kMVN>>>("step/panda/pose/mvn", options);
+  time_warm_and_cold<Step<Ours<PandaPose, Law::kFPBM>>>("step/panda/pose/fpbm", options);
+  time_warm_and_cold<Measured>("loop/panda/pose/measured", options);
+  time_warm_and_cold<Tick>("loop/panda/pose/tick", options);
   std::printf("\n]\n");
 }
