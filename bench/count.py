@@ -74,7 +74,9 @@ def main() -> None:
         sys.exit("\n".join([*lines, "If that is meant: make count RECORD=1"]))
     else:
         changes = [counts[job] / record[compiler][job] - 1 for job in counts]
-        print(f"{len(counts)} instruction counts against those of {compiler}: {min(changes):+.1%} to {max(changes):+.1%}")
+        print(
+            f"{len(counts)} instruction counts against those of {compiler}: {min(changes):+.1%} to {max(changes):+.1%}"
+        )
 
 
 if __name__ == "__main__":

@@ -17,7 +17,6 @@ CPLUSPLUS = {
     "pinocchio": "Pinocchio + Eigen",
     "kdl": "KDL + Eigen",
     "kdl_pinv": "KDL `_pinv`",
-    "kdl_pinv_givens": "KDL `_pinv_givens`",
     "kdl_wdls": "KDL `_wdls`",
 }
 PYTHON = {
@@ -140,7 +139,7 @@ def tails(results: Results) -> list[str]:
         [
             f"{row['name']}, {row['caches']}",
             *(nanoseconds(row[c]) for c in columns),
-            f"{row['calls']:.0e}",
+            f"{row['calls']:,.0f}",
             str(row["preempted"]),
         ]
         for row in results.tails
@@ -223,10 +222,10 @@ def chart(results: Results, file: Path) -> None:
         steps.annotate(f" {nanoseconds(time)}", (time / 1e3, place), va="center", fontsize=9)
     steps.set_yticks(range(len(drawn)), [f"{label}, {language}" for language, _, _, label in drawn])
     steps.set_xscale("log")
-    steps.set_xlim(right=steps.get_xlim()[1] * 4)
+    steps.set_xlim(0.1, 1000)
     steps.set(xlabel="time of a step [µs]", title="FPBM, a whole Panda pose step")
 
-    styles = zip((BLUE, VERMILION, GREEN, ORANGE, SKY, BLACK, BLUE, VERMILION), "os^Dv*Px")
+    styles = zip(("grey", BLUE, VERMILION, GREEN, ORANGE, SKY, BLACK, BLUE), "xos^Dv*P")
     columns = ("p50", "p99", "p99.9", "worst")
     for row, (colour, marker) in zip((r for r in results.tails if r["caches"] == "warm"), styles):
         label = row["name"].replace("/", " ")

@@ -1,7 +1,6 @@
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolvervel_pinv.hpp>
-#include <kdl/chainiksolvervel_pinv_givens.hpp>
 #include <kdl/chainiksolvervel_wdls.hpp>
 #include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
@@ -76,12 +75,11 @@ class KdlAlone {
  public:
   using Case = Case_;
   static constexpr Law kLaw = law;
-  static constexpr const char* kLibrary = std::is_same_v<Solver, KDL::ChainIkSolverVel_pinv>   ? "kdl_pinv"
-                                          : std::is_same_v<Solver, KDL::ChainIkSolverVel_wdls> ? "kdl_wdls"
-                                                                                               : "kdl_pinv_givens";
+  static constexpr bool kDamps = std::is_same_v<Solver, KDL::ChainIkSolverVel_wdls>;
+  static constexpr const char* kLibrary = kDamps ? "kdl_wdls" : "kdl_pinv";
 
   KdlAlone() {
-    if constexpr (std::is_same_v<Solver, KDL::ChainIkSolverVel_wdls>) {
+    if constexpr (kDamps) {
       solver_.setLambda(0.0);
       if constexpr (law == Law::kWMVN) {
         // Its weights M stand for W = M⁻².
@@ -115,7 +113,6 @@ class KdlAlone {
 template <typename Case>
 void add_solvers() {
   add_step<KdlAlone<Case, Law::kMVN, KDL::ChainIkSolverVel_pinv>>();
-  add_step<KdlAlone<Case, Law::kMVN, KDL::ChainIkSolverVel_pinv_givens>>();
   add_step<KdlAlone<Case, Law::kMVN, KDL::ChainIkSolverVel_wdls>>();
   add_step<KdlAlone<Case, Law::kWMVN, KDL::ChainIkSolverVel_wdls>>();
 }
