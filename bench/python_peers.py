@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import importlib
 import json
 import random
 import time
@@ -244,7 +245,17 @@ KINEMATICS: dict[str, tuple[str, type[Peer]]] = {
     "pinocchio_numpy": ("pin", Pinocchio),
     "robotics_toolbox": ("roboticstoolbox-python", RoboticsToolbox),
 }
-PROGRAMS = {"pink": ("pin-pink", by_pink), "mink": ("mink", by_mink)}
+PROGRAMS = {"pink": ("pin-pink", by_pink), "mink": ("mink", by_mink)}  # With daqp.
+MODULES = {"pin": "pinocchio", "roboticstoolbox-python": "roboticstoolbox", "pin-pink": "pink"}
+
+
+def version(package: str) -> str:
+    """Empty where it is not installed, or does not work here."""
+    try:
+        importlib.import_module(MODULES.get(package, package))
+        return metadata.version(package)
+    except (ImportError, metadata.PackageNotFoundError):
+        return ""
 
 
 class Row(NamedTuple):
@@ -264,7 +275,7 @@ def agreeing(name: str, step: Callable[[Input], Array], ours: Row, tolerance: fl
     return Row(name, step, ours.inputs)
 
 
-def rows(installed: dict[str, str]) -> Iterator[Row]:
+def rows(installed: set[str]) -> Iterator[Row]:
     for name, case in cases():
         for law, scheme in schemes(case.arm.dof).items():
 
@@ -283,7 +294,7 @@ def rows(installed: dict[str, str]) -> Iterator[Row]:
                     yield agreeing(f"{row}/{library}", by_numpy(law, case, kind(case)), ours, 1e-9)
             if law == "mvn" and case.rows.stop != 2:
                 for library, (package, make) in PROGRAMS.items():
-                    if package in installed:
+                    if {package, "daqp"} <= installed:
                         shifts = Row(ours.name, shift, inputs(case, shifts=True))
                         yield agreeing(f"{row}/{library}", make(case), shifts, 1e-3)
 
@@ -304,13 +315,8 @@ def main() -> None:
     options = parser.parse_args()
 
     packages = [package for package, _ in (*KINEMATICS.values(), *PROGRAMS.values())]
-    versions = {}
-    for package in (*packages, "mujoco", "daqp", "numpy", "fpbm_cpp"):
-        try:
-            versions[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            versions[package] = ""
-    every = list(rows({package: version for package, version in versions.items() if version}))
+    versions = {package: version(package) for package in (*packages, "mujoco", "daqp", "numpy")}
+    every = list(rows({package for package, found in versions.items() if found}))
     times: dict[str, list[float]] = {row.name: [] for row in every}
     gc.disable()
     order = random.Random(1)

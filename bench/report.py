@@ -113,12 +113,11 @@ def summary(results: Results) -> list[str]:
         lines += ["The same from Python, one call a step.", "", *comparison(results, "python", PYTHON, calls)]
     machine, built_with = results.values["machine"], results.values["built_with"]
     versions = {**built_with, **results.values.get("packages", {})}
-    others = ", ".join(
-        f"{name} {v}" for name, v in versions.items() if v and name not in ("compiler", "flags", "fpbm_cpp")
-    )
+    others = ", ".join(f"{name} {v}" for name, v in versions.items() if v and name not in ("compiler", "flags"))
     lines += [
         f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; {built_with['compiler']} "
-        f"`{built_with['flags']}`; Python {machine['python']}; {others}.",
+        f"`{built_with['flags']}`; Python {machine['python']}; {others}. "
+        f"Load average at the start: {machine['load']}.",
         "",
     ]
     if results.values["missing"]:

@@ -47,12 +47,14 @@ def machine() -> dict[str, Any]:
     }
 
 
-def call(*command: str | Path) -> bytes:
-    """What a program prints. One that fails stops all: it says why."""
-    print(
-        "  " + " ".join(Path(part).name if i < 2 else str(part) for i, part in enumerate(map(str, command))), flush=True
-    )
-    return subprocess.run([str(part) for part in command], check=True, stdout=subprocess.PIPE).stdout
+def call(program: Path, *arguments: str | Path) -> bytes:
+    """What a program prints. One that fails stops all; it has said why."""
+    print(f"running {program.name}", flush=True)
+    command = [sys.executable, program] if program.suffix == ".py" else [program]
+    run = subprocess.run([*command, *arguments], stdout=subprocess.PIPE, check=False)
+    if run.returncode != 0:
+        raise SystemExit(f"{program.name} failed")
+    return run.stdout
 
 
 def google_benchmark(program: Path, seconds: float, quick: bool) -> list[dict[str, Any]]:
@@ -98,7 +100,7 @@ def cplusplus(folder: Path, quick: bool) -> dict[str, Any]:
 
 def python(folder: Path, quick: bool) -> dict[str, Any]:
     out = folder / LATEST
-    call(sys.executable, HERE / "python_peers.py", "--out", out, "--calls", "50" if quick else "200")
+    call(HERE / "python_peers.py", "--out", out, "--calls", "50" if quick else "200")
     peers = json.loads(out.read_text())
     results = {
         "python": [summary(name, times) for name, times in peers["times"].items()],
@@ -108,7 +110,7 @@ def python(folder: Path, quick: bool) -> dict[str, Any]:
         results["packages"]["scipy"] = metadata.version("scipy")
     except metadata.PackageNotFoundError:
         return results
-    call(sys.executable, HERE / "simulate.py", "--out", out)
+    call(HERE / "simulate.py", "--out", out)
     return {**results, "circle": json.loads(out.read_text())}
 
 
