@@ -214,8 +214,8 @@ def chart(results: Results, file: Path) -> None:
     drawn = [("C++", f"step/panda/pose/fpbm/{library}", library, CPLUSPLUS[library]) for library in CPLUSPLUS]
     drawn += [("Python", f"python/panda/pose/fpbm/{library}", library, PYTHON[library]) for library in PYTHON]
     drawn = [entry for entry in drawn if entry[1] in results.rows][::-1]
-    for place, (language, row, library, _) in enumerate(drawn):
-        time = results.rows[row]["least"]
+    for place, (language, name, library, _) in enumerate(drawn):
+        time = results.rows[name]["least"]
         hatch = "//" if language == "Python" else None
         steps.barh(place, time / 1e3, color=colours.get(library, BLACK), hatch=hatch, edgecolor="white")
         steps.annotate(f" {nanoseconds(time)}", (time / 1e3, place), va="center", fontsize=9)
