@@ -39,7 +39,7 @@ def count(program: Path) -> dict[str, float]:
 def compiler_of(program: Path) -> str:
     """Its name and major version, by which counts are recorded."""
     built_with = json.loads(program.with_name("built_with.json").read_text())
-    return built_with["compiler"].split(".")[0]
+    return str(built_with["compiler"]).split(".")[0]
 
 
 def recorded() -> dict[str, dict[str, float]]:
