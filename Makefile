@@ -11,7 +11,7 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench clean
+.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench count clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -21,7 +21,8 @@ help:
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, types, stubs'
-	@echo 'make bench            build and run the benchmarks'
+	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
+	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
 
 demo: $(VENV)/package
@@ -78,13 +79,20 @@ format: $(VENV)/lint
 stubs: $(VENV)/package $(VENV)/lint
 	$(BIN)/python tools/stubs.py
 
-bench: $(VENV)/package $(VENV)/test
+# QUICK=1 takes a minute or two once all is built, and is rough. All of it: about ten.
+bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
-	cmake --preset bench
+	-tools/need.sh valgrind /usr/include/kdl/chain.hpp:liborocos-kdl-dev
+	cmake --preset bench -DFPBM_PINOCCHIO="$$(echo $(CURDIR)/$(VENV)/lib/python*/site-packages/cmeel.prefix)"
 	cmake --build --preset bench
-	build/bench/bench/bench_step --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true
-	build/bench/bench/bench_loop --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true
-	$(BIN)/python bench/simulate.py
+	$(BIN)/python bench/run.py build/bench/bench $(if $(QUICK),--quick)
+
+# Fails where a step takes more instructions than recorded; RECORD=1 records them.
+count:
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
+	cmake --preset bench
+	cmake --build --preset bench --target bench_count
+	$(PYTHON) bench/count.py build/bench/bench/bench_count $(if $(RECORD),--record)
 
 clean:
 	rm -rf build $(VENV) demo
@@ -97,6 +105,11 @@ $(VENV)/package: $(PACKAGE)
 
 $(VENV)/test $(VENV)/lint: pyproject.toml | $(VENV)/package
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
+	@touch $@
+
+# Who else is timed from Python, each as far as it is to be had.
+$(VENV)/bench: pyproject.toml | $(VENV)/package
+	-for peer in pinocchio toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
 # What the arms are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only

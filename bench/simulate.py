@@ -6,8 +6,11 @@ reported at the tolerance that gives it the accuracy of those steps.
 
 from __future__ import annotations
 
+import argparse
+import json
 import math
 import time
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -87,16 +90,24 @@ def timed(solve, runs: int) -> tuple[list[float], float]:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, help="also write the times to this JSON file")
+    options = parser.parse_args()
+
     # fpbm_cpp is timed before and after the others, so that a change of the machine's speed shows.
     before, error = timed(by_fpbm, 100)
     rows = [("NumPy, same RK4 steps", *timed(by_numpy, 3)), ("SciPy DOP853, equal accuracy", *timed(by_scipy, 3))]
     after, _ = timed(by_fpbm, 100)
     ours = sorted(before + after)
     print(f"{'10 s circle at 1 kHz, FPBM':32}{'median':>12}{'least':>12}{'ratio':>9}  error of final qd [rad/s]")
+    results = []
     for name, seconds, difference in [("fpbm_cpp simulate", ours, error), *rows]:
         median = seconds[len(seconds) // 2]
         ratio = median / ours[len(ours) // 2]
         print(f"{name:32}{median * 1e3:9.2f} ms{seconds[0] * 1e3:9.2f} ms{ratio:9.1f}  {difference:.1e}")
+        results.append({"name": name, "median": median, "least": seconds[0], "ratio": ratio, "error": difference})
+    if options.out:
+        options.out.write_text(json.dumps(results, indent=1))
 
 
 if __name__ == "__main__":

@@ -46,6 +46,7 @@ from .sweep_result import Sweep
 
 __all__ = [
     "FPBM",
+    "LANES",
     "MAN",
     "MAX_DOF",
     "MVN",

@@ -128,7 +128,7 @@ TEST_P(CholeskyOf, is_indifferent_to_scale) {
 /// Two matrices side by side: in each lane what that matrix alone gives, to the last bit, and a refusal where either is
 /// refused.
 template <int M, typename Scalar>
-void expect_lanes_to_agree() {
+void expect_pair_to_agree() {
   using Square = Matrix<M, M, Scalar>;
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     Random random(seed);
@@ -136,17 +136,17 @@ void expect_lanes_to_agree() {
     const Square B = random.positive_definite(M).template cast<Scalar>();
     const Vector<M, Scalar> a = random.uniform(M, -1.0, 1.0).template cast<Scalar>();
     const Vector<M, Scalar> b = random.uniform(M, -1.0, 1.0).template cast<Scalar>();
-    Cholesky<M, Lanes<Scalar, 2>> both;
-    Cholesky<M, Scalar> first;
-    Cholesky<M, Scalar> second;
+    Cholesky<M, Pair<Scalar>> both;
+    Cholesky<M, Scalar> of_a;
+    Cholesky<M, Scalar> of_b;
     ASSERT_EQ(both.factor(side_by_side<M, M, Scalar>(A, B)), Status::kOk);
-    ASSERT_EQ(first.factor(A), Status::kOk);
-    ASSERT_EQ(second.factor(B), Status::kOk);
+    ASSERT_EQ(of_a.factor(A), Status::kOk);
+    ASSERT_EQ(of_b.factor(B), Status::kOk);
     const auto x = both.solve(side_by_side<M, 1, Scalar>(a, b));
-    EXPECT_EQ((lane<M, 1, Scalar>(x, 0)), first.solve(a));
-    EXPECT_EQ((lane<M, 1, Scalar>(x, 1)), second.solve(b));
-    EXPECT_EQ(both.inverse_trace()[0], first.inverse_trace());
-    EXPECT_EQ(both.inverse_trace()[1], second.inverse_trace());
+    EXPECT_EQ((fpbm::first<M, 1, Scalar>(x)), of_a.solve(a));
+    EXPECT_EQ((fpbm::second<M, 1, Scalar>(x)), of_b.solve(b));
+    EXPECT_EQ(both.inverse_trace().first(), of_a.inverse_trace());
+    EXPECT_EQ(both.inverse_trace().second(), of_b.inverse_trace());
 
     Square singular = A;
     singular.row(M - 1) = A.row(0);
@@ -157,11 +157,11 @@ void expect_lanes_to_agree() {
     EXPECT_EQ(both.factor(side_by_side<M, M, Scalar>(A, singular)), Status::kNotFinite);
   }
 }
-TEST(CholeskyOfLanes, agrees_with_each_matrix_alone) {
-  expect_lanes_to_agree<2, double>();
-  expect_lanes_to_agree<3, double>();
-  expect_lanes_to_agree<6, double>();
-  expect_lanes_to_agree<6, float>();
+TEST(CholeskyOfPair, agrees_with_each_matrix_alone) {
+  expect_pair_to_agree<2, double>();
+  expect_pair_to_agree<3, double>();
+  expect_pair_to_agree<6, double>();
+  expect_pair_to_agree<6, float>();
 }
 
 INSTANTIATE_TEST_SUITE_P(every, CholeskyOf, ::testing::ValuesIn(sizes()),

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <array>
+#include <random>
+#include <string>
+
+#include "fpbm/fpbm.hpp"
+
+// Which arms, tasks and schemes are timed, and the states in which they are asked. The same for every library.
+namespace bench {
+
+/// Links of 1 m.
+template <int N>
+struct Planar {
+  static constexpr int kDof = N;
+  using Arm = fpbm::PlanarArm<N>;
+
+  static std::string name() { return "planar" + std::to_string(N); }
+  static Arm arm() { return Arm(fpbm::Vector<N>::Ones()); }
+  static fpbm::Chain<> chain() {
+    fpbm::Chain<> chain;
+    chain.joints.resize(N);
+    chain.tip.p(0) = 1.0;
+    for (int i = 1; i < N; ++i) chain.joints[static_cast<std::size_t>(i)].placement = chain.tip;
+    return chain;
+  }
+  static fpbm::Vector<N> bent() { return fpbm::Vector<N>::Constant(0.6); }
+};
+
+/// An arm of seven joints in space, of the library's presets.
+template <fpbm::Chain<> (*preset)()>
+struct Preset {
+  static constexpr int kDof = 7;
+  using Arm = fpbm::SerialArm<7>;
+
+  static Arm arm() { return Arm(preset()); }
+  static fpbm::Chain<> chain() { return preset(); }
+  static fpbm::Vector<7> bent() { return (fpbm::Vector<7>() << 0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8).finished(); }
+};
+struct Panda : Preset<fpbm::presets::panda> {
+  static std::string name() { return "panda"; }
+};
+struct Iiwa14 : Preset<fpbm::presets::iiwa14> {
+  static std::string name() { return "iiwa14"; }
+};
+
+/// An arm with a task.
+template <typename Robot_, typename Space_>
+struct Case {
+  using Robot = Robot_;
+  using Space = Space_;
+  static constexpr int kDof = Robot::kDof;
+  static constexpr int kRows = Space::kRows;
+  static constexpr bool kWithTurn = std::is_same_v<Space, fpbm::Pose>;
+
+  static std::string name() { return Robot::name() + (kWithTurn ? "/pose" : "/position"); }
+};
+using PandaPose = Case<Panda, fpbm::Pose>;
+
+/// Calls visit(case) for each.
+template <typename Visit>
+void for_each_case(Visit visit) {
+  visit(Case<Planar<4>, fpbm::Position<2>>{});
+  visit(Case<Planar<7>, fpbm::Position<2>>{});
+  visit(Case<Panda, fpbm::Position<3>>{});
+  visit(PandaPose{});
+  visit(Case<Iiwa14, fpbm::Position<3>>{});
+  visit(Case<Iiwa14, fpbm::Pose>{});
+}
+
+enum class Law { kMVN, kWMVN, kMAN, kWMVNAcceleration, kBalanced, kFPBM };
+
+template <Law law>
+using LawConstant = std::integral_constant<Law, law>;
+
+/// Calls visit(LawConstant) for each.
+template <typename Visit>
+void for_each_law(Visit visit) {
+  visit(LawConstant<Law::kMVN>{});
+  visit(LawConstant<Law::kWMVN>{});
+  visit(LawConstant<Law::kMAN>{});
+  visit(LawConstant<Law::kWMVNAcceleration>{});
+  visit(LawConstant<Law::kBalanced>{});
+  visit(LawConstant<Law::kFPBM>{});
+}
+
+constexpr const char* name(Law law) {
+  constexpr std::array kNames{"mvn", "wmvn", "man", "wmvn_acceleration", "balanced", "fpbm"};
+  return kNames[static_cast<std::size_t>(law)];
+}
+
+constexpr bool is_acceleration(Law law) {
+  return law != Law::kMVN && law != Law::kWMVN;
+}
+
+constexpr double kAlpha = 0.6;
+constexpr double kGain = 10.0;  ///< Of the velocity level's feedback.
+constexpr double kGain1 = 20.0;
+constexpr double kGain2 = 100.0;
+
+/// W = diag(1, 2, …, n), as the paper has it.
+template <int N>
+fpbm::Vector<N> weights(Eigen::Index dof = N) {
+  return fpbm::Vector<N>::LinSpaced(dof, 1.0, static_cast<double>(dof));
+}
+
+/// This library's scheme.
+template <Law law, int N>
+auto scheme(Eigen::Index dof = N) {
+  const fpbm::DiagonalWeights<N> W(weights<N>(dof));
+  if constexpr (law == Law::kMVN) return fpbm::MVN<N>(kGain);
+  if constexpr (law == Law::kWMVN) return fpbm::WMVN<N>(W, kGain);
+  if constexpr (law == Law::kMAN) return fpbm::MAN<N>();
+  if constexpr (law == Law::kWMVNAcceleration) return fpbm::WMVNAcceleration<N>(W);
+  if constexpr (law == Law::kBalanced) return fpbm::Balanced<N>(kAlpha, W);
+  if constexpr (law == Law::kFPBM) return fpbm::FPBM<N>(kAlpha, W, kGain1, kGain2);
+}
+
+template <typename Space, int N>
+struct Input {
+  fpbm::State<N> state;
+  fpbm::Reference<Space> reference;
+};
+
+/// States about a bent posture, well away from singular ones, and references near by; the same on every run. Few enough
+/// to stay in the first-level cache, and enough that nothing can be hoisted.
+template <typename Space, typename Arm, int N = Arm::kDof>
+auto inputs(const Arm& arm, const fpbm::Vector<N>& bent) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto fill = [&](auto vector, double reach) {
+    for (double& value : vector) value = reach * uniform(generator);
+    return vector;
+  };
+  const fpbm::Vector<Space::kRows> way = fpbm::Vector<Space::kRows>::Zero();
+  std::array<Input<Space, N>, 64> result;
+  for (auto& [state, reference] : result) {
+    state = {bent + fill(bent, 0.45), fill(bent, 1.0)};
+    fpbm::Kinematics<Space, N> kinematics;
+    arm.kinematics(state.q, kinematics);
+    reference.x = Space::template displace<double>(kinematics.tip, fill(way, 0.01));
+    reference.xd = fill(way, 0.5);
+    reference.xdd = fill(way, 0.5);
+  }
+  return result;
+}
+
+template <typename Case>
+auto inputs(Case) {
+  return inputs<typename Case::Space>(Case::Robot::arm(), Case::Robot::bent());
+}
+
+}  // namespace bench

@@ -1,0 +1,83 @@
+"""Instructions a call of each job in count.cpp, by callgrind: the same on a busy machine as on an idle one.
+
+Compared with those in instructions.json, where the compiler is one that they were recorded with. Fails where a count
+has grown by more than 5 %.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+CALLS = 128
+TOLERANCE = 0.05
+RECORD = Path(__file__).with_name("instructions.json")
+
+
+def count(program: Path) -> dict[str, float]:
+    """Instructions a call, by job."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = ["valgrind", "--tool=callgrind", "--collect-atstart=no", "--callgrind-out-file=out", str(program)]
+        run = subprocess.run([*command, str(CALLS)], cwd=folder, capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            raise SystemExit(f"{program.name} failed under valgrind: {run.stderr.strip().splitlines()[-1]}")
+        counts = {}
+        for dump in Path(folder).iterdir():
+            text = dump.read_text()
+            job = re.search(r"^desc: Trigger: Client Request: (.+)$", text, re.MULTILINE)
+            total = re.search(r"^totals: (\d+)$", text, re.MULTILINE)
+            if job and total:
+                counts[job[1]] = round(int(total[1]) / CALLS, 1)
+    return dict(sorted(counts.items()))
+
+
+def compiler_of(program: Path) -> str:
+    """Its name and major version, by which counts are recorded."""
+    built_with = json.loads(program.with_name("built_with.json").read_text())
+    return str(built_with["compiler"]).split(".")[0]
+
+
+def recorded() -> dict[str, dict[str, float]]:
+    return json.loads(RECORD.read_text()) if RECORD.exists() else {}
+
+
+def grown(counts: dict[str, float], record: dict[str, float]) -> list[str]:
+    """What is to be said of the jobs whose counts have grown too much, or that are in only one of the two."""
+    lines = [f"{job} is new: record it" for job in counts.keys() - record.keys()]
+    lines += [f"{job} is recorded, but not counted any more" for job in record.keys() - counts.keys()]
+    for job in counts.keys() & record.keys():
+        growth = counts[job] / record[job] - 1
+        if growth > TOLERANCE:
+            lines.append(f"{job} takes {counts[job]:.0f} instructions, {growth:+.1%} on the recorded {record[job]:.0f}")
+    return sorted(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=Path, help="bench_count, as built")
+    parser.add_argument("--record", action="store_true", help="write the counts to instructions.json")
+    options = parser.parse_args()
+
+    program = options.program.resolve()
+    compiler, counts, record = compiler_of(program), count(program), recorded()
+    if options.record:
+        RECORD.write_text(json.dumps({**record, compiler: counts}, indent=2) + "\n")
+        print(f"{len(counts)} counts recorded for {compiler}")
+    elif compiler not in record:
+        print(f"No instruction counts are recorded for {compiler}, only for {', '.join(record) or 'none'}: not checked")
+    elif lines := grown(counts, record[compiler]):
+        sys.exit("\n".join([*lines, "If that is meant: make count RECORD=1"]))
+    else:
+        changes = [counts[job] / record[compiler][job] - 1 for job in counts]
+        print(
+            f"{len(counts)} instruction counts against those of {compiler}: {min(changes):+.1%} to {max(changes):+.1%}"
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "ours.hpp"
+
+// What is timed and counted: objects whose every call does a job once more, on the next of the states in their ring.
+namespace bench {
+
+/// Hands an object to the optimiser's blind spot: it may have been read and changed.
+template <typename T>
+void escape(T& object) noexcept {
+  asm volatile("" : : "g"(&object) : "memory");
+}
+
+/// The states of a case, round and round.
+template <typename Case>
+class Ring {
+ public:
+  using Inputs = decltype(inputs(Case{}));
+
+  explicit Ring(const Inputs& given = inputs(Case{})) : inputs_(given) {}
+
+  const auto& next() noexcept { return inputs_[++turn_ % inputs_.size()]; }
+
+ private:
+  Inputs inputs_;
+  std::size_t turn_ = 0;
+};
+
+/// Kinematics alone: tip and J, and Jd where the scheme wants it.
+template <typename Solver>
+class Move {
+ public:
+  void operator()() noexcept {
+    solver_.move(ring_.next());
+    escape(solver_);
+  }
+
+ private:
+  Solver solver_;
+  Ring<typename Solver::Case> ring_;
+};
+
+/// One evaluation of the closed loop: kinematics and scheme.
+template <typename Solver>
+class Step {
+ public:
+  void operator()() noexcept {
+    const auto& input = ring_.next();
+    solver_.move(input);
+    status_ = solver_.resolve(input, out_);
+    escape(*this);
+  }
+
+ private:
+  Solver solver_;
+  Ring<typename Solver::Case> ring_;
+  fpbm::Vector<Solver::Case::kDof> out_;
+  fpbm::Status status_;
+};
+
+/// The scheme alone, its kinematics given.
+template <typename Solver>
+class Resolve {
+ public:
+  Resolve() { solver_.move(ring_.next()); }
+
+  void operator()() noexcept {
+    status_ = solver_.resolve(ring_.next(), out_);
+    escape(*this);
+  }
+
+ private:
+  Solver solver_;
+  Ring<typename Solver::Case> ring_;
+  fpbm::Vector<Solver::Case::kDof> out_;
+  fpbm::Status status_;
+};
+
+/// One RK4 step of 1 ms along the paper's circle, as rollout() takes it: time goes on from call to call.
+template <int N, Law law>
+class Rk4Step {
+ public:
+  void operator()() noexcept {
+    const auto& state = ring_.next().state;
+    X x(N, Loop::kSecondOrder ? 2 : 1);
+    x.col(0) = state.q;
+    if constexpr (Loop::kSecondOrder) x.col(1) = state.qd;
+    const auto derivative = [this](double t, const X& at, X& dx) noexcept {
+      return loop_.evaluate(references_.motion(t, t), at, dx);
+    };
+    status_ = fpbm::RK4::step(derivative, kDt * count_, kDt, x);
+    count_ = (count_ + 1) % kSteps;
+    escape(x);
+    escape(*this);
+  }
+
+ private:
+  using Arm = fpbm::PlanarArm<N>;
+  using Space = fpbm::Position<2>;
+  using Loop = fpbm::ClosedLoop<Arm, decltype(scheme<law, N>()), Space>;
+  using X = typename Loop::X;
+  using Path = decltype(fpbm::Path(fpbm::Circle(0.45), 1.0));
+  static constexpr double kDt = 1e-3;
+  static constexpr int kSteps = 10000;
+
+  static fpbm::Kinematics<Space, N> start(const fpbm::State<N>& state) {
+    fpbm::Kinematics<Space, N> kinematics;
+    Planar<N>::arm().kinematics(state.q, state.qd, kinematics);
+    return kinematics;
+  }
+
+  Arm arm_ = Planar<N>::arm();
+  decltype(scheme<law, N>()) scheme_ = scheme<law, N>();
+  Path path_{fpbm::Circle(0.45), kDt* kSteps};
+  Ring<Case<Planar<N>, Space>> ring_;
+  fpbm::State<N> first_ = ring_.next().state;
+  Loop loop_{arm_, scheme_, start(first_), first_, first_.qd};
+  fpbm::AnchoredPath<Path> references_{path_, start(first_).tip};
+  int count_ = 0;
+  fpbm::Status status_;
+};
+
+/// A scheme that runs a Panda by poses within its limits.
+inline auto damped() {
+  auto fpbm = scheme<Law::kFPBM, 7>();
+  fpbm.null_space = fpbm::NullSpace<7>().with_damping(2.0);
+  return fpbm;
+}
+inline auto tracker() {
+  return fpbm::Tracker(Panda::arm(), fpbm::Pose{}, damped(), Panda::bent());
+}
+
+/// Slow states, and references at rest near by: what they ask for is within the limits.
+inline auto calm() {
+  auto result = inputs(PandaPose{});
+  for (auto& [state, reference] : result) {
+    state.qd *= 0.1;
+    reference = fpbm::Reference<fpbm::Pose>::hold(reference.x);
+  }
+  return result;
+}
+
+/// A tick of 1 ms by the tracker's own state.
+class Tick {
+ public:
+  void operator()() noexcept {
+    auto result = loop_.tick(home_);
+    escape(result);
+    escape(*this);
+  }
+
+ private:
+  decltype(tracker()) loop_ = tracker();
+  fpbm::Reference<fpbm::Pose> home_ = fpbm::Reference<fpbm::Pose>::hold(loop_.tip());
+};
+
+/// The answer for a measured state.
+class Measured {
+ public:
+  void operator()() noexcept {
+    const auto& input = ring_.next();
+    auto result = loop_.resolve_measured(input.state.q, input.state.qd, input.reference);
+    escape(result);
+    escape(*this);
+  }
+
+ private:
+  decltype(tracker()) loop_ = tracker();
+  Ring<PandaPose> ring_{calm()};
+};
+
+}  // namespace bench

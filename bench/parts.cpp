@@ -1,0 +1,25 @@
+#include "step.hpp"
+
+// What a step of this library is made of, and what is made of steps: rows resolve/…, rk4/…, loop/…
+namespace bench {
+namespace {
+
+template <typename Job>
+void add(const std::string& row) {
+  benchmark::RegisterBenchmark((row + "/fpbm_cpp").c_str(), run<Job>);
+}
+
+template <typename Case>
+void add_resolve() {
+  for_each_law([](auto law) { add<Resolve<Ours<Case, law()>>>("resolve/" + Case::name() + "/" + name(law)); });
+}
+
+[[maybe_unused]] const bool kAdded = [] {
+  add_resolve<Case<Planar<4>, fpbm::Position<2>>>();
+  add_resolve<PandaPose>();
+  for_each_law([](auto law) { add<Rk4Step<4, law()>>(std::string("rk4/planar4/position/") + name(law)); });
+  return true;
+}();
+
+}  // namespace
+}  // namespace bench

@@ -1,0 +1,283 @@
+"""bench/results/results.json as a page of tables, results.md, and a chart, results.png."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+RESULTS = Path(__file__).parent / "results"
+README = Path(__file__).parent.parent / "README.md"
+BEGIN, END = "<!-- bench: begin -->\n", "<!-- bench: end -->\n"
+
+CPLUSPLUS = {
+    "fpbm_cpp": "fpbm_cpp",
+    "pinocchio": "Pinocchio + Eigen",
+    "kdl": "KDL + Eigen",
+    "kdl_pinv": "KDL `_pinv`",
+    "kdl_wdls": "KDL `_wdls`",
+}
+PYTHON = {
+    "fpbm_cpp": "fpbm_cpp",
+    "pinocchio_numpy": "Pinocchio + NumPy",
+    "robotics_toolbox": "Robotics Toolbox + NumPy",
+    "pink": "Pink (QP)",
+    "mink": "Mink (QP)",
+}
+# Okabe and Ito's colours, which most of the colour-blind tell apart.
+BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00"
+
+Row = dict[str, Any]
+
+
+def table(heads: list[str], rows: Iterable[list[str]]) -> list[str]:
+    """Markdown: text on the left, numbers on the right."""
+    return [
+        "| " + " | ".join(heads) + " |",
+        "|" + "---|" + "---:|" * (len(heads) - 1),
+        *("| " + " | ".join(row) + " |" for row in rows),
+        "",
+    ]
+
+
+def nanoseconds(time: float) -> str:
+    """In the unit that suits it, to three digits."""
+    power = min(len(str(int(time))) - 1, 8) // 3
+    value = time / 1000**power
+    return f"{value:.{0 if value >= 99.5 else 1 if value >= 9.95 else 2}f} {('ns', 'µs', 'ms')[power]}"
+
+
+class Results:
+    def __init__(self, values: dict[str, Any]) -> None:
+        self.values = values
+        sections = ("step", "parts", "loop", "growth", "sweep", "python")
+        self.rows: dict[str, Row] = {row["name"]: row for name in sections for row in values.get(name, [])}
+        self.tails: list[Row] = values.get("tail", [])
+
+    def least(self, name: str) -> float | None:
+        """Nanoseconds; noise only adds."""
+        row = self.rows.get(name)
+        return row["least"] if row else None
+
+    def ratio(self, name: str, peer: str) -> float | None:
+        """Of a row's time by fpbm_cpp to that by a peer."""
+        ours, theirs = self.least(f"{name}/fpbm_cpp"), self.least(f"{name}/{peer}")
+        return ours / theirs if ours and theirs else None
+
+
+def comparison(results: Results, part: str, libraries: dict[str, str], rows: list[str] | None = None) -> list[str]:
+    """Rows of a part, arm/task/scheme each, with a column a library and its multiple of fpbm_cpp's time."""
+    if rows is None:
+        names = (name.split("/") for name in results.rows)
+        rows = list(dict.fromkeys("/".join(parts[1:-1]) for parts in names if parts[0] == part))
+    present = [library for library in libraries if any(f"{part}/{row}/{library}" in results.rows for row in rows)]
+
+    def cell(row: str, library: str) -> str:
+        time, ours = results.least(f"{part}/{row}/{library}"), results.least(f"{part}/{row}/fpbm_cpp")
+        if time is None:
+            return ""
+        times = "" if library == "fpbm_cpp" or not ours else f" ({time / ours:.1f} ×)"
+        return nanoseconds(time) + times
+
+    lines = ([row.replace("/", ", "), *(cell(row, library) for library in present)] for row in rows)
+    return table(["arm, task, scheme", *(libraries[library] for library in present)], lines)
+
+
+def bars(results: Results) -> list[str]:
+    """What is promised, and whether it holds."""
+    lines = []
+
+    def add(what: str, value: float | None, bar: float, text: str) -> None:
+        if value is not None:
+            lines.append([what, text.format(value), text.format(bar), "yes" if value <= bar else "**no**"])
+
+    fpbm = "step/panda/pose/fpbm"
+    add("Panda pose step of FPBM, share of Pinocchio + Eigen's time", results.ratio(fpbm, "pinocchio"), 0.20, "{:.2f}")
+    add("Panda pose step of FPBM, share of KDL + Eigen's time", results.ratio(fpbm, "kdl"), 0.06, "{:.3f}")
+    add("planar step of FPBM, n = 4", results.least("step/planar4/position/fpbm/fpbm_cpp"), 80.0, "{:.0f} ns")
+    for row in results.tails:
+        if row["caches"] == "warm" and row["name"] != "timer":
+            name = row["name"].replace("/", " ")
+            add(f"p99.9 over p50 in a warm loop, {name}", row["p99.9"] / row["p50"], 1.5, "{:.2f}")
+    return table(["promise", "measured", "bar", "kept"], lines)
+
+
+def summary(results: Results) -> list[str]:
+    """The rows that the project's README shows, with what they were measured on."""
+    steps = ["planar4/position/fpbm", "panda/position/fpbm", "panda/pose/fpbm", "panda/pose/wmvn", "panda/pose/mvn"]
+    lines = ["A step in C++: kinematics and scheme.", "", *comparison(results, "step", CPLUSPLUS, steps)]
+    if results.values.get("python"):
+        calls = ["panda/pose/fpbm", "panda/pose/mvn"]
+        lines += ["The same from Python, one call a step.", "", *comparison(results, "python", PYTHON, calls)]
+    machine, built_with = results.values["machine"], results.values["built_with"]
+    versions = {**built_with, **results.values.get("packages", {})}
+    others = ", ".join(f"{name} {v}" for name, v in versions.items() if v and name not in ("compiler", "flags"))
+    lines += [
+        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; {built_with['compiler']} "
+        f"`{built_with['flags']}`; Python {machine['python']}; {others}. "
+        f"Load average at the start: {machine['load']}.",
+        "",
+    ]
+    if results.values["missing"]:
+        lines += [f"Missing here: {', '.join(results.values['missing'])}.", ""]
+    return lines
+
+
+def plain(results: Results, section: str) -> list[str]:
+    rows = results.values.get(section, [])
+    return table(
+        ["row", "least", "median"], ([r["name"], nanoseconds(r["least"]), nanoseconds(r["median"])] for r in rows)
+    )
+
+
+def tails(results: Results) -> list[str]:
+    columns = ("p50", "p99", "p99.9", "worst")
+    lines = (
+        [
+            f"{row['name']}, {row['caches']}",
+            *(nanoseconds(row[c]) for c in columns),
+            f"{row['calls']:,.0f}",
+            str(row["preempted"]),
+        ]
+        for row in results.tails
+    )
+    return table(["job, caches", *columns, "calls", "preempted"], lines)
+
+
+def growth(results: Results) -> list[str]:
+    sizes = sorted({int(name.split("/")[2]) for name in results.rows if name.startswith("growth/")})
+    kinds = ("fixed", "run_time")
+    lines = ([str(n), *(nanoseconds(results.least(f"growth/{kind}/{n}") or 0.0) for kind in kinds)] for n in sizes)
+    return table(["n", "fixed at compile time", "given at run time"], lines)
+
+
+def sweep(results: Results) -> list[str]:
+    lines = ([row["name"], f"{row['per_second'] / 1e6:.1f}"] for row in results.values["sweep"] if "per_second" in row)
+    return table(["lanes and threads", "million arm-steps a second"], lines)
+
+
+def page(results: Results) -> str:
+    values = results.values
+    lines = ["# Benchmark results", ""]
+    if values["quick"]:
+        lines += ["By a quick run: figures are rough.", ""]
+    lines += ["How to read them, and what is not measured: [bench/README.md](../README.md).", "", *summary(results)]
+    lines += ["![Steps of each library, tails, growth with n](results.png)", "", "## Promises", "", *bars(results)]
+    lines += ["## Steps in C++", "", *comparison(results, "step", CPLUSPLUS)]
+    lines += ["## Kinematics in C++", "", *comparison(results, "kinematics", CPLUSPLUS)]
+    if "python" in values:
+        lines += ["## Steps from Python", "", *comparison(results, "python", PYTHON)]
+    lines += [
+        "## Tails",
+        "",
+        "Each call waited for; with the timer's own time, which row `timer` is.",
+        "",
+        *tails(results),
+    ]
+    if "instructions" in values:
+        counts = ([name, f"{instructions:.0f}"] for name, instructions in values["instructions"].items())
+        lines += ["## Instructions a call", "", *table(["job", "instructions"], counts)]
+    if "circle" in values:
+        rows = (
+            [
+                r["name"],
+                nanoseconds(1e9 * r["median"]),
+                nanoseconds(1e9 * r["least"]),
+                f"{r['ratio']:.1f}",
+                f"{r['error']:.0e}",
+            ]
+            for r in values["circle"]
+        )
+        heads = ["10 s circle at 1 kHz, FPBM", "median", "least", "multiple", "error of final qd [rad/s]"]
+        lines += ["## Rollout from Python", "", *table(heads, rows)]
+    if "sweep" in values:
+        lines += ["## Sweeps", "", *sweep(results)]
+    lines += ["## Growth with the number of joints", "", "A step of FPBM on planar arms.", "", *growth(results)]
+    for section, title in (("parts", "Parts of a step, and RK4"), ("loop", "Limits and ticks")):
+        if section in values:
+            lines += [f"## {title}", "", *plain(results, section)]
+    return "\n".join(lines)
+
+
+def chart(results: Results, file: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    figure, (steps, tail, size) = plt.subplots(1, 3, figsize=(15, 4.8), layout="constrained")
+
+    # From C++ first, each with its time in words.
+    colours = {"fpbm_cpp": BLUE, "pinocchio": ORANGE, "kdl": GREEN, "pinocchio_numpy": ORANGE, "robotics_toolbox": SKY}
+    drawn = [("C++", f"step/panda/pose/fpbm/{library}", library, CPLUSPLUS[library]) for library in CPLUSPLUS]
+    drawn += [("Python", f"python/panda/pose/fpbm/{library}", library, PYTHON[library]) for library in PYTHON]
+    drawn = [entry for entry in drawn if entry[1] in results.rows][::-1]
+    for place, (language, name, library, _) in enumerate(drawn):
+        time = results.rows[name]["least"]
+        hatch = "//" if language == "Python" else None
+        steps.barh(place, time / 1e3, color=colours.get(library, BLACK), hatch=hatch, edgecolor="white")
+        steps.annotate(f" {nanoseconds(time)}", (time / 1e3, place), va="center", fontsize=9)
+    steps.set_yticks(range(len(drawn)), [f"{label}, {language}" for language, _, _, label in drawn])
+    steps.set_xscale("log")
+    steps.set_xlim(0.1, 1000)
+    steps.set(xlabel="time of a step [µs]", title="FPBM, a whole Panda pose step")
+
+    styles = zip(("grey", BLUE, VERMILION, GREEN, ORANGE, SKY, BLACK, BLUE), "xos^Dv*P")
+    columns = ("p50", "p99", "p99.9", "worst")
+    for row, (colour, marker) in zip((r for r in results.tails if r["caches"] == "warm"), styles):
+        label = row["name"].replace("/", " ")
+        tail.plot(columns, [row[c] / 1e3 for c in columns], color=colour, marker=marker, label=label)
+    tail.set_yscale("log")
+    tail.set(ylabel="time of a call [µs]", title="Tails in a warm loop, each answer waited for")
+    tail.legend(fontsize=8)
+
+    for kind, label, colour, marker in (
+        ("fixed", "n fixed at compile time", BLUE, "o"),
+        ("run_time", "n given at run time", VERMILION, "s"),
+    ):
+        rows = [
+            (int(name.split("/")[2]), row) for name, row in results.rows.items() if name.startswith(f"growth/{kind}/")
+        ]
+        size.plot([n for n, _ in rows], [row["least"] for _, row in rows], color=colour, marker=marker, label=label)
+    size.set_ylim(bottom=0)
+    size.set(xlabel="joints n", ylabel="time of a step [ns]", title="FPBM, planar arms of n joints")
+    size.legend()
+
+    for axes in (steps, tail, size):
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(axis="x" if axes is steps else "y", alpha=0.3)
+        axes.set_axisbelow(True)
+    figure.savefig(file, dpi=110)
+
+
+def write(folder: Path) -> None:
+    """The page and, where matplotlib is installed, the chart."""
+    results = Results(json.loads((folder / "results.json").read_text()))
+    (folder / "results.md").write_text(page(results))
+    try:
+        chart(results, folder / "results.png")
+    except ImportError:
+        print("No chart: matplotlib is not installed")
+
+
+def write_readme(folder: Path) -> None:
+    """The summary into the project's README, between its marks."""
+    text = README.read_text()
+    before, rest = text.split(BEGIN)
+    lines = summary(Results(json.loads((folder / "results.json").read_text())))
+    README.write_text(before + BEGIN + "\n".join(lines) + END + rest.split(END)[1])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--readme", action="store_true", help="write the summary into the project's README as well")
+    options = parser.parse_args()
+    write(RESULTS)
+    if options.readme:
+        write_readme(RESULTS)
+
+
+if __name__ == "__main__":
+    main()

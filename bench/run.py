@@ -1,0 +1,140 @@
+"""Runs every benchmark that has been built or installed, and puts what they say together in bench/results.
+
+What is not there is listed as missing, and nothing else is the worse for it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import count
+import report
+
+HERE = Path(__file__).parent
+RESULTS = HERE / "results"
+
+# Programs of Google Benchmark: a section of the report each, and how long one of 20 repetitions of a row takes [s].
+# bench_sweep, with rows of arm-steps a second (items_per_second) by lanes and threads, is run where there is one.
+PROGRAMS = {"step": 0.02, "parts": 0.02, "loop": 0.02, "growth": 0.02, "sweep": 0.1}
+LATEST = "out.json"
+
+
+def processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
+def machine() -> dict[str, Any]:
+    return {
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "system": f"{platform.system()} {platform.release()}",
+        "python": platform.python_version(),
+        "load": round(os.getloadavg()[0], 1),
+    }
+
+
+def call(program: Path, *arguments: str | Path) -> bytes:
+    """What a program prints. One that fails stops all; it has said why."""
+    print(f"running {program.name}", flush=True)
+    command = [sys.executable, program] if program.suffix == ".py" else [program]
+    run = subprocess.run([*command, *arguments], stdout=subprocess.PIPE, check=False)
+    if run.returncode != 0:
+        raise SystemExit(f"{program.name} failed")
+    return run.stdout
+
+
+def google_benchmark(program: Path, seconds: float, quick: bool) -> list[dict[str, Any]]:
+    """Its rows, repeated in random order [ns]."""
+    out = program.with_name(LATEST)
+    call(
+        program,
+        "--benchmark_enable_random_interleaving=true",
+        f"--benchmark_repetitions={4 if quick else 20}",
+        f"--benchmark_min_time={seconds}",
+        "--benchmark_format=json",
+        f"--benchmark_out={out}",
+    )
+    runs: dict[str, list[dict[str, Any]]] = {}
+    for run in sorted(json.loads(out.read_text())["benchmarks"], key=lambda run: run["family_index"]):
+        if run["run_type"] == "iteration":
+            runs.setdefault(run["run_name"], []).append(run)
+    rows = []
+    for name, repetitions in runs.items():
+        # Time on the processor leaves out what others took of it; with several threads there is only the wall's.
+        clock = "cpu_time" if repetitions[0]["threads"] == 1 else "real_time"
+        row = summary(name, [repetition[clock] for repetition in repetitions])
+        if "items_per_second" in repetitions[0]:
+            row["per_second"] = max(repetition["items_per_second"] for repetition in repetitions)
+        rows.append(row)
+    return rows
+
+
+def summary(name: str, times: list[float]) -> dict[str, Any]:
+    return {"name": name, "least": min(times), "median": median(times), "repetitions": len(times)}
+
+
+def cplusplus(folder: Path, quick: bool) -> dict[str, Any]:
+    results: dict[str, Any] = {"built_with": json.loads((folder / "built_with.json").read_text())}
+    for section, seconds in PROGRAMS.items():
+        if (program := folder / f"bench_{section}").exists():
+            results[section] = google_benchmark(program, seconds, quick)
+    results["tail"] = json.loads(call(folder / "bench_tail", *(("1e6", "1e4") if quick else ("1e7", "1e5"))))
+    if (program := folder / "bench_count").exists() and shutil.which("valgrind"):
+        results["instructions"] = count.count(program)
+    return results
+
+
+def python(folder: Path, quick: bool) -> dict[str, Any]:
+    out = folder / LATEST
+    call(HERE / "python_peers.py", "--out", out, "--calls", "50" if quick else "200")
+    peers = json.loads(out.read_text())
+    results = {
+        "python": [summary(name, times) for name, times in peers["times"].items()],
+        "packages": peers["versions"],
+    }
+    try:
+        results["packages"]["scipy"] = metadata.version("scipy")
+    except metadata.PackageNotFoundError:
+        return results
+    call(HERE / "simulate.py", "--out", out)
+    return {**results, "circle": json.loads(out.read_text())}
+
+
+def missing(results: dict[str, Any]) -> list[str]:
+    versions = {**results["built_with"], **results.get("packages", {})}
+    absent = [name for name, version in versions.items() if not version and name != "flags"]
+    return absent + ([] if "instructions" in results else ["valgrind"])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="with the programs, as built")
+    parser.add_argument("--quick", action="store_true", help="a minute or two, for a first look: figures are rough")
+    options = parser.parse_args()
+
+    folder = options.folder.resolve()
+    results = {"machine": machine(), "quick": options.quick, **cplusplus(folder, options.quick)}
+    results |= python(folder, options.quick)
+    results["missing"] = missing(results)
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / "results.json").write_text(json.dumps(results, indent=1) + "\n")
+    report.write(RESULTS)
+    print((RESULTS / "results.md").read_text())
+
+
+if __name__ == "__main__":
+    main()

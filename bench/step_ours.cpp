@@ -1,0 +1,5 @@
+#include "step.hpp"
+
+namespace {
+[[maybe_unused]] const bool kAdded = bench::add_library<bench::Ours>();
+}

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <sys/resource.h>
+
+#if defined(__x86_64__) && defined(__linux__)
+#include <link.h>
+#include <x86intrin.h>
+#define FPBM_HAS_CLFLUSH
+#endif
+
+#include "jobs.hpp"
+
+// How long single calls take, each waited for: percentiles of many, in warm and in cold caches, as JSON. The timer's
+// own time is that of nothing (row "timer"); it is not taken off.
+namespace bench {
+namespace {
+
+#ifdef FPBM_HAS_CLFLUSH
+/// In ticks of the time stamp counter. Fences keep what is timed between the two, and wait for its results.
+struct Clock {
+  static std::uint64_t start() noexcept {
+    _mm_lfence();
+    const std::uint64_t now = __rdtsc();
+    _mm_lfence();
+    return now;
+  }
+  static std::uint64_t stop() noexcept {
+    unsigned processor;
+    const std::uint64_t now = __rdtscp(&processor);
+    _mm_lfence();
+    return now;
+  }
+};
+#else
+struct Clock {
+  static std::uint64_t start() noexcept {
+    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+  }
+  static std::uint64_t stop() noexcept { return start(); }
+};
+#endif
+
+/// Nanoseconds in a tick of Clock.
+double tick_length() {
+  using std::chrono::steady_clock;
+  const auto begin = steady_clock::now();
+  const std::uint64_t first = Clock::start();
+  while (steady_clock::now() - begin < std::chrono::milliseconds(100)) continue;
+  const std::uint64_t last = Clock::stop();
+  const std::chrono::duration<double, std::nano> passed = steady_clock::now() - begin;
+  return passed.count() / static_cast<double>(last - first);
+}
+
+/// How often each duration was seen. Small, as most are alike: it leaves the caches to what is timed.
+class Histogram {
+ public:
+  void add(std::uint64_t ticks) {
+    if (ticks < counts_.size()) {
+      ++counts_[ticks];
+    } else {
+      ++long_[ticks];
+    }
+    ++total_;
+  }
+
+  /// The least duration that no more than a share of 1 - fraction of all exceed.
+  [[nodiscard]] std::uint64_t quantile(double fraction) const {
+    auto left = static_cast<std::uint64_t>(fraction * static_cast<double>(total_ - 1));
+    for (std::size_t ticks = 0; ticks < counts_.size(); ++ticks) {
+      if (left < counts_[ticks]) return ticks;
+      left -= counts_[ticks];
+    }
+    for (const auto& [ticks, count] : long_) {
+      if (left < count) return ticks;
+      left -= count;
+    }
+    return 0;
+  }
+
+ private:
+  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(1 << 16);
+  std::map<std::uint64_t, std::uint64_t> long_;
+  std::uint64_t total_ = 0;
+};
+
+#ifdef FPBM_HAS_CLFLUSH
+void flush(const void* begin, std::size_t size) noexcept {
+  constexpr std::uintptr_t kLine = 64;
+  const auto first = reinterpret_cast<std::uintptr_t>(begin);
+  for (std::uintptr_t line = first & ~(kLine - 1); line < first + size; line += kLine) {
+    _mm_clflush(reinterpret_cast<const void*>(line));
+  }
+}
+
+/// Out of all caches: the program with its constants and variables, the stack that a call is going to use, and the job.
+/// The system's libraries stay.
+template <typename Job>
+void evict(const Job& job) noexcept {
+  const auto flush_program = [](dl_phdr_info* object, std::size_t, void*) {
+    for (int i = 0; i < object->dlpi_phnum; ++i) {
+      const auto& segment = object->dlpi_phdr[i];
+      if (segment.p_type != PT_LOAD) continue;
+      flush(reinterpret_cast<const void*>(object->dlpi_addr + segment.p_vaddr), segment.p_memsz);
+    }
+    return 1;  // The program itself is the first.
+  };
+  dl_iterate_phdr(flush_program, nullptr);
+  constexpr std::size_t kStack = 1 << 15;
+  flush(static_cast<const char*>(__builtin_frame_address(0)) - kStack, kStack);
+  flush(&job, sizeof job);
+  _mm_mfence();
+}
+#endif
+
+/// How often the system took the processor away so far.
+long preemptions() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_nivcsw;
+}
+
+struct Options {
+  double warm_calls = 1e7;
+  double cold_calls = 1e5;
+  double tick = tick_length();
+  bool first = true;
+};
+
+template <typename Job>
+[[gnu::noinline]] void time_once(Job& job, Histogram& histogram) {
+  const std::uint64_t start = Clock::start();
+  job();
+  histogram.add(Clock::stop() - start);
+}
+
+/// Prepares and times the job so many times, and prints a row.
+template <typename Job, typename Prepare>
+void time_all(const std::string& row, const char* caches, double calls, Job& job, Prepare prepare, Options& options) {
+  Histogram histogram;
+  const long before = preemptions();
+  for (double i = 0; i < calls; ++i) {
+    prepare();
+    time_once(job, histogram);
+  }
+  std::printf("%s  {\"name\": \"%s\", \"caches\": \"%s\", \"calls\": %.0f, \"preempted\": %ld",
+              options.first ? "" : ",\n", row.c_str(), caches, calls, preemptions() - before);
+  for (const auto& [name, fraction] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"worst", 1.0}}) {
+    std::printf(", \"%s\": %.1f", name, options.tick * static_cast<double>(histogram.quantile(fraction)));
+  }
+  std::printf("}");
+  std::fflush(stdout);
+  options.first = false;
+}
+
+template <typename Job>
+void time_warm_and_cold(const std::string& row, Options& options) {
+  Job job;
+  for (int i = 0; i < 10000; ++i) job();
+  time_all(
+      row, "warm", options.warm_calls, job, [] {}, options);
+#ifdef FPBM_HAS_CLFLUSH
+  time_all(
+      row, "cold", options.cold_calls, job, [&job] { evict(job); }, options);
+#endif
+}
+
+struct Nothing {
+  void operator()() noexcept { escape(*this); }
+};
+
+}  // namespace
+}  // namespace bench
+
+int main(int argc, char** argv) {
+  using namespace bench;
+  Options options;
+  if (argc > 1) options.warm_calls = std::atof(argv[1]);
+  if (argc > 2) options.cold_calls = std::atof(argv[2]);
+  using Planar4 = Case<Planar<4>, fpbm::Position<2>>;
+  using PandaPosition = Case<Panda, fpbm::Position<3>>;
+  std::printf("[\n");
+  time_warm_and_cold<Nothing>("timer", options);
+  time_warm_and_cold<Step<Ours<Planar4, Law::kMVN>>>("step/planar4/position/mvn", options);
+  time_warm_and_cold<Step<Ours<Planar4, Law::kFPBM>>>("step/planar4/position/fpbm", options);
+  time_warm_and_cold<Step<Ours<PandaPosition, Law::kFPBM>>>("step/panda/position/fpbm", options);
+  time_warm_and_cold<Step<Ours<PandaPose, Law::kMVN>>>("step/panda/pose/mvn", options);
+  time_warm_and_cold<Step<Ours<PandaPose, Law::kFPBM>>>("step/panda/pose/fpbm", options);
+  time_warm_and_cold<Measured>("loop/panda/pose/measured", options);
+  time_warm_and_cold<Tick>("loop/panda/pose/tick", options);
+  std::printf("\n]\n");
+}
