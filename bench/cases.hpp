@@ -44,11 +44,12 @@ struct Iiwa14 : Preset<fpbm::presets::iiwa14> {
   static std::string name() { return "iiwa14"; }
 };
 
-/// An arm with a task.
-template <typename Robot_, typename Space_>
+/// An arm with a task; where a Scalar is many numbers, as many arms side by side.
+template <typename Robot_, typename Space_, typename Scalar_ = double>
 struct Case {
   using Robot = Robot_;
   using Space = Space_;
+  using Scalar = Scalar_;
   static constexpr int kDof = Robot::kDof;
   static constexpr int kRows = Space::kRows;
   static constexpr bool kWithTurn = std::is_same_v<Space, fpbm::Pose>;
@@ -105,21 +106,23 @@ fpbm::Vector<N> weights(Eigen::Index dof = N) {
 }
 
 /// This library's scheme.
-template <Law law, int N>
+template <Law law, int N, typename Scalar = double>
 auto scheme(Eigen::Index dof = N) {
-  const fpbm::DiagonalWeights<N> W(weights<N>(dof));
-  if constexpr (law == Law::kMVN) return fpbm::MVN<N>(kGain);
-  if constexpr (law == Law::kWMVN) return fpbm::WMVN<N>(W, kGain);
-  if constexpr (law == Law::kMAN) return fpbm::MAN<N>();
-  if constexpr (law == Law::kWMVNAcceleration) return fpbm::WMVNAcceleration<N>(W);
-  if constexpr (law == Law::kBalanced) return fpbm::Balanced<N>(kAlpha, W);
-  if constexpr (law == Law::kFPBM) return fpbm::FPBM<N>(kAlpha, W, kGain1, kGain2);
+  const fpbm::DiagonalWeights<N, Scalar> W(weights<N>(dof).template cast<Scalar>());
+  const Scalar alpha(kAlpha);
+  const Scalar gain(kGain);
+  if constexpr (law == Law::kMVN) return fpbm::MVN<N, Scalar>(gain);
+  if constexpr (law == Law::kWMVN) return fpbm::WMVN<N, Scalar>(W, gain);
+  if constexpr (law == Law::kMAN) return fpbm::MAN<N, Scalar>();
+  if constexpr (law == Law::kWMVNAcceleration) return fpbm::WMVNAcceleration<N, Scalar>(W);
+  if constexpr (law == Law::kBalanced) return fpbm::Balanced<N, Scalar>(alpha, W);
+  if constexpr (law == Law::kFPBM) return fpbm::FPBM<N, Scalar>(alpha, W, Scalar(kGain1), Scalar(kGain2));
 }
 
-template <typename Space, int N>
+template <typename Space, int N, typename Scalar = double>
 struct Input {
-  fpbm::State<N> state;
-  fpbm::Reference<Space> reference;
+  fpbm::State<N, Scalar> state;
+  fpbm::Reference<Space, Scalar> reference;
 };
 
 /// States about a bent posture, well away from singular ones, and references near by; the same on every run. Few enough

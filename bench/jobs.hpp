@@ -57,7 +57,7 @@ class Step {
  private:
   Solver solver_;
   Ring<typename Solver::Case> ring_;
-  fpbm::Vector<Solver::Case::kDof> out_;
+  fpbm::Vector<Solver::Case::kDof, typename Solver::Case::Scalar> out_;
   fpbm::Status status_;
 };
 
@@ -75,7 +75,7 @@ class Resolve {
  private:
   Solver solver_;
   Ring<typename Solver::Case> ring_;
-  fpbm::Vector<Solver::Case::kDof> out_;
+  fpbm::Vector<Solver::Case::kDof, typename Solver::Case::Scalar> out_;
   fpbm::Status status_;
 };
 

@@ -9,25 +9,27 @@ template <typename Case_, Law law>
 class Ours {
  public:
   using Case = Case_;
+  using Space = typename Case::Space;
+  using Scalar = typename Case::Scalar;
   static constexpr int N = Case::kDof;
   static constexpr Law kLaw = law;
   static constexpr const char* kLibrary = "fpbm_cpp";
 
-  void move(const Input<typename Case::Space, N>& input) noexcept {
+  void move(const Input<Space, N, Scalar>& input) noexcept {
     if constexpr (is_acceleration(law)) {
       arm_.kinematics(input.state.q, input.state.qd, kinematics_);
     } else {
       arm_.kinematics(input.state.q, kinematics_);
     }
   }
-  fpbm::Status resolve(const Input<typename Case::Space, N>& input, fpbm::Vector<N>& out) const noexcept {
+  fpbm::Status resolve(const Input<Space, N, Scalar>& input, fpbm::Vector<N, Scalar>& out) const noexcept {
     return scheme_.resolve(kinematics_, input.reference, input.state, out);
   }
 
  private:
-  typename Case::Robot::Arm arm_ = Case::Robot::arm();
-  decltype(scheme<law, N>()) scheme_ = scheme<law, N>(arm_.dof());
-  fpbm::Kinematics<typename Case::Space, N> kinematics_;
+  decltype(Case::Robot::arm().template cast<Scalar>()) arm_ = Case::Robot::arm().template cast<Scalar>();
+  decltype(scheme<law, N, Scalar>()) scheme_ = scheme<law, N, Scalar>(arm_.dof());
+  fpbm::Kinematics<Space, N, Scalar> kinematics_;
 };
 
 }  // namespace bench

@@ -20,12 +20,14 @@ from typing import Any
 import count
 import report
 
+from fpbm_cpp import _core
+
 HERE = Path(__file__).parent
 RESULTS = HERE / "results"
 
-# Programs of Google Benchmark: a section of the report each, and how long one of 20 repetitions of a row takes [s].
-# bench_sweep, with rows of arm-steps a second (items_per_second) by lanes and threads, is run where there is one.
-PROGRAMS = {"step": 0.02, "parts": 0.02, "loop": 0.02, "growth": 0.02, "sweep": 0.1}
+# Programs of Google Benchmark, a section of the report each; one of 20 repetitions of a row takes SECONDS.
+PROGRAMS = ("step", "parts", "loop", "growth")
+SECONDS = 0.02
 LATEST = "out.json"
 
 
@@ -57,14 +59,14 @@ def call(program: Path, *arguments: str | Path) -> bytes:
     return run.stdout
 
 
-def google_benchmark(program: Path, seconds: float, quick: bool) -> list[dict[str, Any]]:
+def google_benchmark(program: Path, quick: bool) -> list[dict[str, Any]]:
     """Its rows, repeated in random order [ns]."""
     out = program.with_name(LATEST)
     call(
         program,
         "--benchmark_enable_random_interleaving=true",
         f"--benchmark_repetitions={4 if quick else 20}",
-        f"--benchmark_min_time={seconds}",
+        f"--benchmark_min_time={SECONDS}",
         "--benchmark_format=json",
         f"--benchmark_out={out}",
     )
@@ -72,15 +74,8 @@ def google_benchmark(program: Path, seconds: float, quick: bool) -> list[dict[st
     for run in sorted(json.loads(out.read_text())["benchmarks"], key=lambda run: run["family_index"]):
         if run["run_type"] == "iteration":
             runs.setdefault(run["run_name"], []).append(run)
-    rows = []
-    for name, repetitions in runs.items():
-        # Time on the processor leaves out what others took of it; with several threads there is only the wall's.
-        clock = "cpu_time" if repetitions[0]["threads"] == 1 else "real_time"
-        row = summary(name, [repetition[clock] for repetition in repetitions])
-        if "items_per_second" in repetitions[0]:
-            row["per_second"] = max(repetition["items_per_second"] for repetition in repetitions)
-        rows.append(row)
-    return rows
+    # Time on the processor leaves out what others took of it.
+    return [summary(name, [repetition["cpu_time"] for repetition in runs[name]]) for name in runs]
 
 
 def summary(name: str, times: list[float]) -> dict[str, Any]:
@@ -89,9 +84,12 @@ def summary(name: str, times: list[float]) -> dict[str, Any]:
 
 def cplusplus(folder: Path, quick: bool) -> dict[str, Any]:
     results: dict[str, Any] = {"built_with": json.loads((folder / "built_with.json").read_text())}
-    for section, seconds in PROGRAMS.items():
+    for section in PROGRAMS:
         if (program := folder / f"bench_{section}").exists():
-            results[section] = google_benchmark(program, seconds, quick)
+            results[section] = google_benchmark(program, quick)
+    # Of the programs in lanes, those that this processor can run.
+    programs = [folder / f"bench_lanes_{kind}" for kind in ("baseline", *_core.processor_kinds()[::-1])]
+    results["lanes"] = [row for program in programs if program.exists() for row in google_benchmark(program, quick)]
     results["tail"] = json.loads(call(folder / "bench_tail", *(("1e6", "1e4") if quick else ("1e7", "1e5"))))
     if (program := folder / "bench_count").exists() and shutil.which("valgrind"):
         results["instructions"] = count.count(program)
@@ -106,6 +104,8 @@ def python(folder: Path, quick: bool) -> dict[str, Any]:
         "python": [summary(name, times) for name, times in peers["times"].items()],
         "packages": peers["versions"],
     }
+    call(HERE / "sweep.py", "--out", out, "--motions", "400" if quick else "10000")
+    results["sweeps"] = json.loads(out.read_text())
     try:
         results["packages"]["scipy"] = metadata.version("scipy")
     except metadata.PackageNotFoundError:
