@@ -79,7 +79,7 @@ format: $(VENV)/lint
 stubs: $(VENV)/package $(VENV)/lint
 	$(BIN)/python tools/stubs.py
 
-# QUICK=1 takes a minute or two once all is built, and is rough. All of it: about ten.
+# QUICK=1 takes a minute or two once all is built, and is rough. All of it: a quarter of an hour.
 bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
 	-tools/need.sh valgrind /usr/include/kdl/chain.hpp:liborocos-kdl-dev

@@ -96,7 +96,7 @@ def inputs(case: Case, *, shifts: bool = False) -> list[Input]:
     return result
 
 
-def schemes(n: int) -> dict[str, Any]:
+def schemes(n: int) -> dict[str, fp.Scheme]:
     w = np.arange(1.0, n + 1.0)
     return {
         "mvn": fp.MVN(k=GAIN),
@@ -149,7 +149,8 @@ class RoboticsToolbox:
         return pose, J, np.tensordot(self.ets.hessian0(J0=J), qd, (0, 0)) if with_rate else None
 
     def difference(self, x: Array, y: Array) -> Array:
-        return self.angle_axis(y, x)
+        difference: Array = self.angle_axis(y, x)
+        return difference
 
 
 def by_numpy(law: str, case: Case, peer: Peer) -> Callable[[Input], Array]:
@@ -203,7 +204,8 @@ def by_pink(case: Case) -> Callable[[Input], Array]:
     def step(given: Input) -> Array:
         configuration.update(given.q)
         task.set_target(pin.SE3(given.target))
-        return pink.solve_ik(configuration, [task], DT, "daqp", damping=DAMPING, limits=[])
+        qd: Array = pink.solve_ik(configuration, [task], DT, "daqp", damping=DAMPING, limits=[])
+        return qd
 
     return step
 
@@ -236,7 +238,8 @@ def by_mink(case: Case) -> Callable[[Input], Array]:
     def step(given: Input) -> Array:
         configuration.update(given.q)
         task.set_target(mink.SE3.from_matrix(given.target))
-        return mink.solve_ik(configuration, [task], DT, "daqp", damping=DAMPING, limits=[])
+        qd: Array = mink.solve_ik(configuration, [task], DT, "daqp", damping=DAMPING, limits=[])
+        return qd
 
     return step
 
@@ -279,11 +282,11 @@ def rows(installed: set[str]) -> Iterator[Row]:
     for name, case in cases():
         for law, scheme in schemes(case.arm.dof).items():
 
-            def step(given: Input, scheme: Any = scheme, case: Case = case) -> Array:
+            def step(given: Input, scheme: fp.Scheme = scheme, case: Case = case) -> Array:
                 q, qd, x, _, xd, xdd = given
                 return scheme.resolve(case.arm, q, qd, x, xd, xdd, task=case.task)
 
-            def shift(given: Input, scheme: Any = scheme, case: Case = case) -> Array:
+            def shift(given: Input, scheme: fp.Scheme = scheme, case: Case = case) -> Array:
                 return scheme.resolve(case.arm, given.q, given.qd, given.x, given.xd, task=case.task)
 
             row = f"python/{name}/{law}"

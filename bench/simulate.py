@@ -10,12 +10,16 @@ import argparse
 import json
 import math
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import fpbm_cpp as fp
+
+Array = NDArray[np.float64]
 
 T, STEPS, RADIUS = 10.0, 10_000, 0.45
 ALPHA, W, K1, K2 = 0.6, np.array([1.0, 2.0, 3.0, 4.0]), 1.0, 1.0
@@ -24,7 +28,7 @@ Q0 = np.pi / np.array([12, 12, 15, 15])
 QD_FINAL = np.array([-0.0093120960, 0.0309612098, -0.0232966450, -0.0102744949])  # Independent reference solution.
 
 
-def fpbm_numpy(t: float, state: np.ndarray, anchor: np.ndarray) -> np.ndarray:
+def fpbm_numpy(t: float, state: Array, anchor: Array) -> Array:
     """(13) by solves of 2 x 2 systems, as one writes it in NumPy."""
     q, qd = state[:4], state[4:]
     s, sd, sdd = (
@@ -52,12 +56,12 @@ def fpbm_numpy(t: float, state: np.ndarray, anchor: np.ndarray) -> np.ndarray:
     return np.concatenate([qd, qdd])
 
 
-def start() -> tuple[np.ndarray, np.ndarray]:
+def start() -> tuple[Array, Array]:
     angle = np.cumsum(Q0)
     return np.concatenate([Q0, np.zeros(4)]), np.array([LENGTHS @ np.cos(angle), LENGTHS @ np.sin(angle)])
 
 
-def by_numpy() -> np.ndarray:
+def by_numpy() -> Array:
     state, anchor = start()
     h = T / STEPS
     for i in range(STEPS):
@@ -70,17 +74,19 @@ def by_numpy() -> np.ndarray:
     return state[4:]
 
 
-def by_scipy() -> np.ndarray:
+def by_scipy() -> Array:
     state, anchor = start()
-    return solve_ivp(fpbm_numpy, (0, T), state, "DOP853", rtol=1e-12, atol=1e-14, args=(anchor,)).y[4:, -1]
+    y: Array = solve_ivp(fpbm_numpy, (0, T), state, "DOP853", rtol=1e-12, atol=1e-14, args=(anchor,)).y
+    return y[4:, -1]
 
 
-def by_fpbm() -> np.ndarray:
+def by_fpbm() -> Array:
     arm, path = fp.PlanarArm(LENGTHS), fp.Circle(RADIUS, T)
-    return fp.simulate(arm, path, fp.FPBM(ALPHA, W, K1, K2), Q0, dt=T / STEPS).qd[-1]
+    qd: Array = fp.simulate(arm, path, fp.FPBM(ALPHA, W, K1, K2), Q0, dt=T / STEPS).qd[-1]
+    return qd
 
 
-def timed(solve, runs: int) -> tuple[list[float], float]:
+def timed(solve: Callable[[], Array], runs: int) -> tuple[list[float], float]:
     seconds = []
     for _ in range(runs):
         begin = time.perf_counter()

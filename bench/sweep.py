@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 import fpbm_cpp as fp
 from fpbm_cpp import _core
 
-WORKERS, ROUNDS, FEWER, DT = (1, 2), 3, 10, 1e-3
+WORKERS, ROUNDS, DT = (1, 2), 3, 1e-3
+FEWER, FEWEST = 10, 64  # Motions without lanes, a share; in any case, for threads to share evenly.
 PAPER = "planar4/position"
 CHECKED, TOLERANCE = 32, 1e-9
 
@@ -68,7 +69,7 @@ def measure(motions: int) -> list[dict[str, Any]]:
     """In the lanes of this process: seconds of each case with each number of workers, and some of its answers."""
     rows = []
     for name, case in CASES.items():
-        count = max(1, round(case.share * motions))
+        count = max(FEWEST, round(case.share * motions))
         starts = case.q0 + np.random.default_rng(0).normal(0, 0.02, (count, len(case.q0)))
         for workers in WORKERS:
             begin = time.perf_counter()
@@ -101,7 +102,7 @@ def table(runs: list[dict[str, Any]]) -> list[dict[str, Any]]:
         if not np.allclose(run["answers"][:common], expected[:common], rtol=TOLERANCE, atol=0.0):
             raise SystemExit(f"{run['name']}: lanes {run['lanes']} answer otherwise")
         best[key] = min(best.get(key, run), run, key=lambda run: float(run["seconds"]))
-    rows = []
+    rows: list[dict[str, Any]] = []
     for (name, kind, workers), run in sorted(best.items(), key=lambda item: list(CASES).index(item[0][0])):
         rate = run["motions"] * round(CASES[name].path.duration / DT) / run["seconds"]
         row = {"name": name, "lanes": kind, "workers": workers, "motions": run["motions"], "per_second": rate}
@@ -123,7 +124,7 @@ def main() -> None:
     runs = []
     for _ in range(ROUNDS):
         for kind in kinds():
-            runs += measured_in(kind, max(1, options.motions // FEWER) if kind == "none" else options.motions)
+            runs += measured_in(kind, options.motions // FEWER if kind == "none" else options.motions)
     rows = table(runs)
     print(f"{'sweep':20}{'lanes':>8}{'threads':>9}{'motions':>9}{'arm-steps/s':>14}{'ratio':>8}")
     for row in rows:
