@@ -22,8 +22,8 @@ CPLUSPLUS = {
 LANES = {
     "fpbm_cpp": "by itself",
     "baseline": "in 2 lanes, SSE2",
-    "avx2": "in 4, AVX2",
-    "avx512": "in 8, AVX-512",
+    "avx2": "in 4 lanes, AVX2",
+    "avx512": "in 8 lanes, AVX-512",
 }
 PYTHON = {
     "fpbm_cpp": "fpbm_cpp",
@@ -305,6 +305,7 @@ def chart(results: Results, file: Path) -> None:
         range(len(drawn_sweeps)), [f"lanes {row['lanes']}, threads {row['workers']}" for row in drawn_sweeps]
     )
     rate.set(xlabel="million RK4 steps a second", title="Sweeps of the paper's circle")
+    rate.margins(x=0.12)
     rate.set_visible(bool(drawn_sweeps))
 
     for axes in (steps, tail, size, rate):
