@@ -105,7 +105,7 @@ def test_a_motion_does_not_feel_the_others_lanes():
     assert not mixed.ok[0, 1::2].any()
     for name in FIGURES:
         assert getattr(mixed, name)[0, ::2].tobytes() == getattr(good, name)[0, ::2].tobytes(), name
-    expect_run(mixed, 0, 1, fp.simulate(arm, path, schemes, bad[1], 0.01, task=task, partial=True))
+    expect_run(mixed, 0, 1, fp.simulate(arm, path, schemes, bad[1], dt=0.01, task=task, partial=True))
 
 
 @pytest.mark.parametrize("choice", ["none", "avx2", "avx512"])
