@@ -1,6 +1,8 @@
 # Whether code in a processor's lanes can be compiled here, and with which options for each kind of processor.
 include(CheckCXXSourceCompiles)
+set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX17_STANDARD_COMPILE_OPTION})
 check_cxx_source_compiles("#include <experimental/simd>\nint main() { return __x86_64__ - 1; }" FPBM_HAS_LANES)
+unset(CMAKE_REQUIRED_FLAGS)
 set(lane_options -fno-math-errno)
 set(avx2_options -mavx2 -mfma)
 set(avx512_options ${avx2_options} -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512)

@@ -1,1 +1,2 @@
+#include "fpbm/batch/lanes.hpp"
 #include "fpbm/fpbm.hpp"  // What clang-tidy reads to see every header.

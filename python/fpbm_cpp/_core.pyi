@@ -43,10 +43,12 @@ __all__: list[str] = [
     "message",
     "not_run",
     "preset",
+    "processor_kinds",
     "rotation",
     "rotation_vector",
     "simulate",
     "sweep_chunk",
+    "use_lanes",
 ]
 
 class JointLimits:
@@ -1079,6 +1081,7 @@ def message(status: Status) -> str:
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
+def processor_kinds() -> list[str]: ...
 def rotation(r: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
     """
     Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.
@@ -1137,6 +1140,7 @@ def sweep_chunk(
         ]
     ],
 ]: ...
+def use_lanes(code: typing.Any) -> int: ...
 
 MAX_DOF: int = 32
 __version__: str = "0.1.0"

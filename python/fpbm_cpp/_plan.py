@@ -14,8 +14,9 @@ from ._types import Array
 from .simulate import make_run
 from .sweep_result import Sweep
 
-# Motions of a chunk come in multiples of GROUP, the most lanes that there are. There are to be CHUNKS at least, for many workers to share, and none is
-# to be of more than SAMPLES samples, some tenths of a second's work. The number of workers does not come in.
+# Motions of a chunk come in multiples of GROUP, the most lanes that there are. There are to be CHUNKS at least, for
+# many workers to share, and none is to be of more than SAMPLES samples, some tenths of a second's work. The number of
+# workers does not come in.
 GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
 
 # By their numbers in the compiled part; the last, at -1, of a motion that was not run.

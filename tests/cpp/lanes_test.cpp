@@ -13,7 +13,7 @@
 namespace fpbm::test {
 namespace {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = 2;
 using In = Lanes<kLanes>;
 using Truths = Truth<In>;
 
@@ -46,7 +46,7 @@ TEST(Lanes, have_the_sines_and_cosines_of_each) {
   }
   const In beyond([](auto lane) { return lane == 1 ? 1e6 : 1.0; });
   EXPECT_TRUE(std::isnan(sincos(beyond).sin[1]) && std::isnan(sincos(beyond).cos[1]));
-  EXPECT_EQ(sincos(beyond).sin[0], sincos(beyond).sin[2]);
+  EXPECT_NEAR(sincos(beyond).sin[0], std::sin(1.0), 3e-16);
 }
 
 TEST(Lanes, have_the_rotation_vector_of_each_be_it_small_or_large) {
@@ -205,22 +205,24 @@ TEST(Lanes, run_each_motion_as_if_it_were_alone) {
   };
   ASSERT_TRUE(failed(alone(outstretched).status));
 
-  const Motions healthy = run({bent, other, bent, other}, 0.25);
-  const Motions mixed = run({bent, outstretched, other, bent}, 0.25);
+  const Motions healthy = run({bent, other}, 0.25);
   for (const Vector<4>& q : {bent, other}) ASSERT_EQ(alone(q).status, Status::kOk);
   EXPECT_LE((lane_of<4, 1>(healthy.q, 0) - alone(bent).last.q).norm(), 1e-12);
   EXPECT_LE((lane_of<4, 1>(healthy.q, 1) - alone(other).last.q).norm(), 1e-12);
 
   // To the last bit, whatever lane it is in and whatever happens in the others.
-  for (const std::size_t lane : {0, 3}) EXPECT_EQ((lane_of<4, 1>(mixed.q, lane)), (lane_of<4, 1>(healthy.q, 0)));
-  EXPECT_EQ((lane_of<4, 1>(mixed.q, 2)), (lane_of<4, 1>(healthy.q, 1)));
-  EXPECT_EQ(mixed.summary.largest_error[2], healthy.summary.largest_error[1]);
-  EXPECT_EQ(mixed.summary.manipulability[3], healthy.summary.manipulability[0]);
-  EXPECT_TRUE(std::isnan(lane_of<4, 1>(mixed.q, 1).sum()));
+  const Motions left = run({bent, outstretched}, 0.25);
+  const Motions right = run({outstretched, bent}, 0.25);
+  EXPECT_EQ((lane_of<4, 1>(left.q, 0)), (lane_of<4, 1>(healthy.q, 0)));
+  EXPECT_EQ((lane_of<4, 1>(right.q, 1)), (lane_of<4, 1>(healthy.q, 0)));
+  EXPECT_EQ(left.summary.largest_error[0], healthy.summary.largest_error[0]);
+  EXPECT_EQ(right.summary.manipulability[1], healthy.summary.manipulability[0]);
+  EXPECT_TRUE(std::isnan(lane_of<4, 1>(left.q, 1).sum()));
+  EXPECT_TRUE(std::isnan(lane_of<4, 1>(right.q, 0).sum()));
 }
 
 TEST(Lanes, hold_constructors_to_their_demands_in_every_lane) {
-  const In alphas([](auto lane) { return lane == 2 ? 1.5 : 0.5; });
+  const In alphas([](auto lane) { return lane == 1 ? 1.5 : 0.5; });
   const DiagonalWeights<4, In> weights(Vector<4, In>::Ones());
   EXPECT_THROW((FPBM<4, In>(alphas, weights, In(0.0), In(0.0))), std::invalid_argument);
   Vector<4, In> negative = Vector<4, In>::Ones();

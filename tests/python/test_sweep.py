@@ -80,6 +80,46 @@ def expect_run(sweep, i, k, run):
 
 
 @pytest.mark.parametrize("case", CASES)
+def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case):
+    arm, path, task, q0 = CASES[case]
+    schemes = every_scheme(arm.dof)
+    q0s = q0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, arm.dof))
+    lanes = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task)
+    alone = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True)
+    np.testing.assert_array_equal(lanes.status, alone.status)
+    for name in FIGURES:
+        differences = name in ("peak_acceleration", "final_acceleration")  # Of velocities, at velocity level.
+        tolerance = 1e-10 if differences else 1e-12
+        np.testing.assert_allclose(getattr(lanes, name), getattr(alone, name), tolerance, tolerance, err_msg=name)
+
+
+def test_a_motion_does_not_feel_the_others_lanes():
+    arm, path, task, q0 = CASES["panda pose"]
+    schemes = every_scheme(7)[-2]
+    q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (fp.LANES + 3, 7))
+    bad = q0s.copy()
+    bad[1::2] = [0, 0, 0, -0.08, 0, 0.1, 0]  # Outstretched: the path leads out of reach.
+    good = fp.sweep(arm, path, schemes, q0s, 0.01, task=task)
+    mixed = fp.sweep(arm, path, schemes, bad, 0.01, task=task)
+    assert good.ok.all()
+    assert not mixed.ok[0, 1::2].any()
+    for name in FIGURES:
+        assert getattr(mixed, name)[0, ::2].tobytes() == getattr(good, name)[0, ::2].tobytes(), name
+    expect_run(mixed, 0, 1, fp.simulate(arm, path, schemes, bad[1], dt=0.01, task=task, partial=True))
+
+
+@pytest.mark.parametrize("choice", ["none", "avx2", "avx512"])
+def test_lanes_can_be_chosen(choice):
+    code = "import fpbm_cpp as fp; print(fp.LANES)"
+    environment = {**os.environ, "FPBM_LANES": choice}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    known = {"none": "1", "avx2": "4", "avx512": "8"}[choice]
+    assert run.stdout.strip() in (known, "1")
+    if choice in fp._core.processor_kinds() and fp.LANES > 1:
+        assert run.stdout.strip() == known
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_a_sweep_is_many_simulations(case):
     arm, path, task, q0 = CASES[case]
     schemes = every_scheme(arm.dof)

@@ -69,11 +69,9 @@ class DampedGram {
     const auto columns = extent<N>(J_.cols());
     constexpr Constant<0> kFirst{};
     each(kFirst, rows, [&](auto i) {
-      Value row[kCapacity<N>];
-      each(kFirst, columns, [&](auto k) { row[k] = Value(J_.coeff(i, k)); });
       each(kFirst, next(i), [&](auto j) {
-        Value sum = row[0] * weighted.coeff(0, j);
-        each(next(kFirst), columns, [&](auto k) { sum += row[k] * weighted.coeff(k, j); });
+        Value sum = Value(J_.coeff(i, 0)) * weighted.coeff(0, j);
+        each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * weighted.coeff(k, j); });
         gram.coeffRef(i, j) = sum;
       });
     });
