@@ -93,7 +93,9 @@ class SerialArm {
   }
 
   using Row3 = Vector<3, Scalar>;
-  using Rows3 = Matrix<N, 3, Scalar>;  ///< One row a joint, so that several joints are done at once.
+  /// One row a joint, so that several joints are done at once. Eigen wants a single row to be stored as one.
+  using Rows3 =
+      Eigen::Matrix<Scalar, N, 3, (N == 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign, kCapacity<N>, 3>;
 
   /// From one joint's frame to the next one's, both with the joint's axis as z: a step, and a tilt about x.
   struct Link {
