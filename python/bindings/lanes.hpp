@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <tuple>
+#include <type_traits>
 
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
@@ -33,14 +34,16 @@ struct LaneCode {
 [[nodiscard]] const LaneCode* lane_code() noexcept;
 void use_lane_code(const LaneCode* code) noexcept;
 
+template <typename T, typename Tuple>
+inline constexpr bool kIsIn = false;
+template <typename T, typename... Types>
+inline constexpr bool kIsIn<T, std::tuple<Types...>> = (std::is_same_v<T, Types> || ...);
+
 /// The code for an arm and a task, or null.
 template <typename Arm, typename Space>
 [[nodiscard]] RunInLanes<Arm, Space> run_in_lanes() noexcept {
   using Run = RunInLanes<Arm, Space>;
-  using Known = decltype(LaneCode::run);
-  if constexpr (std::is_same_v<Run, std::tuple_element_t<0, Known>> ||
-                std::is_same_v<Run, std::tuple_element_t<1, Known>> ||
-                std::is_same_v<Run, std::tuple_element_t<2, Known>>) {
+  if constexpr (kIsIn<Run, decltype(LaneCode::run)>) {
     return lane_code() == nullptr ? nullptr : std::get<Run>(lane_code()->run);
   } else {
     return nullptr;

@@ -21,6 +21,7 @@ struct Eigen::NumTraits<std::experimental::simd<Number, Abi>>
   using NonInteger = Self;
   using Literal = Self;
   using Nested = Self;
+  // NOLINTBEGIN(readability-identifier-naming): Eigen's names.
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -30,6 +31,7 @@ struct Eigen::NumTraits<std::experimental::simd<Number, Abi>>
     AddCost = 1,
     MulCost = 1
   };
+  // NOLINTEND(readability-identifier-naming)
 };
 
 /// A number times a vector of lanes.

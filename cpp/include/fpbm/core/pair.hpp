@@ -132,5 +132,5 @@ template <int Rows, int Cols, typename Scalar>
 /// So that matrices may hold pairs.
 template <typename Scalar>
 struct Eigen::NumTraits<fpbm::Pair<Scalar>> : Eigen::GenericNumTraits<fpbm::Pair<Scalar>> {
-  enum { RequireInitialization = 0 };
+  enum { RequireInitialization = 0 };  // NOLINT(readability-identifier-naming): Eigen's name.
 };

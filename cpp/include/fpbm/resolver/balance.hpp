@@ -41,8 +41,8 @@ template <typename Space, int N, typename Scalar, typename Weights>
   const Vector<M, Scalar> lambda2 = second<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)));
 
   const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
-  const Vector<N, Scalar> Jtlambda2 = J.transpose().lazyProduct(lambda2);
-  const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda2);
+  const Vector<N, Scalar> Jtlambda = J.transpose().lazyProduct(lambda2);
+  const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda);
   if (!is_finite(result)) return Status::kNotFinite;
   qdd = result;
   return status;
