@@ -21,6 +21,7 @@
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/presets.hpp"
+#include "fpbm/model/screws.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/course.hpp"

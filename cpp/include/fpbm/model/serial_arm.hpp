@@ -10,6 +10,7 @@
 #include "fpbm/core/space.hpp"
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/model/screws.hpp"
 
 namespace fpbm {
 
@@ -93,9 +94,6 @@ class SerialArm {
   }
 
   using Row3 = Vector<3, Scalar>;
-  /// One row a joint, so that several joints are done at once. Eigen wants a single row to be stored as one.
-  using Rows3 =
-      Eigen::Matrix<Scalar, N, 3, (N == 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign, kCapacity<N>, 3>;
 
   /// From one joint's frame to the next one's, both with the joint's axis as z: a step, and a tilt about x.
   struct Link {
@@ -122,8 +120,8 @@ class SerialArm {
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
-  /// Out along the chain for axes zᵢ, origins pᵢ and their rates; then column i of J is [zᵢ × (p − pᵢ); zᵢ] for a
-  /// revolute joint, [zᵢ; 0] for a prismatic one, and column i of Jd its rate.
+  /// Out along the chain for the joints' axes, and from these J and Jd; the column of a prismatic joint is [zᵢ; 0], and
+  /// its rate.
   template <bool kWithRate, typename Space>
   [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                               Kinematics<Space, N, Scalar>& out) const noexcept {
@@ -134,10 +132,7 @@ class SerialArm {
     Vector<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
-    Rows3 axes(dof_, 3);
-    Rows3 arms(dof_, 3);  // First the origins, then from there to the tip;
-    Rows3 axis_rates(dof_, 3);
-    Rows3 arm_rates(dof_, 3);  // likewise.
+    Screws<N, Scalar> screws(dof_);
     Row3 p = base_.p;
     Row3 x = base_.R.col(0);
     Row3 y = base_.R.col(1);
@@ -150,16 +145,16 @@ class SerialArm {
     };
     for (Eigen::Index i = 0; i < dof_; ++i) {
       const Link& link = links_[static_cast<std::size_t>(i)];
-      axes.row(i) = z;
-      if constexpr (kWithRate) axis_rates.row(i) = cross(w, z);
+      screws.axes.row(i) = z;
+      if constexpr (kWithRate) screws.axis_rates.row(i) = cross(w, z);
       if (slides(i)) {
         advance(q(i) * z);
         if constexpr (kWithRate) v += qd(i) * z;
       } else if constexpr (kWithRate) {
         w += qd(i) * z;
       }
-      arms.row(i) = p;
-      if constexpr (kWithRate) arm_rates.row(i) = v;
+      screws.points.row(i) = p;
+      if constexpr (kWithRate) screws.point_rates.row(i) = v;
 
       const Row3 turned = cosines(i) * x + sines(i) * y;
       y = cosines(i) * y - sines(i) * x;
@@ -171,20 +166,16 @@ class SerialArm {
     }
 
     out.J.resize(Space::kRows, dof_);
-    tip_less(p, arms);
-    rows(out.J.template topRows<3>(), [&](int i) { return cross_row(axes, arms, i); });
-    if constexpr (kWithTurn) out.J.template bottomRows<3>() = axes.transpose();
+    screws.template look_from<kWithRate>(p, v);
+    screws.columns(out.J);
     if constexpr (kWithRate) {
       out.Jd.resize(Space::kRows, dof_);
-      tip_less(v, arm_rates);
-      rows(out.Jd.template topRows<3>(),
-           [&](int i) { return cross_row(axis_rates, arms, i) + cross_row(axes, arm_rates, i); });
-      if constexpr (kWithTurn) out.Jd.template bottomRows<3>() = axis_rates.transpose();
+      screws.column_rates(out.Jd);
     }
     for (Eigen::Index i = 0; slides_ != 0 && i < dof_; ++i) {
       if (!slides(i)) continue;
-      slide(axes.row(i), out.J.col(i));
-      if constexpr (kWithRate) slide(axis_rates.row(i), out.Jd.col(i));
+      slide(screws.axes.row(i), out.J.col(i));
+      if constexpr (kWithRate) slide(screws.axis_rates.row(i), out.Jd.col(i));
     }
     if constexpr (kWithTurn) {
       Matrix<3, 3, Scalar> R;
@@ -192,29 +183,6 @@ class SerialArm {
       out.tip = {p, R.lazyProduct(tip_)};
     } else {
       out.tip = p;
-    }
-  }
-
-  static void tip_less(const Row3& tip, Rows3& rows) noexcept {
-    for (int i = 0; i < 3; ++i) rows.col(i).array() = tip(i) - rows.col(i).array();
-  }
-
-  /// Entry i of all joints' a × b.
-  [[nodiscard]] static auto cross_row(const Rows3& a, const Rows3& b, int i) noexcept {
-    const int j = (i + 1) % 3;
-    const int k = (i + 2) % 3;
-    return a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
-  }
-
-  /// Row i of the result is row(i), first gathered as a column where that makes vector code of it.
-  template <typename Result, typename Row>
-  void rows(Result result, const Row& row) const noexcept {
-    if constexpr (kInLanes<Scalar>) {
-      for (int i = 0; i < 3; ++i) result.row(i).transpose() = row(i);
-    } else {
-      Rows3 columns(dof_, 3);
-      for (int i = 0; i < 3; ++i) columns.col(i) = row(i);
-      result = columns.transpose();
     }
   }
 
