@@ -44,12 +44,14 @@ class Move {
 };
 
 /// One evaluation of the closed loop: kinematics and scheme.
-template <typename Solver>
+template <typename Solver, bool kMoves = true>
 class Step {
  public:
+  Step() { solver_.move(ring_.next()); }
+
   void operator()() noexcept {
     const auto& input = ring_.next();
-    solver_.move(input);
+    if constexpr (kMoves) solver_.move(input);
     status_ = solver_.resolve(input, out_);
     escape(*this);
   }
@@ -63,21 +65,7 @@ class Step {
 
 /// The scheme alone, its kinematics given.
 template <typename Solver>
-class Resolve {
- public:
-  Resolve() { solver_.move(ring_.next()); }
-
-  void operator()() noexcept {
-    status_ = solver_.resolve(ring_.next(), out_);
-    escape(*this);
-  }
-
- private:
-  Solver solver_;
-  Ring<typename Solver::Case> ring_;
-  fpbm::Vector<Solver::Case::kDof, typename Solver::Case::Scalar> out_;
-  fpbm::Status status_;
-};
+using Resolve = Step<Solver, false>;
 
 /// One RK4 step of 1 ms along the paper's circle, as rollout() takes it: time goes on from call to call.
 template <int N, Law law>

@@ -18,6 +18,7 @@
 #include "fpbm/model/gaze.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/model/link.hpp"
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/presets.hpp"

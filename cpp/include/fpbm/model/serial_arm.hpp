@@ -10,6 +10,7 @@
 #include "fpbm/core/space.hpp"
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/model/link.hpp"
 #include "fpbm/model/screws.hpp"
 
 namespace fpbm {
@@ -40,7 +41,10 @@ class SerialArm {
       if (i == 0) {
         base_ = {p, R};
       } else {
-        connect(i - 1, p, R);
+        const TurnedLink<Scalar> between({p, R});
+        links_[static_cast<std::size_t>(i - 1)] = between.link;
+        offsets_(i - 1) += between.before;
+        offsets_(i) = between.after;
       }
       if (joint.type == JointType::kPrismatic) {
         turns_(i) = Scalar(0);
@@ -87,36 +91,10 @@ class SerialArm {
         slides_(arm.slides_),
         tip_(arm.tip_.template cast<Scalar>()),
         limits_(arm.limits_.template cast<Scalar>()) {
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      links_[i] = {arm.links_[i].step.template cast<Scalar>(), Scalar(arm.links_[i].cosine),
-                   Scalar(arm.links_[i].sine)};
-    }
+    for (std::size_t i = 0; i < links_.size(); ++i) links_[i] = arm.links_[i].template cast<Scalar>();
   }
 
   using Row3 = Vector<3, Scalar>;
-
-  /// From one joint's frame to the next one's, both with the joint's axis as z: a step, and a tilt about x.
-  struct Link {
-    Row3 step;
-    Scalar cosine;
-    Scalar sine;
-  };
-
-  /// Link i is p and R = Rz(β) Rx(tilt) Rz(γ), of which the turns about z are left to the joints.
-  void connect(Eigen::Index i, const Row3& p, const Matrix<3, 3, Scalar>& R) {
-    using std::atan2;
-    using std::cos;
-    using std::sin;
-    const bool tilted = R(0, 2) != Scalar(0) || R(1, 2) != Scalar(0);
-    const bool backward = R(1, 2) > Scalar(0);  // Then by a negative tilt: |β| ≤ π/2.
-    const Scalar beta = tilted ? (backward ? atan2(-R(0, 2), R(1, 2)) : atan2(R(0, 2), -R(1, 2))) : Scalar(0);
-    Matrix<3, 3, Scalar> back;
-    back << cos(beta), sin(beta), 0, -sin(beta), cos(beta), 0, 0, 0, 1;
-    const Matrix<3, 3, Scalar> rest = back * R;
-    links_[static_cast<std::size_t>(i)] = {back * p, rest(2, 2), -rest(1, 2)};
-    offsets_(i) += beta;
-    offsets_(i + 1) = atan2(-rest(0, 1), rest(0, 0));
-  }
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
@@ -144,7 +122,7 @@ class SerialArm {
       if constexpr (kWithRate) v += cross(w, step);
     };
     for (Eigen::Index i = 0; i < dof_; ++i) {
-      const Link& link = links_[static_cast<std::size_t>(i)];
+      const Link<Scalar>& link = links_[static_cast<std::size_t>(i)];
       screws.axes.row(i) = z;
       if constexpr (kWithRate) screws.axis_rates.row(i) = cross(w, z);
       if (slides(i)) {
@@ -193,25 +171,10 @@ class SerialArm {
     column.template head<3>() = axis;
   }
 
-  /// A rotation that takes z to the axis.
-  static Matrix<3, 3, Scalar> z_to(const Row3& axis) {
-    Matrix<3, 3, Scalar> R;
-    const Row3 z = axis.normalized();
-    Eigen::Index least = 0;
-    z.cwiseAbs().minCoeff(&least);
-    if (z == Row3::UnitZ()) return Matrix<3, 3, Scalar>::Identity();
-    const Row3 across = Row3::Unit(least);
-    const Row3 x = cross(across, z).normalized();
-    R.col(0) = x;
-    R.col(1) = cross(z, x);
-    R.col(2) = z;
-    return R;
-  }
-
   Eigen::Index dof_;
-  Transform<Scalar> base_;                ///< The first joint's frame at zero.
-  std::array<Link, kCapacity<N>> links_;  ///< Out of each joint's frame.
-  Vector<N, Scalar> turns_;               ///< 0 for a prismatic joint: a frame is turned by turns q + offset.
+  Transform<Scalar> base_;                        ///< The first joint's frame at zero.
+  std::array<Link<Scalar>, kCapacity<N>> links_;  ///< Out of each joint's frame.
+  Vector<N, Scalar> turns_;                       ///< 0 for a prismatic joint: a frame is turned by turns q + offset.
   Vector<N, Scalar> offsets_;
   std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
   Matrix<3, 3, Scalar> tip_;  ///< The tip, seen from the last link's end.

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "fpbm/core/rotation.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// From one joint's frame to the next one's, both with the joint's axis as z: a step [m], and a tilt about x.
+template <typename Scalar>
+struct Link {
+  Vector<3, Scalar> step;
+  Scalar cosine;  ///< Of the tilt.
+  Scalar sine;
+
+  template <typename Other>
+  [[nodiscard]] Link<Other> cast() const noexcept {
+    return {step.template cast<Other>(), Other(cosine), Other(sine)};
+  }
+};
+
+/// A link between two turns about z, which go into the joints on either side: p and R = Rz(before) Rx(tilt) Rz(after).
+template <typename Scalar>
+struct TurnedLink {
+  Scalar before;  ///< [rad]
+  Link<Scalar> link;
+  Scalar after;  ///< [rad]
+
+  explicit TurnedLink(const Transform<Scalar>& transform) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    const auto& [p, R] = transform;
+    const bool tilted = R(0, 2) != Scalar(0) || R(1, 2) != Scalar(0);
+    const bool backward = R(1, 2) > Scalar(0);  // Then by a negative tilt: |before| ≤ π/2.
+    before = tilted ? (backward ? atan2(-R(0, 2), R(1, 2)) : atan2(R(0, 2), -R(1, 2))) : Scalar(0);
+    Matrix<3, 3, Scalar> back;
+    back << cos(before), sin(before), 0, -sin(before), cos(before), 0, 0, 0, 1;
+    const Matrix<3, 3, Scalar> rest = back * R;
+    link = {back * p, rest(2, 2), -rest(1, 2)};
+    after = atan2(-rest(0, 1), rest(0, 0));
+  }
+};
+
+/// A rotation that takes z to the axis.
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
+  using Row3 = Vector<3, Scalar>;
+  const Row3 z = axis.normalized();
+  if (z == Row3::UnitZ()) return Matrix<3, 3, Scalar>::Identity();
+  Eigen::Index least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  const Row3 across = Row3::Unit(least);
+  Matrix<3, 3, Scalar> R;
+  R.col(0) = cross(across, z).normalized();
+  R.col(1) = cross<Scalar>(z, R.col(0));
+  R.col(2) = z;
+  return R;
+}
+
+}  // namespace fpbm
