@@ -8,6 +8,7 @@ from importlib import import_module
 from . import _core
 
 CHOICE = "FPBM_LANES"
+KINDS = ("avx512", "avx2")
 
 
 def choose() -> int:
@@ -16,6 +17,8 @@ def choose() -> int:
     The environment variable FPBM_LANES narrows the choice to one kind, 'avx512' or 'avx2', or to 'none' of them.
     """
     choice = os.environ.get(CHOICE, "")
+    if choice not in ("", "none", *KINDS):
+        raise ValueError(f"{CHOICE} is {choice!r}, but must be one of {', '.join(map(repr, (*KINDS, 'none')))}, or unset")
     for kind in _core.processor_kinds():
         if choice not in ("", kind):
             continue

@@ -33,8 +33,9 @@ def sweep(
 ) -> Sweep:
     """Simulate every scheme from every start, each motion as simulate() does, and keep the key figures of each.
 
-    Runs on all cores, without the interpreter's lock, or wherever an executor runs things. The results are the same to
-    the last bit whoever runs them, however many. A motion that must stop early raises nothing: its status says so.
+    Runs on all cores, without the interpreter's lock, or wherever an executor runs things, several motions side by side
+    in the processor's lanes, where they agree with simulate() to 1e-12. The results are the same to the last bit
+    whoever runs them, however many. A motion that must stop early raises nothing: its status says so.
 
     Parameters
     ----------

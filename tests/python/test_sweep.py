@@ -119,6 +119,13 @@ def test_lanes_can_be_chosen(choice):
         assert run.stdout.strip() == known
 
 
+def test_a_choice_of_lanes_that_is_none():
+    environment = {**os.environ, "FPBM_LANES": "avx1024"}
+    run = subprocess.run([sys.executable, "-c", "import fpbm_cpp"], env=environment, capture_output=True, text=True)
+    assert run.returncode != 0
+    assert "FPBM_LANES is 'avx1024', but must be one of 'avx512', 'avx2', 'none', or unset" in run.stderr
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_a_sweep_is_many_simulations(case):
     arm, path, task, q0 = CASES[case]

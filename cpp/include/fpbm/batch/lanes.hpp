@@ -2,21 +2,19 @@
 
 #include <Eigen/Core>
 #include <experimental/simd>
-#include <limits>
 
 /// K numbers in the lanes of vector registers, as many as it takes, for whatever is written for a Scalar: K arms, or K
 /// motions of an arm, at once. See core/truth.hpp for what becomes of branches.
 namespace fpbm {
 
-template <int K, typename Number = double>
-using Lanes = std::experimental::simd<Number, std::experimental::simd_abi::deduce_t<Number, K>>;
+template <int K, typename T = double>
+using Lanes = std::experimental::simd<T, std::experimental::simd_abi::deduce_t<T, K>>;
 
 }  // namespace fpbm
 
-template <typename Number, typename Abi>
-struct Eigen::NumTraits<std::experimental::simd<Number, Abi>>
-    : Eigen::GenericNumTraits<std::experimental::simd<Number, Abi>> {
-  using Self = std::experimental::simd<Number, Abi>;
+template <typename T, typename Abi>
+struct Eigen::NumTraits<std::experimental::simd<T, Abi>> : Eigen::GenericNumTraits<std::experimental::simd<T, Abi>> {
+  using Self = std::experimental::simd<T, Abi>;
   using Real = Self;
   using NonInteger = Self;
   using Literal = Self;
@@ -35,7 +33,7 @@ struct Eigen::NumTraits<std::experimental::simd<Number, Abi>>
 };
 
 /// A number times a vector of lanes.
-template <typename Number, typename Abi, typename Operation>
-struct Eigen::ScalarBinaryOpTraits<Number, std::experimental::simd<Number, Abi>, Operation> {
-  using ReturnType = std::experimental::simd<Number, Abi>;
+template <typename T, typename Abi, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<T, std::experimental::simd<T, Abi>, Operation> {
+  using ReturnType = std::experimental::simd<T, Abi>;
 };

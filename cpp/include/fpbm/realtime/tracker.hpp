@@ -1,12 +1,12 @@
 #pragma once
 
-#include <type_traits>
-
 #include "fpbm/integrator/closed_loop.hpp"
 #include "fpbm/integrator/rk4.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/course.hpp"
+#include "fpbm/realtime/slowing.hpp"
 #include "fpbm/realtime/tick.hpp"
+#include "fpbm/resolver/damp.hpp"
 #include "fpbm/resolver/limiter.hpp"
 
 /// One tick of a control loop.
@@ -14,18 +14,6 @@
 /// After construction nothing here allocates, throws, locks, does I/O or loops without a bound, whatever the numbers
 /// that are passed in, and the same inputs give the same bits. Where no motion can be found, the arm brakes.
 namespace fpbm {
-
-/// Whether a scheme is wrapped round another, which it calls `scheme`.
-template <typename Scheme, typename = void>
-inline constexpr bool kIsWrapper = false;
-template <typename Scheme>
-inline constexpr bool kIsWrapper<Scheme, std::void_t<decltype(Scheme::scheme)>> = true;
-
-/// Whether a scheme has a member `singular`, its damping near singular postures.
-template <typename Scheme, typename = void>
-inline constexpr bool kTakesDamping = false;
-template <typename Scheme>
-inline constexpr bool kTakesDamping<Scheme, std::void_t<decltype(Scheme::singular)>> = true;
 
 /// Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
 ///
@@ -72,15 +60,7 @@ class Tracker {
 
   /// One tick toward a reference, which goes on at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
-    return advance([&reference](Scalar seconds) noexcept {
-      Target later = reference;
-      if (seconds != Scalar(0)) {
-        const Twist way = seconds * (reference.xd + seconds / Scalar(2) * reference.xdd);
-        later.x = Space::template displace<Scalar>(reference.x, way);
-        later.xd += seconds * reference.xdd;
-      }
-      return later;
-    });
+    return advance([&reference](Scalar seconds) noexcept { return ahead(reference, seconds); });
   }
 
   /// One tick along a course, whose clock goes on with it.
@@ -142,16 +122,6 @@ class Tracker {
     return {state.q, state.qd, Row::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
   }
 
-  /// Gives a scheme its damping, whatever it is wrapped in, unless it has its own.
-  template <typename Any>
-  static void damp(Any& scheme, const SingularDamping<Scalar>& damping) noexcept {
-    if constexpr (kIsWrapper<Any>) {
-      damp(scheme.scheme, damping);
-    } else if constexpr (kTakesDamping<Any>) {
-      if (scheme.singular.radius() == Scalar(0)) scheme.singular = damping;
-    }
-  }
-
   /// Whether a state is finite, and so far from overflow that one can still brake from it.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
     return state.q.allFinite() && Row(state.qd * (Scalar(4) / dt_)).allFinite();
@@ -186,7 +156,7 @@ class Tracker {
       if constexpr (kSecondOrder) {
         wanted = (next.qd - state_.qd) / dt_;
       } else if (!failed(result.status)) {
-        wanted = slowed(loop, correction_(now), field, wanted);
+        wanted = slowed(loop, limiter_.limits(), correction_(now), state_.q, field, wanted);
       }
       // The Jacobian of the tick's middle: joints that take over then do so without a trace in the tip.
       const Row middle = (state_.q + next.q) / Scalar(2);
@@ -217,27 +187,6 @@ class Tracker {
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;
     return found.u;
-  }
-
-  /// A field of velocities that asks for greater accelerations than the joints have would make them swing: slowed until
-  /// it does not.
-  [[nodiscard]] Row slowed(Loop& loop, const Target& reference, const Row& field, const Row& wanted) const noexcept {
-    const auto& bounds = limiter_.limits().bounds();
-    Scalar ahead = dt_;
-    for (Eigen::Index i = 0; i < field.size(); ++i) {
-      const Scalar way = std::abs(field(i)) * ahead;
-      const Scalar most = bounds.velocity(i) * dt_;
-      if (way > most) ahead *= most / way;
-    }
-    const X x = state_.q + ahead * field;
-    X later = x;
-    if (failed(loop.evaluate(reference, x, later))) return field;
-    Scalar square = Scalar(1);
-    for (Eigen::Index i = 0; i < field.size(); ++i) {
-      const Scalar change = std::abs(later(i, 0) - field(i)) / ahead;
-      if (square * change > bounds.acceleration(i)) square = bounds.acceleration(i) / change;
-    }
-    return square < Scalar(1) ? Row(std::sqrt(square) * field) : wanted;
   }
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {

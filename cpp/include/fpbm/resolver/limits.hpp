@@ -5,35 +5,11 @@
 
 #include "fpbm/core/validation.hpp"
 #include "fpbm/model/joint.hpp"
+#include "fpbm/resolver/box.hpp"
 #include "fpbm/resolver/null_space.hpp"
+#include "fpbm/resolver/velocity_envelope.hpp"
 
 namespace fpbm {
-
-/// Bounds on each joint's motion over one tick: accelerations, or velocities for a scheme of that level.
-template <int N, typename Scalar = double>
-struct Box {
-  Vector<N, Scalar> lower;
-  Vector<N, Scalar> upper;
-
-  [[nodiscard]] bool contains(const Vector<N, Scalar>& u) const noexcept {
-    return (lower.array() <= u.array()).all() && (u.array() <= upper.array()).all();
-  }
-
-  [[nodiscard]] Vector<N, Scalar> nearest(const Vector<N, Scalar>& u) const noexcept {
-    return u.cwiseMin(upper).cwiseMax(lower);
-  }
-};
-
-/// How fast a joint may go toward one end of its range: −offset + √(2 deceleration |end − q|).
-///
-/// With a small offset it is the speed from which the joint can still brake before the end; with one of the maker's it
-/// is a bound on velocity that depends on position (for Franka's "−0.30 + √(12 (2.75010 − q))": {2.75010, 0.30, 6}).
-template <typename Scalar = double>
-struct VelocityEnvelope {
-  Scalar end;           ///< [rad] or [m]
-  Scalar offset;        ///< [rad/s] or [m/s]
-  Scalar deceleration;  ///< [rad/s²] or [m/s²]
-};
 
 /// Bounds on positions, velocities and accelerations, kept tick by tick.
 ///
@@ -53,12 +29,8 @@ class Limits {
   Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds) {
     validation::require_positive("dt", static_cast<double>(tick));
     const Eigen::Index n = bounds.lower.size();
-    for (Side* side : {&upper_, &lower_}) {
-      side->end.resize(n);
-      side->offset.resize(n);
-      side->deceleration.resize(n);
-      side->rest.resize(n);
-    }
+    upper_.resize(n);
+    lower_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       require_ordered(i);
       bounds_.acceleration(i) = acceleration(i);
@@ -119,8 +91,8 @@ class Limits {
       const Scalar least = w - bounds_.acceleration(i) * tick_;
       const Scalar fastest = std::clamp(v, least, most);
       const Scalar slowest = std::clamp(-v, least, most);
-      Scalar up = std::clamp(furthest(upper_, i, state.q(i), w), slowest, fastest);
-      Scalar down = std::clamp(-furthest(lower_, i, -state.q(i), -w), slowest, fastest);
+      Scalar up = std::clamp(upper_.furthest(i, state.q(i), w, tick_), slowest, fastest);
+      Scalar down = std::clamp(-lower_.furthest(i, -state.q(i), -w, tick_), slowest, fastest);
       if (down > up) down = up = (down + up) / Scalar(2);
       if constexpr (kLevel == Level::kAcceleration) {
         up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
@@ -145,46 +117,10 @@ class Limits {
   }
 
  private:
-  /// The envelopes toward one end, of coordinates that grow toward it.
-  struct Side {
-    Row end;
-    Row offset;
-    Row deceleration;
-    Row rest;  ///< Where the envelope is zero: no farther.
-
-    void set(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar rest_at) noexcept {
-      rest(i) = rest_at;
-      end(i) = envelope.end;
-      offset(i) = envelope.offset;
-      deceleration(i) = envelope.deceleration;
-    }
-
-    [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
-      const Scalar p = qd + offset(i);
-      return q <= rest(i) && (!(p > Scalar(0)) || p * p <= Scalar(2) * deceleration(i) * (end(i) - q));
-    }
-  };
+  using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
 
   [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
     return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
-  }
-
-  /// Largest velocity w⁺ after the tick that the envelope allows at the position q⁺ reached by then: the root of
-  /// (w⁺ + c)² = 2d (end − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
-  [[nodiscard]] Scalar furthest(const Side& side, Eigen::Index i, Scalar q, [[maybe_unused]] Scalar w) const noexcept {
-    using std::sqrt;
-    const Scalar c = side.offset(i);
-    const Scalar d = side.deceleration(i);
-    const Scalar way = side.end(i) - q;
-    if constexpr (kLevel == Level::kAcceleration) {
-      const Scalar lag = d * tick_ / Scalar(2);
-      const Scalar square = lag * lag + d * (Scalar(2) * way + tick_ * (c - w));
-      return sqrt(square > Scalar(0) ? square : Scalar(0)) - lag - c;
-    } else {
-      const Scalar lag = d * tick_;
-      const Scalar square = lag * lag + Scalar(2) * d * (way + tick_ * c);
-      return sqrt(square > Scalar(0) ? square : Scalar(0)) - lag - c;
-    }
   }
 
   void require_ordered(Eigen::Index i) const {
@@ -236,8 +172,8 @@ class Limits {
 
   Scalar tick_;
   JointLimits<N, Scalar> bounds_;
-  Side upper_;
-  Side lower_;  ///< Of −q.
+  Envelopes upper_;
+  Envelopes lower_;  ///< Of −q.
 };
 
 }  // namespace fpbm

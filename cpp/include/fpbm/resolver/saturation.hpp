@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "fpbm/core/null_basis.hpp"
-#include "fpbm/resolver/limits.hpp"
+#include "fpbm/resolver/box.hpp"
 
 namespace fpbm {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fpbm/core/cholesky.hpp"
-#include "fpbm/resolver/limits.hpp"
+#include "fpbm/resolver/box.hpp"
 
 namespace fpbm {
 

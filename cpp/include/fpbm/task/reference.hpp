@@ -22,4 +22,16 @@ struct Reference {
   }
 };
 
+/// Where a reference has gone so many seconds later at constant acceleration.
+template <typename Space, typename Scalar>
+[[nodiscard]] Reference<Space, Scalar> ahead(const Reference<Space, Scalar>& reference, Scalar seconds) noexcept {
+  Reference<Space, Scalar> later = reference;
+  if (seconds != Scalar(0)) {
+    const Vector<Space::kRows, Scalar> way = seconds * (reference.xd + seconds / Scalar(2) * reference.xdd);
+    later.x = Space::template displace<Scalar>(reference.x, way);
+    later.xd += seconds * reference.xdd;
+  }
+  return later;
+}
+
 }  // namespace fpbm
