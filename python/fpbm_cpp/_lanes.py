@@ -18,7 +18,9 @@ def choose() -> int:
     """
     choice = os.environ.get(CHOICE, "")
     if choice not in ("", "none", *KINDS):
-        raise ValueError(f"{CHOICE} is {choice!r}, but must be one of {', '.join(map(repr, (*KINDS, 'none')))}, or unset")
+        raise ValueError(
+            f"{CHOICE} is {choice!r}, but must be one of {', '.join(map(repr, (*KINDS, 'none')))}, or unset"
+        )
     for kind in _core.processor_kinds():
         if choice not in ("", kind):
             continue
