@@ -61,10 +61,11 @@ class Plan:
         status = STATUSES[outcomes["status"]]
         motions = np.full(len(self), None, dtype=object)
         if self.motions:
+            options = {"dt": self.dt, "hold": self.hold, "qd0": [0.0] * self.arm.dof}
             for i in np.flatnonzero(outcomes["status"] >= 0):
                 _, samples, time, _ = outcomes[i]
                 k, j = divmod(i, len(self.starts))
-                at = self.starts[j], self.arm, self.path, self.schemes[k], self.task
+                at = self.starts[j], self.arm, self.path, self.schemes[k], self.task, dict(options)
                 motions[i] = make_run(status[i], float(time), int(samples), arrays[i], *at)
         summary = outcomes["summary"]
         return Sweep(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._core import PlanarArm, Status, advice, failed, message
 from ._types import Array
@@ -76,6 +77,12 @@ class Run:
         How it ended.
     arm, path, scheme, task
         What moved, along what, how, and as what task.
+    options : dict
+        The other keyword arguments that the motion was made with: dt, hold, qd0.
+    scale : numpy.ndarray, shape (N,), or None
+        Where the joints' limits were kept: how much of the task they left, 1 all of it, 0 where the arm braked.
+    saturated : numpy.ndarray of bool, shape (N, n), or None
+        Where the joints' limits were kept: which joints were on a bound.
     """
 
     t: Array
@@ -90,6 +97,9 @@ class Run:
     path: Path
     scheme: Scheme
     task: str = "position"
+    options: dict[str, Any] = field(default_factory=dict)
+    scale: Array | None = None
+    saturated: NDArray[np.bool_] | None = None
 
     def max_error(self) -> float:
         """Largest distance of the tip from its reference [m]."""

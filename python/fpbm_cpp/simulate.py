@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -61,7 +63,8 @@ def simulate(
     if qd0 is None:
         qd0 = np.zeros(arm.dof)
     code, time, samples, arrays = _core.simulate(arm, path, scheme, q0, qd0, dt, hold, task)
-    run = make_run(code, time, samples, arrays, q0, arm, path, scheme, task)
+    options = {"dt": float(dt), "hold": float(hold), "qd0": np.array(qd0, dtype=float).ravel().tolist()}
+    run = make_run(code, time, samples, arrays, q0, arm, path, scheme, task, options)
     if failed(code) and not partial:
         raise ResolutionError(code, str(run.status), run)
     return run
@@ -77,10 +80,11 @@ def make_run(
     path: Path,
     scheme: Scheme,
     task: str,
+    options: dict[str, Any],
 ) -> Run:
     """A run of what the compiled part gives: arrays of which the first `samples` rows are filled."""
     t, q, qd, qdd, x, x_ref, error = (array if samples == len(array) else array[:samples].copy() for array in arrays)
     if scheme.level == "velocity" and samples > 1:
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
-    return Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task)
+    return Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task, options)
