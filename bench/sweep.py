@@ -27,6 +27,7 @@ WORKERS, ROUNDS, DT = (1, 2), 3, 1e-3
 FEWER, FEWEST = 10, 64  # Motions without lanes, a share; in any case, for threads to share evenly.
 PAPER = "planar4/position"
 CHECKED, TOLERANCE = 32, 1e-9
+SCATTER = 0.01  # Of starts [rad]: little enough that every motion stays within reach.
 
 
 class Case(NamedTuple):
@@ -70,7 +71,7 @@ def measure(motions: int) -> list[dict[str, Any]]:
     rows = []
     for name, case in CASES.items():
         count = max(FEWEST, round(case.share * motions))
-        starts = case.q0 + np.random.default_rng(0).normal(0, 0.02, (count, len(case.q0)))
+        starts = case.q0 + np.random.default_rng(0).normal(0, SCATTER, (count, len(case.q0)))
         for workers in WORKERS:
             begin = time.perf_counter()
             sweep = fp.sweep(case.arm, case.path, case.scheme, starts, DT, task=case.task, workers=workers)

@@ -108,11 +108,15 @@ template <typename Scalar>
   // A small turn, as errors are: sin|r| r/|r| times the series of arcsine, with neither root nor division.
   const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const Scalar z = s.squaredNorm() / Scalar(4);
-  constexpr double kSeries[] = {6435.0 / 557056.0, 143.0 / 10240.0, 231.0 / 13312.0,
-                                63.0 / 2816.0,     35.0 / 1152.0,   5.0 / 112.0,
-                                3.0 / 40.0,        1.0 / 6.0,       1.0};
-  Scalar sum(0);
-  for (const double coefficient : kSeries) sum = sum * z + Scalar(coefficient);
+  // Even and odd powers apart: two short chains of operations that wait for one another, not a long one.
+  constexpr double kEven[] = {6435.0 / 557056.0, 231.0 / 13312.0, 35.0 / 1152.0, 3.0 / 40.0, 1.0};
+  constexpr double kOdd[] = {143.0 / 10240.0, 63.0 / 2816.0, 5.0 / 112.0, 1.0 / 6.0};
+  const Scalar square = z * z;
+  Scalar even(0);
+  Scalar odd(0);
+  for (const double coefficient : kEven) even = even * square + Scalar(coefficient);
+  for (const double coefficient : kOdd) odd = odd * square + Scalar(coefficient);
+  const Scalar sum = even + z * odd;
   Vector<3, Scalar> r = sum / Scalar(2) * s;
   const Truth<Scalar> small = R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0);
   if (all_of(small)) return r;
