@@ -39,10 +39,12 @@ from ._errors import ResolutionError, SweepInterrupted
 from ._lanes import LANES
 from .joint import Joint
 from .run import Run, RunStatus
+from .run_file import load
 from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep
 from .sweep_result import Sweep
+from .track import track
 
 __all__ = [
     "FPBM",
@@ -79,8 +81,10 @@ __all__ = [
     "Waypoints",
     "__version__",
     "failed",
+    "load",
     "rotation",
     "rotation_vector",
     "simulate",
     "sweep",
+    "track",
 ]
