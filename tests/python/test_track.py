@@ -121,7 +121,12 @@ def test_options_make_it_again(q0):
     }
     run = fp.track(arm, SMOOTH, scheme, q0, **given)
     assert run.options == given
-    assert given.keys() | {"task"} == {name for name in signature(fp.track).parameters} - {"arm", "path", "scheme", "q0"}
+    assert given.keys() | {"task"} == {name for name in signature(fp.track).parameters} - {
+        "arm",
+        "path",
+        "scheme",
+        "q0",
+    }
     assert fp.track(arm, SMOOTH, scheme, q0, **run.options) == run
     for name, other in (("pull", 0.01), ("integral_gain", 2.0), ("singular_radius", 0.5), ("qd0", np.zeros(4))):
         assert fp.track(arm, SMOOTH, scheme, q0, **{**given, name: other}) != run, name
