@@ -25,7 +25,7 @@ RAIL = fp.SerialArm(
 
 
 def in_the_plane(**options):
-    return fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.9, 0.9, 0.5], dt=0.02, **options)
+    return fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.9, 0.9, 0.5], dt=1 / 48, **options)
 
 
 def in_space(task="pose"):
