@@ -38,8 +38,9 @@ from ._core import (
 from ._errors import ResolutionError, SweepInterrupted
 from ._lanes import LANES
 from .joint import Joint
-from .run import Run, RunStatus
-from .run_file import load
+from .load import load
+from .run import Run
+from .run_status import RunStatus
 from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep

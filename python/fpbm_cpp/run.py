@@ -1,4 +1,4 @@
-"""A finished motion and how it ended."""
+"""A finished motion."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import PlanarArm, Status, advice, failed, message
+from ._core import PlanarArm
 from ._types import Array
+from .run_status import RunStatus
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,45 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ._core import Arm, Path, Scheme
-
-
-@dataclass(frozen=True)
-class RunStatus:
-    """How a simulation ended: why, when, and where.
-
-    Attributes
-    ----------
-    code : Status
-        Status.OK, DAMPED or SLOWED when the whole motion is done; otherwise why it stopped.
-    time : float
-        Time of the last sample [s].
-    q : numpy.ndarray, shape (n,)
-        Joint positions there [rad].
-    """
-
-    code: Status
-    time: float
-    q: Array
-
-    @property
-    def ok(self) -> bool:
-        """Whether the whole motion is done."""
-        return not failed(self.code)
-
-    @property
-    def advice(self) -> str:
-        """What to do about it; empty when all is well."""
-        return advice(self.code)
-
-    def __bool__(self) -> bool:
-        return self.ok
-
-    def __str__(self) -> str:
-        if self.ok:
-            remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
-            return f"complete, t = {self.time:g} s{remark}"
-        where = np.array2string(self.q, precision=4, separator=", ")
-        return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
 
 
 @dataclass(frozen=True, repr=False, eq=False)

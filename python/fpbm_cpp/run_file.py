@@ -7,7 +7,6 @@ import json
 import operator
 import os
 import platform
-import zipfile
 from collections.abc import Iterable
 from datetime import datetime, timezone
 from pathlib import Path as FilePath
@@ -19,7 +18,8 @@ from . import _core
 from ._core import Status, __version__
 from ._files import write_whole
 from .recipe import from_data, to_data
-from .run import Run, RunStatus
+from .run import Run
+from .run_status import RunStatus
 
 FORMAT = "fpbm_cpp run"
 VERSION = 1  # Of the format: one more for each that older packages cannot read.
@@ -27,7 +27,7 @@ ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
 LIMITED = ("scale", "saturated")  # Of runs that kept the joints' limits.
 
 
-def save(run: Run, file: str | os.PathLike[str], note: str | None, seed: Any) -> None:
+def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
     """Write a run to a file, whole or not at all."""
     provenance = _provenance(run, note, seed)
     meta = {"format": FORMAT, "version": VERSION, **_description(run), "provenance": provenance}
@@ -37,27 +37,7 @@ def save(run: Run, file: str | os.PathLike[str], note: str | None, seed: Any) ->
 
 
 def load(file: str | os.PathLike[str]) -> Run:
-    """Read a run that Run.save wrote: arrays, arm, path, scheme and all, equal to the last bit.
-
-    Nothing in a file is executed: arm, path and scheme are made from numbers by this package's own classes.
-
-    Parameters
-    ----------
-    file : path
-        The file.
-
-    Returns
-    -------
-    Run
-        The run; its provenance says when, where and by which versions it was made, with its note and seed.
-
-    Raises
-    ------
-    ValueError
-        Where the file is no run, is damaged, names what is not this package's, or has a newer format.
-    OSError
-        Where it cannot be read.
-    """
+    """Read a run that save() wrote. Raises ValueError where the file holds none, OSError where it cannot be read."""
     content = FilePath(file).read_bytes()
     # Whatever can be wrong with a file, what reads it has no list of.
     try:
@@ -102,8 +82,10 @@ def _description(run: Run) -> dict[str, Any]:
     }
 
 
-def _provenance(run: Run, note: str | None, seed: Any) -> dict[str, Any]:
+def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
     """Where a run comes from: as its file says, or from here and now."""
+    if note is not None and not isinstance(note, str):
+        raise ValueError(f"note = {note!r}: must be text")
     origin = run.provenance or {
         "date": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "fpbm_cpp": __version__,
@@ -124,8 +106,8 @@ def _whole_numbers(seed: Any) -> int | list[int]:
 
 
 def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
-    if not zipfile.is_zipfile(io.BytesIO(content)):
-        raise ValueError("it is no .npz file, or not the whole of one")
+    if not content.startswith(b"PK"):
+        raise ValueError("it is no .npz file")
     with np.load(io.BytesIO(content), allow_pickle=False) as members:
         if "meta" not in members:
             raise ValueError("it says nothing of arm, path and scheme")

@@ -136,6 +136,8 @@ def test_provenance(run, tmp_path):
     for seed in (0.5, "seven", [1, 0.5]):
         with pytest.raises(ValueError, match="must be a whole number, or several"):
             run.save(tmp_path / "one.npz", seed=seed)
+    with pytest.raises(ValueError, match="note = 7: must be text"):
+        run.save(tmp_path / "one.npz", note=7)
 
 
 def test_numpy_reads_the_arrays(run, tmp_path):
