@@ -38,7 +38,7 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
     # A bag's files bear its name, so it is its parent's name that says that it is unfinished.
     part = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".part", dir=target.absolute().parent))
     try:
-        # Version 8 is the newest that ROS 2 Humble reads, and later releases read it as well.
+        # Version 9 writes qualities of service as ROS 2 Humble cannot parse them; later releases read both.
         with Writer(part / target.name, version=8) as writer:
             topics: dict[str, Any] = {}
             for topic, time, message in _messages(run, store.types, frame, trajectory):
