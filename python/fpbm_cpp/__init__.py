@@ -38,11 +38,14 @@ from ._core import (
 from ._errors import ResolutionError, SweepInterrupted
 from ._lanes import LANES
 from .joint import Joint
-from .run import Run, RunStatus
+from .load import load
+from .run import Run
+from .run_status import RunStatus
 from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep
 from .sweep_result import Sweep
+from .track import track
 
 __all__ = [
     "FPBM",
@@ -79,8 +82,10 @@ __all__ = [
     "Waypoints",
     "__version__",
     "failed",
+    "load",
     "rotation",
     "rotation_vector",
     "simulate",
     "sweep",
+    "track",
 ]

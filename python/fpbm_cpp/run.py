@@ -1,65 +1,32 @@
-"""A finished motion and how it ended."""
+"""A finished motion."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import PlanarArm, Status, advice, failed, message
+from ._core import PlanarArm
 from ._types import Array
+from .run_status import RunStatus
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
     from matplotlib.figure import Figure
 
     from ._core import Arm, Path, Scheme
 
 
-@dataclass(frozen=True)
-class RunStatus:
-    """How a simulation ended: why, when, and where.
-
-    Attributes
-    ----------
-    code : Status
-        Status.OK, DAMPED or SLOWED when the whole motion is done; otherwise why it stopped.
-    time : float
-        Time of the last sample [s].
-    q : numpy.ndarray, shape (n,)
-        Joint positions there [rad].
-    """
-
-    code: Status
-    time: float
-    q: Array
-
-    @property
-    def ok(self) -> bool:
-        """Whether the whole motion is done."""
-        return not failed(self.code)
-
-    @property
-    def advice(self) -> str:
-        """What to do about it; empty when all is well."""
-        return advice(self.code)
-
-    def __bool__(self) -> bool:
-        return self.ok
-
-    def __str__(self) -> str:
-        if self.ok:
-            remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
-            return f"complete, t = {self.time:g} s{remark}"
-        where = np.array2string(self.q, precision=4, separator=", ")
-        return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
-
-
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Run:
     """A motion, one row per sample: N samples of n joints.
+
+    Two runs are equal (==) where they are of the same things and all arrays are the same to the last bit.
 
     Attributes
     ----------
@@ -67,7 +34,8 @@ class Run:
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
         Joint positions [rad], velocities [rad/s], accelerations [rad/s^2], with m for rad where a joint slides.
-        Velocity-level schemes give no accelerations: there qdd holds finite differences of qd.
+        Velocity-level schemes give no accelerations: there qdd holds finite differences of qd. In a run of track() it
+        is the mean of the tick that begins at the sample.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
         Where the tip is and where it is to be, in the base frame [m]; poses are (x, y, angle) in the plane, homogeneous
         matrices in space.
@@ -78,11 +46,13 @@ class Run:
     arm, path, scheme, task
         What moved, along what, how, and as what task.
     options : dict
-        The other keyword arguments that the motion was made with: dt, hold, qd0.
+        The other keyword arguments that the motion was made with: dt, hold, qd0, and those of track().
     scale : numpy.ndarray, shape (N,), or None
         Where the joints' limits were kept: how much of the task they left, 1 all of it, 0 where the arm braked.
     saturated : numpy.ndarray of bool, shape (N, n), or None
         Where the joints' limits were kept: which joints were on a bound.
+    provenance : dict
+        Of a run from a file: when, where and by which versions it was made, with the note and seed saved with it.
     """
 
     t: Array
@@ -100,6 +70,7 @@ class Run:
     options: dict[str, Any] = field(default_factory=dict)
     scale: Array | None = None
     saturated: NDArray[np.bool_] | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def max_error(self) -> float:
         """Largest distance of the tip from its reference [m]."""
@@ -133,19 +104,103 @@ class Run:
 
         return plot_run(self)
 
-    def save(self, file: str | os.PathLike[str]) -> None:
-        """Write all arrays, the status and a description of arm, path and scheme to an .npz file.
+    def replay(self) -> Run:
+        """The motion made again from arm, path, scheme and options.
 
-        numpy.load reads it back; a file of that name is replaced.
+        Equal to this run to the last bit in the same build on a processor of the same kind; another compiler,
+        C library or kind of processor may round differently.
+
+        Raises ValueError where the options do not say how it was made.
         """
-        np.savez_compressed(
-            file,
-            **{name: getattr(self, name) for name in ("t", "q", "qd", "qdd", "x", "x_ref", "error")},
-            status=str(self.status),
-            arm=repr(self.arm),
-            path=repr(self.path),
-            scheme=repr(self.scheme),
-        )
+        from .replay import replay
+
+        return replay(self)
+
+    def save(
+        self, file: str | os.PathLike[str], *, note: str | None = None, seed: int | Sequence[int] | None = None
+    ) -> None:
+        """Write all of it to an .npz file, for fp.load; a file of that name is replaced, whole or not at all.
+
+        The arrays are there for numpy.load as well; arm, path, scheme, options, status and provenance are the JSON
+        text 'meta'. Nothing is pickled.
+
+        Parameters
+        ----------
+        file : path
+            The file.
+        note : str, optional
+            Whatever is worth knowing, kept in the provenance.
+        seed : int or sequence of int, optional
+            What the random numbers behind the run came from, kept there too.
+        """
+        from .run_file import save
+
+        save(self, file, note, seed)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Data frame of a row for each sample.
+
+        Columns t, q_<joint>, qd_<joint>, qdd_<joint>, the tip as x, y, z with qx, qy, qz, qw or angle for its
+        orientation, the same of its reference as x_ref and so on, error_x and so on, turn_error_x and so on; scale and
+        saturated_<joint> where the limits were kept. Their units are in frame.attrs["units"]. Needs the extra 'data'.
+        """
+        from .run_tables import to_pandas
+
+        return to_pandas(self)
+
+    def to_csv(self, file: str | os.PathLike[str]) -> None:
+        """Write the columns of to_pandas() as CSV, headed like 'qd_joint_1 [rad/s]'; it needs no extra.
+
+        Numbers are exact: read back, they are the same to the last bit. A file of that name is replaced, whole or not
+        at all.
+        """
+        from .run_tables import to_csv
+
+        to_csv(self, file)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over time, joint and axis, with units as attributes.
+
+        Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
+        turn_error; scale and saturated where the limits were kept. Needs the extra 'data'.
+        """
+        from .run_xarray import to_xarray
+
+        return to_xarray(self)
+
+    def to_rosbag(
+        self, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
+    ) -> None:
+        """Write a ROS 2 bag: the joints, the tip and its reference, stamped with the run's time from 0.
+
+        Topics /joint_states (sensor_msgs/JointState), /tip and /tip_reference (geometry_msgs/PoseStamped). Where the
+        task leaves the orientation free, the tip's is the arm's and the reference has none (the identity). Needs the
+        extra 'ros', but no ROS.
+
+        Parameters
+        ----------
+        directory : path
+            The bag, written whole or not at all.
+        frame : str
+            Name of the base frame.
+        trajectory : bool
+            All of it in one message on /joint_trajectory as well (trajectory_msgs/JointTrajectory).
+
+        Raises
+        ------
+        FileExistsError
+            Where there is something of that name.
+        ImportError
+            Where the extra is missing.
+        """
+        from .run_rosbag import to_rosbag
+
+        to_rosbag(self, directory, frame, trajectory)
+
+    def __eq__(self, other: object) -> bool:
+        from .run_file import same
+
+        return same(self, other) if isinstance(other, Run) else NotImplemented
 
     def __repr__(self) -> str:
         return (

@@ -11,7 +11,8 @@ from . import _core
 from ._core import Arm, Path, Scheme, Status, failed
 from ._errors import ResolutionError
 from ._types import Array
-from .run import Run, RunStatus
+from .run import Run
+from .run_status import RunStatus
 
 
 def simulate(

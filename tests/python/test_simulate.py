@@ -68,15 +68,6 @@ def test_what_a_run_holds(run, arm, circle, q0):
     assert "FPBM(alpha=0.6" in repr(run)
 
 
-def test_save(run, tmp_path):
-    file = tmp_path / "run.npz"
-    run.save(file)
-    with np.load(file) as saved:
-        np.testing.assert_array_equal(saved["qdd"], run.qdd)
-        assert str(saved["scheme"]) == repr(run.scheme)
-        assert "complete" in str(saved["status"])
-
-
 def test_velocity_and_acceleration_level_are_one_motion(arm, circle, q0):
     """Theorem 1: (7) differentiated is (9)."""
     velocity = fp.simulate(arm, circle, fp.WMVN(W), q0)

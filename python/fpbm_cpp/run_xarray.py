@@ -1,0 +1,59 @@
+"""Runs as xarray datasets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from .orientation import quaternions
+from .run_tables import joint_units
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .run import Run
+
+# (name, dimensions, values, units), "1" where there is none, as in the CF conventions.
+Variable = tuple[str, tuple[str, ...], Any, str]
+
+
+def to_xarray(run: Run) -> xr.Dataset:
+    """A run as a dataset."""
+    try:
+        import xarray as xr
+    except ImportError:
+        raise ImportError('to_xarray needs xarray: pip install "fpbm_cpp[data]"') from None
+    coordinates = {
+        "time": ("time", run.t, {"units": "s"}),
+        "joint": ("joint", run.arm.joint_names),
+        "joint_units": ("joint", joint_units(run.arm)),
+        "axis": ("axis", list("xyz"[: run.positions.shape[1]])),
+    }
+    if run.x.ndim == 3:
+        coordinates["quaternion"] = ("quaternion", list("xyzw"))
+    data = {name: (dimensions, values, {"units": units}) for name, dimensions, values, units in _variables(run)}
+    things = {"arm": repr(run.arm), "path": repr(run.path), "scheme": repr(run.scheme)}
+    return xr.Dataset(data, coordinates, {**things, "task": run.task, "status": str(run.status)})
+
+
+def _variables(run: Run) -> Iterator[Variable]:
+    of_joints, of_axes, of_turn = ("time", "joint"), ("time", "axis"), ("time", "quaternion")
+    units = sorted(set(joint_units(run.arm)), reverse=True)  # Both, where some joints turn and some slide.
+    for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
+        yield name, of_joints, values, ", ".join(unit + per for unit in units)
+    yield "x", of_axes, run.positions, "m"
+    yield "x_ref", of_axes, run.reference_positions, "m"
+    linear = run.positions.shape[1]
+    yield "error", of_axes, run.error[:, :linear], "m"
+    if run.x.ndim == 3:
+        yield "orientation", of_turn, quaternions(run.x[:, :3, :3]), "1"
+        yield "orientation_ref", of_turn, quaternions(run.x_ref[:, :3, :3]), "1"
+        yield "turn_error", of_axes, run.error[:, linear:], "rad"
+    elif run.error.shape[1] > linear:
+        yield "angle", ("time",), run.x[:, 2], "rad"
+        yield "angle_ref", ("time",), run.x_ref[:, 2], "rad"
+        yield "turn_error", ("time",), run.error[:, 2], "rad"
+    if run.scale is not None:
+        yield "scale", ("time",), run.scale, "1"
+    if run.saturated is not None:
+        yield "saturated", of_joints, run.saturated, "1"

@@ -1,0 +1,340 @@
+"""Runs in files: they come back as they were, can be made again, and a file that is none is refused."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_pickle import ELBOW, PANDA, PATHS, READY, SCHEMES, expect_same_path
+
+import fpbm_cpp as fp
+from fpbm_cpp.recipe import from_data, to_data
+
+FLAT = fp.PlanarArm([1, 1, 1, 1])
+LIMITS = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[0.1, np.inf, 0.1, 0.1], acceleration=[1] * 4)
+
+
+def through_json(thing):
+    return from_data(json.loads(json.dumps(to_data(thing), allow_nan=False)))
+
+
+@pytest.fixture
+def run(q0):
+    return fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.FPBM(0.6, [1, 2, 3, 4], 1, 1), q0, dt=0.01)
+
+
+def bits(run):
+    arrays = (run.t, run.q, run.qd, run.qdd, run.x, run.x_ref, run.error, run.scale, run.saturated)
+    return [None if array is None else (array.shape, array.dtype, array.tobytes()) for array in arrays]
+
+
+RUNS = {
+    **{f"Panda's position, {name}": (PANDA, fp.Circle(0.05, 0.5), SCHEMES[name], READY, {}) for name in SCHEMES},
+    **{
+        f"Panda's pose, {name}": (
+            PANDA,
+            fp.Line([0, 0, 0.1], 0.5).with_turn([0, 0, 0.2]),
+            scheme,
+            READY,
+            {"task": "pose"},
+        )
+        for name, scheme in SCHEMES.items()
+        if scheme.level == "velocity" or "all" not in name
+    },
+    "paper's": (FLAT, fp.Circle(0.2, 1.0), fp.FPBM(1 / 3, [1, 2, 3, 4], 1, 1), None, {"hold": 0.5}),
+    "paper's, from a velocity": (FLAT, fp.Circle(0.2, 1.0), fp.MAN(), None, {"qd0": (0.01, 0, -1 / 300, 0)}),
+    "planar pose": (FLAT, fp.Circle(0.2, 1.0).with_turn(0.2), fp.MVN(), [0.3, 0.9, 0.9, 0.5], {"task": "pose"}),
+    "stopped early": (FLAT, fp.Line([5, 0], 5.0), fp.MVN(), None, {"partial": True}),
+    "stopped at once": (FLAT, fp.Circle(0.2, 1.0), fp.MAN(), [0, 0, 0, 0], {"partial": True}),
+}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_run_comes_back_and_is_made_again(name, tmp_path, q0):
+    arm, path, scheme, start, options = RUNS[name]
+    run = fp.simulate(arm, path, scheme, q0 if start is None else start, dt=0.01, **options)
+    run.save(tmp_path / "run.npz")
+    back = fp.load(tmp_path / "run.npz")
+    assert bits(back) == bits(run)
+    assert back == run
+    assert back.arm == run.arm
+    assert type(back.scheme) is type(run.scheme)
+    assert repr(back) == repr(run)
+    assert back.options == run.options
+    assert (back.status.code, back.status.time, back.task) == (run.status.code, run.status.time, run.task)
+    again = back.replay()
+    assert bits(again) == bits(run)
+    assert again == run
+
+
+@pytest.mark.parametrize("scheme", [fp.MVN(k=5), fp.FPBM(0.6, [1, 2, 3, 4], 10, 25, null_damping=2)], ids=repr)
+@pytest.mark.parametrize("limits", [None, LIMITS], ids=["free", "limits"])
+def test_a_run_within_limits_comes_back_and_is_made_again(scheme, limits, tmp_path, q0):
+    run = fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, q0, dt=0.01, hold=0.2, limits=limits, pull=1 / 3)
+    run.save(tmp_path / "run.npz")
+    back = fp.load(tmp_path / "run.npz")
+    assert bits(back) == bits(run)
+    assert back == run
+    assert repr(back.options["limits"]) == repr(limits)
+    assert bits(back.replay()) == bits(run)
+    assert back.replay() == run
+
+
+def test_motions_of_a_sweep_are_made_again(q0):
+    sweep = fp.sweep(FLAT, fp.Circle(0.2, 1.0), [fp.MVN(), fp.MAN()], [q0, q0 + 0.1], dt=0.01, hold=0.1, motions=True)
+    for run in sweep.motions.ravel():
+        assert run.replay() == run
+
+
+def test_a_run_that_does_not_say_how_it_was_made(run):
+    with pytest.raises(ValueError, match=r"options = {}: must hold the arguments"):
+        replace(run, options={}).replay()
+
+
+def test_equal_is_all_of_it(run, q0):
+    assert run == replace(run, q=run.q.copy(), provenance={"note": "elsewhere"})
+    changed = run.q.copy()
+    changed[50, 2] = np.nextafter(changed[50, 2], 9)
+    zeros = replace(run, error=0 * run.error)
+    assert zeros == replace(zeros, error=0 * run.error)
+    assert zeros != replace(zeros, error=-np.abs(zeros.error))  # -0.0 is another bit.
+    for other in (
+        {"q": changed},
+        {"path": fp.Circle(0.2, 1.0, time_law="quintic")},
+        {"scheme": fp.FPBM(0.6, [1, 2, 3, 5], 1, 1)},
+        {"arm": fp.PlanarArm([1, 1, 1, 2])},
+        {"options": {**run.options, "hold": 1.0}},
+        {"scale": np.ones(len(run.t))},
+    ):
+        assert replace(run, **other) != run, other
+    assert run != 7
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(run)
+
+
+def test_provenance(run, tmp_path):
+    assert run.provenance == {}
+    run.save(tmp_path / "one.npz", note='Grüße, "ends"\0', seed=2**100)
+    one = fp.load(tmp_path / "one.npz")
+    assert one.provenance["note"] == 'Grüße, "ends"\0'
+    assert one.provenance["seed"] == 2**100
+    assert one.provenance["fpbm_cpp"] == fp.__version__
+    assert one.provenance["numpy"] == np.__version__
+    assert one.provenance.keys() == {"date", "fpbm_cpp", "numpy", "python", "system", "processor", "note", "seed"}
+    replace(one, provenance={**one.provenance, "date": "then"}).save(tmp_path / "two.npz", seed=np.arange(3))
+    two = fp.load(tmp_path / "two.npz")
+    assert two.provenance == {**one.provenance, "date": "then", "seed": [0, 1, 2]}
+    for seed in (0.5, "seven", [1, 0.5]):
+        with pytest.raises(ValueError, match="must be a whole number, or several"):
+            run.save(tmp_path / "one.npz", seed=seed)
+    with pytest.raises(ValueError, match="note = 7: must be text"):
+        run.save(tmp_path / "one.npz", note=7)
+
+
+def test_numpy_reads_the_arrays(run, tmp_path):
+    run.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz") as saved:
+        np.testing.assert_array_equal(saved["qdd"], run.qdd)
+        meta = json.loads(str(saved["meta"]))
+    assert meta["path"] == {"make": "Circle", "args": [0.2, 1.0], "kwargs": {"time_law": "sin_squared"}}
+    assert meta["status"]["code"] == "OK"
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(run, tmp_path, monkeypatch):
+    file = tmp_path / "run"  # By this very name: no suffix is added.
+    run.save(str(file))
+    before = file.read_bytes()
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", full)
+        with pytest.raises(OSError, match="No space"):
+            run.save(file, note="other")
+    assert file.read_bytes() == before
+    assert os.listdir(tmp_path) == ["run"]
+    run.save(file, note="other")
+    assert fp.load(file).provenance["note"] == "other"
+
+
+def test_another_process_reads_it_and_makes_it_again(run, tmp_path):
+    run.save(tmp_path / "run.npz")
+    code = "import sys, fpbm_cpp as fp; run = fp.load(sys.argv[1]); sys.exit(run.replay() != run)"
+    subprocess.run([sys.executable, "-c", code, tmp_path / "run.npz"], check=True)
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_paths(name):
+    expect_same_path(PATHS[name], through_json(PATHS[name]))
+    expect_same_path(PATHS[name], through_json(through_json(PATHS[name])))
+
+
+@pytest.mark.parametrize(
+    "turn", [0.1 + 0.2, np.float64(0.3), np.float32(0.3), 1, (0, 0, 1 / 3), np.array([0.1, 0, 0])], ids=repr
+)
+def test_paths_keep_the_kind_of_what_they_were_given(turn):
+    planar = np.ndim(turn) == 0
+    path = (fp.Line([1, 0], 1.0) if planar else fp.Line([1, 0, 0], 1.0)).with_turn(turn)
+    expect_same_path(path, through_json(path))
+
+
+def test_a_long_chain_of_paths():
+    path = fp.Line([0.1, 0], 1.0)
+    for i in range(1500):
+        path = path.then(fp.Line([0.1, 0.01 * (i % 2)], 1.0))
+    back = through_json(path)
+    assert repr(back) == repr(path)
+    assert [x.tobytes() for x in back.sample(1234.5)] == [x.tobytes() for x in path.sample(1234.5)]
+
+
+def test_arms_and_second_tasks():
+    rail = fp.Joint("prismatic", axis=(0, 1, 0), lower=-1, upper=1, name='rail, "long" ü', mimic=None)
+    follower = fp.Joint("revolute", mimic=(0, 2.0, 0.1))
+    for arm in (FLAT, fp.PlanarArm([0.1, 1 / 3]), PANDA, fp.SerialArm([rail, *PANDA.joints, follower], PANDA.tip)):
+        back = through_json(arm)
+        assert back == arm
+        assert back.joint_names == arm.joint_names
+        assert repr(back.limits) == repr(arm.limits)
+    for thing in (ELBOW, fp.Gaze([0, 0, -1 / 3], k1=3), fp.SecondTask(FLAT, [1, 2]), LIMITS):
+        assert repr(through_json(thing)) == repr(thing)
+
+
+@given(
+    st.lists(st.floats(allow_nan=False) | st.just(np.nan), min_size=4, max_size=4),
+    st.sampled_from(["float64", "float32", "float16", "int8", "<f8", ">f8"]),
+)
+def test_numbers_are_exact(numbers, kind):
+    with np.errstate(all="ignore"):
+        if np.dtype(kind).kind == "i":
+            numbers = [0 if not np.isfinite(number) else int(number) % 100 for number in numbers]
+        array = np.array(numbers).astype(kind)
+    for thing in (numbers, tuple(numbers), array, array.reshape(2, 2), array[0]):
+        back = through_json(thing)
+        assert type(back) is type(thing)
+        assert np.asarray(back).tobytes() == np.asarray(thing, np.asarray(thing).dtype.newbyteorder("=")).tobytes()
+
+
+def test_what_other_libraries_have_for_arrays(q0):
+    pandas = pytest.importorskip("pandas")
+    here = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.WMVN(pandas.Series([1.0, 2, 3, 1 / 3])), q0, dt=0.01)
+    there = fp.simulate(FLAT, fp.Circle(0.2, 1.0), through_json(here.scheme), q0, dt=0.01)
+    assert bits(here) == bits(there)
+    with pytest.raises(ValueError, match="must be a thing of this package"):
+        to_data({1, 2})
+
+
+# What a hostile or damaged file says in place of its path, and what is said of it.
+NO_PATHS = {
+    "another module's": (
+        {"make": "os.system", "args": ["true"]},
+        r"make = 'os.system': must be one of PlanarArm, .*FPBM",
+    ),
+    "this package's, but no recipe": ({"make": "load", "args": ["/etc/passwd"]}, "make = 'load': must be one of"),
+    "nothing": ({}, "make = None"),
+    "unhashable": ({"make": ["Circle"]}, "holds no run"),
+    "a method": (
+        {"make": "Circle", "args": [0.1, 1.0], "calls": [["sample", [0.0], {}]]},
+        "call of 'sample' on a Circle",
+    ),
+    "of no path": ({"make": "MVN", "calls": [["then", [], {}]]}, "call of 'then' on a MVN: must be in_plane"),
+    "wrong numbers": ({"make": "Circle", "args": [-1.0, 1.0]}, "radius = -1"),
+    "wrong kinds": ({"make": "Circle", "args": ["x", 1.0]}, "holds no run"),
+    "too many": ({"make": "Circle", "args": [1.0, 1.0, 1.0]}, "holds no run"),
+    "no list": ({"make": "Circle", "args": 7}, "holds no run"),
+    "objects": ({"make": "Waypoints", "args": [{"array": [[0, 0], [1, 1]], "dtype": "object"}]}, "dtype = 'object'"),
+    "no array": ({"make": "Waypoints", "args": [{"array": [[0], [1, 1]], "dtype": "float64"}]}, "holds no run"),
+    "no number": ({"make": "Circle", "args": [{"float": "__import__('os')"}, 1.0]}, "make = None"),
+    "a scheme": ({"make": "MVN"}, "holds no run"),
+}
+
+
+def rewritten(file, change=None, **members):
+    """A saved run with another meta, or with other members."""
+    with np.load(file) as saved:
+        arrays = {name: saved[name] for name in saved.files}
+    meta = json.loads(str(arrays["meta"]))
+    meta.update(change or {})
+    arrays["meta"] = np.array(json.dumps(meta))
+    arrays.update(members)
+    np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
+
+
+@pytest.mark.parametrize("what", NO_PATHS)
+def test_a_file_that_names_anything_else_is_refused(what, run, tmp_path):
+    data, words = NO_PATHS[what]
+    run.save(tmp_path / "run.npz")
+    rewritten(tmp_path / "run.npz", {"path": data})
+    if what == "a scheme":
+        rewritten(tmp_path / "run.npz", {"arm": data})
+    with pytest.raises(ValueError, match=words) as caught:
+        fp.load(tmp_path / "run.npz")
+    assert str(caught.value).startswith(str(tmp_path / "run.npz"))
+
+
+@pytest.mark.parametrize(
+    ("change", "members", "words"),
+    [
+        ({"version": 2}, {}, r"its format 2 is newer than 1, .*: upgrade fpbm_cpp"),
+        ({"version": "1"}, {}, "its format is 'fpbm_cpp run' '1'"),
+        ({"format": "other"}, {}, "its format is 'other' 1"),
+        ({"status": {"code": "BORED", "time": 1.0, "q": []}}, {}, "BORED"),
+        ({"task": "dance"}, {}, "task = 'dance'"),
+        ({"options": 7}, {}, "holds no run"),
+        ({}, {"meta": None}, "says nothing of arm, path and scheme"),
+        ({}, {"meta": np.array("{")}, "must be a whole file that a run was saved to"),
+        ({}, {"meta": np.array("[" * 100_000)}, "must be a whole file that a run was saved to"),
+        ({}, {"q": None}, "holds no run: .*q"),
+        ({}, {"q": np.zeros((101, 3))}, r"q has shape \(101, 3\) and type float64: must have \(101, 4\) and float64"),
+        ({}, {"x": np.zeros((101, 3))}, r"x has shape \(101, 3\)"),
+        ({}, {"t": np.zeros(100)}, "has shape"),
+        ({}, {"t": np.zeros(())}, "holds no run"),
+        ({}, {"q": np.zeros((101, 4), int)}, "type int64: must have"),
+        ({}, {"saturated": np.zeros((101, 4))}, r"saturated has shape \(101, 4\) and type float64"),
+    ],
+)
+def test_a_file_with_something_wrong_is_refused(change, members, words, run, tmp_path):
+    run.save(tmp_path / "run.npz")
+    rewritten(tmp_path / "run.npz", change, **members)
+    with pytest.raises(ValueError, match=words):
+        fp.load(tmp_path / "run.npz")
+
+
+def test_nothing_in_a_file_is_executed(tmp_path):
+    class Trap:
+        def __reduce__(self):
+            return open, (str(tmp_path / "sprung"), "w")
+
+    np.savez(tmp_path / "run.npz", meta=np.array([Trap()], dtype=object))
+    with pytest.raises(ValueError, match="allow_pickle=False"):
+        fp.load(tmp_path / "run.npz")
+    assert os.listdir(tmp_path) == ["run.npz"]
+
+
+def test_a_file_that_is_no_run_is_refused(run, tmp_path):
+    file = tmp_path / "run.npz"
+    run.save(file)
+    whole = file.read_bytes()
+    damaged = bytearray(whole)
+    damaged[len(whole) // 2] ^= 0xFF
+    pickled, single, archive = io.BytesIO(), io.BytesIO(), io.BytesIO()
+    np.savez(pickled, meta=np.array([{"a": 1}], dtype=object))
+    np.save(single, run.q)
+    with zipfile.ZipFile(archive, "w") as other:
+        other.writestr("meta", "{}")
+    broken = [pickled.getvalue(), single.getvalue(), archive.getvalue(), bytes(damaged), b"", b"\x80\x04N."]
+    for content in (*broken, *(whole[:n] for n in range(1, len(whole), 997)), whole[:-1]):
+        file.write_bytes(content)
+        with pytest.raises(ValueError, match=r"run\.npz: must be a whole file that a run was saved to"):
+            fp.load(file)
+    with pytest.raises(FileNotFoundError):
+        fp.load(tmp_path / "none.npz")
