@@ -21,7 +21,8 @@ class Course {
 
   /// start: where the path's origin is laid, in the base frame. ramp: how long a pause or a resumption takes [s].
   /// Throws std::invalid_argument unless ramp is positive.
-  Course(const Path& path, const Point& start, Scalar ramp = Scalar(0.5)) : path_(path), start_(start), ramp_(ramp) {
+  Course(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
+      : path_(path), start_(start), ramp_(ramp), elapsed_(ramp) {
     validation::require_positive("ramp", static_cast<double>(ramp));
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
@@ -35,7 +36,7 @@ class Course {
 
   /// Reference so many seconds from now.
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
-    const Scalar p = time_ + way(elapsed_ + seconds) - way(elapsed_);
+    const Scalar p = steady() ? time_ + to_ * seconds : time_ + way(elapsed_ + seconds) - way(elapsed_);
     if (time_ >= path_.duration() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
     Reference<Space, Scalar> reference = sample_within(path_, p, time_);
     const auto [r, rd] = rate(elapsed_ + seconds);
@@ -47,11 +48,22 @@ class Course {
 
   /// Lets the clock go on.
   void advance(Scalar seconds) noexcept {
+    if (steady()) {
+      // Ticks are counted, since a sum of their lengths would wander off by a round-off each.
+      if (ticks_ == Scalar(0) || seconds != tick_) {
+        since_ = time_;
+        tick_ = seconds;
+        ticks_ = Scalar(0);
+      }
+      ticks_ += Scalar(1);
+      time_ = since_ + to_ * tick_ * ticks_;
+      return;
+    }
     time_ += way(elapsed_ + seconds) - way(elapsed_);
     elapsed_ += seconds;
-    if (elapsed_ > ramp_) {
+    if (steady()) {
       elapsed_ = ramp_;
-      slope_ = curvature_ = Scalar(0);
+      slope_ = curvature_ = ticks_ = Scalar(0);
       from_ = to_;
     }
   }
@@ -71,6 +83,9 @@ class Course {
     curvature_ = Scalar(3) * (target - r) - Scalar(2) * slope_;
     elapsed_ = Scalar(0);
   }
+
+  /// Whether the rate stays as it is.
+  [[nodiscard]] bool steady() const noexcept { return elapsed_ >= ramp_; }
 
   [[nodiscard]] Scalar cubic() const noexcept { return to_ - from_ - slope_ - curvature_; }
 
@@ -95,7 +110,10 @@ class Course {
   Point end_;
   Scalar ramp_;
   Scalar time_{0};
-  Scalar elapsed_{0};  ///< Since the cubic began.
+  Scalar since_{0};  ///< Path time when the equal ticks began that are being counted,
+  Scalar tick_{0};   ///< the length of one [s],
+  Scalar ticks_{0};  ///< and how many they are.
+  Scalar elapsed_;   ///< Since the cubic began [s].
   Scalar from_{1};
   Scalar to_{1};
   Scalar slope_{0};
