@@ -71,7 +71,7 @@ lint: $(VENV)/package $(VENV)/lint
 	$(BIN)/ruff check .
 	$(BIN)/mypy --python-executable $(BIN)/python
 	$(BIN)/python tools/stubs.py --check
-	$(BIN)/python -m mypy.stubtest fpbm_cpp --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
+	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
 
 format: $(VENV)/lint
 	tools/need.sh clang-format
