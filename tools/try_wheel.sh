@@ -11,7 +11,7 @@ rm -rf "$trial"
 here=$(pwd)
 python=$here/$trial/bin/python
 alone() {
-    env -i PATH="$here/$trial/bin" HOME="$here/$trial" "$@"
+    env -i PATH="$here/$trial/bin" HOME="$here/$trial" PIP_DISABLE_PIP_VERSION_CHECK=1 "$@"
 }
 
 alone "$python" -m pip install --quiet --no-index --only-binary :all: --find-links "$house" "$wheel"

@@ -34,7 +34,7 @@ def the_package() -> str:
     assert fp.__version__ == version("fpbm_cpp"), f"{fp.__version__} is not {version('fpbm_cpp')}"
     extras = {"click", "dask", "matplotlib", "scipy", "tqdm", "yourdfpy"} & sys.modules.keys()
     assert not extras, f"import fpbm_cpp brings {extras}"
-    assert (site / "fpbm_cpp" / "py.typed").exists()
+    assert (site / "fpbm_cpp" / "py.typed").exists(), "py.typed is missing"
     return f"fpbm_cpp {fp.__version__}, Python {platform.python_version()}, NumPy {np.__version__}"
 
 
