@@ -11,7 +11,7 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench count clean
+.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench count sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -24,6 +24,7 @@ help:
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
+	@echo 'make sdist, wheel     the source distribution; from it, offline, a wheel for many a Linux, tried on its own'
 
 demo: $(VENV)/package
 	$(BIN)/fpbm-cpp reproduce --out $(OUT)
@@ -70,6 +71,7 @@ lint: $(VENV)/package $(VENV)/lint
 	$(BIN)/ruff check .
 	$(BIN)/mypy --python-executable $(BIN)/python
 	$(BIN)/python tools/stubs.py --check
+	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
 
 format: $(VENV)/lint
 	tools/need.sh clang-format
@@ -94,8 +96,15 @@ count:
 	cmake --build --preset bench --target bench_count
 	$(PYTHON) bench/count.py build/bench/bench/bench_count $(if $(RECORD),--record)
 
+sdist: $(VENV)/wheel
+	tools/sdist.sh $(BIN)/python
+
+wheel: sdist
+	tools/need.sh g++
+	tools/wheel.sh $(BIN)/python
+
 clean:
-	rm -rf build $(VENV) demo
+	rm -rf build dist $(VENV) demo
 
 # The package with its command line, and the tools of a dependency group in pyproject.toml.
 $(VENV)/package: $(PACKAGE)
@@ -104,6 +113,12 @@ $(VENV)/package: $(PACKAGE)
 	@touch $@
 
 $(VENV)/test $(VENV)/lint: pyproject.toml | $(VENV)/package
+	$(BIN)/python -m pip install --quiet --group $(notdir $@)
+	@touch $@
+
+# What makes distributions needs no package installed.
+$(VENV)/wheel: pyproject.toml
+	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 

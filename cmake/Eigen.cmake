@@ -5,6 +5,7 @@ if(NOT Eigen3_FOUND)
   if(Python_FOUND)
     execute_process(COMMAND "${Python_EXECUTABLE}" -m cmeel cmake
                     OUTPUT_VARIABLE cmeel_prefix OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    file(TO_CMAKE_PATH "${cmeel_prefix}" cmeel_prefix)
     find_package(Eigen3 3.4 QUIET NO_MODULE HINTS ${cmeel_prefix})
   endif()
 endif()

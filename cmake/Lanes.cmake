@@ -1,7 +1,13 @@
-# Whether code in a processor's lanes can be compiled here, and with which options for each kind of processor.
+# Whether code in a processor's lanes can be compiled here, and with which options for each kind of processor. Some
+# standard libraries have the header and little in it, so what the lanes need of it is tried.
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX17_STANDARD_COMPILE_OPTION})
-check_cxx_source_compiles("#include <experimental/simd>\nint main() { return __x86_64__ - 1; }" FPBM_HAS_LANES)
+check_cxx_source_compiles("
+  #include <experimental/simd>
+  int main() {
+    const std::experimental::native_simd<double> lanes([](auto i) { return 1.0 + i; });
+    return all_of(isfinite(sqrt(lanes))) ? __x86_64__ - 1 : 1;
+  }" FPBM_HAS_LANES)
 unset(CMAKE_REQUIRED_FLAGS)
 set(lane_options -fno-math-errno)
 set(avx2_options -mavx2 -mfma)

@@ -1,0 +1,22 @@
+#!/bin/sh
+# Writes the source distribution to dist/, and makes sure that it holds what building and testing take, and no more.
+#   sdist.sh PYTHON, one with the packages of the group wheel
+set -eu
+python=$1
+rm -rf dist
+
+"$python" -m build --sdist --outdir dist .
+archive=$(ls dist/*.tar.gz)
+"$python" -m twine check --strict "$archive"
+
+expected="CHANGELOG.md CITATION.cff CMakeLists.txt LICENSE PKG-INFO README.md cmake cpp examples pyproject.toml python tests"
+found=$(tar -tzf "$archive" | cut -d / -f 2 | LC_ALL=C sort -u | xargs)
+if test "$found" != "$expected"; then
+    printf '%s holds\n  %s\nand should hold\n  %s\n' "$archive" "$found" "$expected" >&2
+    exit 1
+fi
+if tar -tzf "$archive" | grep -E '\.(png|pdf|so|pyd|o|pyc)$'; then
+    echo "$archive holds what is made, not written" >&2
+    exit 1
+fi
+echo "$archive has $(stat --format %s "$archive") bytes"

