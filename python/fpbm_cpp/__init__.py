@@ -43,6 +43,7 @@ from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep
 from .sweep_result import Sweep
+from .tuning import TuneInterrupted, Tuning, tune
 
 __all__ = [
     "FPBM",
@@ -75,6 +76,8 @@ __all__ = [
     "Tick",
     "Tracker",
     "Tricuspid",
+    "TuneInterrupted",
+    "Tuning",
     "WMVNAcceleration",
     "Waypoints",
     "__version__",
@@ -83,4 +86,5 @@ __all__ = [
     "rotation_vector",
     "simulate",
     "sweep",
+    "tune",
 ]
