@@ -178,7 +178,7 @@ def test_a_baseline_that_is_infeasible():
 def test_where_nothing_is_feasible():
     with pytest.raises(RuntimeError, match="none of 9 schemes is feasible: 9 stopped early"):
         fp.tune(ARM, fp.Line([5, 0], 5.0), Q0, dt=0.05, trials=8)
-    with pytest.raises(RuntimeError, match=r"0 stopped early .* the others err by .* at least, where max_error = 1e-12"):
+    with pytest.raises(RuntimeError, match=r"0 stopped early .* the others err by .* at least, where max_error"):
         quick(dt=0.25, max_error=1e-12)
 
 
@@ -208,7 +208,7 @@ def test_text(tuning):
     assert f"{tuning.value:.5g} rad/s, " in text
     assert "121 schemes tried, 121 feasible" in text
     rows = [line.split() for line in text.splitlines()]
-    assert ["baseline", "tuned", "step", "down", "step", "up"] in rows
+    assert ["baseline", "tuned", "-10", "%", "+10", "%"] in rows
     assert [row[:2] for row in rows if row[:1] == ["alpha"]] == [["alpha", "0.6"]]
     assert repr(tuning.scheme) in repr(tuning)
 

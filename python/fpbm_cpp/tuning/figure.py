@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -37,15 +38,15 @@ DARK = Colours("#14161a", "0.92", "0.35", OKABE_ITO[4], OKABE_ITO[1], OKABE_ITO[
 def plot_tuning(tuning: Tuning, *, dark: bool = False) -> Figure:
     """The Pareto front with best and baseline, what a step of each parameter changes, and the best so far."""
     colours = DARK if dark else LIGHT
-    figure = Figure(figsize=(15.4, 5.4), dpi=150, layout="constrained", facecolor=colours.paper)
+    figure = Figure(figsize=(15.4, 5.6), dpi=150, layout="constrained", facecolor=colours.paper)
     grid = figure.subplots(1, 3, width_ratios=[1.15, 1.0, 1.0])
     panels = (("Pareto front", _front), ("Sensitivity", _sensitivity), ("Convergence", _convergence))
     for letter, axes, (heading, draw) in zip("abc", grid, panels):
         draw(axes, tuning, colours)
         _dress(axes, f"({letter}) {heading}", colours)
-    figure.suptitle(
-        f"{tuning.arm!r} along {tuning.path!r}, tuned for {tuning.objective}", fontsize=16, color=colours.ink
-    )
+    title = f"{tuning.objective} of {tuning.arm!r} along {tuning.path!r}"
+    wrapped = "\n".join(textwrap.wrap(title, 120, max_lines=2, placeholder=" …"))
+    figure.suptitle(wrapped, fontsize=16, color=colours.ink)
     return figure
 
 
@@ -54,7 +55,7 @@ def _front(axes: Axes, tuning: Tuning, colours: Colours) -> None:
     trials, front = tuning.trials, tuning.front
     best, baseline = trials[[trials.best()]], trials[:1]
     axes.plot(*_pair(trials[trials.feasible]), ".", color=colours.faint, ms=5, label="tried")
-    axes.plot(*_pair(front), "o-", color=colours.line, lw=1.6, ms=4.5, label="front")
+    axes.plot(*_pair(front), "o-", color=colours.line, lw=1.6, ms=4.5, drawstyle="steps-post", label="front")
     axes.plot(*_pair(baseline), "s", color=colours.ink, ms=9, label="baseline")
     axes.plot(*_pair(best), "*", color=colours.best, mec=colours.paper, mew=0.6, ms=19, label="best", zorder=3)
     shown = np.concatenate([_pair(front), _pair(baseline), _pair(best)], axis=1)
@@ -62,13 +63,13 @@ def _front(axes: Axes, tuning: Tuning, colours: Colours) -> None:
     margin = 0.12 * np.where(high > low, high - low, np.abs(high))
     axes.set(xlim=(low[0] - margin[0], high[0] + margin[0]), ylim=(low[1] - margin[1], high[1] + margin[1]))
     axes.set(xlabel="peak velocity [rad/s]", ylabel="peak acceleration [rad/s²]")
-    axes.legend(frameon=False, fontsize=11, labelcolor=colours.ink)
+    _legend(axes, colours)
 
 
 def _sensitivity(axes: Axes, tuning: Tuning, colours: Colours) -> None:
     """What one step of each parameter adds to the objective."""
     names = list(tuning.sensitivity)
-    for side, colour, label in ((0, colours.line, "a step down"), (1, colours.other, "a step up")):
+    for side, colour, label in ((0, colours.line, "−10 % (alpha −0.05)"), (1, colours.other, "+10 % (alpha +0.05)")):
         steps = np.array([tuning.sensitivity[name][side] for name in names])
         where = np.arange(len(names)) + (side - 0.5) * 0.36
         axes.barh(where, np.where(np.isfinite(steps), steps, 0.0), 0.34, color=colour, label=label)
@@ -80,7 +81,7 @@ def _sensitivity(axes: Axes, tuning: Tuning, colours: Colours) -> None:
     axes.set_xlabel(f"change of {_label(tuning)}")
     axes.ticklabel_format(axis="x", scilimits=(-2, 3), useMathText=True)
     if names:
-        axes.legend(frameon=False, fontsize=11, labelcolor=colours.ink)
+        _legend(axes, colours)
 
 
 def _convergence(axes: Axes, tuning: Tuning, colours: Colours) -> None:
@@ -88,9 +89,27 @@ def _convergence(axes: Axes, tuning: Tuning, colours: Colours) -> None:
     trials = tuning.trials
     best = np.minimum.accumulate(np.where(trials.feasible, trials.value, np.inf))
     best[np.isinf(best)] = np.nan
-    axes.plot(np.arange(1, len(best) + 1), best, drawstyle="steps-post", color=colours.line, lw=2.0)
-    axes.axhline(tuning.baseline_value, color=colours.ink, lw=1.0, ls="--")
+    axes.plot(
+        np.arange(1, len(best) + 1), best, drawstyle="steps-post", color=colours.line, lw=2.0, label="best so far"
+    )
+    if np.isfinite(tuning.baseline_value):
+        axes.axhline(tuning.baseline_value, color=colours.ink, lw=1.2, ls="--", label="baseline")
+    _legend(axes, colours)
     axes.set(xlabel="schemes tried", ylabel=f"least {_label(tuning)}", xlim=(1, max(2, len(best))))
+
+
+def _legend(axes: Axes, colours: Colours) -> None:
+    """Legend in one row below the axes, where nothing is drawn."""
+    axes.legend(
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.12),
+        ncols=len(axes.get_legend_handles_labels()[1]),
+        frameon=False,
+        fontsize=11,
+        columnspacing=1.2,
+        handlelength=1.6,
+        labelcolor=colours.ink,
+    )
 
 
 def _pair(trials: Trials) -> np.ndarray:

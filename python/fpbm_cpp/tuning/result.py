@@ -93,9 +93,7 @@ class Tuning:
     def __str__(self) -> str:
         """A table: what was won, and of each parameter the baseline's, the best, and what a step away from it costs."""
         trials, unit = self.trials, f" {self.unit}" if self.unit else ""
-        head = f"{'':14}{'baseline':>12}{'tuned':>12}" + (
-            f"{'step down':>12}{'step up':>12}" if self.sensitivity else ""
-        )
+        head = f"{'':14}{'baseline':>12}{'tuned':>12}" + (f"{'-10 %':>12}{'+10 %':>12}" if self.sensitivity else "")
         lines = [
             f"{self.objective} of {self.arm!r} along {self.path!r}",
             f"{self.value:.5g}{unit}, {self._against()}",
@@ -108,7 +106,7 @@ class Tuning:
             steps = "".join(f"{_change(step):>12}" for step in self.sensitivity.get(name, ()))
             lines.append(f"{name:14}{before[name]:12.4g}{value:12.4g}{steps}")
         if self.sensitivity:
-            lines += ["", f"step: 0.05 of alpha, 10 % of all others, and what it adds to {self.objective}"]
+            lines += ["", f"-10 %, +10 %: what such a step of one parameter, of alpha 0.05, adds to {self.objective}"]
         return "\n".join(lines)
 
     def _against(self) -> str:

@@ -28,16 +28,23 @@ def neighbours(scheme: FPBM) -> Neighbours:
     return {name: (_stepped(scheme, name, -1.0), _stepped(scheme, name, 1.0)) for name in flat(scheme)}
 
 
-def steps_of(scheme: FPBM) -> int:
+def most_neighbours(scheme: FPBM) -> int:
     """How many neighbours there are at most."""
     return 2 * len(flat(scheme))
+
+
+def every(around: Neighbours) -> list[FPBM]:
+    """All neighbours, in order."""
+    return [scheme for pair in around.values() for scheme in pair if scheme is not None]
 
 
 def changes(value: float, around: Neighbours, trials: Trials) -> dict[str, tuple[float, float]]:
     """What each step adds to a value, from the trials of all neighbours in order; as in Tuning.sensitivity."""
     values = iter(np.where(trials.feasible, trials.value, np.inf).tolist())
-    steps = {name: [np.nan if law is None else next(values) - value for law in pair] for name, pair in around.items()}
-    return {name: (down, up) for name, (down, up) in steps.items()}
+    return {
+        name: (np.nan if down is None else next(values) - value, np.nan if up is None else next(values) - value)
+        for name, (down, up) in around.items()
+    }
 
 
 def _stepped(scheme: FPBM, name: str, side: float) -> FPBM | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,8 @@ from ..sweep import sweep
 from .objectives import Objective, measure
 from .result import TuneInterrupted, Tuning
 from .search import Search, front, least, require_cmaes
-from .sensitivity import changes, neighbours, steps_of
-from .space import make_space, paper_choice
+from .sensitivity import changes, every, most_neighbours, neighbours
+from .space import Space, make_space, paper_choice
 from .trials import Trials, joined, trials_of
 
 
@@ -90,10 +91,10 @@ def tune(
         Where the extra 'tune' is missing, or with progress=True the extra 'progress'; nothing is run.
     """
     start = np.asarray(q0, float)
-    law = paper_choice(arm.dof) if baseline is None else baseline
-    _check(arm, start, law, max_error, trials, seed)
-    space, wanted = make_space(search, law, arm.dof), measure(objective, arm)
-    _core.check_sweep(arm, path, [law], start, dt, hold, task)
+    first = paper_choice(arm.dof) if baseline is None else baseline
+    _check(arm, start, first, max_error, trials, seed)
+    space, wanted = make_space(search, first, arm.dof), measure(objective, arm)
+    _core.check_sweep(arm, path, [first], start, dt, hold, task)
     require_cmaes()
     tried: list[Trials] = []
 
@@ -102,28 +103,25 @@ def tune(
         done = sweep(arm, path, schemes, start, dt, motions=wanted.of_run is not None, **how)
         return trials_of(done, wanted, max_error)
 
-    def run_points(points: Array) -> Trials:
-        return run([space.scheme(point) for point in points])
-
     def tuning(sensitivity: dict[str, tuple[float, float]]) -> Tuning:
         return Tuning(joined(tried), sensitivity, wanted.name, wanted.unit, arm, path, start, task)
 
-    total = 1 + trials + steps_of(law)
+    halves = (
+        _half(least(space.size, int(seed)), Trials.scores, int(trials) - int(trials) // 2, space, run),
+        _half(front(space.size, int(seed)), Trials.peaks, int(trials) // 2, space, run),
+    )
+    total = 1 + int(trials) + most_neighbours(first)
     try:
         with reporting(progress, total) as report:
-            tried.append(run([law]))
-            for search_, count, score in (
-                (least(space.size, seed), trials - trials // 2, Trials.scores),
-                (front(space.size, seed), trials // 2, Trials.peaks),
-            ):
-                for batch in _batches(search_, count, run_points, score):
-                    tried.append(batch)
-                    report(sum(map(len, tried)))
+            tried.append(run([first]))
+            for batch in chain(*halves):
+                tried.append(batch)
+                report(sum(map(len, tried)))
             if not any(batch.feasible.any() for batch in tried):
                 raise RuntimeError(_why_none(joined(tried), max_error))
             found = tuning({})
             around = neighbours(found.scheme)
-            sensitivity = changes(found.value, around, run([law for pair in around.values() for law in pair if law]))
+            sensitivity = changes(found.value, around, run(every(around)))
             report(total)
     except KeyboardInterrupt:
         feasible = any(batch.feasible.any() for batch in tried)
@@ -131,12 +129,12 @@ def tune(
     return tuning(sensitivity)
 
 
-def _check(arm: Arm, start: Array, law: object, max_error: float, trials: int, seed: int) -> None:
+def _check(arm: Arm, start: Array, first: object, max_error: float, trials: int, seed: int) -> None:
     """Raise for what no other part checks."""
     if start.shape != (arm.dof,) or not np.all(np.isfinite(start)):
         raise ValueError(f"q0 = {start.tolist()}: must be {arm.dof} finite numbers")
-    if not isinstance(law, FPBM):
-        raise TypeError(f"baseline: must be an FPBM, got {type(law).__name__}")
+    if not isinstance(first, FPBM):
+        raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
     if not 0.0 < max_error < np.inf:
         raise ValueError(f"max_error = {max_error}: must be positive and finite")
     for name, number, lowest in (("trials", trials, 1), ("seed", seed, 0)):
@@ -144,13 +142,17 @@ def _check(arm: Arm, start: Array, law: object, max_error: float, trials: int, s
             raise ValueError(f"{name} = {number}: must be a whole number, {lowest} at least")
 
 
-def _batches(
-    search: Search, count: int, run: Callable[[Array], Trials], score: Callable[[Trials], Array]
+def _half(
+    search: Search,
+    score: Callable[[Trials], Array],
+    count: int,
+    space: Space,
+    run: Callable[[Sequence[FPBM]], Trials],
 ) -> Iterator[Trials]:
-    """So many trials of a search, as many at a time as it asks for, less at the end."""
+    """So many trials of a search, as many at a time as it asks for, fewer in the end."""
     points = next(search)
     while count > 0:
-        batch = run(points[:count])
+        batch = run([space.scheme(point) for point in points[:count]])
         yield batch
         count -= len(batch)
         if count > 0:
