@@ -96,6 +96,19 @@ def test_it_finds_what_is_better(tuning):
     assert len(tuning.front) >= 2
 
 
+@pytest.mark.parametrize(
+    ("before", "words"), [(-2.0, "50 % below the baseline's -2"), (0.0, "against the baseline's 0")]
+)
+def test_objectives_that_are_not_positive(before, words):
+    def sinking(run):
+        return before if "null_damping" not in repr(run.scheme) else -3.0
+
+    tuning = quick(sinking, trials=2)
+    assert tuning.value == -3.0
+    assert words in str(tuning)
+    assert np.isnan(tuning.improvement) if before == 0 else tuning.improvement == 0.5
+
+
 def same(a, b):
     """The same tuning to the last bit."""
     for name in ("value", "peak_velocity", "peak_acceleration", "error", "feasible"):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Union
+from typing import Callable, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._core import Arm
 from .._types import Array
@@ -31,9 +31,15 @@ def range_used(run: Run) -> float:
     Over the joints that the arm's limits bound both ways.
     """
     limits = run.arm.limits
-    bounded = np.isfinite(limits.lower) & np.isfinite(limits.upper)
+    bounded = _bounded(run.arm)
     lower, upper = limits.lower[bounded], limits.upper[bounded]
     return float(np.max(np.abs(2 * run.q[:, bounded] - (lower + upper)) / (upper - lower)))
+
+
+def _bounded(arm: Arm) -> NDArray[np.bool_]:
+    """Which joints are bounded both ways, and free to move between."""
+    lower, upper = arm.limits.lower, arm.limits.upper
+    return np.isfinite(lower) & np.isfinite(upper) & (lower < upper)
 
 
 OF_RUNS: dict[str, tuple[Callable[[Run], float], str]] = {
@@ -69,7 +75,6 @@ def measure(objective: Objective, arm: Arm) -> Measure:
     if objective not in OF_RUNS:
         names = ", ".join(map(repr, (*KEY_FIGURES, *OF_RUNS)))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
-    limits = arm.limits
-    if objective == "limit_distance" and not np.any(np.isfinite(limits.lower) & np.isfinite(limits.upper)):
+    if objective == "limit_distance" and not np.any(_bounded(arm)):
         raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
     return Measure(objective, OF_RUNS[objective][1], OF_RUNS[objective][0])

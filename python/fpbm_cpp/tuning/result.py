@@ -79,7 +79,8 @@ class Tuning:
     @property
     def improvement(self) -> float:
         """By what share of the baseline's value the best is below it; not a number where there is none, or it is 0."""
-        return 1.0 - self.value / self.baseline_value if self.baseline_value else np.nan
+        before = self.baseline_value
+        return (before - self.value) / abs(before) if before else np.nan
 
     def plot(self, *, dark: bool = False) -> Figure:
         """Figure of the tuning: the front with the best and the baseline, the sensitivity, and the convergence.
@@ -112,7 +113,8 @@ class Tuning:
     def _against(self) -> str:
         if np.isnan(self.baseline_value):
             return "where the baseline is infeasible"
-        return f"{100 * self.improvement:.3g} % below the baseline's {self.baseline_value:.5g}"
+        share = f"{100 * self.improvement:.3g} % below " if self.baseline_value else "against "
+        return f"{share}the baseline's {self.baseline_value:.5g}"
 
     def __repr__(self) -> str:
         return f"<Tuning of {self.objective}: {self.value:.5g}, {self._against()}; {self.scheme!r}>"

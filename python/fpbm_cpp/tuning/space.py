@@ -53,7 +53,8 @@ class Space:
 
     def scheme(self, point: Array) -> FPBM:
         """The scheme of a point."""
-        made, values = arguments(self.baseline), self.low + point * (self.high - self.low)
+        made = arguments(self.baseline)
+        values = np.clip(self.low + point * (self.high - self.low), self.low, self.high)
         for name in dict.fromkeys(self.names):
             own = values[[other == name for other in self.names]]
             if name == "weights":

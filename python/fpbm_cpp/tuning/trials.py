@@ -77,10 +77,11 @@ class Trials:
 
 def trials_of(sweep: Sweep, measure: Measure, max_error: float) -> Trials:
     """What came of the schemes of a sweep from one start."""
-    value = measure(sweep)
+    value, schemes = measure(sweep), np.empty(len(sweep.schemes), dtype=object)
+    schemes[:] = sweep.schemes
     error = np.maximum(sweep.largest_error, sweep.largest_turn_error)[:, 0]
     return Trials(
-        np.fromiter(sweep.schemes, dtype=object, count=len(sweep.schemes)),
+        schemes,
         value,
         sweep.peak_velocity[:, 0],
         sweep.peak_acceleration[:, 0],
