@@ -46,6 +46,7 @@ from .simulate import simulate
 from .sweep import sweep
 from .sweep_result import Sweep
 from .track import track
+from .tuning import TuneInterrupted, Tuning, tune
 
 __all__ = [
     "FPBM",
@@ -78,6 +79,8 @@ __all__ = [
     "Tick",
     "Tracker",
     "Tricuspid",
+    "TuneInterrupted",
+    "Tuning",
     "WMVNAcceleration",
     "Waypoints",
     "__version__",
@@ -88,4 +91,5 @@ __all__ = [
     "simulate",
     "sweep",
     "track",
+    "tune",
 ]

@@ -17,6 +17,8 @@ def test_example(example: Path, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
     if "mujoco" in example.read_text():
         pytest.importorskip("mujoco")
+    if "tune" in example.stem:
+        pytest.importorskip("cmaes")
     command = [sys.executable, str(example)]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
     assert result.returncode == 0, result.stderr
@@ -28,5 +30,5 @@ def test_example(example: Path, tmp_path: Path) -> None:
 
 def test_pairs() -> None:
     assert len(EXAMPLES) >= 5
-    alone = {"08_mujoco_panda"}  # A simulator, driven from Python.
+    alone = {"08_mujoco_panda", "10_tune"}  # A simulator and an optimiser, driven from Python.
     assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES if path.stem not in alone)

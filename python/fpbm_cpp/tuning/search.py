@@ -1,0 +1,90 @@
+"""Searches of the unit cube by CMA-ES (Hansen and Ostermeier, 2001): for the least of one number, and the front of two.
+
+Each is a generator that never ends: it yields points, shape (B, d), and is sent what they score, shape (B,) or (B, 2),
+not a number where a point is infeasible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._types import Array
+from .pareto import unbeaten
+
+if TYPE_CHECKING:
+    from cmaes import CMA
+
+Search = Generator[Array, Array, None]
+
+# A generation fills a processor's lanes, and its deviation at the start reaches over the cube.
+LANES, DEVIATION = 8, 0.3
+# Where all of a generation score alike to this share, a search begins again elsewhere.
+ALIKE = 1e-3
+# How many weightings of two scores a front is searched by, the least weight of either, and the share of their sum.
+WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01
+
+
+def require_cmaes() -> None:
+    """Raise ImportError, with what to install, where the searches' library is missing."""
+    try:
+        import cmaes  # noqa: F401
+    except ImportError:
+        raise ImportError('tuning needs cmaes: pip install "fpbm_cpp[tune]"') from None
+
+
+def least(size: int, seed: int) -> Search:
+    """For the least score, from the cube's middle, then from anywhere."""
+    random = np.random.default_rng(seed)
+    middle = np.full(size, 0.5)
+    while True:
+        search = _begin(middle, 2 * LANES, random)
+        alike = False
+        while not alike:
+            points = _ask(search)
+            scores = yield points
+            _tell(search, points, scores)
+            alike = bool(np.ptp(scores) <= ALIKE * np.max(np.abs(scores)))
+        middle = random.uniform(size=size)
+
+
+def front(size: int, seed: int) -> Search:
+    """For the front of two scores: side by side, for the least of several weightings of them.
+
+    A weighting is a Chebyshev norm, of the distance from the front's best in units of the front's extent so far: there
+    is one for each point of a front, also in its hollows, which sums do not find (Bowman, 1976). A little of the sum
+    tells points apart that the norm does not.
+    """
+    random = np.random.default_rng(seed)
+    shares = np.linspace(LEAST_WEIGHT, 1.0 - LEAST_WEIGHT, WEIGHTINGS)
+    searches = [_begin(np.full(size, 0.5), LANES, random) for _ in shares]
+    best = np.empty((0, 2))
+    while True:
+        points = [_ask(search) for search in searches]
+        scores = yield np.concatenate(points)
+        best = np.concatenate([best, scores])
+        best = best[unbeaten(*best.T)]
+        low, extent = (best.min(axis=0), np.ptp(best, axis=0)) if len(best) else (np.zeros(2), np.ones(2))
+        shifted = (scores - low) / np.where(extent > 0.0, extent, 1.0)
+        for search, share, own, score in zip(searches, shares, points, np.split(shifted, WEIGHTINGS)):
+            norms = np.max(np.array([share, 1.0 - share]) * score, axis=1)
+            _tell(search, own, norms + SUM * score.sum(axis=1))
+
+
+def _begin(middle: Array, count: int, random: np.random.Generator) -> CMA:
+    """A search from a middle, by generations of so many points."""
+    from cmaes import CMA
+
+    cube = np.tile([0.0, 1.0], (len(middle), 1))
+    return CMA(middle, DEVIATION, bounds=cube, seed=int(random.integers(2**31)), population_size=count)
+
+
+def _ask(search: CMA) -> Array:
+    return np.array([search.ask() for _ in range(search.population_size)])
+
+
+def _tell(search: CMA, points: Array, scores: Array) -> None:
+    """Infeasible points come last."""
+    search.tell(list(zip(points, np.where(np.isnan(scores), np.inf, scores).tolist())))
