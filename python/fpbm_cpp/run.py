@@ -128,8 +128,8 @@ class Run:
     def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        panels names those wanted instead, of fpbm_cpp.plot.PANELS; dark draws on black. Raises ImportError, with what to
-        install, where matplotlib is missing.
+        panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
+        for a name that is not there, and ImportError, with what to install, where matplotlib is missing.
         """
         from .plot import plot_run
 

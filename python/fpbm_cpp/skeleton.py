@@ -27,10 +27,11 @@ def joint_points(arm: Arm, q: Array) -> Array:
 
 
 def tip_axes(arm: Arm, q: Array) -> Array:
-    """Orientation of the tip in posture q, shape (n,): its axes as columns, shape (2, 2) in the plane, (3, 3) in space."""
+    """Axes of the tip in posture q, shape (n,), as columns: shape (2, 2) in the plane, (3, 3) in space."""
     if isinstance(arm, PlanarArm):
         sine, cosine = np.sin(q.sum()), np.cos(q.sum())
         return np.array([[cosine, -sine], [sine, cosine]])
+    assert isinstance(arm, SerialArm)
     return np.asarray(arm.forward(q)[:3, :3])
 
 

@@ -1,8 +1,8 @@
 """Figures and films of motions, in the size and text of a paper, on white or on black.
 
-One motion by compose() and Run.plot(), several by compare(), in motion by animate(); each panel is a function of axes and
-run, for figures of one's own. Nothing here touches matplotlib.pyplot: figures are objects without global state, made as
-well without a display or in several threads. Show one with IPython's display(run.plot()) or write it with
+One motion by compose() and Run.plot(), several by compare(), in motion by animate(); each panel is a function of axes
+and run, for figures of one's own. Nothing here touches matplotlib.pyplot: figures are objects without global state,
+made as well without a display or in several threads. Show one with IPython's display(run.plot()) or write it with
 run.plot().savefig("run.pdf").
 
 Data flows one way: theme ← lines ← panels (arm, errors, joints, limits, measures) ← compose, compare, animate.

@@ -16,7 +16,7 @@ from .compose import lay_out
 from .film import film_writer
 from .legends import head_legend
 from .panels import PANELS, Panel, choose
-from .theme import Theme, theme_of
+from .theme import TEXT, Theme, theme_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,9 +80,9 @@ def _pictures(
     run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float
 ) -> Iterator[NDArray[np.uint8]]:
     """Pictures of the samples, of shape (height, width, 3); what stands still is drawn once."""
-    figure, drawn = lay_out(run, "", panels, theme)
+    figure, drawn = lay_out(run, "", panels, theme, lettered=False)
     figure.set_dpi(dpi)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     moving = _Moving(run, drawn, theme)
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)
@@ -112,11 +112,12 @@ class _Moving:
 
     def __init__(self, run: Run, drawn: Mapping[str, Any], theme: Theme) -> None:
         stage = drawn["arm"]
+        style = {"textcoords": "offset points", "fontsize": TEXT, "fontweight": "bold", "color": theme.ink}
         nowhere = np.full((run.positions.shape[1], 1), np.nan)
         self.run = run
         (self.trail,) = stage.plot(*nowhere, color=theme.tip, lw=2.4, animated=True)
         (self.arm,) = stage.plot(*nowhere, color=theme.fade(1.0), mec=theme.paper, animated=True, **{**LINK, "lw": 2.6})
-        self.clock = stage.set_title("t = 0.00 s", loc="left", animated=True)
+        self.clock = stage.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), animated=True, **style)
         panels = [axes for name, axes in drawn.items() if name != "arm"]
         self.cursors = [axes.axvline(0.0, color=theme.ink, lw=0.9, animated=True) for axes in panels]
 

@@ -81,13 +81,14 @@ def frame_arm(axes: Any, theme: Theme) -> None:
         axes.set_aspect("equal", adjustable="datalim")
         return
     reach = np.maximum(reach, reach.max() / 2)
-    (x, y, z) = ends.mean(axis=1)[:, None] + np.multiply.outer(reach, [-0.5, 0.5])
-    axes.set(xlim=x, ylim=y, zlim=z)
+    lower, upper = ends.mean(axis=1) + np.multiply.outer([-0.5, 0.5], reach)
+    axes.set(xlim=(lower[0], upper[0]), ylim=(lower[1], upper[1]), zlim=(lower[2], upper[2]))
     axes.set_box_aspect(tuple(reach), zoom=1.2)
     axes.set_anchor("W")
     axes.view_init(elev=20, azim=-55)
     axes.tick_params(pad=-3.0)
-    for axis in every:
+    for axis, least, most in zip(every, lower + 0.08 * reach, upper - 0.08 * reach):
+        axis.set_ticks(step * np.arange(np.ceil(least / step), np.floor(most / step) + 1))  # None in a corner.
         axis.set_pane_color(theme.pane)
         axis.line.set_color(theme.ink)
         axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space have no other way.

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from .joints import unit_of
 from .legends import foot_legend, foot_rows
-from .lines import envelope, from_zero, in_decades, over_time
+from .lines import envelope, from_zero, in_decades, label_time_below, over_time
 from .theme import DPI, PAGE, TEXT, Theme, dress, theme_of
 
 if TYPE_CHECKING:
@@ -50,13 +50,12 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     figure = Figure((PAGE, head + body + foot), dpi=DPI, layout="constrained", facecolor=theme.paper)
     figure.suptitle(title, fontsize=TEXT + 1, color=theme.ink)
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[body, foot])[:, 0]
-    grid = upper.subplots(rows, 2, sharex=True)
+    grid = upper.subplots(rows, 2)
     for letter, axes, (heading, draw) in zip("abcdef", grid.T.flat, panels):
         dress(axes, theme, f"({letter}) {heading}")
         draw(axes, theme, list(named.values()))
-        axes.label_outer()
     for column in grid.T:
-        upper.align_ylabels(column)
+        label_time_below(list(column))
     foot_legend(lower, theme, [grid[0, 0]], PAGE, list(named))
     return figure
 

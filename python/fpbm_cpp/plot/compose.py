@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from .joints import joint_names
 from .legends import foot_legend, foot_rows
+from .lines import label_time_below
 from .panels import PANELS, Panel, choose
 from .theme import COLUMN, DPI, PAGE, TEXT, Theme, dress, theme_of
 
@@ -48,7 +49,7 @@ def compose(
         Where a name is not in PANELS or stands twice, or no panel is left.
     """
     names = choose(run, PAPER[:panels] if isinstance(panels, int) else panels)
-    return lay_out(run, title, {name: PANELS[name] for name in names}, theme_of(dark))[0]
+    return lay_out(run, title, {name: PANELS[name] for name in names}, theme_of(dark), lettered=len(names) > 1)[0]
 
 
 def plot_run(run: Run, *, panels: str | Sequence[str] | None = None, dark: bool = False) -> Figure:
@@ -60,7 +61,9 @@ def plot_run(run: Run, *, panels: str | Sequence[str] | None = None, dark: bool 
     return compose(run, "\n".join(textwrap.wrap(title, width, max_lines=3, placeholder=" …")), panels, dark=dark)
 
 
-def lay_out(run: Run, title: str, panels: Mapping[str, Panel], theme: Theme) -> tuple[Figure, dict[str, Any]]:
+def lay_out(
+    run: Run, title: str, panels: Mapping[str, Panel], theme: Theme, lettered: bool
+) -> tuple[Figure, dict[str, Any]]:
     """Figure of these panels, and the axes of each."""
     columns, rows = _columns(list(panels))
     width = PAGE if len(columns) > 1 else COLUMN
@@ -75,10 +78,10 @@ def lay_out(run: Run, title: str, panels: Mapping[str, Panel], theme: Theme) -> 
     upper, *lower = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
     drawn = _grid(upper, columns, rows, space=run.positions.shape[1] == 3)
     for letter, (name, axes) in zip("abcdefghijkl", drawn.items()):
-        heading = panels[name].heading
-        dress(axes, theme, f"({letter}) {heading}" if len(drawn) > 1 else heading)
+        dress(axes, theme, f"({letter}) {panels[name].heading}" if lettered else panels[name].heading)
         panels[name].draw(axes, run, theme)
-    _share_time(columns, drawn)
+    for column in columns:
+        label_time_below([drawn[name] for name in column if name != "arm"])
     for part in lower:
         foot_legend(part, theme, [axes for name, axes in drawn.items() if panels[name].of_joints], width)
     return figure, drawn
@@ -104,14 +107,3 @@ def _grid(part: Any, columns: Sequence[Sequence[str]], rows: int, space: bool) -
         for name, cell in zip(column, side.add_gridspec(len(column), 1, height_ratios=heights)):
             drawn[name] = side.add_subplot(cell, projection="3d" if space and name == "arm" else None)
     return drawn
-
-
-def _share_time(columns: Sequence[Sequence[str]], drawn: dict[str, Any]) -> None:
-    """Time is labelled below each column only."""
-    for column in columns:
-        timed = [drawn[name] for name in column if name != "arm"]
-        for axes in timed[:-1]:
-            axes.tick_params(labelbottom=False)
-            axes.set_xlabel("")
-        if timed:
-            timed[0].figure.align_ylabels(timed)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .lines import draw_lines, envelope, in_decades, over_time
 from .legends import head_legend
+from .lines import draw_lines, envelope, in_decades, over_time
 from .theme import LIGHT, LINE, Theme
 
 if TYPE_CHECKING:

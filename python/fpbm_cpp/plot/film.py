@@ -27,8 +27,8 @@ FASTEST_GIF = 50.0  # Frames per second: viewers slow down what is faster.
 def film_writer(file: Path, fps: float) -> Callable[[Pictures], None]:
     """What writes pictures, all of one shape (height, width, 3), to a file: whole, or not at all.
 
-    Raises, before anything is drawn, ValueError where its suffix is no film's, OSError where there is no such folder, and
-    ImportError where ffmpeg is missing.
+    Raises, before anything is drawn, ValueError where its suffix is no film's, OSError where there is no such folder,
+    and ImportError where ffmpeg is missing.
     """
     suffix = file.suffix.lower()
     if suffix not in (".mp4", ".gif"):
@@ -81,7 +81,9 @@ def _write_mp4(film: Path, pictures: Pictures, fps: float, ffmpeg: str) -> None:
 
 
 def _write_gif(film: Path, pictures: Pictures, fps: float) -> None:
-    images = [Image.fromarray(picture).quantize(dither=Image.Dither.NONE) for picture in pictures]
+    first, pictures = _peeked(pictures)
+    colours = Image.fromarray(first).quantize(kmeans=1)  # For all pictures, so that what stands still is stored once.
+    images = [Image.fromarray(picture).quantize(palette=colours, dither=Image.Dither.NONE) for picture in pictures]
     ends = np.round(np.arange(len(images) + 1) * 100.0 / fps)
     durations = (10 * np.diff(ends)).astype(int).tolist()  # [ms], as a .gif counts: in tens.
     images[0].save(film, save_all=True, append_images=images[1:], duration=durations, loop=0)

@@ -31,6 +31,15 @@ def over_time(axes: Any, label: str) -> None:
     axes.margins(x=0.0)
 
 
+def label_time_below(column: Sequence[Any]) -> None:
+    """Of panels one below the other, label time on the last only; their y labels stand in line."""
+    for axes in column[:-1]:
+        axes.tick_params(labelbottom=False)
+        axes.set_xlabel("")
+    for axes in column[:1]:
+        axes.figure.align_ylabels(column)
+
+
 def from_zero(axes: Any) -> None:
     """A y axis from zero upward."""
     axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])

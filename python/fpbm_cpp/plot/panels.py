@@ -53,5 +53,5 @@ def choose(run: Run, panels: str | Sequence[str] | None) -> list[str]:
             raise ValueError(f"panels: {name!r} stands twice")
     names = [name for name in asked if PANELS[name].suits(run)]
     if not names:
-        raise ValueError(f"panels: {asked} leave nothing to draw for this run")
+        raise ValueError(f"panels: {asked} leave nothing to draw of this run")
     return names

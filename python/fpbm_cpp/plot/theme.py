@@ -34,7 +34,7 @@ class Theme:
     fade: Colormap
 
     def styles(self) -> Iterator[tuple[str, str]]:
-        """Colour and dash of each line in turn: 28 that differ, neighbours in both, so that greyscale tells them too."""
+        """Colour and dash of each line in turn: 28 that differ, neighbours in both, for readers of greyscale."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 
@@ -57,7 +57,7 @@ DARK = Theme(
     pane="#1B1F23",
     tip="#FF7F32",
     axes=("#FF7F32", "#1FC796", "#4AA3E8"),
-    lines=("#4AA3E8", "#E69F00", "#1FC796", "#E08FBD", "#9AD8FF", "#FF7F32", "#ECECEC"),
+    lines=("#4AA3E8", "#E69F00", "#1FC796", "#E08FBD", "#9AD8FF", "#E8601C", "#ECECEC"),
     fade=LinearSegmentedColormap.from_list("fade in the dark", ["#24384A", "#3F7FB0", "#CFE8FF"]),
 )
 
