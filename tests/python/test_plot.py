@@ -135,7 +135,7 @@ def test_stopped_run_is_plotted_up_to_there() -> None:
     run = a_stopped_run()
     assert not run.status
     figure = run.plot()
-    assert f"stopped after t = {run.status.time:g} s" in figure.get_suptitle().replace("\n", " ")
+    assert figure.get_suptitle().splitlines()[-1] == f"stopped after t = {run.status.time:g} s"
     assert panels(figure)["(f) Joint velocities"].lines[0].get_xdata()[-1] == run.t[-1]
 
 

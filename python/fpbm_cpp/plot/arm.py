@@ -92,7 +92,7 @@ def frame_arm(axes: Any, theme: Theme) -> None:
         axis.set_pane_color(theme.pane)
         axis.line.set_color(theme.ink)
         axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space have no other way.
-        axis.labelpad = -7.0
+        axis.labelpad = -5.0
 
 
 def _draw_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:

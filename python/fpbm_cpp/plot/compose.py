@@ -54,11 +54,19 @@ def compose(
 
 def plot_run(run: Run, *, panels: str | Sequence[str] | None = None, dark: bool = False) -> Figure:
     """Figure of a whole run, as far as it went: compose() under a title that says what moved, how and along what."""
-    title = f"{run.scheme!r} along {run.path!r}" + ("" if run.status else f", stopped after t = {run.status.time:g} s")
-    title = re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4g}", title)
     columns, _ = _columns(choose(run, panels))
+    scheme, path = (re.sub(r"\d+\.\d{5,}", _short, repr(part)) for part in (run.scheme, run.path))
     width = 85 if len(columns) > 1 else 42
-    return compose(run, "\n".join(textwrap.wrap(title, width, max_lines=3, placeholder=" …")), panels, dark=dark)
+    whole = f"{scheme} along {path}"
+    lines = [whole] if len(whole) <= width else [scheme, f"along {path}"]
+    if not run.status:
+        lines.append(f"stopped after t = {run.status.time:g} s")
+    title = [row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …")]
+    return compose(run, "\n".join(title), panels, dark=dark)
+
+
+def _short(number: re.Match[str]) -> str:
+    return f"{float(number[0]):.4g}"
 
 
 def lay_out(
