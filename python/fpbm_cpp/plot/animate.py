@@ -119,7 +119,7 @@ class _Moving:
         (self.arm,) = stage.plot(*nowhere, color=theme.fade(1.0), mec=theme.paper, animated=True, **{**LINK, "lw": 2.6})
         self.clock = stage.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), animated=True, **style)
         panels = [axes for name, axes in drawn.items() if name != "arm"]
-        self.cursors = [axes.axvline(0.0, color=theme.ink, lw=0.9, animated=True) for axes in panels]
+        self.cursors = [axes.axvline(run.t[0], color=theme.ink, lw=0.9, animated=True) for axes in panels]
 
     def draw(self, sample: int) -> None:
         run = self.run
