@@ -36,4 +36,4 @@ for name, run in runs.items():
     )
 
 figure = compare(runs, "A Panda draws a horizontal circle twice in 6 s with its hand held level, then stands still")
-figure.savefig("panda_circle.png", dpi=100)
+figure.savefig("panda_circle.png")

@@ -49,7 +49,7 @@ for column, (name, done) in enumerate(runs.items()):
     above = figure.add_subplot(cells[0, column], projection="3d")
     arm_panel(above, done)
     above.view_init(elev=18, azim=-22)
-    above.set_title(name)
+    above.set_title(name, loc="left")
     below = figure.add_subplot(cells[1, column])
     below.plot(done.t, done.positions[:, 1], "#000000", label="hand, along the bench")
     below.plot(done.t, done.q[:, 0], "#0072B2", label="rail")

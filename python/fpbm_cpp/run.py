@@ -95,14 +95,15 @@ class Run:
         J = np.array([self.arm.jacobian(q, task=self.task) for q in self.q])
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
 
-    def plot(self) -> Figure:
-        """Figure of the motion: arm snapshots, tip error, joint velocities and accelerations.
+    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
+        """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        Raises ImportError, with what to install, where matplotlib is missing.
+        panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
+        for a name that is not there, and ImportError, with what to install, where matplotlib is missing.
         """
         from .plot import plot_run
 
-        return plot_run(self)
+        return plot_run(self, panels=panels, dark=dark)
 
     def replay(self) -> Run:
         """The motion made again from arm, path, scheme and options.

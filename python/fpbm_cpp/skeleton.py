@@ -26,6 +26,15 @@ def joint_points(arm: Arm, q: Array) -> Array:
     return _serial(arm, q)
 
 
+def tip_axes(arm: Arm, q: Array) -> Array:
+    """Axes of the tip in posture q, shape (n,), as columns: shape (2, 2) in the plane, (3, 3) in space."""
+    if isinstance(arm, PlanarArm):
+        sine, cosine = np.sin(q.sum()), np.cos(q.sum())
+        return np.array([[cosine, -sine], [sine, cosine]])
+    assert isinstance(arm, SerialArm)
+    return np.asarray(arm.forward(q)[:3, :3])
+
+
 def _planar(arm: PlanarArm, q: Array) -> Array:
     heading = np.cumsum(q, axis=-1)
     links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)

@@ -1,4 +1,4 @@
-"""Figures of any run."""
+"""Figures of any run: which panels, how they are laid out, and what a reader sees of them."""
 
 from __future__ import annotations
 
@@ -13,210 +13,138 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
+from plot_runs import a_run, a_run_in_space, a_run_within_limits, a_stopped_run, assert_tidy, luminance, panels
 
 import fpbm_cpp as fp
-from fpbm_cpp.plot import OKABE_ITO, compare, compose, joint_points
+from fpbm_cpp.plot import DARK, LIGHT, OVERVIEW, PANELS, compose
 
 
-def a_run(joints: int = 4, **options: object) -> fp.Run:
-    return fp.simulate(
-        fp.PlanarArm(np.full(joints, 4 / joints)),
-        fp.Circle(0.3, 2.0),
-        fp.FPBM(0.5, np.arange(1, joints + 1), 1, 1, null_damping=1.0),
-        np.full(joints, 1.5 / joints),
-        **{"dt": 0.01, **options},
-    )
+def headings(run: fp.Run, *names: str) -> list[str]:
+    return [title.split(") ")[-1] for title in panels(run.plot(panels=names or None))]
 
 
-def a_run_in_space(task: str = "pose", **options: object) -> fp.Run:
-    """An arm on a rail, 8 joints of which one slides."""
-    panda = fp.SerialArm.preset("panda")
-    arm = fp.SerialArm([fp.Joint("prismatic", axis=(0, 1, 0), name="rail"), *panda.joints], panda.tip)
-    q0 = [0.1, 0, -0.8, 0, -2.4, 0, 1.6, 0.8]
-    scheme = fp.FPBM(0.5, np.arange(1, 9), 20, 100, null_damping=1.0)
-    return fp.simulate(arm, fp.Circle(0.1, 2.0).in_plane("yz"), scheme, q0, task=task, **{"dt": 0.01, **options})
+def test_overview() -> None:
+    assert headings(a_run()) == [
+        "Arm",
+        "Manipulability",
+        "Null-space velocity",
+        "Tip error",
+        "Joint positions",
+        "Joint velocities",
+        "Joint accelerations",
+    ]
 
 
-def panels(figure: Figure) -> dict[str, object]:
-    return {axes.get_title(loc="left"): axes for axes in figure.axes if axes.get_title(loc="left")}
+def test_overview_within_limits_has_what_they_did() -> None:
+    new = set(headings(a_run_within_limits())) - set(headings(a_run()))
+    assert new == {"Joints on a bound", "Share of the task kept"}
 
 
-def test_panels_and_units() -> None:
-    run = a_run()
-    drawn = panels(run.plot())
-    assert [title.split()[0] for title in drawn] == ["(a)", "(b)", "(c)", "(d)"]
-    arm, error, velocity, acceleration = drawn.values()
-    assert arm.get_xlabel() == "x [m]"
-    assert arm.get_aspect() == 1
-    assert "m]" in error.get_ylabel()
-    assert velocity.get_ylabel() == "velocity [rad/s]"
-    assert acceleration.get_ylabel() == "acceleration [rad/s²]"
-    assert all(axes.get_xlabel() == "time [s]" for axes in (error, velocity, acceleration))
-    for axes, values in ((velocity, run.qd), (acceleration, run.qdd)):
-        np.testing.assert_array_equal(np.transpose([line.get_ydata() for line in axes.lines]), values)
+@pytest.mark.parametrize("name", PANELS)
+def test_each_panel_alone_is_as_wide_as_a_column(name: str) -> None:
+    run = a_run_in_space() if name == "axis_turn_errors" else a_run_within_limits()
+    figure = run.plot(panels=[name])
+    assert list(panels(figure)) == [PANELS[name].heading]
+    assert figure.get_figwidth() == 3.5
 
 
-def test_error_is_in_a_power_of_ten() -> None:
-    run = a_run()
-    error = list(panels(run.plot()).values())[1]
-    exponent = int(error.get_ylabel().split("{")[1].split("}")[0])
-    shown = np.transpose([line.get_ydata() for line in error.lines])
-    assert 1 <= np.abs(shown).max() < 10
-    np.testing.assert_allclose(shown * 10.0**exponent, run.error)
+def test_panels_in_the_order_asked_for() -> None:
+    assert headings(a_run(), "velocities", "error") == ["Joint velocities", "Tip error"]
+    assert headings(a_run(), "velocities", "arm", "error") == ["Arm", "Joint velocities", "Tip error"]
+
+
+def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
+    assert headings(a_run(), "scale", "error", "saturation", "axis_turn_errors") == ["Tip error"]
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (["velocity"], "panels: 'velocity' must be one of arm, error, axis_errors, .*null_space$"),
+        ("velocity", "panels: 'velocity' must be one of arm"),
+        (["arm", "error", "arm"], "panels: 'arm' stands twice"),
+        (["scale"], r"panels: \('scale',\) leave nothing to draw of this run"),
+        ([], r"panels: \(\) leave nothing"),
+    ],
+)
+def test_wrong_panels(names: list[str], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        a_run().plot(panels=names)
+
+
+def test_so_many_panels_of_the_paper() -> None:
+    assert [title.split(") ")[1] for title in panels(compose(a_run(), "without accelerations", panels=3))] == [
+        "Arm",
+        "Tip error",
+        "Joint velocities",
+    ]
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize(
+    "run", [a_run, a_run_in_space, a_run_within_limits, a_stopped_run], ids=lambda run: run.__name__
+)
+def test_overviews_are_tidy(run: object, dark: bool) -> None:
+    assert_tidy(run().plot(dark=dark))
 
 
 @pytest.mark.parametrize("joints", [3, 7, 20])
-def test_legends_cover_no_axes(joints: int) -> None:
-    figure = a_run(joints).plot()
-    figure.draw_without_rendering()
-    legends = [axes.get_legend() for axes in panels(figure).values()]
-    assert [len(legend.get_texts()) for legend in legends] == [2, 2, joints, joints]
-    inside = figure.bbox.padded(1)
-    for legend in legends:
-        box = legend.get_window_extent()
-        assert inside.x0 <= box.x0 <= box.x1 <= inside.x1
-        for axes in figure.axes:
-            area = axes.get_window_extent()
-            assert box.x0 >= area.x1 or box.x1 <= area.x0 or box.y0 >= area.y1 or box.y1 <= area.y0
+def test_one_legend_for_all_joints(joints: int) -> None:
+    figure = a_run(joints).plot(panels=("arm", "positions", "velocities", "accelerations"))
+    assert_tidy(figure)
+    (legend,) = (legend for part in figure.subfigs for legend in part.legends)
+    assert [text.get_text() for text in legend.get_texts()] == [f"joint {i}" for i in range(1, joints + 1)]
+    assert [axes.get_legend() for title, axes in panels(figure).items() if "Arm" not in title] == [None] * 3
 
 
-def test_joints_can_be_told_apart() -> None:
-    velocity = list(panels(a_run(20).plot()).values())[2]
-    assert len({(to_hex(line.get_color()), line.get_linestyle()) for line in velocity.lines}) == 20
+def test_time_is_labelled_below_each_column_only() -> None:
+    drawn = panels(a_run().plot())
+    labels = {title.split(") ")[1]: axes.get_xlabel() for title, axes in drawn.items()}
+    assert [title for title, label in labels.items() if label == "time [s]"] == [
+        "Null-space velocity",
+        "Joint accelerations",
+    ]
+    assert {axes.get_xlim() for title, axes in drawn.items() if "Arm" not in title} == {(0.0, 2.0)}
 
 
-def test_three_panels() -> None:
-    assert len(panels(compose(a_run(), "without accelerations", panels=3))) == 3
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+def test_lines_can_be_told_apart_without_colours(theme: object) -> None:
+    styles = [style for style, _ in zip(theme.styles(), range(28))]
+    assert len(set(styles)) == 28
+    first = styles[:7]
+    for i, (colour, dash) in enumerate(first):
+        for other, its in first[:i]:
+            dark, light = sorted([luminance(colour), luminance(other)])
+            assert dash != its or (light + 0.05) / (dark + 0.05) > 1.4
+
+
+def test_dark_is_dark() -> None:
+    figure = a_run().plot(dark=True, panels=["velocities", "error"])
+    assert luminance(figure.get_facecolor()) < 0.02
+    (axes, _) = panels(figure).values()
+    assert luminance(axes.get_facecolor()) < 0.02
+    assert [to_hex(line.get_color()).upper() for line in axes.lines] == [colour.upper() for colour in DARK.lines[:4]]
 
 
 def test_velocity_level_scheme() -> None:
     run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Line([-0.3, 0.1], 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
-    assert len(panels(run.plot())) == 4
+    assert len(panels(run.plot())) == 7
 
 
 def test_stopped_run_is_plotted_up_to_there() -> None:
-    arm, path = fp.PlanarArm([1, 1, 1]), fp.Line([3.0, 0.0], 2.0)
-    run = fp.simulate(arm, path, fp.MAN(), [0.3, 0.4, 0.5], dt=0.01, partial=True)
+    run = a_stopped_run()
     assert not run.status
     figure = run.plot()
-    assert f"stopped after t = {run.status.time:g} s" in figure.get_suptitle().replace("\n", " ")
-    assert panels(figure)["(c) Joint velocities"].lines[0].get_xdata()[-1] == run.t[-1]
+    assert figure.get_suptitle().splitlines()[-1] == f"stopped after t = {run.status.time:g} s"
+    assert panels(figure)["(f) Joint velocities"].lines[0].get_xdata()[-1] == run.t[-1]
 
 
-def test_run_that_never_started() -> None:
-    run = fp.simulate(fp.PlanarArm([1, 1]), fp.Line([1, 0], 1.0), fp.MAN(), [0, 0], dt=0.01, partial=True)
-    assert len(run.t) == 0
-    run.plot().savefig(BytesIO(), format="png")
-
-
-def test_joint_points() -> None:
-    arm, q = fp.PlanarArm([1.0, 0.5, 0.25]), np.array([[0.1, 0.2, 0.3], [1.0, -2.0, 0.5]])
-    points = joint_points(arm, q)
-    assert points.shape == (2, 4, 2)
-    np.testing.assert_array_equal(points[:, 0], 0)
-    np.testing.assert_allclose(points[:, -1], [arm.forward(row) for row in q], atol=1e-15)
-
-
-def test_joint_points_of_a_planar_arm_in_space() -> None:
-    lengths, q = np.array([1.0, 0.5, 0.25]), np.array([[0.1, 0.2, 0.3], [1.0, -2.0, 0.5]])
-    embedded = fp.SerialArm.from_dh([(length, 0, 0, 0) for length in lengths], "classic")
-    points = joint_points(embedded, q)
-    assert points.shape == (2, 5, 3)
-    np.testing.assert_array_equal(points[:, 0], 0)  # The base, where the first joint is.
-    np.testing.assert_allclose(points[:, 1:, :2], joint_points(fp.PlanarArm(lengths), q), atol=1e-15)
-    np.testing.assert_allclose(points[..., 2], 0, atol=1e-15)
-
-
-def some_arms() -> dict[str, fp.SerialArm]:
-    rng = np.random.default_rng(5)
-
-    def frame() -> np.ndarray:
-        result = np.eye(4)
-        result[:3, :3], result[:3, 3] = fp.rotation(rng.uniform(-1, 1, 3)), rng.uniform(-0.5, 0.5, 3)
-        return result
-
-    def joint(kind: str, **options: object) -> fp.Joint:
-        return fp.Joint(kind, frame(), rng.uniform(-2, 2, 3), **options)
-
-    kinds = ["prismatic", "revolute", "continuous", "prismatic", "revolute"]
-    followed = [joint("revolute"), joint("prismatic", mimic=(2, 0.5, 0.1)), joint("revolute"), joint("prismatic")]
-    return {
-        **{name: fp.SerialArm.preset(name) for name in ("panda", "iiwa14", "gen3")},
-        "mixed": fp.SerialArm([joint(kind) for kind in kinds], frame()),
-        "followers": fp.SerialArm([*followed, joint("revolute", mimic=(0, -1.0, 0.2))], frame()),
-    }
-
-
-@pytest.mark.parametrize("name", some_arms())
-def test_joint_points_end_at_the_tip(name: str) -> None:
-    arm = some_arms()[name]
-    q = np.random.default_rng(6).uniform(-1.5, 1.5, (2, 3, arm.dof))
-    points = joint_points(arm, q)
-    assert points.shape == (2, 3, len(arm.joints) + 2, 3)
-    tips = [[arm.forward(posture)[:3, 3] for posture in row] for row in q]
-    np.testing.assert_allclose(points[..., -1, :], tips, atol=1e-14)
-    for i in range(len(arm.joints)):
-        if all(joint.mimic is None for joint in arm.joints[: i + 1]):
-            here = fp.SerialArm(arm.joints[: i + 1])
-            np.testing.assert_allclose(points[0, 0, i + 1], here.forward(q[0, 0, : i + 1])[:3, 3], atol=1e-14)
-
-
-def test_pose_in_space() -> None:
-    run = a_run_in_space()
-    drawn = panels(run.plot())
-    arm, manipulability, error, turn_error, velocity, acceleration = drawn.values()
-    assert [title[:3] for title in drawn] == ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"]
-    assert (arm.get_xlabel(), arm.get_ylabel(), arm.get_zlabel()) == ("x [m]", "y [m]", "z [m]")
-    reach = np.diff([arm.get_xlim(), arm.get_ylim(), arm.get_zlim()])[:, 0]
-    np.testing.assert_allclose(arm.get_box_aspect() / reach, arm.get_box_aspect()[0] / reach[0])
-    np.testing.assert_array_equal(manipulability.lines[0].get_ydata(), run.manipulability())
-    assert manipulability.get_ylim()[0] == 0
-    for axes, unit, rows in ((error, "m", slice(3)), (turn_error, "rad", slice(3, 6))):
-        assert axes.get_ylabel().endswith(f" {unit}]")
-        exponent = int(axes.get_ylabel().split("{")[1].split("}")[0])
-        shown = np.transpose([line.get_ydata() for line in axes.lines])
-        np.testing.assert_allclose(shown * 10.0**exponent, run.error[:, rows])
-    for axes, values, per in ((velocity, run.qd, "/s"), (acceleration, run.qdd, "/s²")):
-        assert axes.get_ylabel().endswith(f"[rad{per}, m{per}]")
-        np.testing.assert_array_equal(np.transpose([line.get_ydata() for line in axes.lines]), values)
-        names = [text.get_text() for text in axes.get_legend().get_texts()]
-        assert names == [f"rail [m{per}]", *run.arm.joint_names[1:]]
-
-
-def test_position_in_space() -> None:
-    drawn = panels(a_run_in_space("position").plot())
-    assert len(drawn) == 5
-    assert not any("Orientation" in title for title in drawn)
-
-
-def test_pose_in_the_plane() -> None:
-    run = a_run(task="pose")
-    drawn = panels(run.plot())
-    arm, _, turn_error, *_ = drawn.values()
-    assert len(drawn) == 5
-    assert turn_error.get_ylabel().endswith("rad]")
-    tip = next(line for line in arm.lines if line.get_label() == "tip")
-    np.testing.assert_array_equal(tip.get_xydata(), run.x[:, :2])
-
-
-@pytest.mark.parametrize("task", ["pose", "position"])
-def test_legends_cover_no_axes_in_space(task: str) -> None:
-    figure = a_run_in_space(task).plot()
-    figure.draw_without_rendering()
-    drawn = list(panels(figure).values())
-    for legend in (axes.get_legend() for axes in drawn[2:]):
-        box = legend.get_window_extent()
-        assert figure.bbox.padded(1).containsx(box.x0)
-        assert figure.bbox.padded(1).containsx(box.x1)
-        for other in drawn[1:]:
-            area = other.get_window_extent()
-            assert box.x0 >= area.x1 or box.x1 <= area.x0 or box.y0 >= area.y1 or box.y1 <= area.y0
-
-
-def test_run_in_space_that_never_started() -> None:
-    arm = fp.SerialArm.preset("panda")
-    run = fp.simulate(arm, fp.Line([0.1, 0, 0], 1.0), fp.MAN(), np.zeros(7), dt=0.01, task="pose", partial=True)
+@pytest.mark.parametrize("space", [False, True])
+def test_run_that_never_started(space: bool) -> None:
+    arm = fp.SerialArm.preset("panda") if space else fp.PlanarArm([1, 1])
+    path = fp.Line([1, 0, 0] if space else [1, 0], 1.0)
+    task = "pose" if space else "position"
+    run = fp.simulate(arm, path, fp.MAN(), np.zeros(arm.dof), dt=0.01, task=task, partial=True)
     assert len(run.t) == 0
     run.plot().savefig(BytesIO(), format="png")
 
@@ -225,53 +153,17 @@ def test_title_is_short_of_digits() -> None:
     scheme = fp.MAN(null_damping=np.pi / 4)
     run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Line([-0.3, 0.1], 1.0), scheme, [0.3, 0.4, 0.5], dt=0.01)
     assert "null_damping=0.78539" in repr(scheme)
-    assert "null_damping=0.7854)" in run.plot().get_suptitle()
+    assert "null_damping=0.7854)" in run.plot(panels=["error"]).get_suptitle().replace("\n", " ")
 
 
-def test_compare_poses() -> None:
-    runs = {"with damping": a_run_in_space(), "held": a_run_in_space(hold=1.0)}
-    figure = compare(runs, "one job")
-    assert figure.get_suptitle() == "one job"
-    drawn = panels(figure)
-    velocity, acceleration, posture, error, turn_error, manipulability = drawn.values()
-    labels = [axes.get_ylabel().split("[")[-1] for axes in (velocity, acceleration, posture, error, turn_error)]
-    assert labels == ["rad/s, m/s]", "rad/s², m/s²]", "rad, m]", "m]", "rad]"]
-    assert [axes.get_yscale() for axes in drawn.values()] == ["linear"] * 3 + ["log"] * 2 + ["linear"]
-    for axes in drawn.values():
-        assert [to_hex(line.get_color()).upper() for line in axes.lines] == list(OKABE_ITO[:2])
-        assert all(np.isfinite(line.get_xydata()).all() for line in axes.lines)
-    for i, run in enumerate(runs.values()):
-        np.testing.assert_allclose(velocity.lines[i].get_ydata(), np.linalg.norm(run.qd, axis=1))
-        np.testing.assert_allclose(acceleration.lines[i].get_ydata(), np.linalg.norm(run.qdd, axis=1))
-        np.testing.assert_allclose(posture.lines[i].get_ydata(), np.linalg.norm(run.q - run.q[0], axis=1))
-        np.testing.assert_array_equal(manipulability.lines[i].get_ydata(), run.manipulability())
-        assert error.lines[i].get_ydata().max() == run.max_error()
-        assert turn_error.lines[i].get_ydata().max() == run.max_turn_error()
-    (legend,) = (legend for part in figure.subfigs for legend in part.legends)
-    assert [text.get_text() for text in legend.get_texts()] == list(runs)
-
-
-def test_compare_positions_by_the_names_of_their_schemes() -> None:
-    mvn = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Line([-0.3, 0.1], 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
-    figure = compare([a_run(), mvn, a_run(dt=0.001)])
-    assert len(panels(figure)) == 4
-    (legend,) = (legend for part in figure.subfigs for legend in part.legends)
-    assert [text.get_text() for text in legend.get_texts()] == ["FPBM 1", "MVN", "FPBM 2"]
-    error = panels(figure)["(c) Tip error"]
-    assert error.lines[2].get_xdata()[-1] == 2.0
-    assert len(error.lines[2].get_xdata()) < 1000
-    assert error.lines[2].get_ydata().max() == pytest.approx(a_run(dt=0.001).max_error())
-
-
-def test_compare_nothing() -> None:
-    with pytest.raises(ValueError, match="runs: must hold one at least"):
-        compare([])
+def test_names_of_the_overview() -> None:
+    assert set(PANELS) - set(OVERVIEW) == {"axis_errors", "axis_turn_errors"}
 
 
 def test_threads_and_no_global_state() -> None:
     def drawn(_: int) -> bytes:
         file = BytesIO()
-        run.plot().savefig(file, format="png", dpi=50)
+        run.plot(panels=("arm", "error", "velocities"), dark=True).savefig(file, format="png", dpi=50)
         return file.getvalue()
 
     run = a_run()

@@ -1,0 +1,105 @@
+"""Panel of the arm: postures at equal intervals of time, in the plane or in space, with what its tip draws."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from ..skeleton import joint_points, tip_axes
+from .legends import head_legend
+from .theme import LIGHT, TEXT, Theme
+
+if TYPE_CHECKING:
+    from .._core import Arm
+    from .._types import Array
+    from ..run import Run
+
+SNAPSHOTS = 11
+LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, "solid_capstyle": "round"}
+
+
+def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Postures at equal intervals of time, fading into the past, with the tip's path on its target and its last frame.
+
+    Axes made with projection='3d' for an arm in space, plain ones for a planar arm.
+    """
+    t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
+    time = Normalize(0.0, float(t[-1]) or 1.0)
+    shown = np.unique(np.linspace(0, len(t) - 1, SNAPSHOTS).round().astype(int))
+    for i, points in zip(shown, joint_points(run.arm, q[shown])):
+        axes.plot(*points.T, color=theme.fade(time(t[i])), mec=theme.paper, **LINK)
+    draw_base(axes, run.arm, q[-1], theme)
+    tip = axes.plot(*run.positions.T, color=theme.tip, lw=2.4, label="tip")
+    target = draw_target(axes, run, theme)
+    draw_tip_frame(axes, run.arm, q[-1], theme)
+    frame_arm(axes, theme)
+    _draw_scale(axes, ScalarMappable(time, theme.fade), theme)
+    head_legend(axes, theme, [*tip, *target])
+
+
+def draw_base(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
+    """Where the arm stands: a foot in the plane, a disc in space."""
+    if axes.name != "3d":
+        axes.plot(0.0, 0.0, "s", color=theme.soft, ms=8, zorder=4)
+        axes.plot(0.0, 0.0, "o", color=theme.paper, ms=3, zorder=4)
+        return
+    radius = 0.06 * np.ptp(joint_points(arm, q), axis=0).max()
+    turn = np.linspace(0.0, 2 * np.pi, 33)
+    axes.plot(radius * np.cos(turn), radius * np.sin(turn), 0.0 * turn, color=theme.soft, lw=1.6)
+
+
+def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
+    """The path that the tip is to follow."""
+    style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
+    return list(axes.plot(*run.reference_positions.T, **style))
+
+
+def draw_tip_frame(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
+    """The tip's axes in a posture: x, y and z in red, green and blue, as is the custom."""
+    points = joint_points(arm, q)
+    length = 0.12 * np.ptp(points, axis=0).max()
+    for axis, colour in zip(tip_axes(arm, q).T, theme.axes):
+        ends = np.stack([points[-1], points[-1] + length * axis])
+        axes.plot(*ends.T, color=colour, lw=1.6, solid_capstyle="round", zorder=3)
+
+
+def frame_arm(axes: Any, theme: Theme) -> None:
+    """Axes alike in all directions, with one distance between ticks, once all is drawn."""
+    space = axes.name == "3d"
+    ends = np.array([axes.get_xlim(), axes.get_ylim(), *([axes.get_zlim()] if space else [])])
+    reach = np.ptp(ends, axis=1)
+    step = MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(0.0, reach.max())[1]
+    every = [axes.xaxis, axes.yaxis, *([axes.zaxis] if space else [])]
+    for name, axis in zip("xyz", every):
+        axis.set_major_locator(MultipleLocator(step))
+        axis.set_label_text(f"{name} [m]", size=TEXT, color=theme.ink)
+    if not space:
+        axes.set_aspect("equal", adjustable="datalim")
+        return
+    reach = np.maximum(reach, reach.max() / 2)
+    lower, upper = ends.mean(axis=1) + np.multiply.outer([-0.5, 0.5], reach)
+    axes.set(xlim=(lower[0], upper[0]), ylim=(lower[1], upper[1]), zlim=(lower[2], upper[2]))
+    axes.set_box_aspect(tuple(reach), zoom=1.2)
+    axes.set_anchor("W")
+    axes.view_init(elev=20, azim=-55)
+    axes.tick_params(pad=-3.0)
+    for axis, least, most in zip(every, lower + 0.08 * reach, upper - 0.08 * reach):
+        axis.set_ticks(step * np.arange(np.ceil(least / step), np.floor(most / step) + 1))  # None in a corner.
+        axis.set_pane_color(theme.pane)
+        axis.line.set_color(theme.ink)
+        axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space have no other way.
+        axis.labelpad = -5.0
+
+
+def _draw_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:
+    """What colour is what time."""
+    bar = axes.figure.colorbar(
+        colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=0.08 if axes.name == "3d" else 0.02
+    )
+    bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
+    bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
+    bar.outline.set(edgecolor=theme.ink, linewidth=0.7)
