@@ -43,6 +43,7 @@ from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep
 from .sweep_result import Sweep
+from .view import view
 
 __all__ = [
     "FPBM",
@@ -83,4 +84,5 @@ __all__ = [
     "rotation_vector",
     "simulate",
     "sweep",
+    "view",
 ]
