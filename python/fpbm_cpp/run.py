@@ -133,6 +133,15 @@ class Run:
 
         return plot_run(self)
 
+    def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
+        """Show the motion in the browser until Ctrl-C; urdf, host, port and open_browser as for view().
+
+        Raises ImportError, with what to install, where viser is missing.
+        """
+        from .viewer import Viewer
+
+        Viewer.of(self, urdf=urdf, **{"open_browser": True, **how}).wait()
+
     def save(self, file: str | os.PathLike[str]) -> None:
         """Write all arrays, the status and a description of arm, path and scheme to an .npz file.
 

@@ -47,7 +47,7 @@ class Controls:
             self._limited = gui.add_checkbox(
                 "keep joint limits", bool(limited), visible=limited is not None, hint="The arm's bounds of every joint"
             )
-            again = gui.add_button("as it was given")
+            again = gui.add_button("as it was given", color="gray")
         self.take(scheme)
         for widget in (self._kind, self._limited, *self._sliders.values(), *self._weights):
             widget.on_update(self._on_update)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import trimesh
-from viser import SceneApi
+from viser import SceneApi, SceneNodeHandle
 
 from .._core import Arm
 from .._types import Array
@@ -16,7 +15,7 @@ from ..skeleton import joint_points
 from .colours import BASE, JOINT, LINK
 from .space import along, in_space
 
-RADIUS = 0.022  # Of links, as a part of the arm's length.
+RADIUS = 0.019  # Of links, as a part of the arm's length.
 
 
 class Links:
@@ -27,16 +26,13 @@ class Links:
         self._axes = _Axes(arm)
         spans = np.diff(self._points(q), axis=0)
         r = RADIUS * max(float(np.linalg.norm(spans, axis=1).sum()), 1e-3)
-        can, box = trimesh.creation.cylinder(1.5 * r, 3.4 * r), trimesh.creation.box((3 * r, 3 * r, 3.4 * r))
-        rod, foot = trimesh.creation.cylinder(r, 1.0), trimesh.creation.cylinder(2.6 * r, 0.8 * r)
-        scene.add_mesh_simple("/arm/base", foot.vertices, foot.faces, color=BASE)
-        self._links = [
-            scene.add_mesh_simple(f"/arm/link_{i}", rod.vertices, rod.faces, color=LINK) for i in range(len(spans))
-        ]
-        shapes = [box if slides else can for slides in self._axes.slide]
-        self._joints = [
-            scene.add_mesh_simple(f"/arm/joint_{i}", shape.vertices, shape.faces, color=JOINT)
-            for i, shape in enumerate(shapes)
+        scene.add_cylinder("/arm/base", 2.6 * r, 0.8 * r, BASE)
+        self._links = [scene.add_cylinder(f"/arm/link_{i}", r, 1.0, LINK) for i in range(len(spans))]
+        self._joints: list[SceneNodeHandle] = [
+            scene.add_box(f"/arm/joint_{i}", JOINT, (3.0 * r, 3.0 * r, 3.4 * r))
+            if slides
+            else scene.add_cylinder(f"/arm/joint_{i}", 1.5 * r, 3.4 * r, JOINT)
+            for i, slides in enumerate(self._axes.slide)
         ]
         self.pose(q)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import warnings
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -54,27 +55,28 @@ class Model:
             log.setLevel(logging.CRITICAL)  # It says the same of every mesh, in several lines.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                robot = yourdfpy.URDF.load(str(self.file), filename_handler=lambda name: self._find(name, missing))
+                robot = yourdfpy.URDF.load(str(self.file), filename_handler=partial(self._find, missing=missing))
         except Exception as error:
             raise ValueError(f"urdf = {str(self.file)!r}: yourdfpy cannot read it: {error}") from None
         finally:
             log.setLevel(level)
         if missing:
-            names = sorted(set(missing))
-            warnings.warn(f"{self.file}: {len(names)} meshes are not found, {names[0]} first", stacklevel=5)
+            names = list(dict.fromkeys(missing))
+            which = "1 mesh is not found:" if len(names) == 1 else f"{len(names)} meshes are not found, the first is"
+            warnings.warn(f"{self.file}: {which} {names[0]}", stacklevel=5)
         return robot
 
-    def _find(self, name: str, missing: list[str]) -> str:
+    def _find(self, fname: str, missing: list[str]) -> str:
         """A mesh's file: package:// is any folder above the file's, or a folder in one of those."""
-        place = name.partition("://")[2] or name
-        inside = place.partition("/")[2] if name.startswith("package://") else place
+        place = fname.partition("://")[2] or fname
+        inside = place.partition("/")[2] if fname.startswith("package://") else place
         folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
         for folder in (*self.file.resolve().parents, *folders):
             for candidate in (folder / inside, folder / place):
                 if candidate.is_file():
                     return str(candidate)
-        missing.append(name)
-        return name
+        missing.append(fname)
+        return fname
 
     def _require_joints(self) -> None:
         there = self.robot.actuated_joint_names

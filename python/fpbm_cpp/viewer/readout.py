@@ -55,9 +55,7 @@ class Readout:
         return self._status.content + self._table.content
 
     def _say(self, text: str, colour: str) -> None:
-        self._status.content = (
-            f'<div style="padding:0.4em 0.9em 0;font-size:0.85em;color:{colour};font-weight:600">{html.escape(text)}</div>'
-        )
+        self._status.content = f'<div style="padding:0.4em 0.9em 0;font-size:0.85em;color:{colour};font-weight:600">{html.escape(text)}</div>'
 
     def _fastest(self, qd: Array) -> str:
         joint = np.unravel_index(np.abs(qd).argmax(), qd.shape)[1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Union
 
 import numpy as np
-from viser import LineSegmentsHandle, SceneApi, ViserServer
+from viser import ClientHandle, SceneApi, ViserServer
 from viser.transforms import SO3
 
 from .._core import PlanarArm
@@ -39,7 +39,8 @@ class Scene:
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
         self._start, self._target, self._path = (
-            server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen") for name, color, width in lines
+            server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")
+            for name, color, width in lines
         )
 
     def show(self, film: Film) -> None:
@@ -69,7 +70,7 @@ class Scene:
             plane="xy",
             cell_size=cell / 2,
             section_size=2 * cell,
-            position=(0.0, 0.0, -0.002 * radius),
+            position=(0.0, 0.0, -(0.1 if self._flat else 0.002) * radius),  # Under the joints.
             shadow_opacity=0.15,
         )
 
@@ -77,11 +78,16 @@ class Scene:
         """From above on an arm in the plane, from aside and above on one in space, with all of the motion in view."""
         server.scene.set_up_direction("+y" if self._flat else "+z")
         way = np.array([0.0, 0.0, 1.0] if self._flat else [1.0, -1.3, 0.7])
+        way *= 1.15 * radius / np.sin(FIELD / 2) / np.linalg.norm(way)
         camera = server.initial_camera
         camera.fov = FIELD
-        camera.position = centre + 1.15 * radius / np.sin(FIELD / 2) * way / np.linalg.norm(way)
-        camera.look_at = centre
+        camera.position, camera.look_at = centre + way, centre
         camera.up = (0.0, 1.0, 0.0) if self._flat else (0.0, 0.0, 1.0)
+
+        @server.on_client_connect
+        def _(client: ClientHandle) -> None:
+            if client.camera.aspect < 1.0:  # The field of view is from below to above.
+                client.camera.position = centre + way / client.camera.aspect
 
 
 def _ball(film: Film) -> tuple[Array, float]:

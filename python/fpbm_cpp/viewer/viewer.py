@@ -91,10 +91,14 @@ class Viewer:
         _require_free(host, port)
         self._job = job
         self._lock = threading.RLock()
+        self._closed = False
         self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
         gui = self._server.gui
-        gui.configure_theme(control_layout="fixed", control_width="large", show_logo=False, show_share_button=False)
+        gui.configure_theme(
+            control_width="large", show_logo=False, show_share_button=False
+        )  # Sharing would leave this machine.
+        gui.main_panel.dock_right()
         duration = job.path.duration + job.options.get("hold", 0.0)
         limited = run.scale is not None if job.has_limits() else None
         self._readout = Readout(gui)
@@ -102,7 +106,7 @@ class Viewer:
         self._controls = Controls(gui, run.scheme, names(job.arm), limited, self._on_change)
         self._chart = Chart(gui, film, duration)
         self._scene = Scene(self._server, film, model)
-        self._show(run)
+        self._show(film)
         if open_browser:
             webbrowser.open(self.url)
 
@@ -121,7 +125,7 @@ class Viewer:
         with self._lock:
             run = self._job.run(scheme, self._controls.limited)
             self._controls.take(scheme)
-            self._show(run)
+            self._show(Film(run))
 
     @property
     def time(self) -> float:
@@ -151,6 +155,9 @@ class Viewer:
 
     def close(self) -> None:
         """Stop serving."""
+        if self._closed:
+            return
+        self._closed = True
         self._player.close()
         self._server.stop()
 
@@ -170,18 +177,18 @@ class Viewer:
                 scheme = self._controls.scheme()
                 asked = (repr(scheme), self._controls.limited)
                 if asked != self._asked:
-                    self._show(self._job.run(scheme, self._controls.limited))
+                    self._show(Film(self._job.run(scheme, self._controls.limited)))
             except ValueError as error:
                 self._asked = None
                 self._readout.refuse(str(error))
 
-    def _show(self, run: Run) -> None:
+    def _show(self, film: Film) -> None:
         with self._lock, self._server.atomic():
-            self._asked: tuple[str, bool] | None = (repr(run.scheme), self._controls.limited)
-            self._film = Film(run)
+            self._asked: tuple[str, bool] | None = (repr(film.run.scheme), self._controls.limited)
+            self._film = film
             for part in (self._scene, self._readout, self._chart):
-                part.show(self._film)
-            self._player.end = float(self._film.t[-1])
+                part.show(film)
+            self._player.end = float(film.t[-1])
             self._draw(self._player.time)
 
     def _draw(self, seconds: float) -> None:
@@ -204,4 +211,6 @@ def _require_free(host: str, port: int) -> None:
         except OSError as error:
             if error.errno != errno.EADDRINUSE:
                 raise OSError(error.errno, f"cannot serve at {host}, port {port}: {error.strerror}") from None
-            raise OSError(error.errno, f"port {port} is in use: choose another one, or 0 for one that is free") from None
+            raise OSError(
+                error.errno, f"port {port} is in use: choose another one, or 0 for one that is free"
+            ) from None
