@@ -27,18 +27,18 @@ def view(
 ) -> None:
     """Show an arm on its path in the browser, with the scheme and its gains at hand, until Ctrl-C.
 
-    The motion is simulated anew, as simulate() does, whenever the scheme or a gain is changed on the page; one that must
-    stop early is shown as far as it went. fpbm_cpp.viewer.Viewer is the same without waiting.
+    The motion is simulated anew, as simulate() does, whenever the scheme or a gain is changed at the page; one that
+    must stop early is shown as far as it went. fpbm_cpp.viewer.Viewer does the same without waiting.
 
     Parameters
     ----------
     arm, path, scheme, q0, dt, hold, task
         As for simulate().
     urdf : path, optional
-        The arm's URDF file, whose meshes are drawn; without it the arm is drawn from its own joints and links. Joints of
-        the file that the arm has not stay where they are.
+        The arm's URDF file, whose meshes are drawn; without it the arm is drawn from its own joints and links. Joints
+        of the file that are not the arm's stay at zero.
     host : str
-        Address to serve at; others than this machine's see the page only where this is its address on their network.
+        Address to serve at: this machine alone sees the page, unless it is '0.0.0.0', or an address on a network.
     port : int
         Port to serve at; 0 takes one that is free.
     open_browser : bool
@@ -55,5 +55,16 @@ def view(
     """
     from .viewer import Viewer
 
-    how = {"dt": dt, "hold": hold, "task": task, "urdf": urdf, "host": host, "port": port}
-    Viewer(arm, path, scheme, q0, **how, open_browser=open_browser).wait()
+    Viewer(
+        arm,
+        path,
+        scheme,
+        q0,
+        dt=dt,
+        hold=hold,
+        task=task,
+        urdf=urdf,
+        host=host,
+        port=port,
+        open_browser=open_browser,
+    ).wait()

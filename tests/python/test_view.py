@@ -10,8 +10,6 @@ import sys
 import threading
 import time
 import urllib.request
-
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -305,7 +303,7 @@ def test_limits_are_kept_where_the_package_can(monkeypatch):
         assert asked[1] == viewer.scheme
     with a_viewer() as viewer:  # An arm without limits.
         assert not viewer._controls._limited.visible
-    monkeypatch.setattr(fp, "track", None)
+    monkeypatch.delattr(fp, "track")
     with Viewer(arm, fp.Circle(0.05, 1.0).in_plane("yz"), fpbm(7), READY, **how) as viewer:
         assert not viewer._controls._limited.visible
 
@@ -346,12 +344,13 @@ def with_mimic():
     return fp.SerialArm(joints, turn)
 
 
-def test_links_and_joints_are_where_the_arm_has_them(viewer):
+def test_links_and_joints_are_where_the_arm_has_them():
     arm = with_mimic()
     q = np.array([0.3, 0.4, -0.5, 0.6])
-    links = Links(viewer._server.scene, arm, q)
-    q = q + 0.2
-    links.pose(q)
+    with Viewer(arm, fp.Line([0.01, 0, 0], 1.0), fp.MVN(), q, dt=0.01, port=0) as viewer:
+        links = viewer._scene._arm
+        q = q + 0.2
+        links.pose(q)
     points = joint_points(arm, q)
     for link, start, end in zip(links._links, points, points[1:]):
         half = SO3(link.wxyz).apply(np.array([0, 0, 0.5 * link.scale[2]]))
@@ -370,7 +369,8 @@ URDF = """<robot name="made_up">
   <link name="upper"><visual><geometry><cylinder radius="0.04" length="0.4"/></geometry></visual></link>
   <link name="middle"><visual><geometry><mesh filename="package://made_up/{mesh}"/></geometry></visual></link>
   <link name="lower"/><link name="hand"/><link name="finger"/><link name="thumb"/>
-  <joint name="stand" type="fixed"><parent link="world"/><child link="foot"/><origin xyz="1 2 3" rpy="0.1 0.2 0.3"/></joint>
+  <joint name="stand" type="fixed"><parent link="world"/><child link="foot"/>
+    <origin xyz="1 2 3" rpy="0.1 0.2 0.3"/></joint>
   <joint name="a" type="revolute"><parent link="foot"/><child link="upper"/><origin xyz="0 0 0.1" rpy="0.4 0 0"/>
     <axis xyz="0 0 1"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
   <joint name="b" type="prismatic"><parent link="upper"/><child link="middle"/><origin xyz="0 0 0.4" rpy="0 0.7 0"/>
@@ -460,7 +460,7 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
         (
             fp.SerialArm.preset("panda"),
             file,
-            "has no joint 'panda_joint1', which the arm has; its joints: a, b, c, d, grip",
+            "has no joint 'panda_joint1', which the arm has; its own: a, b, c, d, grip",
         ),
         (arm, longer, "is another arm's: its joint 'd' is 0.1 m from where this arm has it"),
         (arm, broken, "yourdfpy cannot read it"),
@@ -557,8 +557,18 @@ def test_importing_the_package_imports_no_viewer():
     assert run.stdout == "False False\n"
 
 
-FLAGS = """--headless=new --no-sandbox --disable-gpu-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --no-first-run
---disable-quic --disable-background-networking --disable-component-update --disable-sync""".split()
+FLAGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--no-first-run",
+    "--disable-quic",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 
 
 @pytest.fixture
@@ -606,7 +616,7 @@ def test_in_a_browser(page, viewer):
     fastest = np.abs(viewer.run.qd[100]).max()
     eventually(page, lambda: f"{fastest:.3g} rad/s" in moment.inner_text())
 
-    page.locator("input[value=FPBM]").click()
+    page.get_by_role("combobox", name="scheme").click()
     page.get_by_role("option", name="MVN", exact=True).click()
     eventually(page, lambda: isinstance(viewer.scheme, fp.MVN))
     fastest = np.abs(viewer.run.qd[100]).max()

@@ -70,14 +70,14 @@ class Film:
         return self._norms(slice(None, self.run.positions.shape[1]))
 
     @cached_property
-    def turn_error(self) -> Array | None:
-        """Angle from its orientation to that wanted at every sample [rad]; None where the task leaves it free."""
-        return self._norms(slice(self.run.positions.shape[1], None)) if self.run.task == "pose" else None
+    def turn_error(self) -> Array:
+        """Angle from its orientation to that wanted at every sample [rad], 0 where the task leaves it free."""
+        return self._norms(slice(self.run.positions.shape[1], None))
 
     @cached_property
     def manipulability(self) -> Array:
         """sqrt(det(J J')) at the frames (Yoshikawa, 1985)."""
-        J = np.array([self.run.arm.jacobian(q, task=self.run.task) for q in self.q[self.frames]])
+        J: Array = np.array([self.run.arm.jacobian(q, task=self.run.task) for q in self.q[self.frames]])
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0))
 
     def at(self, time: float) -> int:
@@ -101,4 +101,5 @@ class Film:
         return frame
 
     def _norms(self, rows: slice) -> Array:
-        return np.linalg.norm(self.run.error[:, rows], axis=1) if len(self.run.t) else np.zeros(1)
+        norms: Array = np.linalg.norm(self.run.error[:, rows], axis=1)
+        return norms if len(norms) else np.zeros(1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,7 +39,7 @@ class Job:
         """
         if limited:
             how = {key: value for key, value in self.options.items() if key != "qd0"}
-            run: Run = _track()(self.arm, self.path, scheme, self.q0, task=self.task, **how)
+            run: Run = fpbm_cpp.__dict__["track"](self.arm, self.path, scheme, self.q0, task=self.task, **how)
             return run
         return simulate(self.arm, self.path, scheme, self.q0, task=self.task, partial=True, **self.options)
 
@@ -48,8 +47,4 @@ class Job:
         """Whether there are limits to be kept, and this package knows how."""
         limits = self.arm.limits
         bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
-        return _track() is not None and bool(np.isfinite(bounds).any())
-
-
-def _track() -> Callable[..., Any] | None:
-    return getattr(fpbm_cpp, "track", None)
+        return hasattr(fpbm_cpp, "track") and bool(np.isfinite(bounds).any())

@@ -83,7 +83,7 @@ class Model:
         for name in self._arm.joint_names:
             if name not in there:
                 raise ValueError(
-                    f"urdf = {str(self.file)!r}: has no joint {name!r}, which the arm has; its joints: {', '.join(there)}"
+                    f"urdf = {str(self.file)!r}: has no joint {name!r}, which the arm has; its own: {', '.join(there)}"
                 )
 
     def _origins(self, q: Array) -> Array:

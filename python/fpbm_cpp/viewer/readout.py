@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Iterable
 
 import numpy as np
 from viser import GuiApi
@@ -44,18 +45,19 @@ class Readout:
             ("fastest joint", self._fastest(film.qd[sample : sample + 1]), self._fastest(film.qd)),
             ("manipulability", f"{w[film.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
-        turn = film.turn_error
-        if turn is not None:
+        if film.run.task == "pose":
+            turn = film.turn_error
             rows.insert(1, ("turn error", f"{turn[sample]:.3g} rad", f"{turn.max():.3g} rad"))
         self._table.content = _table(("", "now", "at worst"), rows)
 
     @property
     def text(self) -> str:
         """What it says, as HTML."""
-        return self._status.content + self._table.content
+        return f"{self._status.content}{self._table.content}"
 
     def _say(self, text: str, colour: str) -> None:
-        self._status.content = f'<div style="padding:0.4em 0.9em 0;font-size:0.85em;color:{colour};font-weight:600">{html.escape(text)}</div>'
+        style = f"padding:0.4em 0.9em 0;font-size:0.85em;font-weight:600;color:{colour}"
+        self._status.content = f'<div style="{style}">{html.escape(text)}</div>'
 
     def _fastest(self, qd: Array) -> str:
         joint = np.unravel_index(np.abs(qd).argmax(), qd.shape)[1]
@@ -68,7 +70,7 @@ def _ending(status: RunStatus) -> str:
     return f"stopped after t = {status.time:g} s: {message(status.code)}. {advice(status.code)}"
 
 
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
     lines = [_line("th", head), *(_line("td", row) for row in rows)]
     style = "font-size:0.8em;margin:0.3em 0.9em;text-align:left;font-variant-numeric:tabular-nums"
     return f'<table style="{style}">{"".join(lines)}</table>'

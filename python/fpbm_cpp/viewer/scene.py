@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Union
-
 import numpy as np
 from viser import ClientHandle, SceneApi, ViserServer
 from viser.transforms import SO3
@@ -28,10 +26,12 @@ class Scene:
         arm = film.run.arm
         q = film.q[0]
         self._flat = isinstance(arm, PlanarArm)
-        drawn = model is not None and model.has_meshes
-        self._arm: Union[Links, Meshes] = Meshes(server, model, q) if drawn else Links(server.scene, arm, q)
+        self._arm: Links | Meshes
+        if model is not None and model.has_meshes:
+            self._arm = Meshes(server, model, q)
+        else:
+            self._arm = Links(server.scene, arm, q)
         centre, radius = _ball(film)
-        self._size = radius
         self._light_and_ground(server.scene, radius)
         self._camera(server, centre, radius)
         size = 0.12 * radius
@@ -84,10 +84,11 @@ class Scene:
         camera.position, camera.look_at = centre + way, centre
         camera.up = (0.0, 1.0, 0.0) if self._flat else (0.0, 0.0, 1.0)
 
-        @server.on_client_connect
-        def _(client: ClientHandle) -> None:
+        def step_back(client: ClientHandle) -> None:
             if client.camera.aspect < 1.0:  # The field of view is from below to above.
                 client.camera.position = centre + way / client.camera.aspect
+
+        server.on_client_connect(step_back)
 
 
 def _ball(film: Film) -> tuple[Array, float]:

@@ -18,5 +18,6 @@ def along(direction: Array) -> Array:
     x, y, z = direction / np.linalg.norm(direction)
     if z < -1.0 + 1e-12:
         return np.array([0.0, 1.0, 0.0, 0.0])
-    turn = np.array([1.0 + z, -y, x, 0.0])
-    return turn / np.linalg.norm(turn)
+    turn: Array = np.array([1.0 + z, -y, x, 0.0])
+    turn /= np.linalg.norm(turn)
+    return turn

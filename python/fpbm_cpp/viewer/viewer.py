@@ -92,6 +92,7 @@ class Viewer:
         self._job = job
         self._lock = threading.RLock()
         self._closed = False
+        self._asked: tuple[str, bool] | None = None  # What is shown; None where it is not what is asked for.
         self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
         gui = self._server.gui
@@ -184,7 +185,7 @@ class Viewer:
 
     def _show(self, film: Film) -> None:
         with self._lock, self._server.atomic():
-            self._asked: tuple[str, bool] | None = (repr(film.run.scheme), self._controls.limited)
+            self._asked = (repr(film.run.scheme), self._controls.limited)
             self._film = film
             for part in (self._scene, self._readout, self._chart):
                 part.show(film)
