@@ -78,7 +78,8 @@ class Film:
     def manipulability(self) -> Array:
         """sqrt(det(J J')) at the frames (Yoshikawa, 1985)."""
         J: Array = np.array([self.run.arm.jacobian(q, task=self.run.task) for q in self.q[self.frames]])
-        return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0))
+        w: Array = np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0))
+        return w
 
     def at(self, time: float) -> int:
         """The sample nearest to a time."""
