@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import errno
 import os
-import socket
 import threading
 import time
 import webbrowser
@@ -23,6 +21,7 @@ from .job import Job
 from .joints import names
 from .meshes import Model
 from .player import Player
+from .port import require_free
 from .readout import Readout
 from .scene import Scene
 
@@ -88,28 +87,31 @@ class Viewer:
     ) -> None:
         film = Film(run)
         model = None if urdf is None else Model(urdf, job.arm, film.q[0])
-        _require_free(host, port)
+        require_free(host, port)
         self._job = job
-        self._lock = threading.RLock()
         self._closed = False
         self._asked: tuple[str, bool] | None = None  # What is shown; None where it is not what is asked for.
+        self._lock = threading.RLock()
         self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
-        gui = self._server.gui
-        gui.configure_theme(
-            control_width="large", show_logo=False, show_share_button=False
-        )  # Sharing would leave this machine.
+        with self._lock:  # Whoever is at the page already waits until it is there.
+            self._build(film, model)
+        if open_browser:
+            webbrowser.open(self.url)
+
+    def _build(self, film: Film, model: Model | None) -> None:
+        job, gui = self._job, self._server.gui
+        # Its button to share would show the page to others, by way of somebody's server.
+        gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
         duration = job.path.duration + job.options.get("hold", 0.0)
-        limited = run.scale is not None if job.has_limits() else None
+        limited = film.run.scale is not None if job.has_limits() else None
         self._readout = Readout(gui)
         self._player = Player(gui, duration, self._draw)
-        self._controls = Controls(gui, run.scheme, names(job.arm), limited, self._on_change)
+        self._controls = Controls(gui, film.run.scheme, names(job.arm), limited, self._on_change)
         self._chart = Chart(gui, film, duration)
         self._scene = Scene(self._server, film, model)
         self._show(film)
-        if open_browser:
-            webbrowser.open(self.url)
 
     @property
     def run(self) -> Run:
@@ -197,21 +199,3 @@ class Viewer:
             sample = self._film.at(seconds)
             for part in (self._scene, self._readout, self._chart):
                 part.at(sample)
-
-
-def _require_free(host: str, port: int) -> None:
-    """Raise OSError where the port cannot be served at; the server itself would take another one."""
-    if not 0 <= port <= 65535:
-        raise ValueError(f"port = {port}: must be 0 to 65535")
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except socket.gaierror as error:
-            raise ValueError(f"host = {host!r}: {error.strerror}") from None
-        except OSError as error:
-            if error.errno != errno.EADDRINUSE:
-                raise OSError(error.errno, f"cannot serve at {host}, port {port}: {error.strerror}") from None
-            raise OSError(
-                error.errno, f"port {port} is in use: choose another one, or 0 for one that is free"
-            ) from None
