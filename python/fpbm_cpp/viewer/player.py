@@ -71,12 +71,10 @@ class Player:
             self._moved(self._time)
 
     def _tick(self) -> None:
-        while True:
+        while not self._closed:
             self._going.wait()
             last = time.perf_counter()
-            while self._going.is_set():
-                if self._closed:
-                    return
+            while self._going.is_set() and not self._closed:
                 time.sleep(1.0 / RATE)
                 now = time.perf_counter()
                 self._advance(SPEEDS[self._speed.value] * (now - last))
