@@ -29,6 +29,7 @@ class Player:
         self._slider.on_update(self._on_slider)
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
         self._time = 0.0
+        self._lock = threading.RLock()  # Taken before any that `moved` takes.
         self._going = threading.Event()
         self._closed = False
         self._clock = threading.Thread(target=self._tick, name="fpbm_cpp viewer", daemon=True)
@@ -57,7 +58,9 @@ class Player:
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
-        self._going.clear()
+        """Stop the clock; once this returns, it moves time no more."""
+        with self._lock:
+            self._going.clear()
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 
     def close(self) -> None:
@@ -81,9 +84,12 @@ class Player:
                 last = now
 
     def _advance(self, seconds: float) -> None:
-        if self._time < self.end:
-            self.time = self._time + seconds
-        elif self._loop.value:
-            self.time = 0.0
-        else:
-            self.pause()
+        with self._lock:
+            if not self.playing:
+                return
+            if self._time < self.end:
+                self.time = self._time + seconds
+            elif self._loop.value:
+                self.time = 0.0
+            else:
+                self.pause()
