@@ -48,8 +48,7 @@ def photograph(viewer: Viewer, target: Path) -> None:
             page.goto(viewer.url)
             page.get_by_text("manipulability").first.wait_for()
             page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no processor.
-            page.screenshot(path=target)  # The first takes until the meshes are there.
-            page.wait_for_timeout(5000)
+            page.wait_for_timeout(10_000)  # Meshes come last.
             page.screenshot(path=target)
 
 

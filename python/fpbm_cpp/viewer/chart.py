@@ -38,7 +38,9 @@ class Chart:
             self._quantity = gui.add_dropdown("quantity", tuple(quantities))
             nothing = {"label": ""}
             axes = ({"size": 32}, {"size": 44})
-            self._plot = gui.add_uplot((np.zeros(1), np.zeros(1)), (nothing, nothing), axes=axes, height=220)
+            self._plot = gui.add_uplot(
+                (np.zeros(1), np.zeros(1)), (nothing, nothing), axes=axes, height=220, padding=(8, 16, 0, 0)
+            )
         self._quantity.on_update(lambda _: self.show(self._film))
 
     def show(self, film: Film) -> None:

@@ -34,7 +34,7 @@ class Scene:
         centre, radius = _ball(film)
         self._light_and_ground(server.scene, radius)
         self._camera(server, centre, radius)
-        size = 0.12 * radius
+        size = 0.16 * radius
         self._tip = server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
@@ -78,7 +78,7 @@ class Scene:
         """From above on an arm in the plane, from aside and above on one in space, with all of the motion in view."""
         server.scene.set_up_direction("+y" if self._flat else "+z")
         way = np.array([0.0, 0.0, 1.0] if self._flat else [1.0, -1.3, 0.7])
-        way *= 1.15 * radius / np.sin(FIELD / 2) / np.linalg.norm(way)
+        way *= 0.95 * radius / np.sin(FIELD / 2) / np.linalg.norm(way)
         camera = server.initial_camera
         camera.fov = FIELD
         camera.position, camera.look_at = centre + way, centre
