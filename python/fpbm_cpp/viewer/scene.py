@@ -32,7 +32,7 @@ class Scene:
         else:
             self._arm = Links(server.scene, arm, q)
         centre, radius = _ball(film)
-        self._light_and_ground(server.scene, radius)
+        self._ground(server.scene, radius)
         self._camera(server, centre, radius)
         size = 0.16 * radius
         self._tip = server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size)
@@ -60,7 +60,7 @@ class Scene:
             way = film.tip[: film.frame(sample) + 1]
             self._path.points = _segments(np.vstack([way, pose[None, :3, 3]]))
 
-    def _light_and_ground(self, scene: SceneApi, radius: float) -> None:
+    def _ground(self, scene: SceneApi, radius: float) -> None:
         cell = 10.0 ** np.floor(np.log10(radius))
         cell = cell / 2 if radius / cell < 3 else cell
         scene.add_grid(
