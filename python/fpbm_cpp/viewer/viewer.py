@@ -89,7 +89,6 @@ class Viewer:
         model = None if urdf is None else Model(urdf, job.arm, film.q[0])
         require_free(host, port)
         self._job = job
-        self._closed = False
         self._asked: tuple[str, bool] | None = None  # What is shown; None where it is not what is asked for.
         self._lock = threading.RLock()
         self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
@@ -157,10 +156,7 @@ class Viewer:
                 pass
 
     def close(self) -> None:
-        """Stop serving."""
-        if self._closed:
-            return
-        self._closed = True
+        """Stop serving; once more does no harm."""
         self._player.close()
         self._server.stop()
 
