@@ -474,7 +474,7 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
         path = fp.Line([0.01, 0] if isinstance(bad, fp.PlanarArm) else [0.01, 0, 0], 1.0)
         q0 = np.linspace(0.3, 0.6, bad.dof)
         with pytest.raises(ValueError, match=words):
-            fp.view(bad, path, fp.MVN(), q0, urdf=model, port=0, open_browser=False)
+            Viewer(bad, path, fp.MVN(), q0, urdf=model, port=0).close()
     with pytest.raises(FileNotFoundError):
         fp.view(arm, path, fp.MVN(), q0, urdf=tmp_path / "none.urdf", open_browser=False)
 
