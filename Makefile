@@ -11,11 +11,13 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python clang sanitize nightly fuzz soak lint format stubs bench count sdist wheel clean
+.PHONY: help demo test test-cpp test-python test-view clang sanitize nightly fuzz soak lint format stubs bench count sdist wheel \
+        clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make test             build and run every test'
+	@echo 'make test-view        test the viewer in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
@@ -62,6 +64,10 @@ fuzz:
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest
+
+test-view: $(VENV)/package $(VENV)/test $(VENV)/browser
+	tools/need.sh chromium
+	$(BIN)/python -m pytest tests/python/test_view.py
 
 lint: $(VENV)/package $(VENV)/lint
 	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)
@@ -112,7 +118,7 @@ $(VENV)/package: $(PACKAGE)
 	$(BIN)/python -m pip install '.[cli]'
 	@touch $@
 
-$(VENV)/test $(VENV)/lint: pyproject.toml | $(VENV)/package
+$(VENV)/test $(VENV)/lint $(VENV)/browser: pyproject.toml | $(VENV)/package
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 

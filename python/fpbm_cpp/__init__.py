@@ -47,6 +47,7 @@ from .sweep import sweep
 from .sweep_result import Sweep
 from .track import track
 from .tuning import TuneInterrupted, Tuning, tune
+from .view import view
 
 __all__ = [
     "FPBM",
@@ -92,4 +93,5 @@ __all__ = [
     "sweep",
     "track",
     "tune",
+    "view",
 ]

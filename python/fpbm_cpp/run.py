@@ -105,6 +105,15 @@ class Run:
 
         return plot_run(self, panels=panels, dark=dark)
 
+    def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
+        """Show the motion in the browser until Ctrl-C; urdf, host, port and open_browser as for view().
+
+        Raises ImportError, with what to install, where viser is missing.
+        """
+        from .viewer import Viewer
+
+        Viewer.of(self, urdf=urdf, **{"open_browser": True, **how}).wait()
+
     def replay(self) -> Run:
         """The motion made again from arm, path, scheme and options.
 

@@ -1,0 +1,633 @@
+"""The viewer: what it shows is the run, whoever asks for it, and nothing at the page breaks it."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import fpbm_cpp as fp
+
+pytest.importorskip("viser")
+pytest.importorskip("yourdfpy")
+
+from viser.transforms import SO3
+
+from fpbm_cpp.skeleton import joint_points
+from fpbm_cpp.viewer import Viewer
+from fpbm_cpp.viewer.film import FRAMES, Film
+from fpbm_cpp.viewer.links import Links
+from fpbm_cpp.viewer.meshes import Model
+from fpbm_cpp.viewer.schemes import GAINS, Family
+from fpbm_cpp.viewer.space import along
+
+READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
+CLICK = SimpleNamespace(client="somebody", target=None)  # What the page's own events have and ours have not.
+
+
+def fpbm(n=4, **options):
+    return fp.FPBM(0.6, np.arange(1, n + 1), 10, 25, **options)
+
+
+def a_viewer(scheme=None, **how):
+    """The paper's robot on a small circle."""
+    path = how.pop("path", fp.Circle(0.2, 2.0))
+    q0 = how.pop("q0", np.pi / np.array([12, 12, 15, 15]))
+    return Viewer(fp.PlanarArm([1, 1, 1, 1]), path, scheme or fpbm(), q0, **{"dt": 0.01, "port": 0, **how})
+
+
+@pytest.fixture(scope="module")
+def shared():
+    with a_viewer(hold=1.0) as viewer:
+        yield viewer
+
+
+@pytest.fixture
+def viewer(shared):
+    shared.pause()
+    shared.scheme = fpbm()
+    shared.time = 0.0
+    return shared
+
+
+def say(viewer):
+    return viewer._readout.text
+
+
+def same(run, expected):
+    for name in ("t", "q", "qd", "qdd", "x", "error"):
+        assert getattr(run, name).tobytes() == getattr(expected, name).tobytes(), name
+
+
+def test_what_is_shown_is_simulated(viewer):
+    arm, path, q0 = viewer.run.arm, viewer.run.path, viewer.run.q[0]
+    for scheme in (fpbm(), fp.MVN(k=5), fp.WMVN([4, 3, 2, 1]), fp.MAN(), fp.Balanced(0.2, np.ones(4))):
+        viewer.scheme = scheme
+        expected = fp.simulate(arm, path, scheme, q0, dt=0.01, hold=1.0)
+        same(viewer.run, expected)
+        assert viewer.scheme is scheme
+        assert f"{expected.max_error():.3g} m" in say(viewer)
+        assert f"{np.abs(expected.qd).max():.3g} rad/s" in say(viewer)
+        assert f"{expected.manipulability().min():.3g}" in say(viewer)
+        assert "complete, t = 3 s" in say(viewer)
+        drawn = viewer._chart._plot.data
+        np.testing.assert_array_equal(np.transpose(drawn[1:-1]), expected.qd)
+
+
+def test_time_moves_the_arm(viewer):
+    run = viewer.run
+    for moment in (0.0, 0.5, 1.234, 3.0):
+        viewer.time = moment
+        sample = round(moment / 0.01)
+        points = joint_points(run.arm, run.q[sample])
+        joints = [joint.position[:2] for joint in viewer._scene._arm._joints]
+        np.testing.assert_allclose(joints, points[:-1], atol=1e-6)
+        np.testing.assert_allclose(viewer._scene._tip.position[:2], run.x[sample], atol=1e-6)
+        np.testing.assert_allclose(viewer._scene._path.points[-1, 1, :2], run.x[sample], atol=1e-6)
+        assert f"{np.abs(run.qd[sample]).max():.3g} rad/s" in say(viewer)
+        line = viewer._chart._plot.data[-1]
+        at = viewer._chart._plot.data[0][~np.isnan(line)]
+        assert abs(at - moment).min() < 0.02
+    viewer.time = 99.0
+    assert viewer.time == 3.0
+    viewer.time = -1.0
+    assert viewer.time == 0.0
+
+
+def test_the_page_chooses_schemes_and_gains(viewer):
+    controls = viewer._controls
+    controls._kind.value = "WMVN"
+    controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
+    assert repr(viewer.scheme) == repr(fp.WMVN([1, 2, 3, 4]))
+    shown = [name for name, slider in controls._sliders.items() if slider.visible]
+    assert shown == ["k"]
+    assert controls._folder.visible
+    controls._weights[2].value = 7.5
+    controls._on_update(CLICK)
+    assert repr(viewer.scheme) == repr(fp.WMVN([1, 2, 7.5, 4]))
+    run = viewer.run
+    controls._on_update(CLICK)  # As it is.
+    assert viewer.run is run
+    controls._kind.value = "MAN"
+    controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
+    assert not controls._folder.visible
+    controls._give_back(fpbm())
+    assert repr(viewer.scheme) == repr(fpbm())
+
+
+def test_what_is_set_from_here_is_run_once(viewer, monkeypatch):
+    runs = []
+    run = type(viewer._job).run
+    monkeypatch.setattr(type(viewer._job), "run", lambda *given: runs.append(given) or run(*given))
+    viewer.scheme = fp.Balanced(0.1, [1, 1, 2, 2])
+    assert len(runs) == 1
+
+
+def test_gains_beyond_a_slider_make_room(viewer):
+    viewer.scheme = fp.FPBM(0.6, [0.01, 1, 1, 400], 300, 9000)
+    sliders = viewer._controls._sliders
+    assert sliders["k1"].max == sliders["k1"].value == 300
+    assert viewer._controls._weights[0].min == 0.01
+    assert repr(viewer._controls.scheme()) == repr(viewer.scheme)
+
+
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        fp.MVN(k=3, rest_posture=np.zeros(4), null_stiffness=1),
+        fp.WMVN(np.diag([1.0, 2, 3, 4]) + 0.1, k=2),
+        fp.MAN(null_damping=1, c=[0, 1, 2, 3]),
+        fp.WMVNAcceleration([1, 2, 3, 4], singular_radius=0.02),
+        fp.Balanced(0.3, [1, 2, 3, 4], joint_centring=0.1),
+        fp.FPBM(0.6, [1, 2, 3, 4], 10, 25, null_damping=2, rest_posture=np.ones(4), null_stiffness=1),
+    ],
+)
+def test_schemes_keep_their_options(scheme):
+    family = Family(scheme, 4)
+    assert repr(family.scheme(family.kind, family.gains)) == repr(scheme)
+    for kind in GAINS:
+        other = family.scheme(kind, family.gains)
+        assert type(other).__name__ == kind
+        for name, value in family.options.items():
+            np.testing.assert_array_equal(other.__reduce__()[0].keywords[name], value)
+
+
+def test_a_dense_weight_matrix_is_kept(viewer):
+    viewer.scheme = fp.WMVN(np.diag([1.0, 2, 3, 4]) + 0.1)
+    assert not viewer._controls._folder.visible
+    assert repr(viewer._controls.scheme()) == repr(viewer.scheme)
+
+
+def test_a_motion_that_stops_early(viewer):
+    out = fp.Line([5, 0], 5.0, time_law="quintic")
+    with a_viewer(fp.MVN(), path=out) as viewer:
+        assert not viewer.run.status
+        assert 0 < viewer.run.status.time < 5
+        assert f"stopped after t = {viewer.run.status.time:g} s: " in say(viewer)
+        viewer.time = 5.0
+        assert viewer.time == viewer.run.status.time
+        viewer.scheme = fp.MVN(singular_radius=0.02)
+        viewer.time = 5.0
+        assert viewer.time == viewer.run.t[-1]
+
+
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_a_motion_that_cannot_begin(task):
+    with a_viewer(fp.MVN(), q0=np.zeros(4), task=task) as viewer:
+        assert len(viewer.run.t) == 0
+        viewer.time = 1.0
+        assert viewer.time == 0.0
+        assert "stopped after t = 0 s" in say(viewer)
+        np.testing.assert_allclose(viewer._scene._tip.position, [4, 0, 0], atol=1e-6)
+
+
+def test_what_cannot_be_run_is_refused_and_the_rest_goes_on(viewer):
+    run = viewer.run
+    with pytest.raises(ValueError, match="weights has 3 entries"):
+        viewer.scheme = fp.WMVN([1, 2, 3])
+    assert viewer.run is run
+    viewer._controls._sliders["alpha"].value = 1.5
+    viewer._controls._on_update(CLICK)
+    assert viewer.run is run
+    assert "not run: alpha = 1.5" in say(viewer)
+    viewer._controls._sliders["alpha"].value = 0.5
+    viewer._controls._on_update(CLICK)
+    assert "complete" in say(viewer)
+    viewer._controls._sliders["alpha"].value = -1.0
+    viewer._controls._on_update(CLICK)
+    viewer._controls._sliders["alpha"].value = 0.5  # Back to what is shown.
+    viewer._controls._on_update(CLICK)
+    assert "complete" in say(viewer)
+
+
+def test_many_changes_at_once(viewer):
+    slider = viewer._controls._sliders["alpha"]
+
+    def change(value):
+        slider.value = value
+        viewer._controls._on_update(CLICK)
+        viewer.time = value
+
+    threads = [threading.Thread(target=change, args=(value,)) for value in np.linspace(0, 1, 20)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert repr(viewer.scheme) == repr(viewer._controls.scheme())
+
+
+def until(check):
+    """Waits until a check holds, as long as a busy machine may need."""
+    end = time.monotonic() + 60
+    while not check():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_playing(viewer):
+    player = viewer._player
+    viewer.play()
+    until(lambda: 0.0 < viewer.time < 3.0)
+    viewer.pause()
+    moment = viewer.time
+    time.sleep(0.1)
+    assert viewer.time == moment
+    player._speed.value = "5 ×"
+    viewer.time = 2.9
+    viewer.play()
+    until(lambda: viewer.time < 2.9)  # From the start, again.
+    assert player.playing
+    player._loop.value = False
+    until(lambda: not player.playing)
+    assert viewer.time == 3.0
+    player._loop.value = True
+    viewer.play()
+    until(lambda: viewer.time < 3.0)
+    player._speed.value = "1 ×"
+
+
+def test_quantities_over_time(viewer):
+    chart = viewer._chart
+    for quantity in chart._quantity.options:
+        chart._quantity.value = quantity
+        assert chart._plot.title.startswith(quantity)
+        assert len(chart._plot.data) == len(chart._plot.series)
+    assert "turn error" not in chart._quantity.options
+    chart._quantity.value = "tip error"
+    power = chart._plot.title.split("10")[1].split(" m]")[0]
+    exponent = int(power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+    np.testing.assert_allclose(chart._plot.data[1].max() * 10.0**exponent, viewer.run.max_error(), rtol=1e-6)
+    chart._quantity.value = "joint velocities"
+
+
+def test_a_finished_run():
+    panda = fp.SerialArm.preset("panda")
+    arm = fp.SerialArm([fp.Joint("prismatic", axis=(0, 1, 0), name="rail"), *panda.joints], panda.tip)
+    path = fp.Circle(0.05, 1.0).in_plane("yz")
+    qd0 = np.full(8, 0.01)
+    run = fp.simulate(arm, path, fpbm(8), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose")
+    with Viewer.of(run, port=0) as viewer:
+        assert viewer.run is run
+        assert "turn error" in say(viewer)
+        assert "turn error" in viewer._chart._quantity.options
+        viewer.scheme = fp.MAN()
+        same(viewer.run, fp.simulate(arm, path, fp.MAN(), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose"))
+        viewer._chart._quantity.value = "joint velocities"
+        assert "[rad/s, m/s]" in viewer._chart._plot.title
+        assert viewer.url in viewer._repr_html_()
+
+
+def test_limits_are_kept_where_the_package_can(monkeypatch):
+    asked = []
+
+    def track(arm, path, scheme, q0, *, dt, hold, task):
+        asked.append(scheme)
+        return fp.simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task)
+
+    how = {"path": fp.Circle(0.05, 1.0).in_plane("yz"), "dt": 0.01, "port": 0}
+    arm = fp.SerialArm.preset("panda")
+    monkeypatch.setattr(fp, "track", track, raising=False)
+    with Viewer(arm, how.pop("path"), fpbm(7), READY, **how) as viewer:
+        box = viewer._controls._limited
+        assert box.visible
+        assert not asked
+        box.value = True
+        viewer._controls._on_update(CLICK)
+        assert len(asked) == 1
+        viewer.scheme = fp.MVN()
+        assert asked[1] == viewer.scheme
+    with a_viewer() as viewer:  # An arm without limits.
+        assert not viewer._controls._limited.visible
+    monkeypatch.delattr(fp, "track")
+    with Viewer(arm, fp.Circle(0.05, 1.0).in_plane("yz"), fpbm(7), READY, **how) as viewer:
+        assert not viewer._controls._limited.visible
+
+
+def test_film_of_a_long_run():
+    arm, path = fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 10.0)
+    film = Film(fp.simulate(arm, path, fpbm(), np.full(4, 0.3), dt=1e-3))
+    assert len(film.frames) == len(film.tip) == len(film.target) == len(film.manipulability) == FRAMES
+    assert film.frames[0] == 0
+    assert film.frames[-1] == 10000
+    for sample in (0, 1, 19, 20, 21, 5000, 9999, 10000):
+        frame = film.frame(sample)
+        assert film.frames[frame] <= sample
+        assert frame == FRAMES - 1 or sample < film.frames[frame + 1]
+    assert film.at(1.2344) == 1234
+    assert film.at(77.0) == 10000
+
+
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(lambda d: np.linalg.norm(d) > 1e-3))
+def test_turns_along_a_direction(direction):
+    d = np.array(direction)
+    np.testing.assert_allclose(SO3(along(d)).apply(np.array([0.0, 0, 1])), d / np.linalg.norm(d), atol=1e-6)
+
+
+def test_turns_upside_down():
+    np.testing.assert_allclose(SO3(along(np.array([0.0, 0, -2]))).apply(np.array([0.0, 0, 1])), [0, 0, -1], atol=1e-12)
+
+
+def with_mimic():
+    """A rail, and a joint that follows another by a half."""
+    turn = np.eye(4)
+    turn[:3, :3] = fp.rotation([0.3, -0.8, 0.4])
+    turn[:3, 3] = [0.2, 0.1, 0.4]
+    kinds = ["prismatic", "revolute", "continuous", "revolute", "revolute"]
+    joints = [
+        fp.Joint(kind, turn, (0.2, 1, 0.1 * i), mimic=(1, 0.5, 0.1) if i == 3 else None) for i, kind in enumerate(kinds)
+    ]
+    return fp.SerialArm(joints, turn)
+
+
+def test_links_and_joints_are_where_the_arm_has_them():
+    arm = with_mimic()
+    q = np.array([0.3, 0.4, -0.5, 0.6])
+    with Viewer(arm, fp.Line([0.01, 0, 0], 1.0), fp.MVN(), q, dt=0.01, port=0) as viewer:
+        links = viewer._scene._arm
+        q = q + 0.2
+        links.pose(q)
+    points = joint_points(arm, q)
+    for link, start, end in zip(links._links, points, points[1:]):
+        half = SO3(link.wxyz).apply(np.array([0, 0, 0.5 * link.scale[2]]))
+        np.testing.assert_allclose(link.position - half, start, atol=1e-6)
+        np.testing.assert_allclose(link.position + half, end, atol=1e-6)
+    axes = np.array([SO3(joint.wxyz).apply(np.array([0.0, 0, 1])) for joint in links._joints])
+    np.testing.assert_allclose([joint.position for joint in links._joints], points[1:-1], atol=1e-6)
+    swept = np.cross(axes, points[-1] - points[1:-1])
+    moved = np.array([axes[0], swept[1] + 0.5 * swept[3], swept[2], swept[4]]).T
+    np.testing.assert_allclose(moved, arm.jacobian(q), atol=1e-6)
+
+
+URDF = """<robot name="made_up">
+  <link name="world"/>
+  <link name="foot"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
+  <link name="upper"><visual><geometry><cylinder radius="0.04" length="0.4"/></geometry></visual></link>
+  <link name="middle"><visual><geometry><mesh filename="package://made_up/{mesh}"/></geometry></visual></link>
+  <link name="lower"/><link name="hand"/><link name="finger"/><link name="thumb"/>
+  <joint name="stand" type="fixed"><parent link="world"/><child link="foot"/>
+    <origin xyz="1 2 3" rpy="0.1 0.2 0.3"/></joint>
+  <joint name="a" type="revolute"><parent link="foot"/><child link="upper"/><origin xyz="0 0 0.1" rpy="0.4 0 0"/>
+    <axis xyz="0 0 1"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+  <joint name="b" type="prismatic"><parent link="upper"/><child link="middle"/><origin xyz="0 0 0.4" rpy="0 0.7 0"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+  <joint name="c" type="revolute"><parent link="middle"/><child link="lower"/><origin xyz="0.1 0 0.4"/>
+    <axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+  <joint name="d" type="revolute"><parent link="lower"/><child link="hand"/><origin xyz="0.1 0 0.2" rpy="0 0 1"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="finger"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+  <joint name="follow" type="prismatic"><parent link="hand"/><child link="thumb"/><mimic joint="grip" multiplier="-1"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+</robot>"""
+BOX = """solid box
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 0.1 0 0
+vertex 0 0.1 0
+endloop
+endfacet
+endsolid box
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    """A URDF file in the folder of a package, with its mesh in another."""
+    (tmp_path / "made_up" / "urdf").mkdir(parents=True)
+    (tmp_path / "made_up" / "meshes").mkdir()
+    (tmp_path / "made_up" / "meshes" / "middle.stl").write_text(BOX)
+    made = tmp_path / "made_up" / "urdf" / "arm.urdf"
+    made.write_text(URDF.format(mesh="meshes/middle.stl"))
+    return made
+
+
+@pytest.mark.parametrize("base", [None, "foot", "upper"])
+def test_a_model_moves_as_the_arm_does(file, base):
+    arm = fp.SerialArm.from_urdf(file, tip="hand", base=base)
+    model = Model(file, arm, np.zeros(arm.dof))
+    assert model.has_meshes
+
+    @settings(max_examples=20, deadline=None)
+    @given(st.lists(st.floats(-2, 2), min_size=arm.dof, max_size=arm.dof))
+    def check(q):
+        model.robot.update_cfg(model.configuration(np.array(q)))
+        tip = model.placement @ model.robot.get_transform("hand", model.robot.base_link)
+        np.testing.assert_allclose(tip, arm.forward(q), atol=1e-9)
+        for link in ("finger", "thumb"):
+            np.testing.assert_allclose(model.robot.get_transform(link, "hand"), np.eye(4), atol=1e-12)
+
+    check()
+
+
+def test_meshes_that_are_not_found_are_left_out(file):
+    file.write_text(URDF.format(mesh="meshes/nowhere.stl"))
+    arm = fp.SerialArm.from_urdf(file, tip="hand")
+    with pytest.warns(
+        UserWarning, match=r"arm.urdf: 1 mesh is not found: package://made_up/meshes/nowhere.stl"
+    ) as said:
+        model = Model(file, arm, np.zeros(4))
+    assert len(said) == 1
+    assert model.has_meshes  # The box and the cylinder.
+
+
+def test_without_any_mesh_the_arm_is_drawn_from_its_links(file):
+    words = URDF.format(mesh="nowhere.stl")
+    for shape in ('<box size="0.2 0.2 0.1"/>', '<cylinder radius="0.04" length="0.4"/>'):
+        words = words.replace(shape, '<mesh filename="nowhere.stl"/>')
+    file.write_text(words)
+    arm = fp.SerialArm.from_urdf(file, tip="hand")
+    path = fp.Line([0.01, 0, 0], 1.0)
+    with pytest.warns(UserWarning, match="2 meshes are not found, the first is nowhere.stl"):
+        viewer = Viewer(arm, path, fp.MVN(), [0.3, 0.2, 0.5, 0.4], dt=0.01, urdf=file, port=0)
+    with viewer:
+        assert isinstance(viewer._scene._arm, Links)
+
+
+def test_a_urdf_that_is_not_the_arms(file, tmp_path):
+    arm = fp.SerialArm.from_urdf(file, tip="hand")
+    longer = file.with_name("longer.urdf")
+    longer.write_text(file.read_text().replace("0.1 0 0.2", "0.1 0 0.3"))
+    broken = file.with_name("broken.urdf")
+    broken.write_text("<robot")
+    for bad, model, words in (
+        (fp.PlanarArm([1, 1, 1, 1]), file, "must be left out where the arm is planar"),
+        (
+            fp.SerialArm.preset("panda"),
+            file,
+            "has no joint 'panda_joint1', which the arm has; its own: a, b, c, d, grip",
+        ),
+        (arm, longer, "is another arm's: its joint 'd' is 0.1 m from where this arm has it"),
+        (arm, broken, "yourdfpy cannot read it"),
+    ):
+        path = fp.Line([0.01, 0] if isinstance(bad, fp.PlanarArm) else [0.01, 0, 0], 1.0)
+        q0 = np.linspace(0.3, 0.6, bad.dof)
+        with pytest.raises(ValueError, match=words):
+            Viewer(bad, path, fp.MVN(), q0, urdf=model, port=0).close()
+    with pytest.raises(FileNotFoundError):
+        fp.view(arm, path, fp.MVN(), q0, urdf=tmp_path / "none.urdf", open_browser=False)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"dt": 0.3}, "dt = 0.3"),
+        ({"task": "dance"}, "task = 'dance'"),
+        ({"q0": [0, 0]}, "q0 has 2 entries"),
+        ({"port": -1}, "port = -1: must be 0 to 65535"),
+        ({"host": "nowhere.invalid"}, "host = 'nowhere.invalid'"),
+    ],
+)
+def test_bad_arguments(change, words):
+    before = threading.active_count()
+    with pytest.raises(ValueError, match=words):
+        a_viewer(**change)
+    assert threading.active_count() == before
+
+
+def test_a_port_in_use():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=f"port {port} is in use: choose another one, or 0 for one that is free"):
+            a_viewer(port=port)
+
+
+def test_it_serves_until_it_is_closed():
+    viewer = a_viewer()
+    with urllib.request.urlopen(viewer.url) as page:
+        assert b"<html" in page.read()
+    viewer.close()
+    viewer.close()
+    with pytest.raises(OSError, match="refused"):
+        urllib.request.urlopen(viewer.url)
+
+
+SCRIPT = """
+import signal
+import fpbm_cpp as fp
+from fpbm_cpp.viewer import Viewer
+signal.signal(signal.SIGINT, signal.default_int_handler)
+run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
+wait = Viewer.wait
+Viewer.wait = lambda viewer: print("at", viewer.url) or wait(viewer)
+run.view(port=0, open_browser=False)
+print("closed")
+"""
+
+
+def test_ctrl_c_closes_it():
+    command = [sys.executable, "-u", "-c", SCRIPT]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+        said = ""
+        while "at http://127.0.0.1:" not in said:
+            line = child.stdout.readline()
+            assert line, child.stderr.read()
+            said += line
+        time.sleep(1.0)
+        child.send_signal(signal.SIGINT)
+        rest, errors = child.communicate(timeout=30)
+    assert "closed" in rest
+    assert "Traceback" not in errors
+    assert child.returncode == 0
+
+
+@pytest.mark.parametrize("call", ["fp.view(arm, path, fp.MVN(), q0)", "fp.simulate(arm, path, fp.MVN(), q0).view()"])
+def test_without_viser(call):
+    code = f"""
+import sys
+sys.modules["viser"] = None
+import fpbm_cpp as fp
+arm, path, q0 = fp.PlanarArm([1, 1, 1]), fp.Circle(0.2, 1.0), [0.3, 0.4, 0.5]
+try:
+    {call}
+except ImportError as error:
+    print(error)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == 'viewing needs viser: pip install "fpbm_cpp[view]"\n'
+
+
+def test_importing_the_package_imports_no_viewer():
+    code = "import fpbm_cpp, sys; print('viser' in sys.modules, 'fpbm_cpp.viewer' in sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "False False\n"
+
+
+FLAGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--no-first-run",
+    "--disable-quic",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+@pytest.fixture
+def page(shared, tmp_path):
+    """The page in a browser without a screen."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        pytest.skip("chromium is not installed")
+    playwright = pytest.importorskip("playwright.sync_api")
+    size = {"width": 640, "height": 480}
+    with playwright.sync_playwright() as tools:
+        how = {"executable_path": chromium, "args": FLAGS, "viewport": size, "headless": True}
+        with tools.chromium.launch_persistent_context(tmp_path, **how) as browser:
+            browser.set_default_timeout(120_000)
+            yield browser.pages[0]
+
+
+def picture(page, viewer):
+    """What the browser draws of the scene, small, once it has drawn what it was sent."""
+    pictures = []
+    (client,) = viewer._server.get_clients().values()
+    thread = threading.Thread(target=lambda: pictures.append(client.get_render(120, 160, transport_format="png")))
+    thread.start()
+    while thread.is_alive():
+        page.wait_for_timeout(20)
+    return pictures[0][..., :3].astype(float)
+
+
+def eventually(page, check):
+    """Waits until a check holds, as long as a machine without a graphics processor may need."""
+    end = time.monotonic() + 120
+    while not check():
+        assert time.monotonic() < end, check
+        page.wait_for_timeout(50)
+
+
+def test_in_a_browser(page, viewer):
+    page.goto(viewer.url)
+    eventually(page, viewer._server.get_clients)
+    eventually(page, lambda: picture(page, viewer).std() > 20)
+    before = picture(page, viewer)
+    viewer.time = 1.0
+    eventually(page, lambda: np.abs(picture(page, viewer) - before).mean() > 1)
+    moment = page.get_by_text("fastest joint").locator("xpath=following-sibling::td").first
+    fastest = np.abs(viewer.run.qd[100]).max()
+    eventually(page, lambda: f"{fastest:.3g} rad/s" in moment.inner_text())
+
+    page.get_by_role("combobox", name="scheme").click()
+    page.get_by_role("option", name="MVN", exact=True).click()
+    eventually(page, lambda: isinstance(viewer.scheme, fp.MVN))
+    fastest = np.abs(viewer.run.qd[100]).max()
+    eventually(page, lambda: f"{fastest:.3g} rad/s" in moment.inner_text())
+    assert page.get_by_text("complete, t = 3 s").is_visible()
