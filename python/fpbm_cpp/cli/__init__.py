@@ -1,0 +1,46 @@
+"""The command line: fpbm-cpp, built on click; one command a file."""
+
+from __future__ import annotations
+
+import click
+
+from .._core import __version__
+from .bench import bench
+from .compare import compare
+from .completion import completion
+from .export_header import export_header
+from .reproduce import reproduce
+from .sweep import sweep
+from .track import track
+from .tune import tune
+from .view import view
+
+
+class _InOrder(click.Group):
+    """Lists its commands as they were added."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        return list(self.commands)
+
+
+@click.group(
+    cls=_InOrder,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="""\b
+Examples:
+  fpbm-cpp track panda
+  fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --out circle
+  fpbm-cpp track --help""",
+)
+@click.version_option(__version__, prog_name="fpbm-cpp")
+def command() -> None:
+    """Redundancy resolution for robot arms: MVN, WMVN, MAN and FPBM.
+
+    Radians, metres, seconds throughout.
+    """
+
+
+for each in (track, compare, sweep, tune, view, bench, reproduce, export_header, completion):
+    command.add_command(each)
+
+__all__ = ["command"]

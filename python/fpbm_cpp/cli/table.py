@@ -1,0 +1,73 @@
+"""Figures of motions as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import click
+import numpy as np
+
+from .._types import Array
+from ..run import Run
+from ..serial_arm import SerialArm
+
+WIDTH = 100
+
+
+def columns(*rows: Sequence[str]) -> str:
+    """Rows of cells as aligned columns, the first to the left; rows may be shorter than the first."""
+    whole = [[*row, *[""] * (len(rows[0]) - len(row))] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*whole)]
+    return "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in whole
+    )
+
+
+def number(value: float) -> str:
+    """As many digits as one reads."""
+    return f"{value:.1e}" if 0.0 < abs(value) < 1e-3 else f"{value:.4g}"
+
+
+def summary(run: Run) -> str:
+    """A motion's key figures, with where and when they are reached, and how it ended."""
+    rows = list(_figures(run)) if len(run.t) else []
+    name_width, value_width, unit_width = (max((len(row[i]) for row in rows), default=6) for i in range(3))
+    lines = [f"{n:{name_width}}  {v:>{value_width}} {u:{unit_width}}  {w}".rstrip() for n, v, u, w in rows]
+    indent = " " * (name_width + 2)
+    text = f"{'status':{name_width}}  {' '.join(str(run.status).split())}"
+    return "\n".join([*lines, click.wrap_text(text, WIDTH, subsequent_indent=indent)])
+
+
+def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
+    """Name, value, unit and remark."""
+    m = run.positions.shape[1]
+    yield _worst(run, "largest tip error", np.linalg.norm(run.error[:, :m], axis=1), "m")
+    if run.task == "pose":
+        yield _worst(run, "largest turn error", np.linalg.norm(run.error[:, m:], axis=1), "rad")
+    for name, values, per in (("velocity", run.qd, "/s"), ("acceleration", run.qdd, "/s^2")):
+        size = np.abs(values)
+        k, i = np.unravel_index(size.argmax(), size.shape)
+        names, units = _joints(run)
+        yield f"peak joint {name}", number(size[k, i]), units[i] + per, f"{names[i]} at {run.t[k]:.3g} s"
+        i = size[-1].argmax()
+        yield f"final joint {name}", number(size[-1, i]), units[i] + per, names[i]
+    yield _worst(run, "least manipulability", run.manipulability(), "", least=True)
+    if run.scale is not None:
+        yield _worst(run, "least task scale", run.scale, "", least=True)
+    if run.saturated is not None:
+        held = [name for name, on in zip(_joints(run)[0], np.any(run.saturated, axis=0).tolist()) if on]
+        yield "joints on a bound", str(len(held)), "", ", ".join(held)
+
+
+def _worst(run: Run, name: str, values: Array, unit: str, least: bool = False) -> tuple[str, str, str, str]:
+    k = values.argmin() if least else values.argmax()
+    return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
+
+
+def _joints(run: Run) -> tuple[list[str], list[str]]:
+    """The joints' names, numbers in the plane, and what their positions are measured in."""
+    arm = run.arm
+    if not isinstance(arm, SerialArm):
+        return [f"joint {i}" for i in range(1, arm.dof + 1)], ["rad"] * arm.dof
+    driven = [joint for joint in arm.joints if joint.mimic is None]
+    return [joint.name for joint in driven], ["m" if joint.type == "prismatic" else "rad" for joint in driven]

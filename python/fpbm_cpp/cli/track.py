@@ -1,0 +1,84 @@
+"""fpbm-cpp track."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..job import Motion, write_job
+from ..run import Run
+from .common import motion_command, say_job
+from .out import Folder, out_option
+from .plain import Plain
+from .request import make_request, save
+from .table import summary
+
+EXTRAS = ("csv", "rosbag", "gif", "mp4")
+
+
+@click.command(
+    "track",
+    short_help="Move an arm along a path.",
+    cls=Plain,
+    epilog="""\b
+Examples:
+  fpbm-cpp track panda
+  fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
+  fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
+  fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
+)
+@motion_command()
+@out_option()
+@click.option(
+    "--also", multiple=True, type=click.Choice(EXTRAS), help="Write this to the folder, too; may be said again."
+)
+def track(
+    arm: str | None,
+    job: Path | None,
+    save_job: Path | None,
+    out: Path | None,
+    dark: bool,
+    also: tuple[str, ...],
+    **options: Any,
+) -> None:
+    """Move an arm along a path, and say how it went.
+
+    ARM is panda, iiwa14 or gen3, planar: and lengths of links as in planar:1,1,1,1, or a URDF file with --tip.
+    Everything else has a default, and what was taken is printed. Several numbers go between commas.
+
+    With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
+    Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.
+    """
+    if also and out is None:
+        raise click.UsageError("--also needs --out DIR.")
+    request = make_request(arm, job, options)
+    motion = request.motion()
+    with request.plain():
+        run = motion.run()
+    save(motion, save_job)
+    say_job(motion)
+    click.echo(summary(run))
+    if out is not None:
+        _write(Folder(out), motion, run, also, dark)
+    if not run.status:
+        raise click.ClickException("the motion is not complete")
+
+
+def _write(folder: Folder, motion: Motion, run: Run, also: tuple[str, ...], dark: bool) -> None:
+    """What may want something that is not installed comes first."""
+    picture = run.plot(dark=dark)
+    for kind in also:
+        if kind == "csv":
+            folder.write("run.csv", run.to_csv)
+        elif kind == "rosbag":
+            folder.write("rosbag", run.to_rosbag)
+        else:
+            from ..plot import animate
+
+            folder.write(f"run.{kind}", lambda file: animate(run, file, dark=dark))
+    folder.figure("run.png", picture)
+    folder.write("run.npz", run.save)
+    folder.write("job.toml", lambda file: write_job(motion.job, file))
+    folder.say()

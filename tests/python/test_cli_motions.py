@@ -1,0 +1,577 @@
+"""The commands that move an arm: what they print and write, and what they say when something is wrong."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import inspect
+import os
+import re
+import shlex
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+pytest.importorskip("click")
+pytest.importorskip("matplotlib")
+pytest.importorskip("pydantic")
+pytest.importorskip("tomlkit")
+
+import click
+from click.testing import CliRunner, Result
+
+from fpbm_cpp.cli import command
+from fpbm_cpp.job import Job, prepare, read_job, write_job
+
+ROOT = Path(__file__).parents[2]
+MODULE = [sys.executable, "-m", "fpbm_cpp"]
+MOTIONS = ["track", "compare", "sweep", "tune", "view"]
+QUICK = ["--duration", "0.2"]
+draws = pytest.mark.skipif("dark" not in inspect.signature(fp.Run.plot).parameters, reason="needs dark figures")
+tunes = pytest.mark.skipif(not hasattr(fp, "tune"), reason="needs fpbm_cpp.tune")
+posix = pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+
+
+def call(*arguments: str) -> Result:
+    return CliRunner().invoke(command, arguments)
+
+
+def refused(*arguments: str) -> str:
+    """The one plain line with which a call fails."""
+    result = call(*arguments)
+    assert result.exit_code == 1, result.output
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("Error: ")
+    return line.removeprefix("Error: ")
+
+
+def examples(name: str) -> list[str]:
+    epilog = command.commands[name].epilog or ""
+    return [line.split("  # ")[0].strip() for line in re.findall(r"fpbm-cpp .*", epilog)]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def sketches(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are made, and not drawn."""
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, file, **_: file.write(b"\x89PNG"))
+
+
+# Help
+
+
+def test_every_command_is_listed_in_a_line() -> None:
+    result = call("--help")
+    lines = result.output.split("Commands:\n")[1].split("\n\n")[0].splitlines()
+    assert [line.split()[0] for line in lines] == list(command.commands)
+    assert "..." not in "".join(lines)
+    assert result.output.isascii()
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_help_of_a_motion(name: str) -> None:
+    result = call(name, "--help")
+    assert result.exit_code == 0
+    assert result.output.isascii()
+    headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
+    scheme = ["Scheme:"]
+    assert headings == ["Options:", "Arm and start:", "Path:", *scheme, "Joint limits:"]
+    assert 2 <= len(examples(name)) <= 4
+    for option in command.commands[name].params:
+        assert isinstance(option, click.Argument) or option.help, option.name
+
+
+@pytest.mark.usefixtures("sketches")
+@pytest.mark.parametrize("name", ["track", "compare", "sweep"])
+def test_examples_work_when_pasted(name: str) -> None:
+    if name in ("track", "compare"):
+        if "dark" not in inspect.signature(fp.Run.plot).parameters:
+            pytest.skip("needs dark figures")
+        call("track", "iiwa14", *QUICK, "--save-job", "job.toml")
+    for line in examples(name):
+        words = shlex.split(line)
+        result = call(*words[1:], *([] if "--duration" in words else ["--duration", "0.5"]))
+        assert result.exit_code == 0, (line, result.output)
+        if "--out" in words:
+            assert list(Path(words[words.index("--out") + 1]).iterdir())
+
+
+# Track
+
+
+def test_summary_is_the_run() -> None:
+    result = call("track", "panda", "--duration", "2", "--task", "pose", "--hold", "1", "--k1", "7")
+    assert result.exit_code == 0
+    run = fp.simulate(
+        fp.SerialArm.preset("panda"),
+        fp.Circle(0.1, 2.0).in_plane("yz"),
+        fp.FPBM(0.6, np.ones(7), 7, 25, null_damping=2),
+        [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
+        task="pose",
+        hold=1.0,
+    )
+    lines = {re.split(r"  +", line)[0]: line for line in result.stdout.splitlines()}
+    assert f"{run.max_error():.1e} m" in lines["largest tip error"]
+    assert f"{run.max_turn_error():.1e} rad" in lines["largest turn error"]
+    k, i = np.unravel_index(np.abs(run.qd).argmax(), run.qd.shape)
+    assert f"{abs(run.qd[k, i]):.4g} rad/s" in lines["peak joint velocity"]
+    assert f"panda_joint{i + 1} at {run.t[k]:.3g} s" in lines["peak joint velocity"]
+    assert f"{run.manipulability().min():.4g} " in lines["least manipulability"]
+    assert "complete, t = 3 s" in lines["status"]
+    assert result.stdout.splitlines()[0] == "panda, circle, fpbm"
+    said = " ".join(result.stdout.split())
+    assert "k2 = 25" in said
+    assert "k1 = " not in said
+    assert max(map(len, result.stdout.splitlines())) <= 100
+    assert result.stdout.isascii()
+
+
+def test_joints_that_slide_are_in_metres() -> None:
+    joints = "".join(f"[[arm.joints]]\ntype = 'prismatic'\naxis = {axis}\n" for axis in np.eye(3).tolist())
+    Path("gantry.toml").write_text(f"[arm]\nkind = 'joints'\n{joints}")
+    result = call("track", "--job", "gantry.toml", *QUICK)
+    assert re.search(r"peak joint velocity +\S+ m/s ", result.stdout)
+    assert re.search(r"final joint acceleration +\S+ m/s\^2 ", result.stdout)
+
+
+def test_a_motion_that_stops_is_told_and_fails() -> None:
+    result = call("track", "panda", "--radius", "3")
+    assert result.exit_code == 1
+    assert "status" in result.stdout
+    assert "stopped after t = " in result.stdout
+    assert "Keep the path inside the workspace" in " ".join(result.stdout.split())
+    assert result.stderr == "Error: the motion is not complete\n"
+
+
+def test_a_motion_without_a_sample() -> None:
+    result = call("track", "planar:1,1,1,1", "--q0", "0,0,0,0")
+    assert result.exit_code == 1
+    assert "the posture is singular" in result.stdout
+
+
+@draws
+def test_out(in_a_folder: Path) -> None:
+    result = call("track", "panda", *QUICK, "--out", "a/b", "--dark")
+    assert result.exit_code == 0, result.output
+    assert sorted(os.listdir("a/b")) == ["job.toml", "run.npz", "run.png"]
+    assert Path("a/b/run.png").read_bytes().startswith(b"\x89PNG")
+    assert result.stdout.splitlines()[-1] == f"Written to {Path('a/b')}: run.png, run.npz, job.toml"
+    again = prepare(read_job("a/b/job.toml")).run()
+    np.testing.assert_array_equal(np.load("a/b/run.npz")["q"], again.q)
+    assert call("track", "--job", "a/b/job.toml").exit_code == 0
+
+
+@pytest.mark.skipif(not hasattr(fp.Run, "to_csv"), reason="needs Run.to_csv")
+@draws
+@pytest.mark.usefixtures("sketches")
+def test_also(monkeypatch: pytest.MonkeyPatch) -> None:
+    plot = importlib.import_module("fpbm_cpp.plot")
+    monkeypatch.setattr(plot, "animate", lambda run, file, *, dark: file.write_text(f"{len(run.t)} {dark}"))
+    result = call("track", "panda", *QUICK, "--out", "out", "--also", "csv", "--also", "gif", "--dark")
+    assert result.exit_code == 0, result.output
+    assert sorted(os.listdir("out")) == ["job.toml", "run.csv", "run.gif", "run.npz", "run.png"]
+    assert Path("out/run.gif").read_text() == "201 True"
+    assert call("track", "panda", "--also", "csv").exit_code == 2
+
+
+@pytest.mark.skipif(not hasattr(fp, "track"), reason="needs fpbm_cpp.track")
+def test_limits() -> None:
+    bounds = ["--limit-velocity", "0.05", "--limit-acceleration", "5"]
+    for arguments in (["--limits", *bounds], bounds):
+        result = call("track", "planar:1,1,1,1", "--duration", "2", *arguments)
+        assert result.exit_code == 0
+        assert "joints on a bound" in result.stdout
+        assert re.search(r"peak joint velocity +0\.05 ", result.stdout)
+    Path("job.toml").write_text(
+        "[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n[limits]\nvelocity = 0.1\nacceleration = 5"
+    )
+    assert "joints on a bound" in call("track", "--job", "job.toml").stdout
+    assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
+    line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
+    assert line.startswith("--limit-acceleration[0] = inf: must be finite")
+
+
+# Jobs
+
+
+def test_options_say_the_same_as_a_file() -> None:
+    arguments = ["planar:1,0.5,0.5", "--path", "lissajous", "--amplitude", "0.05,0.1", "--frequencies", "1,2"]
+    arguments += ["--scheme", "balanced", "--alpha", "0.25", "--weights", "2,1,0; 1,2,0; 0,0,1", "--q0", "-0.1,0.5,1e0"]
+    result = call("track", *arguments, *QUICK, "--dt", "0.01", "--save-job", "job.toml")
+    assert result.exit_code == 0, result.output
+    job = read_job("job.toml")
+    assert job.arm.lengths == [1.0, 0.5, 0.5]
+    assert job.path[0].amplitude == [0.05, 0.1]
+    assert job.path[0].frequencies == [1, 2]
+    assert job.scheme.weights == [[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
+    assert job.run.q0 == [-0.1, 0.5, 1.0]
+    again = call("track", "--job", "job.toml")
+    assert again.stdout.splitlines()[2:] == result.stdout.split("\n\n", 1)[1].splitlines()
+
+
+def test_options_override_a_file() -> None:
+    write_job(
+        Job.of({"arm": {"kind": "preset", "name": "panda"}, "path": {"kind": "circle", "duration": 0.2}}), "job.toml"
+    )
+    for arguments, key, value in (
+        (["--radius", "0.05"], "radius", 0.05),
+        (["--path", "tricuspid"], "size", 0.05),
+        (["--scheme", "man"], "kind", "man"),
+        (["gen3"], "name", "gen3"),
+    ):
+        result = call("track", *arguments, "--job", "job.toml", "--save-job", "other.toml")
+        assert result.exit_code == 0, result.output
+        job = read_job("other.toml")
+        assert value in [getattr(section, key, None) for section in (job.arm, job.path[0], job.scheme)]
+        assert job.path[0].duration == 0.2
+
+
+def test_paths_of_a_file_are_changed_there() -> None:
+    Path("job.toml").write_text("[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n" + "[[path]]\nkind = 'circle'\n" * 2)
+    assert refused("track", "--job", "job.toml", "--radius", "0.1").startswith(
+        "--radius: there are 2 paths in the file"
+    )
+    assert call("track", "--job", "job.toml", "--path", "circle", "--radius", "0.1", *QUICK).exit_code == 0
+
+
+def test_a_job_that_fails_is_not_saved() -> None:
+    refused("track", "panda", "--dt", "0.3", "--save-job", "job.toml")
+    refused("track", "panda", "--qd0", "1", "--save-job", "job.toml")
+    assert not Path("job.toml").exists()
+
+
+# What is wrong
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            ["pnada"],
+            'ARM = "pnada": must be one of panda, iiwa14, gen3, planar:1,1,1,1, a URDF file; did you mean "panda"?',
+        ),
+        (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
+        (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
+        (["none.urdf", "--tip", "tool"], "cannot read none.urdf: No such file or directory"),
+        (["none.urdf"], "--tip: is missing"),
+        (["panda", "--tip", "tool"], "--tip: preset has no such key: must be one of name"),
+        (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),
+        (["panda", "--alpha", "x"], '--alpha = "x": must be a number'),
+        (["panda", "--scheme", "fbpm"], 'fpbm; did you mean "fpbm"?'),
+        (["panda", "--scheme", "man", "--alpha", "1"], "--alpha: man has no such key: must be one of null_damping, "),
+        (["panda", "--weights", "1,2"], "--weights has 2 entries: must have 7, one per joint"),
+        (["panda", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),
+        (["panda", "--qd0", "0,0"], "--qd0 has 2 entries: must have 7, one per joint"),
+        (["panda", "--dt", "0.3"], "--dt = 0.3: must be a divisor of duration = 10"),
+        (["panda", "--task", "pos"], '--task = "pos": must be one of position, pose; did you mean "pose"?'),
+        (["panda", "--path", "waypoints", "--duration", "1"], "--points: is missing"),
+        (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of speed: must be given"),
+        (["planar:1,1", "--in-plane", "xy"], "path: it lies in space, and the arm in a plane"),
+        (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
+        (["--job", "bad.toml"], "bad.toml: no TOML: "),
+        (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),
+        (["--job", "wrong.toml", "--radius", "-2"], "--radius = -2: must be positive and finite"),
+        (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], '--path = "cirle": must be one of '),
+    ],
+)
+def test_what_is_wrong_is_said(arguments: list[str], line: str) -> None:
+    Path("bad.toml").write_text("[arm")
+    Path("wrong.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[path]\nkind = 'circle'\nradius = -1")
+    assert line in refused("track", *arguments, "--out", "out", "--save-job", "job.toml")
+    assert sorted(os.listdir()) == ["bad.toml", "wrong.toml"]
+
+
+def test_everything_that_is_wrong_is_said() -> None:
+    result = call("track", "panda", "--alpha", "x", "--dt", "y", "--q0", "z")
+    assert result.exit_code == 1
+    assert [line.split(" = ")[0] for line in result.stderr.splitlines()] == [
+        "Error: --alpha",
+        "Error: --q0",
+        "Error: --dt",
+    ]
+
+
+def test_an_arm_is_asked_for() -> None:
+    result = call("track")
+    assert result.exit_code == 2
+    assert "Missing argument 'ARM': panda, iiwa14, gen3, planar:1,1,1,1 or a URDF file." in result.stderr
+
+
+def test_a_folder_that_cannot_be_written_to() -> None:
+    Path("file").write_text("mine")
+    for name in ("sweep",):
+        assert refused(name, "panda", *QUICK, "--out", "file") == "cannot write to file: it is a file"
+        assert refused(name, "panda", *QUICK, "--out", "file/below") == "cannot write to file/below: Not a directory"
+    line = call("track", "panda", *QUICK, "--save-job", "file/job.toml").stderr
+    assert line == "Error: cannot write to file/job.toml: Not a directory\n"
+    assert Path("file").read_text() == "mine"
+    assert os.listdir() == ["file"]
+
+
+@draws
+@pytest.mark.usefixtures("sketches")
+def test_a_folder_that_cannot_be_drawn_to() -> None:
+    Path("file").write_text("mine")
+    for name in ("track", "compare"):
+        result = call(name, "panda", *QUICK, "--out", "file")
+        assert result.exit_code == 1
+        assert result.stderr.startswith("Error: cannot write to file")
+        assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("module", "arguments"),
+    [
+        ("pydantic", ["track", "panda"]),
+        ("tomlkit", ["track", "panda"]),
+        ("matplotlib", ["track", "panda", "--duration", "0.1", "--out", "out"]),
+        ("yourdfpy", ["track", "arm.urdf", "--tip", "tool"]),
+    ],
+)
+def test_missing_extra(module: str, arguments: list[str]) -> None:
+    shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
+    program = (
+        f"import sys; sys.modules['{module}'] = None; sys.argv = {['fpbm-cpp', *arguments]}\n"
+        "from fpbm_cpp.__main__ import main; sys.exit(main())"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert result.returncode == 1
+    (line,) = result.stderr.splitlines()
+    assert f"needs {module}: pip install" in line
+    assert os.listdir() == ["arm.urdf"]
+
+
+# Compare
+
+
+def test_compare() -> None:
+    result = call("compare", "planar:1,1,1,1", "--weights", "1,2,3,4", "--alpha", "0.3", "--k", "5", *QUICK)
+    assert result.exit_code == 0, result.output
+    rows = [line.split() for line in result.stdout.split("\n\n")[1].splitlines()[2:]]
+    assert [row[0] for row in rows] == ["mvn", "wmvn", "man", "wmvn_acceleration", "balanced", "fpbm"]
+    q0, path = [np.pi / 6] * 4, fp.Circle(0.1, 0.2)
+    q0 = [0.5236] * 4
+    for row, scheme in zip(
+        rows,
+        [
+            fp.MVN(k=5),
+            fp.WMVN([1, 2, 3, 4], k=5),
+            fp.MAN(null_damping=2),
+            fp.WMVNAcceleration([1, 2, 3, 4], null_damping=2),
+            fp.Balanced(0.3, [1, 2, 3, 4], null_damping=2),
+            fp.FPBM(0.3, [1, 2, 3, 4], 10, 25, null_damping=2),
+        ],
+    ):
+        run = fp.simulate(fp.PlanarArm([1, 1, 1, 1]), path, scheme, q0)
+        assert row[2] == f"{np.abs(run.qd).max():.4g}"
+        assert row[-1] == "yes"
+
+
+@draws
+@pytest.mark.usefixtures("sketches")
+def test_compare_writes() -> None:
+    result = call("compare", "panda", *QUICK, "--schemes", "mvn,fpbm", "--out", "out")
+    assert result.exit_code == 0, result.output
+    assert sorted(os.listdir("out")) == ["compare.png", "fpbm.npz", "job.toml", "mvn.npz"]
+
+
+def test_compare_refuses() -> None:
+    assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith('--schemes = "fbpm": must be one of mvn, ')
+    assert refused("compare", "panda", "--weights", "1") == "--weights: must have 1 dimension, got shape ()"
+    Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[scheme]\nkind = 'fpbm'\nalhpa = 1")
+    assert 'did you mean "alpha"?' in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
+    result = call("compare", "planar:1,1,1,1", "--q0", "0,0,0,0")
+    assert result.exit_code == 1
+    assert result.stderr == "Error: no motion is complete\n"
+
+
+# Sweep
+
+
+def test_sweep() -> None:
+    arguments = ["sweep", "panda", *QUICK, "--vary", "alpha=0:1:3", "--vary", "null-damping=0,2", "--starts", "5"]
+    result = call(*arguments, "--out", "out")
+    assert result.exit_code == 0, result.output
+    rows = list(csv.DictReader(Path("out/sweep.csv").read_text().splitlines()))
+    assert len(rows) == 3 * 2 * 5
+    assert [row["alpha"] for row in rows[::10]] == ["0.0", "0.5", "1.0"]
+    assert [row["null_damping"] for row in rows[:10:5]] == ["0.0", "2.0"]
+    row = rows[-1]
+    start = [float(row[key]) for key in row if key.startswith("q0_")]
+    scheme = fp.FPBM(1.0, np.ones(7), 10, 25, null_damping=2)
+    run = fp.simulate(fp.SerialArm.preset("panda"), fp.Circle(0.1, 0.2).in_plane("yz"), scheme, start)
+    assert float(row["peak_velocity"]) == pytest.approx(np.abs(run.qd).max(), rel=1e-9)
+    worst = max(float(each["peak_velocity"]) for each in rows[-5:])
+    assert f" {worst:.4g} " in result.stdout.splitlines()[-3]
+    first = Path("out/sweep.csv").read_text()
+    call(*arguments, "--out", "out", "--workers", "1")
+    assert Path("out/sweep.csv").read_text() == first
+    call(*arguments, "--out", "out", "--seed", "1")
+    assert Path("out/sweep.csv").read_text() != first
+
+
+def test_sweep_refuses() -> None:
+    assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must be as alpha=0,0.6,1 or ")
+    assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must be as ")
+    assert 'did you mean "alpha"?' in refused("sweep", "panda", "--vary", "alhpa=1")
+    assert refused("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
+    assert "--no-limits" in refused("sweep", "panda", "--limits")
+    assert "leave qd0 out" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
+
+
+def test_sweep_says_what_became_of_motions_that_stop() -> None:
+    result = call("sweep", "panda", "--radius", "0.5", "--starts", "3")
+    assert result.exit_code == 1
+    assert "3 of 3: the tip has left its reference" in result.stdout
+    assert result.stderr == "Error: no motion is complete\n"
+
+
+def interrupted(arguments: list[str], after: str, seconds: float) -> tuple[str, str, int]:
+    """What is printed from then on, errors, and exit code of a call that gets Ctrl-C so long after it prints this."""
+
+    def heed_interrupts() -> None:  # A shell lets its background jobs ignore them.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    program = (
+        "import signal, sys, threading\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        f"sys.argv = {['fpbm-cpp', *arguments]}\n"
+        "from fpbm_cpp.__main__ import main\n"
+        "sys.exit(main())"
+    )
+    start = [sys.executable, "-u", "-c", program]
+    with subprocess.Popen(
+        start, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
+    ) as child:
+        assert child.stdout is not None
+        try:
+            while after not in child.stdout.readline():
+                assert child.poll() is None
+            time.sleep(seconds)
+            child.send_signal(signal.SIGINT)
+            return (*child.communicate(timeout=60), child.wait())
+        finally:
+            child.kill()
+
+
+@posix
+def test_ctrl_c_keeps_what_is_finished() -> None:
+    arguments = ["sweep", "panda", "--duration", "0.5", "--starts", "40000", "--out", "out"]
+    out, err, code = interrupted(arguments, "by default", 2.0)
+    assert code == 130
+    (line,) = err.splitlines()
+    done = int(re.fullmatch(r"interrupted after (\d+) of 40000 motions", line)[1])  # type: ignore[index]
+    assert f"{done} of 40000" in out
+    assert len(Path("out/sweep.csv").read_text().splitlines()) == 1 + done > 1
+
+
+# Tune, view, bench, completion
+
+
+@tunes
+def test_tune() -> None:
+    result = call(
+        "tune", "planar:1,1,1,1", "--duration", "1", "--dt", "0.01", "--trials", "20", "--save-job", "job.toml"
+    )
+    assert result.exit_code == 0, result.output
+    assert "peak_velocity" in result.stdout
+    assert refused("tune", "panda", "--objective", "speed")
+
+
+@tunes
+@draws
+@pytest.mark.usefixtures("sketches")
+def test_tune_writes_a_job() -> None:
+    arguments = ["planar:1,1,1,1", "--duration", "1", "--dt", "0.01"]
+    result = call("tune", *arguments, "--trials", "20", "--out", "out")
+    assert result.exit_code == 0, result.output
+    tuned, plain = call("track", "--job", "out/job.toml"), call("track", *arguments)
+    peaks = [float(re.search(r"peak joint velocity +(\S+)", each.stdout)[1]) for each in (tuned, plain)]  # type: ignore[index]
+    assert peaks[0] <= peaks[1]
+
+
+def test_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Hands on what is asked for, to a viewer that ends at once."""
+    view = pytest.importorskip("fpbm_cpp.view")
+    shown = []
+    monkeypatch.setattr(view, "view", lambda *arguments, **options: shown.append((arguments, options)))
+    result = call("view", "gen3", "--task", "pose", "--port", "9000", "--no-browser", "--hold", "1")
+    assert result.exit_code == 0, result.output
+    ((arm, _, scheme, q0), options) = shown[0]
+    assert scheme.level == "acceleration"
+    assert arm == fp.SerialArm.preset("gen3")
+    assert len(q0) == 7
+    assert options == {"dt": 1e-3, "hold": 1.0, "task": "pose", "urdf": None, "port": 9000, "open_browser": False}
+
+
+def test_view_on_a_port_in_use() -> None:
+    pytest.importorskip("fpbm_cpp.view")
+    pytest.importorskip("viser")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        result = call("view", "panda", "--port", str(port), "--no-browser")
+    assert result.exit_code == 1
+    (line,) = result.stderr.splitlines()
+    assert f"port {port} is in use" in line
+
+
+@posix
+def test_ctrl_c_ends_the_viewer_in_peace() -> None:
+    pytest.importorskip("fpbm_cpp.view")
+    pytest.importorskip("viser")
+    _, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], "Websocket", 1.0)
+    assert (code, err) == (0, "")
+
+
+def test_bench() -> None:
+    result = call("bench", "--seconds", "0.01")
+    assert result.exit_code == 0, result.output
+    rows = {line.split("  ")[0]: re.findall(r"[\d.]+$|[\d.]+ ", line) for line in result.stdout.splitlines()}
+    for name in ("MVN", "WMVN", "MAN", "WMVNAcceleration", "Balanced", "FPBM"):
+        assert all(0.01 < float(number) < 1000 for number in rows[name])
+        assert len(rows[name]) == 3
+    assert all(float(number) > 0 for number in rows["motions a second"])
+    assert max(map(len, result.stdout.splitlines())) <= 100
+
+
+@pytest.mark.parametrize(
+    ("shell", "mark"), [("bash", "complete -o"), ("zsh", "#compdef"), ("fish", "complete --no-files")]
+)
+def test_completion(shell: str, mark: str) -> None:
+    result = call("completion", shell)
+    assert result.exit_code == 0
+    assert mark in result.stdout
+    assert "_FPBM_CPP_COMPLETE" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("fpbm-cpp tra", "track"),
+        ("fpbm-cpp track panda --scheme fp", "fpbm"),
+        ("fpbm-cpp track --null-d", "--null-damping"),
+    ],
+)
+def test_words_are_completed(words: str, completed: str) -> None:
+    environment = {
+        **os.environ,
+        "_FPBM_CPP_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split()) - 1),
+    }
+    result = subprocess.run(MODULE, env=environment, capture_output=True, text=True, check=False)
+    assert f"plain,{completed}" in result.stdout

@@ -1,0 +1,447 @@
+"""Jobs: what a file says is what the library makes, and what is wrong with one is said key by key."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import fpbm_cpp as fp
+
+pytest.importorskip("pydantic")
+pytest.importorskip("tomlkit")
+
+import tomlkit
+
+from fpbm_cpp.job import Job, JobError, prepare, read_job, write_job
+from fpbm_cpp.job.arms import Dh
+from fpbm_cpp.job.paths import Circle, Line, Lissajous, Tricuspid, Waypoints
+from fpbm_cpp.job.ready import ready
+from fpbm_cpp.job.schemes import FPBM, MAN, MVN, WMVN, Balanced, WMVNAcceleration
+
+ROOT = Path(__file__).parents[2]
+PANDA = {"kind": "preset", "name": "panda"}
+PLANAR = {"kind": "planar", "lengths": [1, 1, 1, 1]}
+READY = [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854]
+DH = [[0, np.pi / 2, 0.3, 0], [0.4, 0, 0, 0.1], [0.3, -0.2, 0.1, 0], [0.1, 0.5, 0, 0]]
+tracks = pytest.mark.skipif(not hasattr(fp, "track"), reason="needs fpbm_cpp.track")
+
+
+def job_of(text: str) -> Job:
+    return Job.of(tomlkit.parse(text).unwrap())
+
+
+def complaints(text: str) -> list[str]:
+    with pytest.raises(JobError) as caught:
+        prepare(job_of(text))
+    return str(caught.value).splitlines()
+
+
+# What a job says is what the library makes.
+
+
+@pytest.mark.parametrize(
+    ("table", "arm"),
+    [
+        (PANDA, fp.SerialArm.preset("panda")),
+        (PLANAR, fp.PlanarArm([1, 1, 1, 1])),
+        (
+            {"kind": "urdf", "file": str(ROOT / "examples/04_exported_arm.urdf"), "tip": "tool"},
+            fp.SerialArm.from_urdf,
+        ),
+        (
+            {"kind": "dh", "table": DH, "convention": "modified", "names": list("abcd"), "lower": [-1] * 4},
+            fp.SerialArm.from_dh(DH, "modified", names=list("abcd"), lower=[-1] * 4),
+        ),
+        (
+            {
+                "kind": "joints",
+                "joints": [{"type": "prismatic", "axis": [0, 1, 0], "upper": 1.0}, {}, {"name": "last"}],
+                "tip": [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+            },
+            fp.SerialArm(
+                [fp.Joint("prismatic", axis=(0, 1, 0), upper=1.0), fp.Joint(), fp.Joint(name="last")],
+                [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+            ),
+        ),
+    ],
+    ids=["preset", "planar", "urdf", "dh", "joints"],
+)
+def test_arms(table: dict[str, Any], arm: Any) -> None:
+    if table["kind"] == "urdf":
+        pytest.importorskip("yourdfpy")
+        arm = arm(table["file"], "tool")
+    assert Job.of({"arm": table}).arm.build() == arm
+
+
+@pytest.mark.parametrize(
+    ("text", "path"),
+    [
+        ("kind = 'circle'\nradius = 0.2\nduration = 3", fp.Circle(0.2, 3.0)),
+        ("kind = 'circle'\nradius = 0.2\ntime_law = 'quintic'", fp.Circle(0.2, 10.0, time_law="quintic")),
+        (
+            "kind = 'lissajous'\namplitude = [0.1, 0.2]\nfrequencies = [1, 2]\nphase = 0.5",
+            fp.Lissajous((0.1, 0.2), 10.0, frequencies=(1, 2), phase=0.5),
+        ),
+        ("kind = 'tricuspid'\nsize = 0.1", fp.Tricuspid(0.1, 10.0)),
+        ("kind = 'line'\ndisplacement = [0.1, 0.2, 0.3]", fp.Line([0.1, 0.2, 0.3], 10.0)),
+        (
+            "kind = 'waypoints'\npoints = [[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0]]\nduration = 3",
+            fp.Waypoints([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0]], duration=3.0),
+        ),
+        (
+            "kind = 'waypoints'\npoints = [[0, 0], [0.1, 0], [0.1, 0.1]]\nspeed = 0.1\nacceleration = 0.2",
+            fp.Waypoints([[0, 0], [0.1, 0], [0.1, 0.1]], speed=0.1, acceleration=0.2),
+        ),
+        (
+            "kind = 'circle'\nin_plane = 'yz'\nwith_turn = [0, 0, 1]\nturn_time_law = 'sin_squared'",
+            fp.Circle(0.1, 10.0).in_plane("yz").with_turn([0, 0, 1], time_law="sin_squared"),
+        ),
+        ("kind = 'circle'\nin_plane = [[0, 1, 0], [1, 0, 0]]", fp.Circle(0.1, 10.0).in_plane([[0, 1, 0], [1, 0, 0]])),
+    ],
+)
+def test_paths(text: str, path: fp.Path) -> None:
+    (piece,) = job_of(f"[arm]\nkind = 'preset'\nname = 'panda'\n[path]\n{text}").path
+    made = piece.build()
+    assert made.duration == path.duration
+    for t in np.linspace(-0.1, path.duration + 0.1, 7):
+        for ours, theirs in zip(made.sample(t), path.sample(t)):
+            np.testing.assert_array_equal(ours, theirs)
+
+
+def test_paths_follow_one_another() -> None:
+    lines = [{"kind": "line", "displacement": [0.1, 0.0, z], "duration": 1.0} for z in (0.1, -0.1)]
+    made = prepare(Job.of({"arm": PANDA, "path": lines})).path
+    np.testing.assert_allclose(made.sample(2.0)[0], [0.2, 0.0, 0.0], atol=1e-15)
+    assert made.duration == 2.0
+
+
+@pytest.mark.parametrize("section", [MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM], ids=lambda each: each.__name__)
+def test_schemes_have_every_option_of_the_library(section: Any) -> None:
+    signature = section.law.__init__.__doc__.splitlines()[0]
+    options = set(re.findall(r"(\w+): ", signature.split("(", 1)[1])) - {"self"}
+    assert set(section.model_fields) - {"kind"} == options
+
+
+def test_shapes_have_every_option_of_the_library() -> None:
+    laid = {"kind", "in_plane", "with_turn", "turn_time_law"}
+    for section, path in ((Circle, fp.Circle), (Lissajous, fp.Lissajous), (Tricuspid, fp.Tricuspid), (Line, fp.Line)):
+        assert set(section.model_fields) - laid == options_of(path)
+    assert set(Waypoints.model_fields) - laid == options_of(fp.Waypoints)
+    assert set(Dh.model_fields) - {"kind"} == set(inspect.signature(fp.SerialArm.from_dh).parameters)
+
+
+def options_of(kind: type) -> set[str]:
+    signature = kind.__init__.__doc__.splitlines()[0]  # type: ignore[misc]
+    return set(re.findall(r"(\w+): ", signature.split("(", 1)[1])) - {"self"}
+
+
+def test_a_scheme_with_everything() -> None:
+    text = """
+        [arm]
+        kind = "planar"
+        lengths = [1, 1, 1, 1]
+        [scheme]
+        kind = "fpbm"
+        alpha = 0.25
+        weights = [[2, 0, 0, 0], [0, 1, 0.5, 0], [0, 0.5, 1, 0], [0, 0, 0, 3]]
+        k1 = 3
+        k2 = 4
+        null_damping = 1
+        rest_posture = [0.1, 0.2, 0.3, 0.4]
+        null_stiffness = 2
+        c = [0, 0, 0, 1]
+        joint_centring = 0.1
+        manipulability_gain = 0.2
+        singular_radius = 0.02
+        singular_brake = 5
+        [scheme.second_task]
+        kind = "point"
+        joints = 2
+        x = [0.5, 1.0]
+        k1 = 6
+    """
+    W = [[2, 0, 0, 0], [0, 1, 0.5, 0], [0, 0.5, 1, 0], [0, 0, 0, 3]]
+    same = fp.FPBM(
+        0.25,
+        W,
+        3,
+        4,
+        null_damping=1,
+        rest_posture=[0.1, 0.2, 0.3, 0.4],
+        null_stiffness=2,
+        c=[0, 0, 0, 1],
+        joint_centring=0.1,
+        manipulability_gain=0.2,
+        singular_radius=0.02,
+        singular_brake=5,
+        second_task=fp.SecondTask(fp.PlanarArm([1, 1]), [0.5, 1.0], k1=6),
+    )
+    motion = prepare(job_of(text))
+    q, qd = np.array([0.3, 0.4, 0.5, 0.6]), np.array([0.1, 0.0, -0.1, 0.2])
+    answers = [scheme.resolve(motion.arm, q, qd, [1, 2], [0.1, 0], [0, 0.1]) for scheme in (motion.scheme, same)]
+    np.testing.assert_array_equal(*answers)
+
+
+def test_second_tasks_in_space() -> None:
+    point = {"kind": "point", "joints": 4, "x": [0.1, 0.2, 0.5]}
+    gaze = {"kind": "gaze", "direction": [0, 0, -1], "k2": 9.0}
+    panda = fp.SerialArm.preset("panda")
+    theirs = [fp.SecondTask(fp.SerialArm(panda.joints[:4]), [0.1, 0.2, 0.5]), fp.Gaze([0, 0, -1], k2=9.0)]
+    for table, second in zip((point, gaze), theirs):
+        motion = prepare(Job.of({"arm": PANDA, "scheme": {"kind": "mvn", "second_task": table}}))
+        ours, same = (
+            scheme.resolve(panda, READY, np.zeros(7), [0.4, 0.1, 0.4], [0.1, 0, 0])
+            for scheme in (motion.scheme, fp.MVN(second_task=second))
+        )
+        np.testing.assert_array_equal(ours, same)
+
+
+def test_a_run_is_that_of_the_library() -> None:
+    motion = prepare(Job.of({"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "run": {"task": "pose"}}))
+    scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
+    run = fp.simulate(motion.arm, fp.Circle(0.1, 1.0).in_plane("yz"), scheme, READY, task="pose")
+    np.testing.assert_array_equal(motion.run().q, run.q)
+
+
+def test_a_motion_that_stops_early_is_kept() -> None:
+    run = prepare(Job.of({"arm": PANDA, "path": {"kind": "circle", "radius": 3.0}})).run()
+    assert not run.status
+    assert 0 < run.status.time < 10
+
+
+@tracks
+def test_limits_are_kept() -> None:
+    table = {"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "limits": {"velocity": 0.5}}
+    motion = prepare(Job.of(table))
+    run = motion.run()
+    assert np.abs(run.qd).max() <= 0.5 + 1e-9
+    assert run.saturated is not None
+    np.testing.assert_array_equal(motion.limits.upper, motion.arm.limits.upper)
+
+
+# What is left out
+
+
+def test_what_was_taken_is_said() -> None:
+    motion = prepare(Job.of({"arm": PANDA, "scheme": {"kind": "fpbm", "k1": 3.0}}))
+    assert "k1 = 3" not in motion.taken
+    assert {"k2 = 25", "radius = 0.1", "in_plane = yz", "weights = 1 for each", "null_damping = 2"} <= set(motion.taken)
+    assert not prepare(Job.of(motion.job.model_dump(exclude_none=True))).taken
+
+
+def test_a_path_of_the_plane_is_laid_before_an_arm_in_space_alone() -> None:
+    assert prepare(Job.of({"arm": PLANAR})).job.path[0].in_plane is None
+    assert prepare(Job.of({"arm": PANDA})).job.path[0].in_plane == "yz"
+    line = {"kind": "line", "displacement": [0.1, 0, 0]}
+    assert prepare(Job.of({"arm": PANDA, "path": line})).job.path[0].in_plane is None
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3"])
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_every_preset_goes_its_way_by_default(name: str, task: str) -> None:
+    motion = prepare(Job.of({"arm": {"kind": "preset", "name": name}, "run": {"task": task}}))
+    assert motion.run().max_error() < 1e-9
+    if name != "gen3":
+        np.testing.assert_allclose(motion.arm.forward(motion.q0)[:3, 2], [0, 0, -1], atol=1e-3)  # The hand points down.
+
+
+@pytest.mark.parametrize("links", range(2, 11))
+def test_planar_arms_go_their_way_by_default(links: int) -> None:
+    assert prepare(Job.of({"arm": {"kind": "planar", "lengths": [1.0] * links}})).run().max_error() < 1e-9
+
+
+@given(seed=st.integers(0, 1 << 30), dof=st.integers(6, 8), task=st.sampled_from(["position", "pose"]))
+def test_postures_of_unknown_arms(seed: int, dof: int, task: str) -> None:
+    """Within the limits, and never worse than their middle."""
+    rng = np.random.default_rng(seed)
+    table = rng.uniform(-1, 1, (dof, 4))
+    lower, upper = -rng.uniform(0.1, 3, dof), rng.uniform(0.1, 3, dof)
+    section = Dh(kind="dh", table=table.tolist(), convention="classic", lower=lower.tolist(), upper=upper.tolist())
+    arm = section.build()
+    q = np.array(ready(section, arm, task))
+    assert np.all((q > lower) & (q < upper))
+    least, middle = (
+        np.linalg.svd(arm.jacobian(posture, task=task), compute_uv=False) for posture in (q, (lower + upper) / 2)
+    )
+    assert least[-1] / least[0] > min(0.05, middle[-1] / middle[0]) - 1e-4
+
+
+def test_a_straight_chain_is_bent() -> None:
+    table = [[0.3, (-1) ** i * np.pi / 2, 0, 0] for i in range(7)]
+    section = Dh(kind="dh", table=table, convention="classic")
+    arm = section.build()
+    assert np.linalg.svd(arm.jacobian(np.zeros(7), task="pose"), compute_uv=False)[-1] < 1e-9
+    assert np.linalg.svd(arm.jacobian(ready(section, arm, "pose"), task="pose"), compute_uv=False)[-1] > 0.01
+
+
+# Files
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "examples/jobs").glob("*.toml")), ids=lambda file: file.stem)
+def test_examples(file: Path, tmp_path: Path) -> None:
+    motion = prepare(read_job(file))
+    if motion.limits is None or hasattr(fp, "track"):
+        run = motion.run()
+        assert run.status
+        assert run.max_error() < 1e-3
+    write_job(motion.job, tmp_path / "again.toml")
+    assert prepare(read_job(tmp_path / "again.toml")).job == motion.job
+
+
+numbers = st.floats(0.0, 1e3)
+
+
+@given(
+    alpha=st.floats(0.0, 1.0), k1=numbers, k2=numbers, weights=st.lists(st.floats(1e-3, 1e3), min_size=4, max_size=4)
+)
+def test_numbers_survive(
+    tmp_path_factory: pytest.TempPathFactory, alpha: float, k1: float, k2: float, weights: list[float]
+) -> None:
+    scheme = {"kind": "fpbm", "alpha": alpha, "k1": k1, "k2": k2, "weights": weights}
+    job = Job.of({"arm": PLANAR, "scheme": scheme})
+    file = tmp_path_factory.getbasetemp() / "numbers.toml"
+    write_job(job, file)
+    assert read_job(file) == job
+
+
+def test_a_file_is_as_one_would_write_it(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    write_job(prepare(Job.of({"arm": PLANAR})).job, file)
+    assert file.read_text().splitlines()[:7] == [
+        "# fpbm-cpp track --job mine.toml",
+        "",
+        "[arm]",
+        'kind = "planar"',
+        "lengths = [1.0, 1.0, 1.0, 1.0]",
+        "",
+        "[path]",
+    ]
+    lines = [line.split(" =")[0] for line in file.read_text().splitlines()]
+    assert lines[lines.index("[scheme]") :][:7] == ["[scheme]", "kind", "alpha", "weights", "null_damping", "k1", "k2"]
+
+
+def test_files_in_a_file_are_seen_from_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("yourdfpy")
+    (tmp_path / "arms").mkdir()
+    (tmp_path / "jobs").mkdir()
+    (tmp_path / "arms/my.urdf").write_text((ROOT / "examples/04_exported_arm.urdf").read_text())
+    monkeypatch.chdir(tmp_path)
+    job = Job.of({"arm": {"kind": "urdf", "file": "arms/my.urdf", "tip": "tool"}})
+    write_job(job, "jobs/job.toml")
+    assert 'file = "../arms/my.urdf"' in Path("jobs/job.toml").read_text()
+    monkeypatch.chdir("jobs")
+    assert prepare(read_job("job.toml")).arm.dof == 7
+    monkeypatch.chdir("/")
+    assert prepare(read_job(tmp_path / "jobs/job.toml")).arm.dof == 7
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read_job(tmp_path / "none.toml")
+    for content in (b"[arm", b"a = ", b"\xff", b"[arm]\n[arm]\n"):
+        (tmp_path / "bad.toml").write_bytes(content)
+        with pytest.raises(JobError, match="no TOML: "):
+            read_job(tmp_path / "bad.toml")
+
+
+# What is wrong
+
+ARM = "[arm]\nkind = 'preset'\nname = 'panda'\n"
+PATHS = "circle, lissajous, tricuspid, line, waypoints"
+SCHEMES = "mvn, wmvn, man, wmvn_acceleration, balanced, fpbm"
+LAWS = "sin_squared, quintic, constant_speed"
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("", "arm: is missing"),
+        ("arm = 3", "arm = 3: must be a table"),
+        ("[arm]\nname = 'panda'", "arm.kind: is missing: must be one of preset, planar, urdf, dh, joints"),
+        ("[arm]\nkind = 'preset'", "arm.name: is missing"),
+        (
+            "[arm]\nkind = 'preset'\nname = 'pnada'",
+            'arm.name = "pnada": must be one of panda, iiwa14, gen3; did you mean "panda"?',
+        ),
+        ("[arm]\nkind = 'planar'\nlengths = [1, -1]", "arm.lengths[1] = -1: must be positive and finite"),
+        ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", 'arm.joints[1].axis = "x": must be numbers'),
+        (
+            f"{ARM}[pth]",
+            'pth: a job has no such key: must be one of arm, path, scheme, run, limits; did you mean "path"?',
+        ),
+        (f"{ARM}[path]\nkind = 'cirle'", f'path.kind = "cirle": must be one of {PATHS}; did you mean "circle"?'),
+        (f"{ARM}[path]\nradius = 1", f"path.kind: is missing: must be one of {PATHS}"),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = -1", "path.radius = -1: must be positive and finite"),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = '1'", 'path.radius = "1": must be a number'),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = true", "path.radius = true: must be a number"),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = nan", "path.radius = nan: must be positive and finite"),
+        (f"{ARM}[path]\nkind = 'circle'\nradus = 1", 'turn_time_law; did you mean "radius"?'),
+        (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f'path.time_law = "sin": must be one of {LAWS}'),
+        (f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'", "path.in_plane = 'xw': must be two of 'x', 'y' and 'z'"),
+        (f"{ARM}[path]\nkind = 'circle'\nwith_turn = [1]", "path.with_turn"),
+        (
+            f"{ARM}[path]\nkind = 'lissajous'\nfrequencies = [1, 1.5]",
+            "path.frequencies[1] = 1.5: must be a whole number",
+        ),
+        (f"{ARM}[path]\nkind = 'waypoints'\npoints = [[0, 0], [1, 0]]", "path.duration, times or bounds of speed"),
+        (f"path = []\n{ARM}", "path = []: must be one at least"),
+        (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 'a'", 'path[1].radius = "a": must be'),
+        (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 0", "path[1].radius = 0: must be"),
+        (f"{ARM}[scheme]\nkind = 'fbpm'", f'scheme.kind = "fbpm": must be one of {SCHEMES}; did you mean "fpbm"?'),
+        (f"{ARM}[scheme]\nkind = 'FPBM'", f'scheme.kind = "FPBM": must be one of {SCHEMES}; did you mean "fpbm"?'),
+        (f"{ARM}[scheme]\nkind = 'wmvn-acceleration'", 'did you mean "wmvn_acceleration"?'),
+        (f"{ARM}[scheme]\nkind = 'fpbm'\nalpha = 2", "scheme.alpha = 2: must be in [0, 1]"),
+        (f"{ARM}[scheme]\nkind = 'fpbm'\nweights = [1, 2]", "scheme.weights has 2 entries: must have 7, one per joint"),
+        (
+            f"{ARM}[scheme]\nkind = 'man'\nalpha = 0.5",
+            "scheme.alpha: man has no such key: must be one of null_damping, ",
+        ),
+        (
+            f"{ARM}[scheme]\nkind = 'mvn'\nsecond_task = {{kind = 'point', joints = 9, x = [0, 0, 0]}}",
+            "joints = 9: must be from 1 to 6",
+        ),
+        (
+            f"{ARM}[scheme]\nkind = 'mvn'\nsecond_task = {{kind = 'gaz'}}",
+            'scheme.second_task.kind = "gaz": must be one of',
+        ),
+        (f"{ARM}[run]\ntask = 'pos'", 'run.task = "pos": must be one of position, pose; did you mean "pose"?'),
+        (f"{ARM}[run]\nq0 = [1, 2]", "run.q0 has 2 entries: must have 7, one per joint"),
+        (f"{ARM}[run]\ndt = 0.3", "run.dt = 0.3: must be a divisor of duration = 10"),
+        (f"{ARM}[limits]\nvelocity = [1, 2]", "limits.velocity has 2 entries"),
+        (
+            "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[run]\ntask = 'pose'",
+            "run.task: it has 3 rows, and the arm 2 joints",
+        ),
+        (
+            "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[path]\nkind = 'circle'\nin_plane = 'xy'",
+            "path: it lies in space",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said(text: str, line: str) -> None:
+    (said,) = complaints(text)
+    assert line in said
+
+
+def test_everything_that_is_wrong_is_said() -> None:
+    text = "[arm]\nkind = 'preset'\nname = 'x'\n[path]\nkind = 'circle'\nradius = 'x'\n[run]\nq0 = 'x'\ndt = 'x'"
+    assert [line.split(" ")[0] for line in complaints(text)] == ["arm.name", "path.radius", "run.q0", "run.dt"]
+
+
+def test_a_long_value_is_cut() -> None:
+    (line,) = complaints(f"{ARM}[run]\nq0 = {['x' * 500]}")
+    assert len(line) < 120
+
+
+@tracks
+def test_what_the_run_finds_is_said_too() -> None:
+    motion = prepare(Job.of({"arm": PANDA, "run": {"qd0": [1.0]}, "limits": {}}))
+    with pytest.raises(JobError, match=r"^run\.qd0 has 1 entr"):
+        motion.run()
