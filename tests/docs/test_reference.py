@@ -1,0 +1,22 @@
+"""The reference has every public name."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import fpbm_cpp as fp
+
+DOCS = Path(__file__).parents[2] / "docs"
+INCLUDE = DOCS.parent / "cpp" / "include" / "fpbm"
+
+
+def test_python() -> None:
+    page = (DOCS / "reference" / "python.rst").read_text()
+    listed = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
+    assert sorted(listed) == sorted(fp.__all__)
+
+
+def test_rooms() -> None:
+    rooms = {header.parent.name for header in INCLUDE.glob("*/*.hpp")}
+    assert {page.stem for page in (DOCS / "reference" / "cpp").glob("*.rst")} == rooms
