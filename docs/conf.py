@@ -16,6 +16,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",
     "breathe",
     "sphinx_click",
     "headers",
@@ -25,6 +26,8 @@ exclude_patterns = ["figures"]
 
 html_theme = "furo"
 html_title = f"fpbm_cpp {release}"
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
 
 # Pages read the same on GitHub: $…$, ```math, links to headings.
 myst_enable_extensions = ["dollarmath"]
@@ -37,15 +40,18 @@ nb_execution_timeout = 120
 
 # Types are in the docstrings, in words.
 autodoc_typehints = "none"
+autoclass_content = "both"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
 napoleon_use_param = False
 napoleon_use_rtype = False
-napoleon_use_ivar = True
+napoleon_custom_sections = [("Attributes", "params_style")]
 
 breathe_projects = {"fpbm": str(HERE.parent / "build" / "doxygen" / "xml")}
 breathe_default_project = "fpbm"
+breathe_show_include = False
 
-# Names of Eigen's, of the standard library's and of template parameters have no page here.
+# Names of Eigen's, of the standard library's and of template parameters have no page here; bench/results is there once
+# `make bench` has run.
 nitpicky = True
-nitpick_ignore_regex = [("cpp:.*", ".*")]
+nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", ".*bench/results/results.md")]

@@ -13,6 +13,8 @@ from sphinx.util.nodes import nested_parse_with_titles
 
 INCLUDE = Path(__file__).parents[2] / "cpp" / "include" / "fpbm"
 
+SECTIONS = "briefdescription detaileddescription innerclass innernamespace public* enum func typedef var"
+
 
 class Headers(SphinxDirective):
     required_arguments = 1  # The room.
@@ -25,7 +27,7 @@ class Headers(SphinxDirective):
         for header in headers:
             self.env.note_dependency(str(header))
             name = header.relative_to(INCLUDE).as_posix()
-            for line in (name, "-" * len(name), "", f".. doxygenfile:: {name}", ""):
+            for line in (name, "-" * len(name), "", f".. doxygenfile:: {header.name}", f"   :sections: {SECTIONS}", ""):
                 lines.append(line, *self.get_source_info())
         section = nodes.section(document=self.state.document)
         nested_parse_with_titles(self.state, lines, section)
