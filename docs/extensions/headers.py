@@ -13,7 +13,10 @@ from sphinx.util.nodes import nested_parse_with_titles
 
 INCLUDE = Path(__file__).parents[2] / "cpp" / "include" / "fpbm"
 
-SECTIONS = "briefdescription detaileddescription innerclass innernamespace public* enum func typedef var"
+SECTIONS = (
+    "briefdescription detaileddescription innerclass innernamespace enum func typedef var"
+    " public-type public-func public-attrib public-static-func public-static-attrib user-defined"
+)
 
 
 class Headers(SphinxDirective):

@@ -1,4 +1,4 @@
-"""CMake blocks: each a whole CMakeLists.txt, configured and built beside an installed fpbm and its sources."""
+"""CMake blocks: each a whole CMakeLists.txt, built beside an installed fpbm and its sources."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 MAIN = "#include <fpbm/fpbm.hpp>\nint main() { return fpbm::failed(fpbm::Status::kOk); }\n"
 
 
-def configure(example: Any) -> None:
+def build_project(example: Any) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         project, prefix = Path(scratch, "project"), Path(scratch, "prefix")
         project.mkdir()
@@ -28,5 +28,5 @@ def configure(example: Any) -> None:
 
 
 def cmake(*arguments: str) -> None:
-    done = subprocess.run(["cmake", *arguments], capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(["cmake", *arguments], capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, f"cmake {' '.join(arguments)}\n{done.stdout}{done.stderr}"

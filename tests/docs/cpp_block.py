@@ -1,4 +1,4 @@
-"""C++ blocks: compiled with warnings as errors, linked and run.
+"""C++ blocks: compiled with warnings as errors; whole programs are linked and run as well.
 
 A block that includes something is a translation unit; any other is the body of a function. An invisible block before it
 is what it takes for granted, at namespace scope.
@@ -8,45 +8,42 @@ from __future__ import annotations
 
 import subprocess
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
 
-EIGEN = "/usr/include/eigen3"
-FLAGS = ["-std=c++17", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-isystem", EIGEN]
+from sybil import Example
+
+FLAGS = ["-std=c++17", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-isystem", "/usr/include/eigen3"]
 
 
 class Compiler:
     """g++, with the umbrella header compiled once for all blocks."""
 
-    def __init__(self, root: Path, scratch: Path) -> None:
-        self.scratch = scratch
-        self.flags = [*FLAGS, "-I", str(root / "cpp" / "include")]
-        self.header = scratch / "all.hpp"
+    def __init__(self, include: Path) -> None:
+        self.flags = [*FLAGS, "-I", str(include)]
+        self.scratch = TemporaryDirectory()
+        self.header = Path(self.scratch.name, "all.hpp")
 
-    def evaluate(self, example: Any) -> None:
-        code, line = str(example.parsed), example.line
-        if example.document.text[example.region.start :].startswith("<!--"):
-            example.namespace["cpp_setup"] = code
+    def evaluate(self, block: Example) -> None:
+        if block.document.text[block.region.start :].startswith("<!--"):
+            block.namespace["cpp_setup"] = str(block.parsed)
             return
-        setup = example.namespace.pop("cpp_setup", "")
-        source = self.scratch / f"{Path(example.path).stem}_{line}.cpp"
-        source.write_text(program(setup, code))
-        run(["g++", *self.flags, "-include", str(self._precompiled()), str(source), "-o", str(source.with_suffix(""))])
-        run([str(source.with_suffix(""))])
-
-    def _precompiled(self) -> Path:
         if not self.header.exists():
             self.header.write_text("#include <fpbm/fpbm.hpp>\n")
-            run(["g++", *self.flags, "-x", "c++-header", str(self.header), "-o", f"{self.header}.gch"])
-        return self.header
+            run("g++", *self.flags, "-x", "c++-header", str(self.header), "-o", f"{self.header}.gch")
+        Path("block.cpp").write_text(unit(block.namespace.pop("cpp_setup", ""), str(block.parsed)))
+        compile_block = ["g++", *self.flags, "-include", str(self.header), "block.cpp"]
+        if "int main(" not in block.parsed:
+            run(*compile_block, "-fsyntax-only")
+        else:
+            run(*compile_block, "-o", "block")
+            run("./block")
 
 
-def program(setup: str, code: str) -> str:
-    """What is compiled for a block."""
-    if "#include" not in code:
-        return f"{setup}\nvoid block() {{\n{code}\n}}\nint main() {{ block(); }}\n"
-    return f"{setup}\n{code}\n" + ("" if "int main(" in code else "int main() {}\n")
+def unit(setup: str, code: str) -> str:
+    """The translation unit of a block."""
+    return f"{setup}\n{code}\n" if "#include" in code else f"{setup}\nvoid block() {{\n{code}\n}}\n"
 
 
-def run(command: list[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+def run(*command: str) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"

@@ -13,7 +13,7 @@ INCLUDE = DOCS.parent / "cpp" / "include" / "fpbm"
 
 def test_python() -> None:
     page = (DOCS / "reference" / "python.rst").read_text()
-    listed = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
+    listed = re.findall(r"^\.\. (?:auto\w+|py:data):: (\w+)$", page, re.MULTILINE)
     assert sorted(listed) == sorted(fp.__all__)
 
 
