@@ -41,6 +41,7 @@ nb_execution_timeout = 120
 # Types are in the docstrings, in words.
 autodoc_typehints = "none"
 autoclass_content = "both"
+autodoc_mock_imports = ["viser"]
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
 napoleon_use_param = False

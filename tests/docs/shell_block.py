@@ -1,5 +1,6 @@
-"""Shell blocks: every command, option, extra, preset, target and file in them exists. Commands of this project are asked
-for their help; nothing is installed, built or configured.
+"""Shell blocks: every command, option, extra, preset, target and file in them exists.
+
+Commands of this project are asked for their help; nothing is installed, built or configured.
 """
 
 from __future__ import annotations
@@ -9,10 +10,11 @@ import re
 import shlex
 import subprocess
 import sys
-import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+import tomllib
 
 ROOT = Path(__file__).parents[2]
 OTHERS = {"echo", "tee", "setcap"}  # The system's, which need rights or would change it.

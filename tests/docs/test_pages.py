@@ -1,5 +1,7 @@
-"""Every code block of the README and of docs/ does what it says: Python is run, C++ compiled and whole programs run, CMake
-configured, and shell commands are held against what there is.
+"""Every code block of the README and of docs/ does what it says.
+
+Python is run, C++ compiled and whole programs run, CMake projects are built, and shell commands held against what there
+is.
 
 Blocks of a page share their names, from top to bottom. What a block needs besides, and why one is skipped, stands in a
 comment before it, which readers do not see.
