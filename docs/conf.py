@@ -36,7 +36,7 @@ myst_heading_anchors = 3
 
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120
+nb_execution_timeout = 600
 
 # Types are in the docstrings, in words.
 autodoc_typehints = "none"
