@@ -11,8 +11,8 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python test-view clang sanitize nightly fuzz soak lint format stubs bench count sdist wheel \
-        clean
+.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly fuzz soak lint format stubs docs \
+        notebooks bench count sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -26,6 +26,9 @@ help:
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
+	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
+	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
+	@echo 'make test-docs        run every code block of the README and the documentation'
 	@echo 'make sdist, wheel     the source distribution; from it, offline, a wheel for many a Linux, tried on its own'
 
 demo: $(VENV)/package
@@ -87,6 +90,22 @@ format: $(VENV)/lint
 stubs: $(VENV)/package $(VENV)/lint
 	$(BIN)/python tools/stubs.py
 
+docs: $(VENV)/package $(VENV)/docs
+	tools/need.sh doxygen
+	mkdir -p build/doxygen
+	doxygen docs/Doxyfile
+	$(BIN)/python -m sphinx --builder html --fresh-env --fail-on-warning --keep-going --doctree-dir build/doctrees docs build/docs
+
+notebooks: $(VENV)/package $(VENV)/docs
+	mkdir -p build/notebooks
+	for page in docs/notebooks/*.md; do \
+	  $(BIN)/jupytext --quiet --to ipynb --output build/notebooks/$$(basename $$page .md).ipynb $$page; done
+	$(BIN)/jupyter execute --inplace build/notebooks/*.ipynb
+
+test-docs: $(VENV)/package $(VENV)/test $(VENV)/docs
+	tools/need.sh g++ cmake $(EIGEN)
+	$(BIN)/python -m pytest tests/docs
+
 # QUICK=1 takes a minute or two once all is built, and is rough. All of it: a quarter of an hour.
 bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
@@ -118,7 +137,7 @@ $(VENV)/package: $(PACKAGE)
 	$(BIN)/python -m pip install '.[cli]'
 	@touch $@
 
-$(VENV)/test $(VENV)/lint $(VENV)/browser: pyproject.toml | $(VENV)/package
+$(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)/package
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 

@@ -1,0 +1,58 @@
+"""Settings of Sphinx: `make docs`."""
+
+import sys
+from pathlib import Path
+
+import fpbm_cpp
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "extensions"))
+
+project = "fpbm_cpp"
+copyright = "2026, the fpbm_cpp authors"
+version = release = fpbm_cpp.__version__
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",
+    "breathe",
+    "sphinx_click",
+    "headers",
+    "plain_docstrings",
+]
+exclude_patterns = ["figures"]
+
+html_theme = "furo"
+html_title = f"fpbm_cpp {release}"
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
+
+# Pages read the same on GitHub: $…$, ```math, links to headings.
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 3
+
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 600
+
+# Types are in the docstrings, in words.
+autodoc_typehints = "none"
+autoclass_content = "both"
+autodoc_mock_imports = ["viser"]
+autodoc_member_order = "bysource"
+napoleon_google_docstring = False
+napoleon_use_param = False
+napoleon_use_rtype = False
+napoleon_custom_sections = [("Attributes", "params_style")]
+
+breathe_projects = {"fpbm": str(HERE.parent / "build" / "doxygen" / "xml")}
+breathe_default_project = "fpbm"
+breathe_show_include = False
+
+# Names of Eigen's, of the standard library's and of template parameters have no page here; bench/results is there once
+# `make bench` has run.
+nitpicky = True
+nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", ".*bench/results/results.md")]
