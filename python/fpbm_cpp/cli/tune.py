@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import click
 
@@ -67,7 +67,7 @@ def tune(
     save(motion, save_job)
     folder = Folder(out).made() if out is not None else None
     say_job(motion)
-    extra = {} if trials is None else {"trials": trials}
+    extra: dict[str, Any] = {} if trials is None else {"trials": trials}
     run, interruption = motion.job.run, None
     try:
         with progress("trying schemes") as report:
@@ -79,7 +79,7 @@ def tune(
                 dt=run.dt,
                 hold=run.hold,
                 task=run.task,
-                baseline=motion.scheme,
+                baseline=cast(fp.FPBM, motion.scheme),
                 seed=seed,
                 workers=workers,
                 progress=report,

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-import fpbm_cpp
-
 from .._core import Arm, Path, Scheme
 from .._types import Array
 from ..run import Run
 from ..simulate import simulate
+from ..track import track
 
 
 @dataclass(frozen=True)
@@ -38,13 +37,11 @@ class Job:
         Raises ValueError where the scheme is not one for this arm, or its limits cannot be kept.
         """
         if limited:
-            how = {key: value for key, value in self.options.items() if key != "qd0"}
-            run: Run = fpbm_cpp.__dict__["track"](self.arm, self.path, scheme, self.q0, task=self.task, **how)
-            return run
+            return track(self.arm, self.path, scheme, self.q0, task=self.task, **self.options)
         return simulate(self.arm, self.path, scheme, self.q0, task=self.task, partial=True, **self.options)
 
     def has_limits(self) -> bool:
-        """Whether there are limits to be kept, and this package knows how."""
+        """Whether there are limits to be kept."""
         limits = self.arm.limits
         bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
-        return hasattr(fpbm_cpp, "track") and bool(np.isfinite(bounds).any())
+        return bool(np.isfinite(bounds).any())
