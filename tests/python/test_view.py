@@ -288,29 +288,18 @@ def test_a_finished_run():
         assert viewer.url in viewer._repr_html_()
 
 
-def test_limits_are_kept_where_the_package_can(monkeypatch):
-    asked = []
-
-    def track(arm, path, scheme, q0, *, dt, hold, task):
-        asked.append(scheme)
-        return fp.simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task)
-
-    how = {"path": fp.Circle(0.05, 1.0).in_plane("yz"), "dt": 0.01, "port": 0}
-    arm = fp.SerialArm.preset("panda")
-    monkeypatch.setattr(fp, "track", track, raising=False)
-    with Viewer(arm, how.pop("path"), fpbm(7), READY, **how) as viewer:
+def test_limits_are_kept_on_request():
+    arm, path = fp.SerialArm.preset("panda"), fp.Circle(0.05, 1.0).in_plane("yz")
+    with Viewer(arm, path, fpbm(7), READY, dt=0.01, port=0) as viewer:
         box = viewer._controls._limited
         assert box.visible
-        assert not asked
+        assert viewer.run.scale is None
         box.value = True
         viewer._controls._on_update(CLICK)
-        assert len(asked) == 1
+        same(viewer.run, fp.track(arm, path, fpbm(7), READY, dt=0.01))
         viewer.scheme = fp.MVN()
-        assert asked[1] == viewer.scheme
+        assert viewer.run.scale is not None
     with a_viewer() as viewer:  # An arm without limits.
-        assert not viewer._controls._limited.visible
-    monkeypatch.delattr(fp, "track")
-    with Viewer(arm, fp.Circle(0.05, 1.0).in_plane("yz"), fpbm(7), READY, **how) as viewer:
         assert not viewer._controls._limited.visible
 
 
