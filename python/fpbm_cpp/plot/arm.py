@@ -98,7 +98,7 @@ def frame_arm(axes: Any, theme: Theme) -> None:
 def _draw_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:
     """What colour is what time."""
     bar = axes.figure.colorbar(
-        colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=0.08 if axes.name == "3d" else 0.02
+        colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=0.13 if axes.name == "3d" else 0.02
     )
     bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
     bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)

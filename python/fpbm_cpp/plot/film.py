@@ -71,7 +71,7 @@ def _write_mp4(film: Path, pictures: Pictures, fps: float, ffmpeg: str) -> None:
     result = ["-pix_fmt", "yuv420p", "-movflags", "+faststart", str(film)]
     with TemporaryFile() as said:
         command = [ffmpeg, "-loglevel", "error", *source, *result]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process, suppress(BrokenPipeError):
+        with suppress(BrokenPipeError), subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process:
             assert process.stdin is not None
             for picture in pictures:
                 process.stdin.write(picture[:height, :width].tobytes())
