@@ -94,7 +94,7 @@ docs: $(VENV)/package $(VENV)/docs
 	tools/need.sh doxygen
 	mkdir -p build/doxygen
 	doxygen docs/Doxyfile
-	$(BIN)/python -m sphinx --builder html --fresh-env --fail-on-warning --keep-going --doctree-dir build/doctrees docs build/docs
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m sphinx --builder html --fresh-env --fail-on-warning --keep-going --doctree-dir build/doctrees docs build/docs
 
 notebooks: $(VENV)/package $(VENV)/docs
 	mkdir -p build/notebooks

@@ -18,7 +18,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",
     "breathe",
-    "sphinx_click",
+    "sphinxcontrib.programoutput",
     "headers",
     "plain_docstrings",
 ]
