@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import objectives, search
 from fpbm_cpp.tuning.pareto import unbeaten
+from fpbm_cpp.tuning.sensitivity import changes, every, neighbours
+from fpbm_cpp.tuning.trials import Trials
 
 pytest.importorskip("cmaes")
 
@@ -215,6 +217,14 @@ def test_a_parameter_that_cannot_step():
     assert np.isnan(tuning.sensitivity["null_damping"]).all()
 
 
+def test_a_step_to_what_is_infeasible_has_no_price():
+    around = neighbours(fp.FPBM(0.5, [1, 2], 1, 1, null_damping=1))
+    schemes, ones = np.array(every(around), dtype=object), np.ones(2 * len(around))
+    feasible = np.arange(len(ones)) > 0
+    steps = changes(1.0, around, Trials(schemes, ones, ones, ones, ones, feasible))
+    assert np.concatenate(list(steps.values())).tolist() == [np.inf, *[0.0] * (len(ones) - 1)]
+
+
 def test_text(tuning):
     text = str(tuning)
     assert "peak_velocity of PlanarArm([1, 1, 1, 1]) along Circle(0.45" in text
@@ -359,6 +369,13 @@ def test_a_search_finds_the_least():
         scored += scores.tolist()
         points = seeking.send(scores)
     assert np.nanmin(scored) < 1.001
+
+
+def test_a_search_that_is_done_begins_again_elsewhere():
+    seeking = search.least(2, 0)
+    next(seeking)
+    begun = [seeking.send(np.ones(16)).mean(axis=0) for _ in range(40)]
+    assert np.std(begun, axis=0).min() > 0.1
 
 
 def test_a_search_finds_a_front_also_in_its_hollow():
