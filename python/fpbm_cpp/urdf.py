@@ -275,10 +275,15 @@ def _require_link(above: Mapping[str, Any], role: str, link: str) -> None:
     if link in above:
         return
     parents = {joint.parent for joint in above.values() if joint}
-    leaves = _listed(name for name in above if name not in parents)
+    leaves = _listed(sorted((name for name in above if name not in parents), key=lambda name: -_moving(above, name)))
     close = difflib.get_close_matches(str(link), list(above)[:300])  # Of thousands it would take long.
     hint = f", perhaps {' or '.join(map(repr, close))}" if close else ""
     raise ValueError(f"{role} = {link!r}: must be a link{hint}; its branches end in {leaves}")
+
+
+def _moving(above: Mapping[str, Any], link: str) -> int:
+    """How many joints move between the root and a link."""
+    return sum(joint.type != "fixed" for joint in _to_root(above, link))
 
 
 def _to_root(above: Mapping[str, Any], link: str) -> list[Any]:

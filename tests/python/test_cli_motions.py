@@ -14,6 +14,7 @@ import socket
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -200,7 +201,7 @@ def test_limits() -> None:
         "[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n[limits]\nvelocity = 0.1\nacceleration = 5"
     )
     assert "joints on a bound" in call("track", "--job", "job.toml").stdout
-    assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
+    assert "joints beyond a bound" in call("track", "--job", "job.toml", "--no-limits").stdout
     line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration[0] = inf: must be finite")
 
@@ -257,6 +258,11 @@ def test_a_job_that_fails_is_not_saved() -> None:
 # What is wrong
 
 
+TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><link name="hand"/>
+<joint name="eye" type="fixed"><parent link="base"/><child link="camera"/></joint>
+<joint name="arm" type="continuous"><parent link="base"/><child link="hand"/></joint></robot>"""
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
@@ -267,7 +273,12 @@ def test_a_job_that_fails_is_not_saved() -> None:
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
         (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
         (["none.urdf", "--tip", "tool"], "cannot read none.urdf: No such file or directory"),
-        (["none.urdf"], "--tip: is missing"),
+        (["none.urdf"], "cannot read none.urdf: No such file or directory"),
+        (["two.urdf"], "--tip = '': must be a link; its branches end in 'hand', 'camera'"),
+        (
+            ["two.urdf", "--tip", "hnd"],
+            "--tip = 'hnd': must be a link, perhaps 'hand'; its branches end in 'hand', 'camera'",
+        ),
         (["panda", "--tip", "tool"], "--tip: preset has no such key: must be one of name"),
         (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),
         (["panda", "--alpha", "x"], '--alpha = "x": must be a number'),
@@ -290,9 +301,10 @@ def test_a_job_that_fails_is_not_saved() -> None:
 )
 def test_what_is_wrong_is_said(arguments: list[str], line: str) -> None:
     Path("bad.toml").write_text("[arm")
+    Path("two.urdf").write_text(TWO_BRANCHES)
     Path("wrong.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[path]\nkind = 'circle'\nradius = -1")
     assert line in refused("track", *arguments, "--out", "out", "--save-job", "job.toml")
-    assert sorted(os.listdir()) == ["bad.toml", "wrong.toml"]
+    assert sorted(os.listdir()) == ["bad.toml", "two.urdf", "wrong.toml"]
 
 
 def test_everything_that_is_wrong_is_said() -> None:
@@ -504,22 +516,28 @@ def test_tune_writes_a_job() -> None:
     assert peaks[0] <= peaks[1]
 
 
-def test_view(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Hands on what is asked for, to a viewer that ends at once."""
-    view = pytest.importorskip("fpbm_cpp.view")
+@pytest.mark.parametrize("limits", [(), ("--limits",)])
+def test_view(limits: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Hands on the run that is asked for, to a viewer that ends at once."""
     shown = []
-    monkeypatch.setattr(view, "view", lambda *arguments, **options: shown.append((arguments, options)))
-    result = call("view", "gen3", "--task", "pose", "--port", "9000", "--no-browser", "--hold", "1")
+    monkeypatch.setattr(fp.Run, "view", lambda run, **how: shown.append((run, how)))
+    result = call("view", "panda", "--task", "pose", "--port", "9000", "--no-browser", "--hold", "1", *limits)
     assert result.exit_code == 0, result.output
-    ((arm, _, scheme, q0), options) = shown[0]
-    assert scheme.level == "acceleration"
-    assert arm == fp.SerialArm.preset("gen3")
-    assert len(q0) == 7
-    assert options == {"dt": 1e-3, "hold": 1.0, "task": "pose", "urdf": None, "port": 9000, "open_browser": False}
+    ((run, how),) = shown
+    assert (run.arm, run.task, run.t[-1]) == (fp.SerialArm.preset("panda"), "pose", 11.0)
+    assert (run.scale is not None) == bool(limits)
+    assert how == {"urdf": None, "port": 9000, "open_browser": False}
+
+
+def test_warnings_are_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fp.Run, "view", lambda run, **how: warnings.warn("a mesh is missing", stacklevel=1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        result = call("view", "panda", *QUICK)
+    assert (result.exit_code, result.stderr) == (0, "Warning: a mesh is missing\n")
 
 
 def test_view_on_a_port_in_use() -> None:
-    pytest.importorskip("fpbm_cpp.view")
     pytest.importorskip("viser")
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
@@ -531,7 +549,6 @@ def test_view_on_a_port_in_use() -> None:
 
 @posix
 def test_ctrl_c_ends_the_viewer_in_peace() -> None:
-    pytest.importorskip("fpbm_cpp.view")
     pytest.importorskip("viser")
     _, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], "Websocket", 1.0)
     assert (code, err) == (0, "")

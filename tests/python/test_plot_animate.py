@@ -12,11 +12,13 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
+from matplotlib.colors import to_rgb
 from PIL import Image
 from plot_runs import a_run, a_run_in_space, a_run_within_limits
 
 import fpbm_cpp as fp
 from fpbm_cpp.plot import animate, film
+from fpbm_cpp.plot.theme import LIGHT
 
 SMALL: dict[str, Any] = {"dpi": 60}
 
@@ -42,6 +44,9 @@ def test_gif_moves_in_all_its_panels(run: Any, tmp_path: Path) -> None:
     changed = np.abs(last - first).max(axis=2) > 60
     for part in (changed[:, : width // 2], changed[: height // 2, width // 2 :], changed[height // 2 :, width // 2 :]):
         assert part.any()
+    tip = np.array(to_rgb(LIGHT.tip)) * 255
+    trails = [np.sum(np.abs(picture[:, : width // 2] - tip).max(axis=2) < 60) for picture in shown]
+    assert trails[-1] > 2 * trails[0]
 
 
 def test_time_of_a_gif_is_kept_by_frames_of_unlike_lengths(tmp_path: Path) -> None:

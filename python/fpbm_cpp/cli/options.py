@@ -92,7 +92,7 @@ def _options(kind: bool) -> Iterator[click.Option]:
         "--limits/--no-limits",
         "Joint limits",
         default=None,
-        help="Keep them; options below do so, too.",
+        help="Keep them; options below do so, too. URDF files have none of accelerations: give some.",
     )
     for key, field in Limits.model_fields.items():
         yield _option("limits", key, field, "Joint limits", prefix="limit-")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,11 +12,16 @@ import click
 
 
 class Plain(click.Command):
-    """A command whose options are listed by what they are about; Ctrl-C ends it with 130, a missing extra with 1."""
+    """A command whose options are listed by what they are about; Ctrl-C ends it with 130, a missing extra with 1.
+
+    Warnings are one line, too.
+    """
 
     def invoke(self, context: click.Context) -> Any:
         try:
-            return super().invoke(context)
+            with warnings.catch_warnings():
+                warnings.showwarning = _say_warning
+                return super().invoke(context)
         except KeyboardInterrupt as interrupted:
             click.echo(str(interrupted) or "interrupted; nothing was written", err=True)
             context.exit(130)
@@ -33,6 +39,17 @@ class Plain(click.Command):
         for heading, records in groups.items():
             with formatter.section(heading):
                 formatter.write_dl(records)
+
+
+def _say_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: Any = None,
+    line: str | None = None,
+) -> None:
+    click.echo(f"Warning: {message}", err=True)
 
 
 class Complaints(click.ClickException):

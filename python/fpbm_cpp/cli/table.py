@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import click
 import numpy as np
+from numpy.typing import NDArray
 
 from .._types import Array
 from ..run import Run
@@ -55,8 +56,26 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     if run.scale is not None:
         yield _worst(run, "least task scale", run.scale, "", least=True)
     if run.saturated is not None:
-        held = [name for name, on in zip(_joints(run)[0], np.any(run.saturated, axis=0).tolist()) if on]
+        held = _named(run, run.saturated)
         yield "joints on a bound", str(len(held)), "", ", ".join(held)
+    elif beyond := _named(run, _beyond(run)):
+        yield "joints beyond a bound", str(len(beyond)), "", f"{', '.join(beyond)}: --limits keeps them"
+
+
+def _beyond(run: Run) -> NDArray[np.bool_]:
+    """Which joints are beyond a bound of the arm's, at each sample."""
+    limits = run.arm.limits
+    return np.asarray(
+        (run.q < limits.lower)
+        | (run.q > limits.upper)
+        | (np.abs(run.qd) > limits.velocity)
+        | (np.abs(run.qdd) > limits.acceleration)
+    )
+
+
+def _named(run: Run, flags: NDArray[np.bool_]) -> list[str]:
+    """The joints that are flagged at any sample."""
+    return [name for name, flag in zip(_joints(run)[0], np.any(flags, axis=0).tolist()) if flag]
 
 
 def _worst(run: Run, name: str, values: Array, unit: str, least: bool = False) -> tuple[str, str, str, str]:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from ..job.arms import Urdf
-from .common import motion_command, require_plain, say_job
+from .common import motion_command, say_job
 from .plain import Plain
 from .request import make_request, save
 
@@ -37,29 +37,16 @@ def view(arm: str | None, job: Path | None, save_job: Path | None, port: int, br
 
     A URDF file is shown with its meshes. Ctrl-C ends it. ARM and the options are those of track.
     """
-    from ..view import view as show
-
     request = make_request(arm, job, options)
     motion = request.motion()
-    require_plain(motion, "view")
+    with request.plain():
+        run = motion.run()
     save(motion, save_job)
     say_job(motion)
-    click.echo(f"At http://127.0.0.1:{port} until Ctrl-C" if port else "At a free port until Ctrl-C")
-    run, shown = motion.job.run, motion.job.arm
-    urdf = shown.file if isinstance(shown, Urdf) else None
+    click.echo("Ctrl-C ends it.")
+    shown = motion.job.arm
     try:
-        show(
-            motion.arm,
-            motion.path,
-            motion.scheme,
-            motion.q0,
-            dt=run.dt,
-            hold=run.hold,
-            task=run.task,
-            urdf=urdf,
-            port=port,
-            open_browser=browser,
-        )
+        run.view(urdf=shown.file if isinstance(shown, Urdf) else None, port=port, open_browser=browser)
     except OSError as error:
         raise click.ClickException(error.strerror or str(error)) from None
     except KeyboardInterrupt:

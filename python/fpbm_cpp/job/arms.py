@@ -47,7 +47,7 @@ class Urdf(Section):
 
     kind: Literal["urdf"] = "urdf"
     file: str
-    tip: str = Field(description="Link of a URDF file to move.")
+    tip: Optional[str] = Field(default=None, description="Link of a URDF file to move.")
     base: Optional[str] = Field(default=None, description="Link of a URDF file that stays; the root unless given.")
 
     @property
@@ -57,7 +57,10 @@ class Urdf(Section):
 
     def build(self) -> Arm:
         """The arm."""
-        return SerialArm.from_urdf(self.file, self.tip, self.base)
+        try:
+            return SerialArm.from_urdf(self.file, self.tip or "", self.base)  # Which says what links there are.
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix(f"{self.file}: ")) from None
 
 
 class Dh(Section):

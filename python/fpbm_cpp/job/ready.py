@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice, product
+
 import numpy as np
 
 from .._core import Arm, PlanarArm
@@ -15,16 +17,17 @@ READY = {
     "gen3": [0.0, 0.2618, 3.1416, -2.2689, 0.0, 0.9599, 1.5708],
 }
 
-# How far each joint of an unknown arm is bent, of a list that is tried in turn [rad]; at most a quarter of its range.
-BEND = 0.5
-CALM = 0.05  # The least of J's singular values over the largest, in a posture that will do.
+# How far joints of an unknown arm are bent, one way, the other or not at all [rad]; at most a quarter of their range.
+BEND = 1.0
+MOST = 3**7  # Postures that are looked at.
+GOOD = 0.8  # Of what the best has, as far as singular postures are.
 
 
 def ready(section: AnyArm, arm: Arm, task: str) -> list[float]:
     """Joint positions that are not singular [rad].
 
     A preset's own; in the plane, a quarter of a turn from the first link to the last, in even bends; else the middle of
-    the limits, or zero where there are none, bent as far as it takes.
+    the limits, or zero where there are none, with as few joints bent as keep it far from singular postures.
     """
     if isinstance(section, Preset):
         return READY[section.name]
@@ -33,23 +36,16 @@ def ready(section: AnyArm, arm: Arm, task: str) -> list[float]:
 
 
 def _bent(arm: Arm, task: str) -> Array:
-    """The first posture around the middle of the limits that is far enough from a singular one, or else the best."""
+    """The posture of fewest bent joints that is about as far from singular ones as any."""
     lower, upper = arm.limits.lower, arm.limits.upper
     bounded = np.isfinite(lower) & np.isfinite(upper)
     middle = np.clip(0.0, lower, upper)
     middle[bounded] = (lower[bounded] + upper[bounded]) / 2
     room = np.minimum(BEND, (upper - lower) / 4)
-    one: Array = np.ones(arm.dof)
-    signs = [0 * one, one, -one]
-    for period in (1, 2, 3):
-        alternating = np.where(np.arange(arm.dof) // period % 2, -one, one)
-        signs += [alternating, -alternating]
-    postures = [middle + sign * room for sign in signs]
-    return next(
-        (q for q in postures if _calmness(arm, q, task) > CALM), max(postures, key=lambda q: _calmness(arm, q, task))
-    )
-
-
-def _calmness(arm: Arm, q: Array, task: str) -> float:
-    values = np.linalg.svd(arm.jacobian(q, task=task), compute_uv=False)
-    return float(values[-1] / values[0]) if values[0] > 0.0 else 0.0
+    # The last joints change fastest: of long arms, those near the base stay as they are.
+    bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=arm.dof), MOST)))
+    bends = bends[np.argsort(np.abs(bends).sum(axis=1), kind="stable")]
+    jacobians = np.array([arm.jacobian(middle + bend * room, task=task) for bend in bends])
+    sigma = np.linalg.svd(jacobians, compute_uv=False)
+    calmness = sigma[:, -1] / np.maximum(sigma[:, 0], np.finfo(float).tiny)
+    return np.asarray(middle + bends[np.argmax(calmness >= GOOD * calmness.max())] * room)
