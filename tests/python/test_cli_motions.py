@@ -201,7 +201,10 @@ def test_limits() -> None:
         "[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n[limits]\nvelocity = 0.1\nacceleration = 5"
     )
     assert "joints on a bound" in call("track", "--job", "job.toml").stdout
-    assert "joints beyond a bound" in call("track", "--job", "job.toml", "--no-limits").stdout
+    assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
+    fast = call("track", "panda", "--duration", "0.4", "--dt", "0.01").stdout
+    assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps them", fast)
+    assert "beyond" not in call("track", "panda", *QUICK).stdout
     line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration[0] = inf: must be finite")
 
