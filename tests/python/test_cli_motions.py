@@ -204,7 +204,7 @@ def test_limits() -> None:
     assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
     fast = call("track", "panda", "--duration", "0.4", "--dt", "0.01").stdout
     assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps them", fast)
-    assert "beyond" not in call("track", "panda", *QUICK).stdout
+    assert "beyond" not in call("track", "panda", "--duration", "5").stdout
     line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration[0] = inf: must be finite")
 
