@@ -557,6 +557,15 @@ def test_ctrl_c_ends_the_viewer_in_peace() -> None:
     assert (code, err) == (0, "")
 
 
+@posix
+@pytest.mark.parametrize("seconds", [0.0, 0.2, 0.5])
+def test_ctrl_c_ends_the_viewer_while_it_starts(seconds: float) -> None:
+    pytest.importorskip("viser")
+    arguments = ["view", "panda", *QUICK, "--port", "0", "--no-browser"]
+    _, err, code = interrupted(arguments, "Ctrl-C ends it.", seconds)
+    assert (code, err) == (0, "")
+
+
 def test_bench() -> None:
     result = call("bench", "--seconds", "0.01")
     assert result.exit_code == 0, result.output

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
+import signal
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +52,23 @@ def _say_warning(
     line: str | None = None,
 ) -> None:
     click.echo(f"Warning: {message}", err=True)
+
+
+def import_undisturbed(*names: str) -> None:
+    """Import libraries where they are there, and hold Ctrl-C back meanwhile.
+
+    Both URDF and viewer come with trimesh, which takes one on the way for a part that is not installed, and goes on.
+    """
+    held: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
+    try:
+        for name in names:
+            with suppress(ImportError):
+                importlib.import_module(name)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if held:
+        raise KeyboardInterrupt
 
 
 class Complaints(click.ClickException):

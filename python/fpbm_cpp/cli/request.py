@@ -14,7 +14,7 @@ import click
 from ..job import Complaint, Job, JobError, Motion, prepare, read_table, write_job
 from ..job.explain import one_of
 from .options import PATHS, SCHEMES, JobOption, kind_of
-from .plain import Complaints, writing_to
+from .plain import Complaints, import_undisturbed, writing_to
 
 PRESETS = ("panda", "iiwa14", "gen3")
 KINDS = {"path": {kind_of(each): each for each in PATHS}, "scheme": {kind_of(each): each for each in SCHEMES}}
@@ -41,6 +41,9 @@ class Request:
 
     def motion(self, kind: str | None = None) -> Motion:
         """The motion; where a kind of scheme is named, under that one, with what options it has."""
+        arm = self.table.get("arm")
+        if isinstance(arm, dict) and arm.get("kind") == "urdf":
+            import_undisturbed("yourdfpy")
         with self.plain():
             try:
                 return prepare(Job.of(self.table if kind is None else {**self.table, "scheme": self._scheme(kind)}))

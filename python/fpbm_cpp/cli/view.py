@@ -9,7 +9,7 @@ import click
 
 from ..job.arms import Urdf
 from .common import motion_command, say_job
-from .plain import Plain
+from .plain import Plain, import_undisturbed
 from .request import make_request, save
 
 
@@ -46,6 +46,7 @@ def view(arm: str | None, job: Path | None, save_job: Path | None, port: int, br
     click.echo("Ctrl-C ends it.")
     shown = motion.job.arm
     try:
+        import_undisturbed("viser", "viser.extras")
         run.view(urdf=shown.file if isinstance(shown, Urdf) else None, port=port, open_browser=browser)
     except OSError as error:
         raise click.ClickException(error.strerror or str(error)) from None
