@@ -38,9 +38,7 @@ from ._core import (
 from ._errors import ResolutionError, SweepInterrupted
 from ._lanes import LANES
 from .joint import Joint
-from .load import load
-from .run import Run
-from .run_status import RunStatus
+from .run import Run, RunStatus, load
 from .serial_arm import SerialArm
 from .simulate import simulate
 from .sweep import sweep

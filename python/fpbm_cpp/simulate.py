@@ -11,8 +11,7 @@ from . import _core
 from ._core import Arm, Path, Scheme, Status, failed
 from ._errors import ResolutionError
 from ._types import Array
-from .run import Run
-from .run_status import RunStatus
+from .run import Run, RunStatus
 
 
 def simulate(

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._core import Arm, JointLimits, Path, Scheme, Tracker
 from ._types import Array
-from .run import Run
-from .run_status import RunStatus
+from .run import Run, RunStatus
 
 
 def track(

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from test_pickle import ELBOW, PANDA, PATHS, READY, SCHEMES, expect_same_path
 
 import fpbm_cpp as fp
-from fpbm_cpp.recipe import from_data, to_data
+from fpbm_cpp.run.recipe import from_data, to_data
 
 FLAT = fp.PlanarArm([1, 1, 1, 1])
 LIMITS = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[0.1, np.inf, 0.1, 0.1], acceleration=[1] * 4)

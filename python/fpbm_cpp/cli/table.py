@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..run import Run
-from ..serial_arm import SerialArm
+from ..serial_arm import SerialArm, joint_units
 
 WIDTH = 100
 
@@ -86,7 +86,5 @@ def _worst(run: Run, name: str, values: Array, unit: str, least: bool = False) -
 def _joints(run: Run) -> tuple[list[str], list[str]]:
     """The joints' names, numbers in the plane, and what their positions are measured in."""
     arm = run.arm
-    if not isinstance(arm, SerialArm):
-        return [f"joint {i}" for i in range(1, arm.dof + 1)], ["rad"] * arm.dof
-    driven = [joint for joint in arm.joints if joint.mimic is None]
-    return [joint.name for joint in driven], ["m" if joint.type == "prismatic" else "rad" for joint in driven]
+    names = arm.joint_names if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
+    return names, joint_units(arm)

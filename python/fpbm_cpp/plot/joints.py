@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import JointLimits
-from ..serial_arm import SerialArm
+from ..serial_arm import SerialArm, joint_units
 from .legends import side_legend
 from .lines import draw_lines
 from .theme import LIGHT, Theme
@@ -42,21 +42,14 @@ def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 def joint_names(arm: Arm) -> list[str]:
     """The joints' names, for a legend; those that slide are told from those that turn, where there are both."""
     names = arm.joint_names if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
-    units = _units(arm)
+    units = joint_units(arm)
     return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
 
 
 def unit_of(runs: Sequence[Run], per: str) -> str:
     """Unit of all joints, or both."""
-    units = sorted({unit for run in runs for unit in _units(run.arm)}, reverse=True)
+    units = sorted({unit for run in runs for unit in joint_units(run.arm)}, reverse=True)
     return ", ".join(unit + per for unit in units)
-
-
-def _units(arm: Arm) -> list[str]:
-    """What each joint's position is measured in."""
-    if not isinstance(arm, SerialArm):
-        return ["rad"] * arm.dof
-    return ["m" if joint.type == "prismatic" else "rad" for joint in arm.joints if joint.mimic is None]
 
 
 def _limits(run: Run) -> JointLimits:

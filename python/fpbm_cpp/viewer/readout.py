@@ -10,7 +10,7 @@ from viser import GuiApi
 
 from .._core import advice, message
 from .._types import Array
-from ..run_status import RunStatus
+from ..run import RunStatus
 from .film import Film
 from .joints import names, units
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ._core import rotation_vector
-from ._types import Array
+from .._core import rotation_vector
+from .._types import Array
 
 
 def quaternions(rotations: Array) -> Array:

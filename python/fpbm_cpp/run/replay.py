@@ -10,8 +10,8 @@ if TYPE_CHECKING:
 
 def replay(run: Run) -> Run:
     """The run made again, by what made it: simulate() or track(). Raises ValueError where it does not say how."""
-    from .simulate import simulate
-    from .track import track
+    from ..simulate import simulate
+    from ..track import track
 
     if "dt" not in run.options:
         raise ValueError(f"options = {run.options}: must hold the arguments that the run was made with")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from ..serial_arm import joint_units
 from .orientation import quaternions
-from .run_tables import joint_units
 
 if TYPE_CHECKING:
     import xarray as xr

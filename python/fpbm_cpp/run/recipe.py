@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import Gaze, JointLimits, Path, PlanarArm, Scheme, SecondTask
-from .joint import Joint
-from .serial_arm import SerialArm
+from .. import _core
+from .._core import Gaze, JointLimits, Path, PlanarArm, Scheme, SecondTask
+from ..joint import Joint
+from ..serial_arm import SerialArm
 
 PATHS = (_core.Circle, _core.Lissajous, _core.Tricuspid, _core.Line, _core.Waypoints)
 SCHEMES = (_core.MVN, _core.WMVN, _core.MAN, _core.WMVNAcceleration, _core.Balanced, _core.FPBM)

@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import Status, __version__
-from ._files import write_whole
+from .. import _core
+from .._core import Status, __version__
+from .._files import write_whole
 from .recipe import from_data, to_data
 from .run import Run
-from .run_status import RunStatus
+from .status import RunStatus
 
 FORMAT = "fpbm_cpp run"
 VERSION = 1  # Of the format: one more for each that older packages cannot read.

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._core import PlanarArm
-from ._types import Array
+from .._core import PlanarArm
+from .._types import Array
 from .orientation import quaternions
 
 if TYPE_CHECKING:

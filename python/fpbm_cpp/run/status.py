@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._core import Status, advice, failed, message
-from ._types import Array
+from .._core import Status, advice, failed, message
+from .._types import Array
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import PlanarArm
-from ._files import write_whole
+from .._core import PlanarArm
+from .._files import write_whole
+from ..serial_arm import joint_units
 from .orientation import quaternions
-from .serial_arm import SerialArm
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from ._core import Arm
     from .run import Run
 
 
@@ -76,13 +75,6 @@ def table(run: Run) -> Iterator[Column]:
     if run.saturated is not None:
         for joint, flags in zip(joints, run.saturated.T):
             yield Column(f"saturated_{joint}", "", flags)
-
-
-def joint_units(arm: Arm) -> list[str]:
-    """What each joint's position is measured in."""
-    if not isinstance(arm, SerialArm):
-        return ["rad"] * arm.dof
-    return ["m" if joint.type == "prismatic" else "rad" for joint in arm.joints if joint.mimic is None]
 
 
 def _points(run: Run, x: NDArray[np.float64], ending: str) -> Iterator[Column]:

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import PlanarArm
-from ._types import Array
-from .run_status import RunStatus
+from .._core import PlanarArm
+from .._types import Array
+from .status import RunStatus
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from ._core import Arm, Path, Scheme
+    from .._core import Arm, Path, Scheme
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -101,7 +101,7 @@ class Run:
         panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
         for a name that is not there, and ImportError, with what to install, where matplotlib is missing.
         """
-        from .plot import plot_run
+        from ..plot import plot_run
 
         return plot_run(self, panels=panels, dark=dark)
 
@@ -110,7 +110,7 @@ class Run:
 
         Raises ImportError, with what to install, where viser is missing.
         """
-        from .viewer import Viewer
+        from ..viewer import Viewer
 
         Viewer.of(self, urdf=urdf, **{"open_browser": True, **how}).wait()
 
@@ -143,7 +143,7 @@ class Run:
         seed : int or sequence of int, optional
             What the random numbers behind the run came from, kept there too.
         """
-        from .run_file import save
+        from .file import save
 
         save(self, file, note, seed)
 
@@ -154,7 +154,7 @@ class Run:
         orientation, the same of its reference as x_ref and so on, error_x and so on, turn_error_x and so on; scale and
         saturated_<joint> where the limits were kept. Their units are in frame.attrs["units"]. Needs the extra 'data'.
         """
-        from .run_tables import to_pandas
+        from .tables import to_pandas
 
         return to_pandas(self)
 
@@ -164,7 +164,7 @@ class Run:
         Numbers are exact: read back, they are the same to the last bit. A file of that name is replaced, whole or not
         at all.
         """
-        from .run_tables import to_csv
+        from .tables import to_csv
 
         to_csv(self, file)
 
@@ -174,7 +174,7 @@ class Run:
         Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
         turn_error; scale and saturated where the limits were kept. Needs the extra 'data'.
         """
-        from .run_xarray import to_xarray
+        from .xarray import to_xarray
 
         return to_xarray(self)
 
@@ -203,12 +203,12 @@ class Run:
         ImportError
             Where the extra is missing.
         """
-        from .run_rosbag import to_rosbag
+        from .rosbag import to_rosbag
 
         to_rosbag(self, directory, frame, trajectory)
 
     def __eq__(self, other: object) -> bool:
-        from .run_file import same
+        from .file import same
 
         return same(self, other) if isinstance(other, Run) else NotImplemented
 

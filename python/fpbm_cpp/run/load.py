@@ -29,6 +29,6 @@ def load(file: str | os.PathLike[str]) -> Run:
     OSError
         Where it cannot be read.
     """
-    from . import run_file
+    from . import file as run_file
 
     return run_file.load(file)
