@@ -163,10 +163,3 @@ def _joints(fields: list[dict[str, Any]]) -> list[Joint]:
 
 def _bytes(values: ArrayLike) -> bytes:
     return np.asarray(values, dtype=float).tobytes()
-
-
-def joint_units(arm: _core.Arm) -> list[str]:
-    """What the position of each joint of an arm is measured in."""
-    if not isinstance(arm, SerialArm):
-        return ["rad"] * arm.dof
-    return ["m" if joint.type == "prismatic" else "rad" for joint in arm.joints if joint.mimic is None]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
+from ..joint_text import joint_labels, joint_units
 from ..run import Run
-from ..serial_arm import SerialArm, joint_units
 
 WIDTH = 100
 
@@ -48,7 +48,7 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     for name, values, per in (("velocity", run.qd, "/s"), ("acceleration", run.qdd, "/s^2")):
         size = np.abs(values)
         k, i = np.unravel_index(size.argmax(), size.shape)
-        names, units = _joints(run)
+        names, units = joint_labels(run.arm), joint_units(run.arm)
         yield f"peak joint {name}", number(size[k, i]), units[i] + per, f"{names[i]} at {run.t[k]:.3g} s"
         i = size[-1].argmax()
         yield f"final joint {name}", number(size[-1, i]), units[i] + per, names[i]
@@ -75,16 +75,9 @@ def _beyond(run: Run) -> NDArray[np.bool_]:
 
 def _named(run: Run, flags: NDArray[np.bool_]) -> list[str]:
     """The joints that are flagged at any sample."""
-    return [name for name, flag in zip(_joints(run)[0], np.any(flags, axis=0).tolist()) if flag]
+    return [name for name, flag in zip(joint_labels(run.arm), np.any(flags, axis=0).tolist()) if flag]
 
 
 def _worst(run: Run, name: str, values: Array, unit: str, least: bool = False) -> tuple[str, str, str, str]:
     k = values.argmin() if least else values.argmax()
     return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
-
-
-def _joints(run: Run) -> tuple[list[str], list[str]]:
-    """The joints' names, numbers in the plane, and what their positions are measured in."""
-    arm = run.arm
-    names = arm.joint_names if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
-    return names, joint_units(arm)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import JointLimits
-from ..serial_arm import SerialArm, joint_units
+from ..joint_text import joint_labels, joint_units
 from .legends import side_legend
 from .lines import draw_lines
 from .theme import LIGHT, Theme
@@ -41,9 +41,10 @@ def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 def joint_names(arm: Arm) -> list[str]:
     """The joints' names, for a legend; those that slide are told from those that turn, where there are both."""
-    names = arm.joint_names if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
     units = joint_units(arm)
-    return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
+    return [
+        f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(joint_labels(arm), units)
+    ]
 
 
 def unit_of(runs: Sequence[Run], per: str) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .._core import PlanarArm
 from .._files import write_whole
-from ..serial_arm import joint_units
+from ..joint_text import joint_units
 from .orientation import quaternions
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from ..serial_arm import joint_units
+from ..joint_text import joint_units
 from .orientation import quaternions
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from .._core import FPBM
-from .space import arguments, parameters
+from .._scheme import arguments
+from .space import parameters
 from .trials import Trials
 
 ALPHA_STEP, STEP = 0.05, 0.1

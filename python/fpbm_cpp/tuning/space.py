@@ -10,17 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import FPBM
+from .._scheme import arguments
 from .._types import Array
 
 PARAMETERS = ("alpha", "weights", "k1", "k2", "null_damping")
 
 # k1 and k2 act on the tip's error alone, and without disturbances there is none.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
-
-
-def arguments(scheme: FPBM) -> dict[str, Any]:
-    """What a scheme was made with, by the names of FPBM's arguments."""
-    return dict(scheme.__reduce__()[0].keywords)
 
 
 def parameters(scheme: FPBM) -> dict[str, Any]:

@@ -8,9 +8,9 @@ import numpy as np
 from viser import GuiApi
 
 from .._types import Array
+from ..joint_text import joint_labels, joint_units
 from .colours import LINES, NOW
 from .film import Film
-from .joints import names, units
 
 # Quantities at the samples of a run, and what they are measured in; of joints, what their units become.
 OF_JOINTS: dict[str, tuple[Callable[[Film], Array], str]] = {
@@ -72,8 +72,8 @@ class Chart:
         if quantity in OF_JOINTS:
             values, per = OF_JOINTS[quantity]
             arm = film.run.arm
-            unit = ", ".join(f"{unit}{per}" for unit in sorted(set(units(arm)), reverse=True))
-            return names(arm), values(film)[film.frames], f"{quantity} [{unit}]"
+            unit = ", ".join(f"{unit}{per}" for unit in sorted(set(joint_units(arm)), reverse=True))
+            return joint_labels(arm), values(film)[film.frames], f"{quantity} [{unit}]"
         values, unit = OF_TIP[quantity]
         column = values(film)[:, None]
         largest = float(column.max())

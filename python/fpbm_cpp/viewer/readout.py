@@ -10,9 +10,9 @@ from viser import GuiApi
 
 from .._core import advice, message
 from .._types import Array
+from ..joint_text import joint_labels, joint_units
 from ..run import RunStatus
 from .film import Film
-from .joints import names, units
 
 GOOD, BAD = "#009E73", "#D55E00"
 CELL = "padding:0.15em 0.6em 0.15em 0"
@@ -28,7 +28,7 @@ class Readout:
     def show(self, film: Film) -> None:
         """Tell of a run."""
         self._film = film
-        self._names, self._units = names(film.run.arm), units(film.run.arm)
+        self._names, self._units = joint_labels(film.run.arm), joint_units(film.run.arm)
         status = film.run.status
         self._say(_ending(status), GOOD if status.ok else BAD)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._core import FPBM, MAN, MVN, WMVN, Balanced, Scheme, WMVNAcceleration
+from .._scheme import arguments
 
 KINDS: dict[str, type[Scheme]] = {kind.__name__: kind for kind in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}
 
@@ -22,11 +23,6 @@ GAINS = {
 
 # Of gains that a scheme has not, once another is chosen that has them.
 DEFAULTS = {"alpha": 0.6, "k": 0.0, "k1": 10.0, "k2": 25.0, "null_damping": 0.0}
-
-
-def arguments(scheme: Scheme) -> dict[str, Any]:
-    """All arguments that a scheme was made with, by name."""
-    return dict(scheme.__reduce__()[0].keywords)
 
 
 class Family:

@@ -13,12 +13,12 @@ import viser
 from numpy.typing import ArrayLike
 
 from .._core import Arm, Path, Scheme
+from ..joint_text import joint_labels
 from ..run import Run
 from .chart import Chart
 from .controls import Controls
 from .film import Film
 from .job import Job
-from .joints import names
 from .meshes import Model
 from .player import Player
 from .port import require_free
@@ -107,7 +107,7 @@ class Viewer:
         limited = film.run.scale is not None if job.has_limits() else None
         self._readout = Readout(gui)
         self._player = Player(gui, duration, self._draw)
-        self._controls = Controls(gui, film.run.scheme, names(job.arm), limited, self._on_change)
+        self._controls = Controls(gui, film.run.scheme, joint_labels(job.arm), limited, self._on_change)
         self._chart = Chart(gui, film, duration)
         self._scene = Scene(self._server, film, model)
         self._show(film)

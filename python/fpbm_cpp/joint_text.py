@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from .._core import Arm
-from ..serial_arm import SerialArm
+from ._core import Arm
+from .serial_arm import SerialArm
 
 
-def names(arm: Arm) -> list[str]:
-    """Names of the joints; in the plane, where they have none, their numbers."""
+def joint_labels(arm: Arm) -> list[str]:
+    """Names of the joints for people to read; in the plane, where they have none, their numbers."""
     return list(arm.joint_names) if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
 
 
-def units(arm: Arm) -> list[str]:
+def joint_units(arm: Arm) -> list[str]:
     """Unit of each joint's position."""
     if not isinstance(arm, SerialArm):
         return ["rad"] * arm.dof
