@@ -303,6 +303,17 @@ def test_limits_are_kept_on_request():
         assert not viewer._controls._limited.visible
 
 
+def test_the_limits_of_a_run_stay():
+    wide, q0 = np.full(4, 9.0), np.pi / np.array([12, 12, 15, 15])
+    limits = fp.JointLimits(lower=-wide, upper=wide, velocity=np.full(4, 0.1), acceleration=wide)
+    run = fp.track(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 2.0), fpbm(), q0, dt=0.01, limits=limits)
+    with Viewer.of(run, port=0) as viewer:
+        assert viewer._controls.limited
+        viewer.scheme = fpbm(null_damping=2)
+        same(viewer.run, fp.track(run.arm, run.path, viewer.scheme, q0, dt=0.01, limits=limits))
+        assert abs(viewer.run.qd).max() == pytest.approx(0.1, abs=1e-12)
+
+
 def test_film_of_a_long_run():
     arm, path = fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 10.0)
     film = Film(fp.simulate(arm, path, fpbm(), np.full(4, 0.3), dt=1e-3))
