@@ -29,6 +29,8 @@ html_title = f"fpbm_cpp {release}"
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
 
+highlight_language = "none"  # Unless a block says otherwise: what programs print is in no language.
+
 # Pages read the same on GitHub: $…$, ```math, links to headings.
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
