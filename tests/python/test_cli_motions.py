@@ -15,6 +15,7 @@ import subprocess
 import sys
 import time
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,7 @@ import click
 from click.testing import CliRunner, Result
 
 from fpbm_cpp.cli import command
+from fpbm_cpp.cli.table import summary
 from fpbm_cpp.job import Job, prepare, read_job, write_job
 
 ROOT = Path(__file__).parents[2]
@@ -256,6 +258,23 @@ def test_a_job_that_fails_is_not_saved() -> None:
     refused("track", "panda", "--dt", "0.3", "--save-job", "job.toml")
     refused("track", "panda", "--qd0", "1", "--save-job", "job.toml")
     assert not Path("job.toml").exists()
+
+
+@pytest.mark.parametrize("name", ["q", "qd", "qdd"])
+def test_a_joint_beyond_a_bound_is_said(name: str) -> None:
+    run = prepare(Job.of({"arm": {"kind": "preset", "name": "panda"}, "run": {"dt": 0.01}})).run()
+    values = getattr(run, name).copy()
+    values[50, 2] = -20.0
+    assert "beyond" not in summary(run)
+    said = summary(replace(run, **{name: values}))
+    assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps them", said)
+
+
+@draws
+def test_a_motion_without_a_sample_is_no_film() -> None:
+    result = call("track", "planar:1,1", "--q0", "0,0", "--out", "out", "--also", "gif")
+    assert result.exit_code == 1
+    assert result.stderr == "Error: cannot write run.gif: run: has no samples to animate\n"
 
 
 # What is wrong
