@@ -288,6 +288,11 @@ def test_a_finished_run():
         assert viewer.url in viewer._repr_html_()
 
 
+def test_what_is_said_is_no_markup(viewer):
+    viewer._readout.refuse("k1 < 0 & <b>")
+    assert "k1 &lt; 0 &amp; &lt;b&gt;" in say(viewer)
+
+
 def test_limits_are_kept_on_request():
     arm, path = fp.SerialArm.preset("panda"), fp.Circle(0.05, 1.0).in_plane("yz")
     with Viewer(arm, path, fpbm(7), READY, dt=0.01, port=0) as viewer:
