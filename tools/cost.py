@@ -1,6 +1,8 @@
-"""Installs this package into the Python that runs it, and prints the time and the memory that it takes.
+"""Runs a command, and prints the time and the memory that it takes beside what is promised.
 
-Linux only: memory is what all processes of the installation together hold, looked at five times a second.
+    cost.py SECONDS MEGABYTES COMMAND ...
+
+Linux only: memory is what all processes of the command together hold, looked at five times a second.
 """
 
 import subprocess
@@ -29,14 +31,15 @@ def memory(root: int) -> float:
 
 
 def main() -> int:
+    seconds, megabytes, *command = sys.argv[1:]
     begin, peak = time.monotonic(), 0.0
-    with subprocess.Popen([sys.executable, "-m", "pip", "install", "--quiet", "."]) as install:
-        while install.poll() is None:
-            peak = max(peak, memory(install.pid))
+    with subprocess.Popen(command) as running:
+        while running.poll() is None:
+            peak = max(peak, memory(running.pid))
             time.sleep(0.2)
-    print(f"pip install . took {time.monotonic() - begin:.0f} s (promised: at most 150)")
-    print(f"and {peak:.0f} MB of memory (promised: at most 3000)")
-    return install.returncode
+    print(f"took {time.monotonic() - begin:.0f} s (promised: at most {seconds})", flush=True)
+    print(f"and {peak:.0f} MB of memory (promised: at most {megabytes})", flush=True)
+    return running.returncode
 
 
 if __name__ == "__main__":
