@@ -78,7 +78,8 @@ class Scene:
         """From above on an arm in the plane, from aside and above on one in space, with all of the motion in view."""
         server.scene.set_up_direction("+y" if self._flat else "+z")
         way = np.array([0.0, 0.0, 1.0] if self._flat else [1.0, -1.3, 0.7])
-        way *= 0.95 * radius / np.sin(FIELD / 2) / np.linalg.norm(way)
+        room = 1.1 if self._flat else 0.95  # Seen from aside, a ball about an arm is emptier.
+        way *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(way)
         camera = server.initial_camera
         camera.fov = FIELD
         camera.position, camera.look_at = centre + way, centre
