@@ -52,9 +52,9 @@ struct Case {
   using Scalar = Scalar_;
   static constexpr int kDof = Robot::kDof;
   static constexpr int kRows = Space::kRows;
-  static constexpr bool kWithTurn = std::is_same_v<Space, fpbm::Pose>;
+  static constexpr bool kWithOrientation = std::is_same_v<Space, fpbm::Pose>;
 
-  static std::string name() { return Robot::name() + (kWithTurn ? "/pose" : "/position"); }
+  static std::string name() { return Robot::name() + (kWithOrientation ? "/pose" : "/position"); }
 };
 using PandaPose = Case<Panda, fpbm::Pose>;
 

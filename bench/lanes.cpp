@@ -1,4 +1,4 @@
-#include "fpbm/batch/lanes.hpp"
+#include "fpbm/core/lanes.hpp"
 
 #include <cstddef>
 

@@ -66,7 +66,7 @@ class Textbook {
 
   Rows error(const Input<typename Case::Space, N>& input) const {
     const auto& x = input.reference.x;
-    if constexpr (Case::kWithTurn) {
+    if constexpr (Case::kWithOrientation) {
       const Eigen::AngleAxisd turn(Eigen::Matrix3d(x.R * motion_.R.transpose()));
       return (Rows() << x.p - motion_.p, turn.angle() * turn.axis()).finished();
     } else {

@@ -14,10 +14,10 @@ bool run(const char* name, const Scheme& scheme, const Joints& start) {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const fpbm::InPlane circle(fpbm::Path(fpbm::Circle(0.12), 3.0, fpbm::Quintic{}),  // radius [m], duration [s]
                              {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
-  const fpbm::WithTurn path(fpbm::Sequence(circle, circle));  // A pose, its orientation held.
+  const fpbm::WithRotation path(fpbm::Sequence(circle, circle));  // A pose, its orientation held.
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 4.0);
 
-  double speed = 0.0, acceleration = 0.0, error = 0.0, turn_error = 0.0, manipulability = 1.0;
+  double speed = 0.0, acceleration = 0.0, error = 0.0, orientation_error = 0.0, manipulability = 1.0;
   Joints before = Joints::Zero();
   fpbm::Kinematics<fpbm::Pose, 7> kinematics;
   const auto result = fpbm::rollout(arm, path, scheme, {start, before}, grid, [&](const auto& sample) noexcept {
@@ -25,7 +25,7 @@ bool run(const char* name, const Scheme& scheme, const Joints& start) {
     acceleration = std::max(acceleration, (sample.qd - before).norm() / grid.dt());
     before = sample.qd;
     error = std::max(error, sample.error.template head<3>().norm());
-    turn_error = std::max(turn_error, sample.error.template tail<3>().norm());
+    orientation_error = std::max(orientation_error, sample.error.template tail<3>().norm());
     arm.kinematics(sample.q, kinematics);
     const double square = (kinematics.J * kinematics.J.transpose()).determinant();
     manipulability = std::min(manipulability, std::sqrt(std::max(square, 0.0)));
@@ -35,12 +35,12 @@ bool run(const char* name, const Scheme& scheme, const Joints& start) {
     return false;
   }
   std::printf("%-6s %6.3f %8.3f %8.4f   %.0e  %.0e %8.4f %8.4f\n", name, speed, acceleration, result.last.qd.norm(),
-              error, turn_error, manipulability, (result.last.q - start).norm());
+              error, orientation_error, manipulability, (result.last.q - start).norm());
   return true;
 }
 
 int main() {
-  constexpr double kPi = fpbm::kTurn / 2.0;
+  constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints ready{0.0, -kPi / 4, 0.0, -3 * kPi / 4, 0.0, kPi / 2, kPi / 4};  // [rad], the hand points down
   const fpbm::DiagonalWeights<7> weights({8, 8, 4, 4, 2, 1, 1});  // The nearer the base, the more a joint has to carry.
   const auto rest = fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(ready, 4.0);

@@ -32,7 +32,7 @@ for name, run in runs.items():
     speed, acceleration, distance = (np.linalg.norm(rows, axis=1) for rows in (run.qd, run.qdd, run.q - ready))
     print(
         f"{name:6} {speed.max():6.3f} {acceleration.max():8.3f} {speed[-1]:8.4f}"
-        f"   {run.max_error():.0e}  {run.max_turn_error():.0e} {run.manipulability().min():8.4f} {distance[-1]:8.4f}"
+        f"   {run.max_error():.0e}  {run.max_orientation_error():.0e} {run.manipulability().min():8.4f} {distance[-1]:8.4f}"
     )
 
 figure = compare(runs, "A Panda draws a horizontal circle twice in 6 s with its hand held level, then stands still")

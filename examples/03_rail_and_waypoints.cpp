@@ -25,7 +25,7 @@ fpbm::Chain<> iiwa_on_rail() {
 /// how far the rail went; false where the motion must stop early.
 bool run(const char* name, double weight) {
   const fpbm::SerialArm<8> arm(iiwa_on_rail());
-  constexpr double kPi = fpbm::kTurn / 2.0;
+  constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints start{-0.8, -0.3, 0.6, 0.0, -1.5, 0.0, kPi - 2.1, 0.0};  // [m], [rad]: the hand points down
 
   // Poses displaced from the first [m] and turned about the vertical [rad].
@@ -37,7 +37,7 @@ bool run(const char* name, double weight) {
   fpbm::TipBounds<> bounds;
   bounds.speed = 0.5;         // [m/s]
   bounds.acceleration = 1.0;  // [m/s²]
-  bounds.turn_rate = 1.0;     // [rad/s]
+  bounds.angular_velocity = 1.0;     // [rad/s]
   const auto path =
       fpbm::Waypoints<fpbm::Pose>::within({hand(0, 0, 0, 0), hand(0.05, 0.45, -0.15, 0.3), hand(0, 0.9, 0, 0),
                                            hand(0.05, 1.35, -0.15, -0.3), hand(0, 1.8, 0, 0)},
@@ -47,19 +47,19 @@ bool run(const char* name, double weight) {
   const fpbm::FPBM<8> scheme(0.6, weights, 20.0, 100.0, fpbm::NullSpace<8>().with_damping(2.0));  // alpha, W, k1, k2, z
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 1.0);
 
-  double sliding = 0.0, turning = 0.0, error = 0.0, turn_error = 0.0;
+  double sliding = 0.0, turning = 0.0, error = 0.0, orientation_error = 0.0;
   const auto result = fpbm::rollout(arm, path, scheme, {start, Joints::Zero()}, grid, [&](const auto& sample) noexcept {
     sliding = std::max(sliding, std::abs(sample.qd(0)));
     turning = std::max(turning, sample.qd.template tail<7>().cwiseAbs().maxCoeff());
     error = std::max(error, sample.error.template head<3>().norm());
-    turn_error = std::max(turn_error, sample.error.template tail<3>().norm());
+    orientation_error = std::max(orientation_error, sample.error.template tail<3>().norm());
   });
   if (result.status != fpbm::Status::kOk) {
     std::printf("%s stopped at %g s: %s. %s\n", name, result.time, message(result.status), advice(result.status));
     return false;
   }
   std::printf("%s: rail from %.2f to %.2f m, at most %.2f m/s and %.2f rad/s, tip errors %.0e m and %.0e rad\n", name,
-              start(0), result.last.q(0), sliding, turning, error, turn_error);
+              start(0), result.last.q(0), sliding, turning, error, orientation_error);
   return true;
 }
 

@@ -25,7 +25,7 @@ def hand(x: float, y: float, z: float, turn: float) -> np.ndarray:
 
 
 stations = [(0, 0, 0, 0), (0.05, 0.45, -0.15, 0.3), (0, 0.9, 0, 0), (0.05, 1.35, -0.15, -0.3), (0, 1.8, 0, 0)]
-path = fp.Waypoints([hand(*station) for station in stations], speed=0.5, acceleration=1.0, turn_rate=1.0)
+path = fp.Waypoints([hand(*station) for station in stations], speed=0.5, acceleration=1.0, angular_velocity=1.0)
 
 
 def run(weight: float) -> fp.Run:
@@ -40,7 +40,7 @@ for name, done in runs.items():
     print(
         f"{name[:10]}: rail from {done.q[0, 0]:.2f} to {done.q[-1, 0]:.2f} m,"
         f" at most {abs(done.qd[:, 0]).max():.2f} m/s and {abs(done.qd[:, 1:]).max():.2f} rad/s,"
-        f" tip errors {done.max_error():.0e} m and {done.max_turn_error():.0e} rad"
+        f" tip errors {done.max_error():.0e} m and {done.max_orientation_error():.0e} rad"
     )
 
 figure = Figure(figsize=(12.8, 8.0), dpi=150, layout="constrained")

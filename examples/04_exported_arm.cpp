@@ -21,15 +21,15 @@ int main() {
   const fpbm::FPBM<kDof> scheme(0.6, fpbm::DiagonalWeights<kDof>(fpbm::Vector<kDof>::Ones()), 20.0, 100.0);
   const fpbm::TimeGrid grid(path.duration(), 1e-3);
 
-  double largest_error = 0.0;
+  double max_error = 0.0;
   const auto run = fpbm::rollout(arm, path, scheme, start, grid, [&](const auto& sample) noexcept {
-    largest_error = std::max(largest_error, sample.error.norm());
+    max_error = std::max(max_error, sample.error.norm());
   });
   if (run.status != fpbm::Status::kOk) {
     std::printf("stopped at %g s: %s. %s\n", run.time, message(run.status), advice(run.status));
     return 1;
   }
-  std::printf("largest tool error on the line [m]: %.1e\n", largest_error);
+  std::printf("largest tool error on the line [m]: %.1e\n", max_error);
   for (int i = 0; i < kDof; ++i) {
     std::printf("%-14s %7.3f rad, %7.3f rad/s\n", exported_arm::kJointNames[static_cast<std::size_t>(i)], run.last.q(i),
                 run.last.qd(i));

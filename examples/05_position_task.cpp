@@ -29,7 +29,7 @@ bool run(const char* name, const Joints& home, const fpbm::NullSpace<7>& seconda
 }
 
 int main() {
-  constexpr double kPi = fpbm::kTurn / 2.0;
+  constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints home{0.0, 0.26, kPi, -2.27, 0.0, 0.96, kPi / 2};  // [rad]
   const fpbm::NullSpace<7> nothing;
   const auto homeward = nothing.with_damping(4.0).with_rest_posture(home, 4.0);

@@ -39,13 +39,13 @@ int main() {
   kinematics(state, here);
   const fpbm::Vector<2> start = here.tip;
 
-  double error = 0.0, largest_error = 0.0;
+  double error = 0.0, max_error = 0.0;
   for (int step = 0; step <= 1000; ++step) {
     kinematics(state, here);
     fpbm::Reference<Plane> reference = path.sample(step * kStep);
     reference.x += start;
     error = (reference.x - here.tip).norm();
-    largest_error = std::max(largest_error, error);
+    max_error = std::max(max_error, error);
 
     fpbm::Vector<3> qdd;
     const fpbm::Status status = scheme.resolve(here, reference, state, qdd);
@@ -56,5 +56,5 @@ int main() {
     state.q += kStep * state.qd + kStep * kStep / 2.0 * qdd;  // What the drives do until the next tick.
     state.qd += kStep * qdd;
   }
-  std::printf("tip error [m]: %.1e at most, %.1e at the end\n", largest_error, error);
+  std::printf("tip error [m]: %.1e at most, %.1e at the end\n", max_error, error);
 }

@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
   const double seconds = argument(argc, argv, 1, 10.0, 1e6);
   const double rate = argument(argc, argv, 2, 1000.0, 2e4);  // [Hz]
 
-  constexpr double kPi = fpbm::kTurn / 2.0;
+  constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints ready{0.0, -kPi / 4, 0.0, -3 * kPi / 4, 0.0, kPi / 2, kPi / 4};  // [rad], the hand points down
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const auto homeward = fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(ready, 4.0);
@@ -126,8 +126,8 @@ int main(int argc, char** argv) {
   const auto start = tracker.tip();
   const fpbm::InPlane circle(fpbm::Path(fpbm::Circle(0.1), 3.0, fpbm::Quintic{}),  // radius [m], duration [s]
                              {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
-  const fpbm::WithTurn path(circle);  // The hand is held level.
-  const fpbm::Course lap(path, start);
+  const fpbm::WithRotation path(circle);  // The hand is held level.
+  const fpbm::PathFollower lap(path, start);
   auto course = lap;
   const auto back = fpbm::Reference<fpbm::Pose>::hold(start);
   auto beyond = back;
@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
   Histogram lateness, compute;
   std::array<long, 6> seen{};  // Ticks that ended in each status.
   long missed = 0;
-  double error = 0.0, turn_error = 0.0, speed = 0.0;
+  double error = 0.0, orientation_error = 0.0, speed = 0.0;
   std::signal(SIGINT, [](int) { interrupted = 1; });
   become_realtime();
 
@@ -164,7 +164,7 @@ int main(int argc, char** argv) {
     ++seen[static_cast<std::size_t>(tick.status)];
     if (circling && !stopping) {
       error = std::max(error, tick.error.head<3>().norm());
-      turn_error = std::max(turn_error, tick.error.tail<3>().norm());
+      orientation_error = std::max(orientation_error, tick.error.tail<3>().norm());
     }
     speed = tick.qd.cwiseAbs().maxCoeff();
     at_rest = stopping && speed < 1e-9;
@@ -180,7 +180,7 @@ int main(int argc, char** argv) {
   std::printf("%ld ticks at %g Hz, %ld deadlines missed\n", ticks, rate, missed);
   lateness.print("late to wake up");
   compute.print("time to compute a tick");
-  std::printf("\non the circle at most %.1e m and %.1e rad off; at the end %.0e rad/s\n", error, turn_error, speed);
+  std::printf("\non the circle at most %.1e m and %.1e rad off; at the end %.0e rad/s\n", error, orientation_error, speed);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i] > 0) std::printf("%8ld ticks: %s\n", seen[i], fpbm::message(static_cast<fpbm::Status>(i)));
   }

@@ -8,7 +8,7 @@ int main() {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const fpbm::InPlane circle(fpbm::Path(fpbm::Circle<double>(0.15), 4.0), {0.0, 1.0, 0.0},
                              {0.0, 0.0, 1.0});  // [m], [s]
-  const fpbm::WithTurn path(circle);
+  const fpbm::WithRotation path(circle);
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 1.0);
   fpbm::State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, fpbm::Vector<7>::Zero()};  // [rad]
 
@@ -26,7 +26,7 @@ int main() {
         const auto result = fpbm::rollout(arm, path, scheme, start, grid, summary);
         complete += failed(result.status) ? 0 : 1;
         const auto motion = summary.result();
-        error = std::max(error, motion.largest_error);
+        error = std::max(error, motion.max_error);
         peak = std::max(peak, motion.peak_velocity);
         final = std::max(final, motion.final_velocity);
         least = std::min(least, motion.manipulability);

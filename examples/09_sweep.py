@@ -15,6 +15,6 @@ starts[:, 2] = np.linspace(-0.5, 0.5, 11)
 sweep = fp.sweep(arm, path, schemes, starts, hold=1.0, task="pose")
 print("damping  alpha  complete  error [m]  peak qd [rad/s]  final qd [rad/s]  manipulability")
 for i, (damping, alpha) in enumerate(cases):
-    complete, error, peak = sweep.ok[i].sum(), sweep.largest_error[i].max(), sweep.peak_velocity[i].max()
+    complete, error, peak = sweep.ok[i].sum(), sweep.max_error[i].max(), sweep.peak_velocity[i].max()
     final, least = sweep.final_velocity[i].max(), sweep.manipulability[i].min()
     print(f"{damping:7.1f}  {alpha:5.1f}  {complete:8d}  {error:9.0e}  {peak:15.3f}  {final:16.4f}  {least:14.4f}")

@@ -1,2 +1,2 @@
-#include "fpbm/batch/lanes.hpp"
+#include "fpbm/core/lanes.hpp"
 #include "fpbm/fpbm.hpp"  // What clang-tidy reads to see every header.

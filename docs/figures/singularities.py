@@ -178,7 +178,7 @@ def through_the_middle() -> Motion:
         tip = arm.forward(q0)
         error = np.concatenate([wanted[:3, 3] - tip[:3, 3], fp.rotation_vector(wanted[:3, :3] @ tip[:3, :3].T)])
         q0[in_plane] += np.linalg.lstsq(arm.jacobian(q0, task="pose")[:, in_plane], error, rcond=None)[0]
-    path = fp.Line(way, 4.0, time_law="quintic").with_turn([0, 0, 0])
+    path = fp.Line(way, 4.0, time_law="quintic").with_rotation([0, 0, 0])
     return Motion("A Panda, on a line right through the middle", arm, "pose", [1] * 7, q0, singular, path, 1.0)
 
 

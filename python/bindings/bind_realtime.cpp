@@ -91,8 +91,8 @@ class PyTracker {
   void stop() {
     visit([](auto& model) { model.stop(); });
   }
-  void go_on() {
-    visit([](auto& model) { model.go_on(); });
+  void resume() {
+    visit([](auto& model) { model.resume(); });
   }
   [[nodiscard]] Eigen::VectorXd q() const {
     return visit([](auto& model) -> Eigen::VectorXd { return model.state().q; });
@@ -142,7 +142,7 @@ void bind_tick(py::module_& m) {
 }
 
 void bind_course(py::module_& m) {
-  py::class_<PyCourse>(m, "Course",
+  py::class_<PyCourse>(m, "PathFollower",
                        "A path laid out from a tip, with a clock that can pause and resume; made by Tracker.course.")
       .def(
           "pause", [](PyCourse& self) { std::visit([](auto& course) { course.pause(); }, self.course); },
@@ -228,8 +228,8 @@ where no motion can be found the arm brakes, and the tick's status says why.)")
            "The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.")
       .def("course", &PyTracker::course, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5,
            "A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].")
-      .def("stop", &PyTracker::stop, "Brings every joint to rest as fast as the limits allow, until go_on.")
-      .def("go_on", &PyTracker::go_on, "Follows references again.")
+      .def("stop", &PyTracker::stop, "Brings every joint to rest as fast as the limits allow, until resume.")
+      .def("resume", &PyTracker::resume, "Follows references again.")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")
       .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of its own state [rad/s].")
       .def_property_readonly("tip", &PyTracker::tip, "Where the tip of its own state is, in the base frame [m].");

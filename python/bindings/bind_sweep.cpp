@@ -126,7 +126,7 @@ std::vector<std::string> processor_kinds() {
 }  // namespace
 
 void bind_sweep(py::module_& m) {
-  PYBIND11_NUMPY_DTYPE(MotionSummary<>, largest_error, largest_turn_error, peak_velocity, final_velocity,
+  PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,
                        peak_acceleration, final_acceleration, manipulability);
   PYBIND11_NUMPY_DTYPE(Outcome, status, samples, time, summary);
   py::class_<Stop>(m, "Stop", "A word to all motions of a sweep in this process: set() ends them within a sample.")

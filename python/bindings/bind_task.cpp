@@ -9,7 +9,7 @@
 #include "fpbm/task/shapes.hpp"
 #include "fpbm/task/time_law.hpp"
 #include "fpbm/task/waypoints.hpp"
-#include "fpbm/task/with_turn.hpp"
+#include "fpbm/task/with_rotation.hpp"
 #include "path.hpp"
 #include "recipe.hpp"
 #include "text.hpp"
@@ -66,13 +66,13 @@ PyPath in_plane(const PyPath& path, const py::object& plane) {
           recipe_of_method("in_plane", path, copy_of(plane))};
 }
 
-PyPath with_turn(const PyPath& path, const ArrayLike& turn, const std::string& law) {
+PyPath with_rotation(const PyPath& path, const ArrayLike& turn, const std::string& law) {
   return visit_time_law(law, [&](const auto& chosen) {
     return std::visit(
         [&](const auto& positions) -> PyPath {
           using Positions = typename std::decay_t<decltype(positions)>::Space;
           if constexpr (std::is_same_v<Positions, Position<2>> || std::is_same_v<Positions, Position<3>>) {
-            using Turned = WithTurn<AnyPath<Positions>, std::decay_t<decltype(chosen)>>;
+            using Turned = WithRotation<AnyPath<Positions>, std::decay_t<decltype(chosen)>>;
             typename Turned::Turn r;
             if constexpr (r.RowsAtCompileTime == 1) {
               if (real_array(turn, "turn", 0).size() != 1) throw std::invalid_argument("turn: must be one angle");
@@ -81,10 +81,10 @@ PyPath with_turn(const PyPath& path, const ArrayLike& turn, const std::string& l
               r = fixed_vector<3>(turn, "turn");
             }
             return {AnyPath<typename Turned::Space>(Turned(positions, r, chosen)),
-                    path.repr + ".with_turn(" + py::cast<std::string>(py::repr(turn)) + ", time_law='" + law + "')",
-                    recipe_of_method("with_turn", path, copy_of(turn), py::arg("time_law") = law)};
+                    path.repr + ".with_rotation(" + py::cast<std::string>(py::repr(turn)) + ", time_law='" + law + "')",
+                    recipe_of_method("with_rotation", path, copy_of(turn), py::arg("time_law") = law)};
           } else {
-            throw std::invalid_argument("with_turn: the path turns the tip already");
+            throw std::invalid_argument("with_rotation: the path turns the tip already");
           }
         },
         path.path);
@@ -123,12 +123,12 @@ PyPath make_waypoints(const std::vector<typename Space::template Point<double>>&
 
 PyPath waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
                  const std::optional<double>& speed, const std::optional<double>& acceleration,
-                 const std::optional<double>& turn_rate, const std::optional<double>& turn_acceleration) {
+                 const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration) {
   std::optional<TipBounds<>> bounds;
-  if (speed || acceleration || turn_rate || turn_acceleration) {
+  if (speed || acceleration || angular_velocity || angular_acceleration) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    bounds = TipBounds<>{speed.value_or(kNone), acceleration.value_or(kNone), turn_rate.value_or(kNone),
-                         turn_acceleration.value_or(kNone)};
+    bounds = TipBounds<>{speed.value_or(kNone), acceleration.value_or(kNone), angular_velocity.value_or(kNone),
+                         angular_acceleration.value_or(kNone)};
   }
   if (duration.has_value() + times.has_value() + bounds.has_value() != 1) {
     throw std::invalid_argument("duration, times or bounds of speed: must be given, one of the three");
@@ -166,7 +166,7 @@ void bind_task(py::module_& m) {
 
 A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
 unless in_plane() lays them elsewhere; paths of positions leave the tip's orientation free under task='position' and
-hold it under task='pose', unless with_turn() turns it.
+hold it under task='pose', unless with_rotation() turns it.
 
 The time laws give the fraction done, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose acceleration
 steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there; 'constant_speed', tau.)")
@@ -192,7 +192,7 @@ shape (m,), linear rows first, then angular. At rest on the path's ends outside 
 
 plane: the base frame's axes that its x and y run along, as in 'yz', or any two directions at right angles,
 shape (2, 3).)")
-      .def("with_turn", &with_turn, py::arg("turn"), py::kw_only(), py::arg("time_law") = "quintic",
+      .def("with_rotation", &with_rotation, py::arg("turn"), py::kw_only(), py::arg("time_law") = "quintic",
            R"(This path of positions with the tip turned on the way, from rest to rest over its whole duration.
 
 turn: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the orientation that
@@ -259,7 +259,7 @@ ValueError
                  py::arg("frequencies") = frequencies, py::arg("phase") = phase);
            }),
            py::arg("amplitude"), py::arg("duration"), py::kw_only(), py::arg("frequencies") = Vector<2, int>(2, 1),
-           py::arg("phase") = kTurn / 12.0, law);
+           py::arg("phase") = kTwoPi / 12.0, law);
 
   struct PyTricuspid : PyPath {};
   py::class_<PyTricuspid, PyPath>(m, "Tricuspid", R"(Tricuspid (deltoid), from its rightmost cusp.
@@ -325,7 +325,7 @@ duration : float
     T [s]; each piece gets its share by its length.
 times : array_like, shape (k,)
     When each point is passed [s], the first at 0.
-speed, acceleration, turn_rate, turn_acceleration : float
+speed, acceleration, angular_velocity, angular_acceleration : float
     As fast as these bounds of the tip's motion allow [m/s, m/s^2, rad/s, rad/s^2], to 1 %; T is rounded up to 0.01 s.
 
 Raises
@@ -335,17 +335,17 @@ ValueError
     that follow each other are one.)")
       .def(py::init([](const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
                        const std::optional<double>& speed, const std::optional<double>& acceleration,
-                       const std::optional<double>& turn_rate, const std::optional<double>& turn_acceleration) {
-             PyWaypoints path{waypoints(points, duration, times, speed, acceleration, turn_rate, turn_acceleration)};
+                       const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration) {
+             PyWaypoints path{waypoints(points, duration, times, speed, acceleration, angular_velocity, angular_acceleration)};
              path.recipe = recipe(py::type::of<PyWaypoints>(), copy_of(points), py::arg("duration") = duration,
                                   py::arg("times") = copy_of(times), py::arg("speed") = speed,
-                                  py::arg("acceleration") = acceleration, py::arg("turn_rate") = turn_rate,
-                                  py::arg("turn_acceleration") = turn_acceleration);
+                                  py::arg("acceleration") = acceleration, py::arg("angular_velocity") = angular_velocity,
+                                  py::arg("angular_acceleration") = angular_acceleration);
              return path;
            }),
            py::arg("points"), py::kw_only(), py::arg("duration") = py::none(), py::arg("times") = py::none(),
-           py::arg("speed") = py::none(), py::arg("acceleration") = py::none(), py::arg("turn_rate") = py::none(),
-           py::arg("turn_acceleration") = py::none());
+           py::arg("speed") = py::none(), py::arg("acceleration") = py::none(), py::arg("angular_velocity") = py::none(),
+           py::arg("angular_acceleration") = py::none());
 }
 
 }  // namespace fpbm::bindings

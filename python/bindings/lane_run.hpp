@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fpbm/batch/lanes.hpp"
+#include "fpbm/core/lanes.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "lanes.hpp"
 
@@ -70,7 +70,7 @@ struct LaneRecorder {
 
 [[nodiscard]] inline MotionSummary<> lane_of(const MotionSummary<InLanes>& all, int lane) noexcept {
   const auto at = static_cast<std::size_t>(lane);
-  return {all.largest_error[at],     all.largest_turn_error[at], all.peak_velocity[at], all.final_velocity[at],
+  return {all.max_error[at],     all.max_orientation_error[at], all.peak_velocity[at], all.final_velocity[at],
           all.peak_acceleration[at], all.final_acceleration[at], all.manipulability[at]};
 }
 

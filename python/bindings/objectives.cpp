@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "fpbm/model/gaze.hpp"
-#include "fpbm/resolver/manipulability_ascent.hpp"
-#include "fpbm/resolver/second_task.hpp"
+#include "fpbm/objective/gaze.hpp"
+#include "fpbm/objective/manipulability_ascent.hpp"
+#include "fpbm/objective/second_task.hpp"
 
 namespace fpbm::bindings {
 namespace {

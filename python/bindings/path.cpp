@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "fpbm/task/in_plane.hpp"
-#include "fpbm/task/with_turn.hpp"
+#include "fpbm/task/with_rotation.hpp"
 
 namespace fpbm::bindings {
 namespace {
@@ -22,7 +22,7 @@ AnyPath<To> convert(const AnyPath<From>& path) {
   } else if constexpr (std::is_same_v<To, Position<3>>) {
     return AnyPath<To>(InPlane(path, Vector<3>::UnitX(), Vector<3>::UnitY()));
   } else if constexpr (std::is_same_v<typename PoseOver<From>::type, To>) {
-    return AnyPath<To>(WithTurn(path));
+    return AnyPath<To>(WithRotation(path));
   } else {
     return convert<To>(convert<Position<3>>(path));
   }

@@ -5,9 +5,9 @@
 #include <string>
 #include <variant>
 
-#include "fpbm/resolver/fpbm.hpp"
-#include "fpbm/resolver/man.hpp"
-#include "fpbm/resolver/wmvn.hpp"
+#include "fpbm/scheme/fpbm.hpp"
+#include "fpbm/scheme/man.hpp"
+#include "fpbm/scheme/wmvn.hpp"
 
 namespace fpbm::bindings {
 

@@ -25,7 +25,7 @@ class Loop final : public LoopModel<Space> {
     }
   }
   void stop() override { tracker_.stop(); }
-  void go_on() override { tracker_.go_on(); }
+  void resume() override { tracker_.resume(); }
   [[nodiscard]] const State<kDynamic>& state() const override { return tracker_.state(); }
   [[nodiscard]] typename Space::template Point<double> tip() const override { return tracker_.tip(); }
 

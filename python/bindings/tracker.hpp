@@ -4,14 +4,14 @@
 #include <utility>
 #include <variant>
 
-#include "fpbm/realtime/course.hpp"
+#include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "whole_arm.hpp"
 
 namespace fpbm::bindings {
 
 template <typename Space>
-using AnyCourse = Course<AnyPath<Space>>;
+using AnyCourse = PathFollower<AnyPath<Space>>;
 
 /// A tracker of any arm under any scheme.
 template <typename Space>
@@ -29,7 +29,7 @@ class LoopModel {
   /// Throws std::invalid_argument at velocity level.
   virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
   virtual void stop() = 0;
-  virtual void go_on() = 0;
+  virtual void resume() = 0;
   [[nodiscard]] virtual const State<kDynamic>& state() const = 0;
   [[nodiscard]] virtual typename Space::template Point<double> tip() const = 0;
 };

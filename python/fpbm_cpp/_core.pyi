@@ -13,7 +13,7 @@ __all__: list[str] = [
     "Arm",
     "Balanced",
     "Circle",
-    "Course",
+    "PathFollower",
     "FPBM",
     "Gaze",
     "JointLimits",
@@ -232,7 +232,7 @@ class Path:
 
     A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
     unless in_plane() lays them elsewhere; paths of positions leave the tip's orientation free under task='position' and
-    hold it under task='pose', unless with_turn() turns it.
+    hold it under task='pose', unless with_rotation() turns it.
 
     The time laws give the fraction done, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose acceleration
     steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there; 'constant_speed', tau.
@@ -261,7 +261,7 @@ class Path:
         """
         This path, and from its end another.
         """
-    def with_turn(self, turn: numpy.typing.ArrayLike, *, time_law: str = "quintic") -> Path:
+    def with_rotation(self, turn: numpy.typing.ArrayLike, *, time_law: str = "quintic") -> Path:
         """
         This path of positions with the tip turned on the way, from rest to rest over its whole duration.
 
@@ -406,7 +406,7 @@ class Waypoints(Path):
         T [s]; each piece gets its share by its length.
     times : array_like, shape (k,)
         When each point is passed [s], the first at 0.
-    speed, acceleration, turn_rate, turn_acceleration : float
+    speed, acceleration, angular_velocity, angular_acceleration : float
         As fast as these bounds of the tip's motion allow [m/s, m/s^2, rad/s, rad/s^2], to 1 %; T is rounded up to 0.01 s.
 
     Raises
@@ -423,8 +423,8 @@ class Waypoints(Path):
         times: numpy.typing.ArrayLike | None = None,
         speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
         acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        turn_rate: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        turn_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
     ) -> None: ...
 
 class Status(enum.Enum):
@@ -921,7 +921,7 @@ class Tick:
         What became of it; where it failed, why the arm brakes.
         """
 
-class Course:
+class PathFollower:
     """
     A path laid out from a tip, with a clock that can pause and resume; made by Tracker.course.
     """
@@ -995,11 +995,11 @@ class Tracker:
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
-    def course(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> Course:
+    def course(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
         """
         A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
         """
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """
         Follows references again.
         """
@@ -1016,10 +1016,10 @@ class Tracker:
         """
     def stop(self) -> None:
         """
-        Brings every joint to rest as fast as the limits allow, until go_on.
+        Brings every joint to rest as fast as the limits allow, until resume.
         """
     @typing.overload
-    def tick(self, course: Course) -> Tick:
+    def tick(self, course: PathFollower) -> Tick:
         """
         One tick along a course, whose clock goes on with it.
         """

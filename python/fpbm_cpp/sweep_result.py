@@ -28,7 +28,7 @@ class Sweep:
         How each motion ended; None where it was not run.
     time : numpy.ndarray
         Time of its last sample [s].
-    largest_error, largest_turn_error : numpy.ndarray
+    max_error, max_orientation_error : numpy.ndarray
         Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
         which is 0 where the task leaves it free.
     peak_velocity, final_velocity : numpy.ndarray
@@ -45,8 +45,8 @@ class Sweep:
 
     status: NDArray[Any]
     time: Array
-    largest_error: Array
-    largest_turn_error: Array
+    max_error: Array
+    max_orientation_error: Array
     peak_velocity: Array
     final_velocity: Array
     peak_acceleration: Array
@@ -81,7 +81,7 @@ class Sweep:
         if not ok.any():
             return text
         return (
-            f"{text}; tip error up to {self.largest_error[i, ok].max():.1e} m,"
+            f"{text}; tip error up to {self.max_error[i, ok].max():.1e} m,"
             f" joints up to {self.peak_velocity[i, ok].max():.3g} rad/s,"
             f" manipulability down to {self.manipulability[i, ok].min():.3g}"
         )

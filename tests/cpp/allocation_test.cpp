@@ -112,7 +112,7 @@ void expect_none_in_space(const Arm& arm) {
   const FPBM<N> scheme(0.6, DiagonalWeights<N>(Vector<N>::Ones(arm.dof())), 10.0, 25.0);
   const InPlane circle(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
   const std::vector<Transform<>> points{{}, {{0.05, 0.0, 0.05}, rotation(Vector<3>(0.1, 0.2, 0.0))}, {{0.1, 0.0, 0.0}}};
-  const Sequence path(WithTurn(circle, Vector<3>(0.1, 0.2, 0.3)), Waypoints<Pose>::lasting(points, 5.0));
+  const Sequence path(WithRotation(circle, Vector<3>(0.1, 0.2, 0.3)), Waypoints<Pose>::lasting(points, 5.0));
 
   static std::array<double, Pose::kSize*(kSteps + 1)> x;
   MotionBuffers<Pose, N> buffers;
@@ -166,7 +166,7 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
   Tracker tracker(arm, Space{}, scheme, q0, options);
   const auto home = Reference<Space>::hold(tracker.tip());
   const InPlane circle(Path(Circle(0.05), 0.5), Vector<3>::UnitY(), Vector<3>::UnitZ());
-  const WithTurn turning(circle, Vector<3>(0.1, 0.2, 0.3));
+  const WithRotation turning(circle, Vector<3>(0.1, 0.2, 0.3));
   const auto path = [&] {
     if constexpr (std::is_same_v<Space, Pose>) {
       return turning;
@@ -174,13 +174,13 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
       return circle;
     }
   }();
-  Course course(path, tracker.tip());
+  PathFollower course(path, tracker.tip());
   const AllocationWatch watch;
   for (int i = 0; i < 2000; ++i) {
     if (i == 100) course.pause();
     if (i == 200) course.resume();
     if (i == 300) tracker.stop();
-    if (i == 400) tracker.go_on();
+    if (i == 400) tracker.resume();
     (void)tracker.tick(course);
     auto wild = home;
     wild.xdd.setConstant(i % 100 == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.1 * i);

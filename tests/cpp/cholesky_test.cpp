@@ -1,4 +1,4 @@
-#include "fpbm/core/cholesky.hpp"
+#include "fpbm/linalg/cholesky.hpp"
 
 #include <gtest/gtest.h>
 
@@ -125,7 +125,7 @@ TEST_P(CholeskyOf, is_indifferent_to_scale) {
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;
 }
 
-/// Two matrices side by side: in each lane what that matrix alone gives, to the last bit, and a refusal where either is
+/// PlainPair matrices side by side: in each lane what that matrix alone gives, to the last bit, and a refusal where either is
 /// refused.
 template <int M, typename Scalar>
 void expect_pair_to_agree() {

@@ -1,4 +1,4 @@
-#include "fpbm/resolver/damping.hpp"
+#include "fpbm/singular/damping.hpp"
 
 #include <gtest/gtest.h>
 
@@ -336,7 +336,7 @@ TEST_P(SmoothDamping, answers_without_a_jump) {
   EXPECT_LE(steepest(5e-4), 1.25 * steepest(2e-3));
 }
 
-/// Two continuous derivatives, in the singular posture, where the damping sets in, and in between: second difference
+/// PlainPair continuous derivatives, in the singular posture, where the damping sets in, and in between: second difference
 /// quotients of both sides come together as the step shrinks.
 TEST_P(SmoothDamping, answers_with_two_continuous_derivatives) {
   for (const double s : {0.0, kEdge, -kEdge, 0.37 * kEdge}) {
@@ -543,7 +543,7 @@ TEST(DampedMotion, that_grazes_the_radius_is_done) {
     const Recording<4> run = run_with(1.01 * nearest);
     EXPECT_EQ(run.result.status, Status::kDamped);
     EXPECT_EQ(run.samples.size(), plain.samples.size());
-    EXPECT_LE(run.largest_error(), 1e-4);
+    EXPECT_LE(run.max_error(), 1e-4);
   });
 }
 
@@ -563,7 +563,7 @@ TEST(DampedMotion, that_leaves_its_path_is_stopped) {
           scheme.singular = SingularDamping<>(radius);
           const auto run = recorded(paper_arm(), path, scheme, start, TimeGrid<>(5.0, dt));
           EXPECT_EQ(run.result.status, Status::kTaskLost) << message(run.result.status);
-          EXPECT_LE(run.largest_error(), 1.1 * fastest * dt);
+          EXPECT_LE(run.max_error(), 1.1 * fastest * dt);
           for (const auto& sample : run.samples) ASSERT_TRUE(sample.qdd.allFinite() && sample.error.allFinite());
         }
       }

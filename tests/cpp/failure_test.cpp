@@ -27,7 +27,7 @@ struct Ending {
   Status status;
   double time;
   int samples;
-  double largest_error;
+  double max_error;
   bool finite;
 };
 
@@ -40,7 +40,7 @@ Ending run(const Task& task, const Scheme& scheme) {
   const bool finite = std::all_of(motion.samples.begin(), motion.samples.end(), [](const auto& sample) {
     return sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite() && sample.error.allFinite();
   });
-  return {motion.result.status, motion.result.time, motion.result.samples, motion.largest_error(), finite};
+  return {motion.result.status, motion.result.time, motion.result.samples, motion.max_error(), finite};
 }
 
 template <int N>
@@ -113,7 +113,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
       EXPECT_NE(ending.status, Status::kOk);
       EXPECT_TRUE(ending.finite);
       EXPECT_LE(ending.time, exit + 2.0 * dt);
-      EXPECT_LE(ending.largest_error, longest_step);
+      EXPECT_LE(ending.max_error, longest_step);
       EXPECT_LE(ending.samples, static_cast<int>(std::lround(ending.time / dt)) + 1);
     }
   }
@@ -156,7 +156,7 @@ TEST_P(Failure, does_not_befall_a_motion_well_inside_the_workspace) {
       EXPECT_EQ(ending.status, Status::kOk);
       EXPECT_EQ(ending.time, task.duration);
       EXPECT_TRUE(ending.finite);
-      EXPECT_LE(ending.largest_error, 1e-3 * std::pow(dt, 2));
+      EXPECT_LE(ending.max_error, 1e-3 * std::pow(dt, 2));
     }
   }
 }

@@ -16,7 +16,7 @@ void expect_exact_hold(const Path& path, const Scheme& scheme) {
   ASSERT_EQ(run.result.status, Status::kOk);
   ASSERT_EQ(run.samples.size(), 12001U);
   EXPECT_DOUBLE_EQ(run.result.time, kDuration + kHold);
-  EXPECT_LE(run.largest_error(), 1e-12);
+  EXPECT_LE(run.max_error(), 1e-12);
 
   const auto& first_at_rest = run.samples[10000];
   for (std::size_t i = 10000; i < run.samples.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(Float, follows_the_papers_circle) {
   for (const float dt : {1e-3F, 1e-2F}) {
     const auto run = recorded(arm, path, scheme, start, TimeGrid<float>(10.0F, dt, 1.0F));
     ASSERT_EQ(run.result.status, Status::kOk) << "at " << run.result.time;
-    EXPECT_LE(run.largest_error(), 1e-4F) << "dt = " << dt;
+    EXPECT_LE(run.max_error(), 1e-4F) << "dt = " << dt;
     const auto end = run.samples[static_cast<std::size_t>(std::lround(10.0F / dt))];
     const Vector<4> expected(0.215222487, 0.396791734, 0.1144437012, 0.1756873322);
     EXPECT_LE((end.q.cast<double>() - expected).norm(), 1e-3) << "dt = " << dt;

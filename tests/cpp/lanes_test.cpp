@@ -1,4 +1,4 @@
-#include "fpbm/batch/lanes.hpp"
+#include "fpbm/core/lanes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLanes = 2;
 using In = Lanes<kLanes>;
-using Truths = Truth<In>;
+using Masks = Mask<In>;
 
 static_assert(kInLanes<In> && !kInLanes<double> && !kInLanes<Pair<double>>);
 static_assert(std::is_same_v<Number<In>, double> && std::is_same_v<Number<float>, float>);
@@ -215,7 +215,7 @@ TEST(Lanes, run_each_motion_as_if_it_were_alone) {
   const Motions right = run({outstretched, bent}, 0.25);
   EXPECT_EQ((lane_of<4, 1>(left.q, 0)), (lane_of<4, 1>(healthy.q, 0)));
   EXPECT_EQ((lane_of<4, 1>(right.q, 1)), (lane_of<4, 1>(healthy.q, 0)));
-  EXPECT_EQ(left.summary.largest_error[0], healthy.summary.largest_error[0]);
+  EXPECT_EQ(left.summary.max_error[0], healthy.summary.max_error[0]);
   EXPECT_EQ(right.summary.manipulability[1], healthy.summary.manipulability[0]);
   EXPECT_TRUE(std::isnan(lane_of<4, 1>(left.q, 1).sum()));
   EXPECT_TRUE(std::isnan(lane_of<4, 1>(right.q, 0).sum()));

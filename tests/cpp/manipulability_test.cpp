@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/resolver/manipulability_ascent.hpp"
+#include "fpbm/objective/manipulability_ascent.hpp"
 #include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/recording.hpp"
@@ -34,7 +34,7 @@ TEST(Manipulability, is_the_root_of_the_determinant) {
   });
 }
 
-/// Two links of 1 m: w = |sin q₂|, of which the determinant would lose all digits here.
+/// PlainPair links of 1 m: w = |sin q₂|, of which the determinant would lose all digits here.
 TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   const PlanarArm<2> arm(Vector<2>::Ones());
   Kinematics<Position<2>, 2> kinematics;
@@ -161,7 +161,7 @@ void expect_to_climb(const Scheme& scheme, double gain) {
   const auto without = recorded(arm, paper_circle(), scheme, paper_start(), grid);
   const auto with = recorded(arm, paper_circle(), ManipulabilityAscent(scheme, arm, gain), paper_start(), grid);
   ASSERT_EQ(with.result.status, Status::kOk);
-  EXPECT_LE(with.largest_error(), 1e-8);
+  EXPECT_LE(with.max_error(), 1e-8);
   const Vector<4> end = with.result.last.q;
   EXPECT_GT(manipulability_as_written<Position<2>>(arm, end),
             1.02L * manipulability_as_written<Position<2>>(arm, without.result.last.q));

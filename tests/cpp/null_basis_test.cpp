@@ -1,4 +1,4 @@
-#include "fpbm/core/null_basis.hpp"
+#include "fpbm/linalg/null_basis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/objective/null_space.hpp"
 
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
   const auto with =
       recorded(paper_arm(), paper_circle(), paper_fpbm(damped.with_joint_centring(limits, 50.0)), paper_start(), grid);
   ASSERT_EQ(with.result.status, Status::kOk);
-  EXPECT_LE(with.largest_error(), 1e-8);
+  EXPECT_LE(with.max_error(), 1e-8);
   EXPECT_LT(centring_cost(limits, with.result.last.q), 0.8 * centring_cost(limits, without.result.last.q));
   EXPECT_LT(with.result.last.qd.norm(), 1e-3);
 }

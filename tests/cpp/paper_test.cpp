@@ -42,7 +42,7 @@ TEST_P(PaperCases, end_as_in_the_independent_solution) {
   const Recording<4> run = draw(expected.figure, scheme);
   expect_final(expected, run);
   if (expected.k2 > 0.0) {
-    EXPECT_LE(run.largest_error(), 1e-12);
+    EXPECT_LE(run.max_error(), 1e-12);
   } else {
     // α = k₁ = k₂ = 0 is MAN (8), and so must the scheme of that name be.
     expect_final(expected, draw(expected.figure, MAN<4>()));
@@ -59,13 +59,13 @@ TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
   const auto fpbm = recorded(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), grid);
   ASSERT_EQ(man.result.status, Status::kOk);
   ASSERT_EQ(fpbm.result.status, Status::kOk);
-  EXPECT_GT(man.largest_error(), 10.0 * fpbm.largest_error());
+  EXPECT_GT(man.max_error(), 10.0 * fpbm.max_error());
 
   // Still growing at T: the last tenth is the worst, and its end is worse than its beginning.
   const double last_tenth = 0.9 * kDuration;
-  EXPECT_EQ(man.largest_error(), man.largest_error(last_tenth));
-  EXPECT_EQ(man.largest_error(), man.samples.back().error.norm());
-  EXPECT_LT(fpbm.largest_error(last_tenth), fpbm.largest_error());
+  EXPECT_EQ(man.max_error(), man.max_error(last_tenth));
+  EXPECT_EQ(man.max_error(), man.samples.back().error.norm());
+  EXPECT_LT(fpbm.max_error(last_tenth), fpbm.max_error());
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST(Rest, is_never_reached_without_damping) {
   ASSERT_EQ(run.result.status, Status::kOk);
   EXPECT_GT(run.result.last.qd.norm(), 1e-3);
   EXPECT_NEAR(way_during_hold(run), 0.66, 0.005);
-  EXPECT_LE(run.largest_error(), 1e-12) << "the tip is at rest all the while";
+  EXPECT_LE(run.max_error(), 1e-12) << "the tip is at rest all the while";
 }
 
 TEST(Rest, is_reached_with_damping) {
@@ -30,7 +30,7 @@ TEST(Rest, is_reached_with_damping) {
   ASSERT_EQ(run.result.status, Status::kOk);
   EXPECT_LT(run.result.last.qd.norm(), 1e-6);
   EXPECT_NEAR(way_during_hold(run), 0.004, 0.0005);
-  EXPECT_LE(run.largest_error(), 1e-12) << "and the task does not notice";
+  EXPECT_LE(run.max_error(), 1e-12) << "and the task does not notice";
 }
 
 /// Chained circles: with a rest posture the arm repeats itself, without damping it does not.

@@ -1,4 +1,4 @@
-#include "fpbm/integrator/rk4.hpp"
+#include "fpbm/sim/rk4.hpp"
 
 #include <gtest/gtest.h>
 

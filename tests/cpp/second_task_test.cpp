@@ -1,4 +1,4 @@
-#include "fpbm/resolver/second_task.hpp"
+#include "fpbm/objective/second_task.hpp"
 
 #include <gtest/gtest.h>
 
@@ -248,7 +248,7 @@ TEST(SecondTask, is_held_all_the_way_round) {
   const auto elbow_error = [&](const auto& scheme) {
     const auto run = recorded(arm, circle, scheme, start, TimeGrid<>(kDuration, 1e-2, 1.0));
     EXPECT_EQ(run.result.status, Status::kOk);
-    EXPECT_LE(run.largest_error(), 1e-9);
+    EXPECT_LE(run.max_error(), 1e-9);
     double largest = 0.0;
     for (const auto& sample : run.samples) {
       elbow.kinematics(sample.q.template head<2>(), at);
@@ -294,7 +294,7 @@ TEST(SecondTask, out_of_reach_comes_to_rest) {
   const auto damped = paper_fpbm(NullSpace<4>{}.with_damping(5.0));
   const auto run = recorded(arm, circle, SecondTask(damped, elbow, far, 4.0, 1.0), start, TimeGrid<>(1.0, 1e-3, 20.0));
   ASSERT_EQ(run.result.status, Status::kOk);
-  EXPECT_LE(run.largest_error(), 1e-8);
+  EXPECT_LE(run.max_error(), 1e-8);
   EXPECT_LE(run.result.last.qd.norm(), 1e-3);
   for (const auto& sample : run.samples) ASSERT_LE(sample.qd.norm(), 5.0) << "at t = " << sample.t;
 }

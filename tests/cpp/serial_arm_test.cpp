@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fpbm/model/planar_arm.hpp"
-#include "fpbm/resolver/fpbm.hpp"
+#include "fpbm/scheme/fpbm.hpp"
 #include "support/random.hpp"
 
 /// Serial arms against finite differences, planar arms, and what their schemes promise.

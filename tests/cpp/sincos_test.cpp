@@ -30,7 +30,7 @@ double worst_over(double range, int samples) {
   Random random(7);
   double worst = 0.0;
   for (int i = 0; i < samples; ++i) {
-    // Two draws: the numbers of Random have the 24 bits of a float, and the low bits of an angle are to vary as well.
+    // PlainPair draws: the numbers of Random have the 24 bits of a float, and the low bits of an angle are to vary as well.
     const double angle = random.uniform(-range, range) + random.uniform(-1.0, 1.0) * 1e-7 * range;
     worst = std::max(worst, error_at(std::clamp(angle, -range, range)));
   }

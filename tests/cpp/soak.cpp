@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   double error = 0.0;
   long circles = 0;
   for (; static_cast<double>(circles * kTicksPerCircle) < ticks; ++circles) {
-    Course course(path, start);
+    PathFollower course(path, start);
     for (long i = 0; i < kTicksPerCircle; ++i) {
       const auto tick = tracker.tick(course);
       if (failed(tick.status)) {

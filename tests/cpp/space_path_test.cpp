@@ -15,7 +15,7 @@
 namespace fpbm::test {
 namespace {
 
-constexpr double kPi = kTurn / 2;
+constexpr double kPi = kTwoPi / 2;
 
 Transform<> random_pose(Random& random) {
   return {Vector<3>(random.uniform(3, -0.5, 0.5)), rotation(Vector<3>(random.uniform(3, -1.5, 1.5)))};
@@ -77,9 +77,9 @@ TEST(InPlane, is_the_path_along_the_axes) {
   EXPECT_LE((at.xd - flat.xd(0) * Vector<3>(0, 1, 0) - flat.xd(1) * v).norm(), 1e-15);
 }
 
-TEST(WithTurn, turns_from_rest_to_rest) {
+TEST(WithRotation, turns_from_rest_to_rest) {
   const Vector<3> turn(0.3, -1.0, 2.0);
-  const WithTurn path(InPlane(Path(Circle(0.3), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ()), turn);
+  const WithRotation path(InPlane(Path(Circle(0.3), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ()), turn);
   expect_exact_derivatives(path);
   const auto end = path.sample(5.0);
   EXPECT_LE((rotation_vector(end.x.R) - turn).norm(), 1e-14);
@@ -87,11 +87,11 @@ TEST(WithTurn, turns_from_rest_to_rest) {
   EXPECT_LE((rotation_vector(path.sample(6.0).x.R) - turn).norm(), 1e-14);
   EXPECT_EQ(path.sample(6.0).xdd.norm(), 0.0);
 
-  const WithTurn held(Path(Line<3>({0.1, 0.2, 0.3}), 2.0));
+  const WithRotation held(Path(Line<3>({0.1, 0.2, 0.3}), 2.0));
   EXPECT_LE((held.sample(1.2).x.R - Matrix<3, 3>::Identity()).norm(), 1e-15);
   EXPECT_EQ(held.sample(1.2).xd.tail<3>().norm(), 0.0);
 
-  const WithTurn planar(Path(Circle(0.3), 5.0), Vector<1>(-4.0), SinSquared{});
+  const WithRotation planar(Path(Circle(0.3), 5.0), Vector<1>(-4.0), SinSquared{});
   expect_exact_derivatives(planar);
   EXPECT_NEAR(planar.sample(5.0).x(2), -4.0, 1e-14);
 }
@@ -184,9 +184,9 @@ TEST(Waypoints, keep_their_bounds) {
     double most = 0.0;
     for (double t = 0.0; t < path.duration(); t += 1e-3) {
       const auto at = path.sample(t);
-      most = std::max({most, at.xd.head<3>().norm() / bounds.speed, at.xd.tail<3>().norm() / bounds.turn_rate,
+      most = std::max({most, at.xd.head<3>().norm() / bounds.speed, at.xd.tail<3>().norm() / bounds.angular_velocity,
                        std::sqrt(at.xdd.head<3>().norm() / bounds.acceleration),
-                       std::sqrt(at.xdd.tail<3>().norm() / bounds.turn_acceleration)});
+                       std::sqrt(at.xdd.tail<3>().norm() / bounds.angular_acceleration)});
     }
     EXPECT_LE(most, 1.0);
     EXPECT_GE(most, 1.0 / (1.005 + 0.012 / path.duration()));
@@ -195,8 +195,8 @@ TEST(Waypoints, keep_their_bounds) {
 }
 
 TEST(Sequence, is_one_path_and_then_the_other) {
-  const WithTurn first(Path(Line<3>({0.1, 0.2, 0.3}), 2.0), Vector<3>(0, 0, 1.0));
-  const WithTurn second(Path(Line<3>({0.0, -0.2, 0.0}), 1.0, Quintic{}), Vector<3>(0.5, 0, 0));
+  const WithRotation first(Path(Line<3>({0.1, 0.2, 0.3}), 2.0), Vector<3>(0, 0, 1.0));
+  const WithRotation second(Path(Line<3>({0.0, -0.2, 0.0}), 1.0, Quintic{}), Vector<3>(0.5, 0, 0));
   const Sequence both(first, second);
   const Sequence three(both, first);
   EXPECT_EQ(three.duration(), 5.0);
@@ -258,7 +258,7 @@ TEST(SpacePaths, bad_ones_are_refused) {
             "u v / |u| |v| = 0.7071067");
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, kInf, 0), Vector<3>(1, 0, 1)); }),
             "u[1] = inf: must be finite");
-  EXPECT_EQ(refusal([&] { return WithTurn(circle, Vector<1>(kInf)); }), "turn[0] = inf: must be finite");
+  EXPECT_EQ(refusal([&] { return WithRotation(circle, Vector<1>(kInf)); }), "turn[0] = inf: must be finite");
 
   using Way = Waypoints<Position<2>>;
   const std::vector<Vector<2>> points{{0, 0}, {1, 0}, {1, 1}};

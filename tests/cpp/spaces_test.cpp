@@ -11,7 +11,7 @@
 namespace fpbm::test {
 namespace {
 
-constexpr double kPi = kTurn / 2;
+constexpr double kPi = kTwoPi / 2;
 
 TEST(Spaces, difference_and_displace_are_inverse_to_each_other) {
   Random random(1);
@@ -49,8 +49,8 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
 }
 
 TEST(Spaces, planar_angles_go_the_shorter_way) {
-  EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 3.0}, {0, 0, -3.0})(2), 6.0 - kTurn, 1e-15);
-  EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 40.0}, {0, 0, 1.0})(2), 39.0 - 6 * kTurn, 1e-14);
+  EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 3.0}, {0, 0, -3.0})(2), 6.0 - kTwoPi, 1e-15);
+  EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 40.0}, {0, 0, 1.0})(2), 39.0 - 6 * kTwoPi, 1e-14);
 }
 
 TEST(PlanarArm, has_a_pose) {
@@ -138,11 +138,11 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
     EXPECT_LE(turn, 1e-9);
   };
   const InPlane circle(Path(Circle(0.1), 10.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
-  expect_tracked(WithTurn(circle), fpbm);
-  expect_tracked(WithTurn(circle, Vector<3>(0.2, -0.3, 0.8)), fpbm);
-  expect_tracked(WithTurn(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>{});
-  expect_tracked(WithTurn(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(weights));
-  expect_tracked(WithTurn(circle), MAN<7>{});
+  expect_tracked(WithRotation(circle), fpbm);
+  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), fpbm);
+  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>{});
+  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(weights));
+  expect_tracked(WithRotation(circle), MAN<7>{});
 }
 
 /// Out of reach, from any start: it stops before the way leaves the ball that no flange leaves, and the tip has not
@@ -179,7 +179,7 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
     const Path line(Line<3>(way), 4.0);
     const double speed = kPi / 2 * way.norm() / 4.0;
     const DiagonalWeights<7> weights(Vector<7>(random.uniform(7, 1, 4)));
-    const WithTurn turned(line, Vector<3>(random.uniform(3, -1, 1)));
+    const WithRotation turned(line, Vector<3>(random.uniform(3, -1, 1)));
     expect_end(MVN<7>{}, line, speed);
     expect_end(MAN<7>{}, line, speed);
     expect_end(WMVN<7>(weights, 5.0), turned, speed);

@@ -36,18 +36,18 @@ template <typename Space, int N>
 void expect_agreement(const Samples<Space, N>& samples, const MotionSummary<>& summary) {
   constexpr int kTurns = std::is_same_v<Space, Pose> ? 3 : std::is_same_v<Space, PlanarPose> ? 1 : 0;
   double error = 0.0;
-  double turn_error = 0.0;
+  double orientation_error = 0.0;
   double velocity = 0.0;
   double manipulability = std::numeric_limits<double>::infinity();
   for (const auto& sample : samples) {
     const Eigen::VectorXd e = sample.error;
     error = std::max(error, e.head(Space::kRows - kTurns).norm());
-    turn_error = std::max(turn_error, e.tail(kTurns).norm());
+    orientation_error = std::max(orientation_error, e.tail(kTurns).norm());
     velocity = std::max(velocity, sample.qd.template lpNorm<Eigen::Infinity>());
     manipulability = std::min(manipulability, fpbm::manipulability(sample.J));
   }
-  EXPECT_DOUBLE_EQ(summary.largest_error, error);
-  EXPECT_DOUBLE_EQ(summary.largest_turn_error, turn_error);
+  EXPECT_DOUBLE_EQ(summary.max_error, error);
+  EXPECT_DOUBLE_EQ(summary.max_orientation_error, orientation_error);
   EXPECT_EQ(summary.peak_velocity, velocity);
   EXPECT_EQ(summary.final_velocity, samples.back().qd.template lpNorm<Eigen::Infinity>());
   EXPECT_EQ(summary.manipulability, manipulability);
@@ -85,7 +85,7 @@ TEST(Summary, says_what_the_samples_say) {
       if constexpr (std::is_same_v<Space, Positions>) {
         return line;
       } else {
-        using Turned = WithTurn<Path<Line<Positions::kRows>>>;
+        using Turned = WithRotation<Path<Line<Positions::kRows>>>;
         return Turned(line, Turned::Turn::Constant(0.01));
       }
     }();
@@ -97,8 +97,8 @@ TEST(Summary, says_what_the_samples_say) {
       const auto [samples, summary] = both(each.arm, path, scheme, start, grid);
       expect_agreement<Space, N>(samples, summary);
       expect_accelerations<Space, N>(samples, summary);
-      EXPECT_GT(summary.largest_error, 0.0);
-      EXPECT_EQ(summary.largest_turn_error > 0.0, !(std::is_same_v<Space, Positions>));
+      EXPECT_GT(summary.max_error, 0.0);
+      EXPECT_EQ(summary.max_orientation_error > 0.0, !(std::is_same_v<Space, Positions>));
     }
     {
       const auto [samples, summary] = both(each.arm, path, MVN<N>(5.0), start, grid);
@@ -127,7 +127,7 @@ TEST(Summary, finds_what_is_in_between) {
 
 TEST(Summary, of_nothing_is_empty) {
   const MotionSummary<> summary = Summary<Position<2>, 4>(Level::kVelocity).result();
-  EXPECT_EQ(summary.largest_error, 0.0);
+  EXPECT_EQ(summary.max_error, 0.0);
   EXPECT_EQ(summary.peak_velocity, 0.0);
   EXPECT_EQ(summary.peak_acceleration, 0.0);
   EXPECT_EQ(summary.manipulability, std::numeric_limits<double>::infinity());

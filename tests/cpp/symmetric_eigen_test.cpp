@@ -1,4 +1,4 @@
-#include "fpbm/core/symmetric_eigen.hpp"
+#include "fpbm/linalg/symmetric_eigen.hpp"
 
 #include <gtest/gtest.h>
 

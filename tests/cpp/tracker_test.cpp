@@ -47,7 +47,7 @@ template <typename Space = Pose, typename Scheme = FPBM<7>>
   return InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ());
 }
 [[nodiscard]] auto turning_circle(double duration = 4.0) {
-  return WithTurn(circle(duration), Vector<3>(0.1, 0.2, 0.3));
+  return WithRotation(circle(duration), Vector<3>(0.1, 0.2, 0.3));
 }
 
 template <typename Space>
@@ -85,11 +85,11 @@ template <typename Result>
 TEST(Tracker, promises_not_to_throw) {
   auto tracker = panda_tracker(settling());
   auto reference = Reference<Pose>::hold(tracker.tip());
-  auto course = Course(turning_circle(), tracker.tip());
+  auto course = PathFollower(turning_circle(), tracker.tip());
   const Vector<7> q = bent();
   static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(course)));
   static_assert(noexcept(tracker.resolve_measured(q, q, reference)));
-  static_assert(noexcept(tracker.stop())&& noexcept(tracker.go_on())&& noexcept(tracker.state()));
+  static_assert(noexcept(tracker.stop())&& noexcept(tracker.resume())&& noexcept(tracker.state()));
   static_assert(noexcept(tracker.tip()));
   static_assert(noexcept(course.pause())&& noexcept(course.resume())&& noexcept(course.ahead(0.0)));
   static_assert(noexcept(course.advance(0.0))&& noexcept(course.done())&& noexcept(course.time()));
@@ -103,7 +103,7 @@ TEST(Tracker, takes_the_very_steps_of_a_rollout) {
                 [&](const auto& sample) { q.push_back(sample.q); });
   ASSERT_EQ(q.size(), 4001U);
   auto tracker = panda_tracker(settling());
-  Course course(path, tracker.tip());
+  PathFollower course(path, tracker.tip());
   for (int i = 0; i < 4000; ++i) {
     const auto tick = checked_tick(tracker, course);
     ASSERT_EQ(tick.status, Status::kOk);
@@ -155,7 +155,7 @@ TEST(Tracker, reaches_targets_that_change_on_the_fly) {
 /// The tip stays on its path while the clock comes to rest and goes on again, even if one changes one's mind.
 TEST(Tracker, pauses_and_resumes_on_its_path) {
   auto tracker = panda_tracker(settling());
-  Course course(turning_circle(), tracker.tip(), 0.5);
+  PathFollower course(turning_circle(), tracker.tip(), 0.5);
   const auto go = [&](int ticks) {
     for (int i = 0; i < ticks; ++i) {
       const auto tick = checked_tick(tracker, course);
@@ -184,7 +184,7 @@ TEST(Tracker, pauses_and_resumes_on_its_path) {
 
 /// The reference's velocity is the derivative of its position, and its acceleration of its velocity, in every phase.
 TEST(Tracker, has_courses_that_are_smooth) {
-  Course course(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
+  PathFollower course(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
   const double h = 1e-5;
   for (int i = 0; i < 1000; ++i) {
     if (i == 200) course.pause();
@@ -209,7 +209,7 @@ TEST(Tracker, has_courses_that_are_smooth) {
 template <typename Scheme>
 void expect_to_stop(const Scheme& scheme) {
   auto tracker = panda_tracker(scheme);
-  Course course(turning_circle(2.0), tracker.tip());
+  PathFollower course(turning_circle(2.0), tracker.tip());
   for (int i = 0; i < 900; ++i) checked_tick(tracker, course);
   const State<7> moving = tracker.state();
   const double time = course.time();
@@ -227,7 +227,7 @@ void expect_to_stop(const Scheme& scheme) {
   const Vector<7> rest = tracker.state().q;
   for (int i = 0; i < 100; ++i) checked_tick(tracker, course);
   EXPECT_EQ(tracker.state().q, rest);
-  tracker.go_on();
+  tracker.resume();
   for (int i = 0; i < 8000; ++i) checked_tick(tracker, course);
   EXPECT_TRUE(course.done());
   EXPECT_LE(tracker.tick(course).error.norm(), 1e-9);
@@ -406,7 +406,7 @@ TEST(Tracker, holds_at_rest_for_an_hour) {
   const auto z = NullSpace<4>{}.with_damping(2.0);
   const FPBM<4> scheme(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
   Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
-  Course course(Path(Circle(0.3), 5.0), tracker.tip());
+  PathFollower course(Path(Circle(0.3), 5.0), tracker.tip());
   for (int i = 0; i < 65000; ++i) tracker.tick(course);
   const Vector<4> start = tracker.state().q;
   double fastest = 0.0;
@@ -431,7 +431,7 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   const SerialArm<7> iiwa(presets::iiwa14());
   EXPECT_EQ(complaint([&] { Tracker(iiwa, Pose{}, settling(), bent()); }),
             "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
-  EXPECT_EQ(complaint([] { Course(circle(), Vector<3>(0, 0, 0), 0.0); }), "ramp = 0: must be positive and finite");
+  EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }), "ramp = 0: must be positive and finite");
   const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);
   EXPECT_EQ(complaint([&] {
               Tracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);

@@ -177,7 +177,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     if (what < 8) {
       tracker.stop(), twin.stop();
     } else if (what < 16) {
-      tracker.go_on(), twin.go_on();
+      tracker.resume(), twin.resume();
     } else if (what < 64) {
       if constexpr (kEvenly) {
         fpbm::State<N> measured = before;
@@ -210,7 +210,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
 
   // The past leaves no trace: where the tip is, it can be held. Joints without bounds may be too fast or too far by
   // now.
-  tracker.go_on();
+  tracker.resume();
   const fpbm::State<N> before = tracker.state();
   wild = wild || before.qd.norm() > 1e3 || before.q.norm() > 1e6;
   const auto result = tracker.tick(fpbm::Reference<Space>::hold(tracker.tip()));

@@ -129,7 +129,7 @@ def test_summary_is_the_run() -> None:
     )
     lines = {re.split(r"  +", line)[0]: line for line in result.stdout.splitlines()}
     assert f"{run.max_error():.1e} m" in lines["largest tip error"]
-    assert f"{run.max_turn_error():.1e} rad" in lines["largest turn error"]
+    assert f"{run.max_orientation_error():.1e} rad" in lines["largest turn error"]
     k, i = np.unravel_index(np.abs(run.qd).argmax(), run.qd.shape)
     assert f"{abs(run.qd[k, i]):.4g} rad/s" in lines["peak joint velocity"]
     assert f"panda_joint{i + 1} at {run.t[k]:.3g} s" in lines["peak joint velocity"]

@@ -101,7 +101,7 @@ def test_arms(table: dict[str, Any], arm: Any) -> None:
         ),
         (
             "kind = 'circle'\nin_plane = 'yz'\nwith_turn = [0, 0, 1]\nturn_time_law = 'sin_squared'",
-            fp.Circle(0.1, 10.0).in_plane("yz").with_turn([0, 0, 1], time_law="sin_squared"),
+            fp.Circle(0.1, 10.0).in_plane("yz").with_rotation([0, 0, 1], time_law="sin_squared"),
         ),
         ("kind = 'circle'\nin_plane = [[0, 1, 0], [1, 0, 0]]", fp.Circle(0.1, 10.0).in_plane([[0, 1, 0], [1, 0, 0]])),
     ],
@@ -130,7 +130,7 @@ def test_schemes_have_every_option_of_the_library(section: Any) -> None:
 
 
 def test_shapes_have_every_option_of_the_library() -> None:
-    laid = {"kind", "in_plane", "with_turn", "turn_time_law"}
+    laid = {"kind", "in_plane", "with_rotation", "turn_time_law"}
     for section, path in ((Circle, fp.Circle), (Lissajous, fp.Lissajous), (Tricuspid, fp.Tricuspid), (Line, fp.Line)):
         assert set(section.model_fields) - laid == options_of(path)
     assert set(Waypoints.model_fields) - laid == options_of(fp.Waypoints)
@@ -400,7 +400,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[path]\nkind = 'circle'\nradus = 1", 'turn_time_law; did you mean "radius"?'),
         (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f'path.time_law = "sin": must be one of {LAWS}'),
         (f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'", "path.in_plane = 'xw': must be two of 'x', 'y' and 'z'"),
-        (f"{ARM}[path]\nkind = 'circle'\nwith_turn = [1]", "path.with_turn"),
+        (f"{ARM}[path]\nkind = 'circle'\nwith_turn = [1]", "path.with_rotation"),
         (
             f"{ARM}[path]\nkind = 'lissajous'\nfrequencies = [1, 1.5]",
             "path.frequencies[1] = 1.5: must be a whole number",

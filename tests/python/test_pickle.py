@@ -23,14 +23,14 @@ PATHS = {
     "line in space": fp.Line([0.5, -1.0, 1 / 7], 8.0, time_law="quintic"),
     "waypoints, timed": fp.Waypoints([[0, 0], [0.1, 0.2], [1 / 3, 0]], times=[0, 1.0, 2.5]),
     "waypoints, lasting": fp.Waypoints(np.eye(3), duration=4.0),
-    "waypoints, within": fp.Waypoints(POSES, speed=0.2, acceleration=1.0, turn_rate=2.0, turn_acceleration=3.0),
+    "waypoints, within": fp.Waypoints(POSES, speed=0.2, acceleration=1.0, angular_velocity=2.0, angular_acceleration=3.0),
     "in a plane": fp.Circle(0.45, 8.0).in_plane("yz"),
     "in any plane": fp.Circle(0.45, 8.0).in_plane([[0, 1, 1], [1, 0, 0]]),
-    "turned in the plane": fp.Circle(0.45, 8.0).with_turn(0.3),
-    "turned": fp.Line([0, 1, 2], 2.0).with_turn(np.array([0.1, 0.2, 1 / 3]), time_law="sin_squared"),
+    "turned in the plane": fp.Circle(0.45, 8.0).with_rotation(0.3),
+    "turned": fp.Line([0, 1, 2], 2.0).with_rotation(np.array([0.1, 0.2, 1 / 3]), time_law="sin_squared"),
     "one after another": fp.Line([1, 0], 1.0).then(fp.Line([0, 1, 2], 2.0)),
     "many after another": fp.Circle(0.1, 1.0).then(
-        fp.Line([0, 1, 2], 2.0).then(fp.Line([0, 0, 1], 1.0).with_turn([0, 0, 1]))
+        fp.Line([0, 1, 2], 2.0).then(fp.Line([0, 0, 1], 1.0).with_rotation([0, 0, 1]))
     ),
 }
 
@@ -107,7 +107,7 @@ def test_second_tasks():
 
 def test_what_was_given_may_change_afterwards():
     points, weights, turn = np.eye(3), np.ones(4), np.array([0.1, 0.2, 0.3])
-    path = fp.Waypoints(points, duration=1.0).with_turn(turn)
+    path = fp.Waypoints(points, duration=1.0).with_rotation(turn)
     scheme = fp.WMVN(weights)
     x = path.sample(0.5)[0]
     points[:], weights[:], turn[:] = 7.0, -1.0, np.nan

@@ -21,8 +21,8 @@ def test_compare_poses() -> None:
     figure = compare(runs, "one job")
     assert figure.get_suptitle() == "one job"
     drawn = panels(figure)
-    velocity, acceleration, posture, error, turn_error, manipulability = drawn.values()
-    labels = [axes.get_ylabel().split("[")[-1] for axes in (velocity, acceleration, posture, error, turn_error)]
+    velocity, acceleration, posture, error, orientation_error, manipulability = drawn.values()
+    labels = [axes.get_ylabel().split("[")[-1] for axes in (velocity, acceleration, posture, error, orientation_error)]
     assert labels == ["rad/s, m/s]", "rad/s², m/s²]", "rad, m]", "m]", "rad]"]
     assert [axes.get_yscale() for axes in drawn.values()] == ["linear"] * 3 + ["log"] * 2 + ["linear"]
     for axes in drawn.values():
@@ -34,7 +34,7 @@ def test_compare_poses() -> None:
         np.testing.assert_allclose(posture.lines[i].get_ydata(), np.linalg.norm(run.q - run.q[0], axis=1))
         np.testing.assert_array_equal(manipulability.lines[i].get_ydata(), run.manipulability())
         assert error.lines[i].get_ydata().max() == run.max_error()
-        assert turn_error.lines[i].get_ydata().max() == run.max_turn_error()
+        assert orientation_error.lines[i].get_ydata().max() == run.max_orientation_error()
     (legend,) = (legend for part in figure.subfigs for legend in part.legends)
     assert [text.get_text() for text in legend.get_texts()] == list(runs)
 

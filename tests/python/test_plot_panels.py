@@ -76,7 +76,7 @@ def test_tip_error_is_its_size_on_a_logarithmic_axis(run: Any) -> None:
     axes = drawn(run, "error")
     assert axes.get_yscale() == "log"
     largest = [line.get_ydata().max() for line in axes.lines]
-    assert largest == ([run.max_error(), run.max_turn_error()] if run.task == "pose" else [run.max_error()])
+    assert largest == ([run.max_error(), run.max_orientation_error()] if run.task == "pose" else [run.max_error()])
     assert axes.get_ylim()[0] <= min(line.get_ydata().min() for line in axes.lines)
     assert axes.get_ylim()[1] >= max(largest)
     assert np.log10(axes.get_ylim()) == pytest.approx(np.round(np.log10(axes.get_ylim())), abs=1e-9)

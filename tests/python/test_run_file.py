@@ -42,7 +42,7 @@ RUNS = {
     **{
         f"Panda's pose, {name}": (
             PANDA,
-            fp.Line([0, 0, 0.1], 0.5).with_turn([0, 0, 0.2]),
+            fp.Line([0, 0, 0.1], 0.5).with_rotation([0, 0, 0.2]),
             scheme,
             READY,
             {"task": "pose"},
@@ -52,7 +52,7 @@ RUNS = {
     },
     "paper's": (FLAT, fp.Circle(0.2, 1.0), fp.FPBM(1 / 3, [1, 2, 3, 4], 1, 1), None, {"hold": 0.5}),
     "paper's, from a velocity": (FLAT, fp.Circle(0.2, 1.0), fp.MAN(), None, {"qd0": (0.01, 0, -1 / 300, 0)}),
-    "planar pose": (FLAT, fp.Circle(0.2, 1.0).with_turn(0.2), fp.MVN(), [0.3, 0.9, 0.9, 0.5], {"task": "pose"}),
+    "planar pose": (FLAT, fp.Circle(0.2, 1.0).with_rotation(0.2), fp.MVN(), [0.3, 0.9, 0.9, 0.5], {"task": "pose"}),
     "stopped early": (FLAT, fp.Line([5, 0], 5.0), fp.MVN(), None, {"partial": True}),
     "stopped at once": (FLAT, fp.Circle(0.2, 1.0), fp.MAN(), [0, 0, 0, 0], {"partial": True}),
 }
@@ -184,7 +184,7 @@ def test_paths(name):
 )
 def test_paths_keep_the_kind_of_what_they_were_given(turn):
     planar = np.ndim(turn) == 0
-    path = (fp.Line([1, 0], 1.0) if planar else fp.Line([1, 0, 0], 1.0)).with_turn(turn)
+    path = (fp.Line([1, 0], 1.0) if planar else fp.Line([1, 0, 0], 1.0)).with_rotation(turn)
     expect_same_path(path, through_json(path))
 
 

@@ -30,7 +30,7 @@ def in_the_plane(**options):
 
 def in_space(task="pose"):
     path = fp.Circle(0.1, 1.0).in_plane("yz")
-    path = path.with_turn([0, 0, 1.0]) if task == "pose" else path
+    path = path.with_rotation([0, 0, 1.0]) if task == "pose" else path
     return fp.simulate(RAIL, path, fp.MVN(), [0, *BENT], dt=0.02, task=task)
 
 
@@ -78,7 +78,7 @@ def expect_columns(columns, run):
             expected.update({f"q{axis}{ending}": turns[:, i] for i, axis in enumerate("xyzw")})
     rows = [f"error_{axis}" for axis in ("xy" if flat else "xyz")]
     if run.task == "pose":
-        rows += ["turn_error"] if flat else ["turn_error_x", "turn_error_y", "turn_error_z"]
+        rows += ["orientation_error"] if flat else ["turn_error_x", "turn_error_y", "turn_error_z"]
     expected.update({name: run.error[:, i] for i, name in enumerate(rows)})
     if run.scale is not None:
         expected["scale"] = run.scale
@@ -148,12 +148,12 @@ def test_xarray(run):
     np.testing.assert_array_equal(data.x_ref, run.reference_positions)
     np.testing.assert_array_equal(data.error, run.error[:, :d])
     assert data.axis.values.tolist() == list("xyz"[:d])
-    assert ("turn_error" in data) == (run.task == "pose")
+    assert ("orientation_error" in data) == (run.task == "pose")
     if "orientation" in data:
-        np.testing.assert_array_equal(data.turn_error, run.error[:, 3:])
+        np.testing.assert_array_equal(data.orientation_error, run.error[:, 3:])
         np.testing.assert_array_equal(data.orientation_ref, quaternions(run.x_ref[:, :3, :3]))
-    elif "turn_error" in data:
-        np.testing.assert_array_equal(data.turn_error, run.error[:, 2])
+    elif "orientation_error" in data:
+        np.testing.assert_array_equal(data.orientation_error, run.error[:, 2])
         np.testing.assert_array_equal(data.angle_ref, run.x_ref[:, 2])
     assert ("scale" in data) == ("saturated" in data) == (run.scale is not None)
     if run.scale is not None:

@@ -142,8 +142,8 @@ def test_a_singular_start_keeps_nothing(arm, circle):
         ({"qd0": [0, 0]}, "qd0 has 2 entries: must have 4"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
         ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
-        ({"path": fp.Line([1, 2], 1.0).with_turn(0.5)}, "path: it turns the tip, which needs task='pose'"),
-        ({"path": fp.Line([1, 2, 3], 1.0).with_turn([0, 0, 1]), "task": "pose"}, "which needs another kind of arm"),
+        ({"path": fp.Line([1, 2], 1.0).with_rotation(0.5)}, "path: it turns the tip, which needs task='pose'"),
+        ({"path": fp.Line([1, 2, 3], 1.0).with_rotation([0, 0, 1]), "task": "pose"}, "which needs another kind of arm"),
         ({"scheme": fp.WMVN([1, 2, 3])}, "weights has 3 entries: must have 4"),
         ({"scheme": fp.MAN(c=[0, 0])}, "c has 2 entries: must have 4"),
     ],
@@ -175,14 +175,14 @@ READY = [0, -0.3, 0, -2.2, 0, 2.0, 0.785]
 
 
 def test_a_pose_task_in_space():
-    path = fp.Circle(0.1, 4.0).in_plane("yz").with_turn([0.2, 0, 0.5])
+    path = fp.Circle(0.1, 4.0).in_plane("yz").with_rotation([0.2, 0, 0.5])
     scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
     run = fp.simulate(PANDA, path, scheme, READY, task="pose", hold=1.0)
     assert run.x.shape == run.x_ref.shape == (5001, 4, 4)
     assert run.error.shape == (5001, 6)
     assert run.positions.shape == (5001, 3)
     assert run.max_error() < 1e-9
-    assert run.max_turn_error() < 1e-9
+    assert run.max_orientation_error() < 1e-9
     assert run.task == "pose"
     np.testing.assert_allclose(run.x[777], PANDA.forward(run.q[777]), atol=1e-14)
     np.testing.assert_allclose(run.x_ref[4000, :3, :3], fp.rotation([0.2, 0, 0.5]) @ run.x_ref[0, :3, :3], atol=1e-14)
@@ -194,7 +194,7 @@ def test_a_position_task_leaves_the_orientation_free():
     run = fp.simulate(PANDA, fp.Circle(0.1, 4.0), fp.MVN(), READY)
     assert run.x.shape == (4001, 3)
     assert run.max_error() < 1e-9
-    assert run.max_turn_error() == 0.0
+    assert run.max_orientation_error() == 0.0
     assert np.abs(run.x[:, 2] - run.x[0, 2]).max() < 1e-12  # A path of the plane lies in the xy plane.
 
 
@@ -215,4 +215,4 @@ def test_a_planar_pose():
     assert run.positions.shape == (3001, 2)
     assert np.abs(run.q.sum(axis=1) - 2.6).max() < 1e-12
     assert run.max_error() < 1e-9
-    assert run.max_turn_error() < 1e-12
+    assert run.max_orientation_error() < 1e-12

@@ -14,8 +14,8 @@ import fpbm_cpp as fp
 
 FIGURES = [
     "time",
-    "largest_error",
-    "largest_turn_error",
+    "max_error",
+    "max_orientation_error",
     "peak_velocity",
     "final_velocity",
     "peak_acceleration",
@@ -25,7 +25,7 @@ FIGURES = [
 
 PANDA = fp.SerialArm.preset("panda")
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
-TURNED = fp.Circle(0.05, 1.0).in_plane("yz").with_turn([0.1, 0, 0.2])
+TURNED = fp.Circle(0.05, 1.0).in_plane("yz").with_rotation([0.1, 0, 0.2])
 
 
 def every_scheme(n):
@@ -66,8 +66,8 @@ def expect_run(sweep, i, k, run):
     assert sweep.status[i, k] is run.status.code
     assert sweep.time[i, k] == run.status.time
     expected = {
-        "largest_error": run.max_error(),
-        "largest_turn_error": run.max_turn_error(),
+        "max_error": run.max_error(),
+        "max_orientation_error": run.max_orientation_error(),
         "peak_velocity": size.max(),
         "final_velocity": size[-1],
         "peak_acceleration": np.abs(run.qdd).max(),
@@ -135,8 +135,8 @@ def test_a_sweep_is_many_simulations(case):
     assert sweep.status.shape == sweep.motions.shape == (8, 3)
     assert sweep.ok.all()
     assert sweep.done.all()
-    assert (sweep.largest_error > 0).all()
-    assert ((sweep.largest_turn_error > 0) == (task == "pose")).all()
+    assert (sweep.max_error > 0).all()
+    assert ((sweep.max_orientation_error > 0) == (task == "pose")).all()
     for i, scheme in enumerate(schemes):
         for k, start in enumerate(q0s):
             run = fp.simulate(arm, path, scheme, start, dt=0.01, hold=0.5, task=task)
@@ -223,7 +223,7 @@ def test_motions_that_fail_say_so(arm, q0):
     for i, scheme in enumerate(sweep.schemes):
         expect_run(sweep, i, 0, fp.simulate(arm, out, scheme, q0, partial=True))
     assert (sweep.time[:, 1] == 0).all()
-    assert np.isnan(sweep.largest_error[:, 1]).all()
+    assert np.isnan(sweep.max_error[:, 1]).all()
     assert np.isnan(sweep.manipulability[:, 1]).all()
     assert len(sweep.motions[0, 1].t) == 0
     assert "stopped after t = 0 s" in str(sweep.motions[0, 1].status)

@@ -61,7 +61,7 @@ def test_one_after_another():
     assert path.duration == 3.0
     np.testing.assert_allclose(path.sample(1.0)[0], [1, 0, 0], atol=1e-15)
     np.testing.assert_allclose(path.sample(3.0)[0], [1, 1, 2], atol=1e-15)
-    turned = path.then(fp.Line([0, 0, 1], 1.0).with_turn([0, 0, 1.0]))
+    turned = path.then(fp.Line([0, 0, 1], 1.0).with_rotation([0, 0, 1.0]))
     x = turned.sample(4.0)[0]
     np.testing.assert_allclose(x[:3, 3], [1, 1, 3], atol=1e-15)
     np.testing.assert_allclose(x[:3, :3], fp.rotation([0, 0, 1.0]), atol=1e-15)
@@ -117,11 +117,11 @@ def test_repr_says_how_it_was_made():
         (lambda: fp.Circle(0.1, 1.0).in_plane([[1, 0, 0], [1, 1, 0]]), r"u v / \|u\| \|v\| = 0.707106781: must be 0"),
         (lambda: fp.Circle(0.1, 1.0).in_plane([1, 0, 0]), "plane: must have 2 dimensions"),
         (lambda: fp.Line([1, 2, 3], 1.0).in_plane("xy"), "in_plane: the path must be one of positions in a plane"),
-        (lambda: fp.Circle(0.1, 1.0).with_turn([0, 0, 1]), "turn: must have 0 dimensions"),
-        (lambda: fp.Line([1, 2, 3], 1.0).with_turn(1.0), "turn: must have 1 dimension"),
-        (lambda: fp.Line([1, 2], 1.0).with_turn(np.nan), r"turn\[0\] = nan: must be finite"),
-        (lambda: fp.Line([1, 2], 1.0).with_turn(1.0).with_turn(1.0), "with_turn: the path turns the tip already"),
-        (lambda: fp.Line([1, 2], 1.0).with_turn(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: it turns the tip"),
+        (lambda: fp.Circle(0.1, 1.0).with_rotation([0, 0, 1]), "turn: must have 0 dimensions"),
+        (lambda: fp.Line([1, 2, 3], 1.0).with_rotation(1.0), "turn: must have 1 dimension"),
+        (lambda: fp.Line([1, 2], 1.0).with_rotation(np.nan), r"turn\[0\] = nan: must be finite"),
+        (lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).with_rotation(1.0), "with_rotation: the path turns the tip already"),
+        (lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: it turns the tip"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]]), "duration, times or bounds of speed: must be given, one of the three"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], duration=1, speed=1), "must be given, one of the three"),
         (lambda: fp.Waypoints([[0, 0]], duration=1), "points has 1 entries: must have 2 at least"),
@@ -131,7 +131,7 @@ def test_repr_says_how_it_was_made():
         (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[0, 0]), r"times\[1\] = 0: must be finite and after"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], times=[1]), "times has 1 entries: must have 2, one per point"),
         (lambda: fp.Waypoints([[0, 0], [1, 1]], speed=0), "speed = 0: must be positive"),
-        (lambda: fp.Waypoints([[0, 0], [1, 1]], turn_rate=1.0), "bounds: at least one must hold the tip back"),
+        (lambda: fp.Waypoints([[0, 0], [1, 1]], angular_velocity=1.0), "bounds: at least one must hold the tip back"),
         (lambda: fp.Waypoints(np.zeros((2, 4, 4)), duration=1), r"points\[0\]: must be a homogeneous matrix"),
     ],
 )

@@ -24,12 +24,12 @@ FREE = {
     "planar, acceleration level": (fp.PlanarArm([1, 1, 1, 1]), SMOOTH, fp.FPBM(0.6, W, 10, 25), "position"),
     "planar, velocity level": (fp.PlanarArm([1, 1, 1, 1]), SMOOTH, fp.WMVN(W, k=5), "position"),
     "planar pose held": (fp.PlanarArm([1, 1, 1, 1]), SMOOTH, fp.MVN(k=5), "pose"),
-    "planar pose turned": (fp.PlanarArm([1, 1, 1, 1]), SMOOTH.with_turn(0.4), fp.MVN(k=5), "pose"),
+    "planar pose turned": (fp.PlanarArm([1, 1, 1, 1]), SMOOTH.with_rotation(0.4), fp.MVN(k=5), "pose"),
     "space, path of the plane": (PANDA, fp.Circle(0.1, 2.0, time_law="quintic"), fp.MVN(k=5), "position"),
     "space, pose held": (PANDA, fp.Line([0, 0.1, 0.1], 2.0, time_law="quintic"), fp.MVN(k=5), "pose"),
     "space, pose turned": (
         PANDA,
-        fp.Circle(0.1, 2.0, time_law="quintic").in_plane("yz").with_turn([0.2, 0, 0.5]),
+        fp.Circle(0.1, 2.0, time_law="quintic").in_plane("yz").with_rotation([0.2, 0, 0.5]),
         fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2),
         "pose",
     ),
@@ -55,7 +55,7 @@ def test_free_of_limits_it_is_simulate(case):
     np.testing.assert_allclose(here.x_ref, there.x_ref, atol=1e-12)
     np.testing.assert_allclose(here.x, there.x, atol=1e-9)
     assert here.max_error() < 1e-9
-    assert here.max_turn_error() < 1e-9
+    assert here.max_orientation_error() < 1e-9
     assert (here.scale == 1).all()
     assert not here.saturated.any()
 

@@ -126,7 +126,7 @@ def test_it_stops_and_goes_on(panda, settling):
     for _ in range(300):
         assert tracker.tick(target).scale == 0
     assert (tracker.qd == 0).all()
-    tracker.go_on()
+    tracker.resume()
     for _ in range(5000):
         tick = tracker.tick(target)
     assert np.abs(tick.error).max() < 1e-9

@@ -74,7 +74,7 @@ inline fpbm::FPBM<7> scheme(const Joints& posture) {
 
 /// A circle across the table, the hand held as it is; smooth at both ends, as the robot wants it.
 inline auto circle(double radius, double duration) {
-  return fpbm::WithTurn(
+  return fpbm::WithRotation(
       fpbm::InPlane(fpbm::Path(fpbm::Circle(radius), duration, fpbm::Quintic{}), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
 }
 

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     const fpbm::TrackerOptions<> options;  // A tick of 1 ms, which is the robot's.
     const fpbm::State<7> at_rest{start, fr3::Joints::Zero()};
     fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options, fr3::limits(options.dt));
-    fpbm::Course course(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
+    fpbm::PathFollower course(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
     fpbm::Status gravest = fpbm::Status::kOk;
     bool stopping = false;
     fr3::heed_interrupt();

@@ -99,7 +99,7 @@ class TrackingController : public controller_interface::ControllerInterface {
   using Joints = fpbm::Vector<kDof>;
   using Arm = fpbm::SerialArm<kDof>;
   using Scheme = fpbm::FPBM<kDof>;
-  using Path = fpbm::WithTurn<fpbm::InPlane<fpbm::Path<fpbm::Circle<>, fpbm::Quintic>>>;
+  using Path = fpbm::WithRotation<fpbm::InPlane<fpbm::Path<fpbm::Circle<>, fpbm::Quintic>>>;
 
   [[nodiscard]] InterfaceConfiguration positions_of_joints() const {
     InterfaceConfiguration configuration{controller_interface::interface_configuration_type::INDIVIDUAL, {}};
@@ -127,7 +127,7 @@ class TrackingController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Limits<Scheme::kLevel, kDof>> limits_;
   std::optional<Path> path_;
   std::optional<fpbm::Tracker<Arm, fpbm::Pose, Scheme>> tracker_;
-  std::optional<fpbm::Course<Path>> course_;
+  std::optional<fpbm::PathFollower<Path>> course_;
   std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Bool>> run_subscription_;
   std::atomic<bool> run_{true};  ///< As the last message wants it.
   bool running_ = true;          ///< As the course has it.

@@ -105,7 +105,7 @@ def _table(runs: Mapping[str, Run]) -> str:
 def _row(kind: str, run: Run) -> list[str]:
     if not len(run.t):
         return [kind]
-    figures = [run.max_error(), *([run.max_turn_error()] if run.task == "pose" else [])]
+    figures = [run.max_error(), *([run.max_orientation_error()] if run.task == "pose" else [])]
     for values in (run.qd, run.qdd):
         figures += [float(np.abs(values).max()), float(np.abs(values[-1]).max())]
     figures.append(float(run.manipulability().min()))

@@ -24,8 +24,8 @@ from .vary import VARY, Variation
 
 FIGURES = (
     "time",
-    "largest_error",
-    "largest_turn_error",
+    "max_error",
+    "max_orientation_error",
     "peak_velocity",
     "final_velocity",
     "peak_acceleration",
@@ -134,8 +134,8 @@ def sweep(
 def _table(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
     """A row for each scheme, with the worst figure of its complete motions, and what became of others."""
     figures = {
-        ("tip error", "m"): done.largest_error,
-        **({("turn error", "rad"): done.largest_turn_error} if done.task == "pose" else {}),
+        ("tip error", "m"): done.max_error,
+        **({("turn error", "rad"): done.max_orientation_error} if done.task == "pose" else {}),
         ("peak qd", "rad/s"): done.peak_velocity,
         ("final qd", "rad/s"): done.final_velocity,
         ("peak qdd", "rad/s^2"): done.peak_acceleration,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from .section import Section
 
 # Keys that the library calls otherwise.
-ALIASES = {"plane": "in_plane", "turn": "with_turn", "q0s": "q0"}
+ALIASES = {"plane": "in_plane", "turn": "with_rotation", "q0s": "q0"}
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ class _Path(Section):
         default=None,
         description="Base axes that a path of the plane is laid along; yz for an arm in space unless given.",
     )
-    with_turn: Optional[Numbers] = Field(
+    with_rotation: Optional[Numbers] = Field(
         default=None, description="Rotation vector that the tip is turned by on the way [rad]; one angle in the plane."
     )
     turn_time_law: Optional[TimeLaw] = Field(default=None, description="Time law of the turn; quintic unless given.")
@@ -34,13 +34,13 @@ class _Path(Section):
         path = self.curve()
         if self.in_plane is not None:
             path = path.in_plane(self.in_plane)
-        if self.with_turn is not None:
+        if self.with_rotation is not None:
             law: dict[str, Any] = {} if self.turn_time_law is None else {"time_law": self.turn_time_law}
-            path = path.with_turn(self.with_turn, **law)
+            path = path.with_rotation(self.with_rotation, **law)
         return path
 
     def _shape(self) -> dict[str, Any]:
-        return self.given("in_plane", "with_turn", "turn_time_law")
+        return self.given("in_plane", "with_rotation", "turn_time_law")
 
 
 class _Shape(_Path):
@@ -114,8 +114,8 @@ class Waypoints(_Path):
         default=None, description="How fast the tip may go through points [m/s], in place of a duration."
     )
     acceleration: Optional[float] = Field(default=None, description="The same, of the tip's acceleration [m/s^2].")
-    turn_rate: Optional[float] = Field(default=None, description="The same, of its angular velocity [rad/s].")
-    turn_acceleration: Optional[float] = Field(
+    angular_velocity: Optional[float] = Field(default=None, description="The same, of its angular velocity [rad/s].")
+    angular_acceleration: Optional[float] = Field(
         default=None, description="The same, of its angular acceleration [rad/s^2]."
     )
 

@@ -25,7 +25,7 @@ SCHEMES = (_core.MVN, _core.WMVN, _core.MAN, _core.WMVNAcceleration, _core.Balan
 MAKERS = {
     kind.__name__: kind for kind in (PlanarArm, SerialArm, Joint, JointLimits, SecondTask, Gaze, *PATHS, *SCHEMES)
 }
-METHODS = ("in_plane", "with_turn", "then")  # Of paths.
+METHODS = ("in_plane", "with_rotation", "then")  # Of paths.
 BOUNDS = ("lower", "upper", "velocity", "acceleration")
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Run:
     """A motion, one row per sample: N samples of n joints.
 
-    Two runs are equal (==) where they are of the same things and all arrays are the same to the last bit.
+    PlainPair runs are equal (==) where they are of the same things and all arrays are the same to the last bit.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Run:
         """Largest distance of the tip from its reference [m]."""
         return float(np.linalg.norm(self.error[:, : self.positions.shape[1]], axis=1).max(initial=0.0))
 
-    def max_turn_error(self) -> float:
+    def max_orientation_error(self) -> float:
         """Largest angle between the tip's orientation and its reference [rad]; 0 where the task leaves it free."""
         return float(np.linalg.norm(self.error[:, self.positions.shape[1] :], axis=1).max(initial=0.0))
 
@@ -172,7 +172,7 @@ class Run:
         """Dataset over time, joint and axis, with units as attributes.
 
         Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
-        turn_error; scale and saturated where the limits were kept. Needs the extra 'data'.
+        orientation_error; scale and saturated where the limits were kept. Needs the extra 'data'.
         """
         from .xarray import to_xarray
 

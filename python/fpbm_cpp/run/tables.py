@@ -69,7 +69,7 @@ def table(run: Run) -> Iterator[Column]:
         yield Column(f"error_{axis}", "m", values)
     angular = run.error[:, linear:].T
     for ending, values in zip(("",) if len(angular) == 1 else ("_x", "_y", "_z"), angular):
-        yield Column(f"turn_error{ending}", "rad", values)
+        yield Column(f"orientation_error{ending}", "rad", values)
     if run.scale is not None:
         yield Column("scale", "", run.scale)
     if run.saturated is not None:

@@ -48,11 +48,11 @@ def _variables(run: Run) -> Iterator[Variable]:
     if run.x.ndim == 3:
         yield "orientation", of_turn, quaternions(run.x[:, :3, :3]), "1"
         yield "orientation_ref", of_turn, quaternions(run.x_ref[:, :3, :3]), "1"
-        yield "turn_error", of_axes, run.error[:, linear:], "rad"
+        yield "orientation_error", of_axes, run.error[:, linear:], "rad"
     elif run.error.shape[1] > linear:
         yield "angle", ("time",), run.x[:, 2], "rad"
         yield "angle_ref", ("time",), run.x_ref[:, 2], "rad"
-        yield "turn_error", ("time",), run.error[:, 2], "rad"
+        yield "orientation_error", ("time",), run.error[:, 2], "rad"
     if run.scale is not None:
         yield "scale", ("time",), run.scale, "1"
     if run.saturated is not None:

@@ -79,7 +79,7 @@ def trials_of(sweep: Sweep, measure: Measure, max_error: float) -> Trials:
     """What came of the schemes of a sweep from one start."""
     value, schemes = measure(sweep), np.empty(len(sweep.schemes), dtype=object)
     schemes[:] = sweep.schemes
-    error = np.maximum(sweep.largest_error, sweep.largest_turn_error)[:, 0]
+    error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
     return Trials(
         schemes,
         value,

@@ -20,7 +20,7 @@ OF_JOINTS: dict[str, tuple[Callable[[Film], Array], str]] = {
 }
 OF_TIP: dict[str, tuple[Callable[[Film], Array], str]] = {
     "tip error": (lambda film: film.tip_error[film.frames], "m"),
-    "turn error": (lambda film: film.turn_error[film.frames], "rad"),
+    "turn error": (lambda film: film.orientation_error[film.frames], "rad"),
     "manipulability": (lambda film: film.manipulability, ""),
 }
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -70,7 +70,7 @@ class Film:
         return self._norms(slice(None, self.run.positions.shape[1]))
 
     @cached_property
-    def turn_error(self) -> Array:
+    def orientation_error(self) -> Array:
         """Angle from its orientation to that wanted at every sample [rad], 0 where the task leaves it free."""
         return self._norms(slice(self.run.positions.shape[1], None))
 

@@ -46,7 +46,7 @@ class Readout:
             ("manipulability", f"{w[film.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
         if film.run.task == "pose":
-            turn = film.turn_error
+            turn = film.orientation_error
             rows.insert(1, ("turn error", f"{turn[sample]:.3g} rad", f"{turn.max():.3g} rad"))
         self._table.content = _table(("", "now", "at worst"), rows)
 

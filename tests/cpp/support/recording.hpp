@@ -14,7 +14,7 @@ struct Recording {
   RolloutResult<N, Scalar> result;
 
   /// Largest tip error [m] at or after t.
-  [[nodiscard]] Scalar largest_error(Scalar from = Scalar(0)) const {
+  [[nodiscard]] Scalar max_error(Scalar from = Scalar(0)) const {
     Scalar largest(0);
     for (const auto& sample : samples) {
       if (sample.t >= from) largest = std::max(largest, sample.error.norm());

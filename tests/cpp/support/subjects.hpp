@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fpbm/core/status.hpp"
-#include "fpbm/resolver/null_space.hpp"
+#include "fpbm/objective/null_space.hpp"
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fpbm/core/sincos.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -118,7 +118,7 @@ template <typename Scalar>
   for (const double coefficient : kOdd) odd = odd * square + Scalar(coefficient);
   const Scalar sum = even + z * odd;
   Vector<3, Scalar> r = sum / Scalar(2) * s;
-  const Truth<Scalar> small = R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0);
+  const Mask<Scalar> small = R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0);
   if (all_of(small)) return r;
   if constexpr (kInLanes<Scalar>) {
     for (std::size_t lane = 0; lane < z.size(); ++lane) {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -46,8 +46,8 @@ struct ReducedSinCos {
     where(odd, cosine) = reduced.sine;
     where(upper, sine) = -sine;
     where(upper != odd, cosine) = -cosine;
-    spoil_unless(abs(x) <= Scalar(kReach), sine);
-    spoil_unless(abs(x) <= Scalar(kReach), cosine);
+    set_nan_unless(abs(x) <= Scalar(kReach), sine);
+    set_nan_unless(abs(x) <= Scalar(kReach), cosine);
   }
 
  private:

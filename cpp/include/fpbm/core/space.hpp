@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-inline constexpr double kTurn = 6.28318530717958647692;
+inline constexpr double kTwoPi = 6.28318530717958647692;
 
 /// A task space tells resolvers and paths what a point of it is, how many rows its velocities have (kRows), what x ⊖ y
 /// means, and what it means that one displacement follows another:
@@ -58,7 +58,7 @@ struct PlanarPose : Position<3> {
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::round;
-    constexpr auto kRound = static_cast<Scalar>(kTurn);
+    constexpr auto kRound = static_cast<Scalar>(kTwoPi);
     Vector<3, Scalar> result = x - y;
     result(2) -= kRound * round(result(2) / kRound);
     return result;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
 /// What constructors demand of their arguments. Each failure names the argument, the index and the value.
@@ -35,21 +35,21 @@ void each_number(const Scalar& value, Demand&& demand) {
   }
 }
 
-template <typename Scalar, typename = Truth<Scalar>>
+template <typename Scalar, typename = Mask<Scalar>>
 void require_positive(const std::string& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value > 0.0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
   });
 }
 
-template <typename Scalar, typename = Truth<Scalar>>
+template <typename Scalar, typename = Mask<Scalar>>
 void require_non_negative(const std::string& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value >= 0.0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
   });
 }
 
-template <typename Scalar, typename = Truth<Scalar>>
+template <typename Scalar, typename = Mask<Scalar>>
 void require_finite(const std::string& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!std::isfinite(value)) fail(argument, value, "finite");
@@ -57,7 +57,7 @@ void require_finite(const std::string& argument, const Scalar& values) {
 }
 
 /// Balance between two schemes: 0 ≤ value ≤ 1.
-template <typename Scalar, typename = Truth<Scalar>>
+template <typename Scalar, typename = Mask<Scalar>>
 void require_fraction(const std::string& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value >= 0.0 && value <= 1.0)) fail(argument, value, "in [0, 1]");

@@ -23,12 +23,12 @@ struct Link {
 
 /// A link between two turns about z, which go into the joints on either side: p and R = Rz(before) Rx(tilt) Rz(after).
 template <typename Scalar>
-struct TurnedLink {
+struct DecomposedLink {
   Scalar before;  ///< [rad]
   Link<Scalar> link;
   Scalar after;  ///< [rad]
 
-  explicit TurnedLink(const Transform<Scalar>& transform) {
+  explicit DecomposedLink(const Transform<Scalar>& transform) {
     using std::atan2;
     using std::cos;
     using std::sin;
@@ -47,12 +47,12 @@ struct TurnedLink {
 /// A rotation that takes z to the axis.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
-  using Row3 = Vector<3, Scalar>;
-  const Row3 z = axis.normalized();
-  if (z == Row3::UnitZ()) return Matrix<3, 3, Scalar>::Identity();
+  using Vector3 = Vector<3, Scalar>;
+  const Vector3 z = axis.normalized();
+  if (z == Vector3::UnitZ()) return Matrix<3, 3, Scalar>::Identity();
   Eigen::Index least = 0;
   z.cwiseAbs().minCoeff(&least);
-  const Row3 across = Row3::Unit(least);
+  const Vector3 across = Vector3::Unit(least);
   Matrix<3, 3, Scalar> R;
   R.col(0) = cross(across, z).normalized();
   R.col(1) = cross<Scalar>(z, R.col(0));

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/core/cholesky.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
 

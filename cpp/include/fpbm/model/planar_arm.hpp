@@ -36,20 +36,20 @@ class PlanarArm {
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
   [[nodiscard]] const Vector<N, Scalar>& lengths() const noexcept { return lengths_; }
 
-  /// None: as far and as fast as one likes.
+  /// Unbounded.
   [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
 
   /// Tip and J at q, for the task spaces Position<2> and PlanarPose; leaves Jd alone.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
-    sweep<false>(q, q, out);
+    forward_pass<false>(q, q, out);
   }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<2> and PlanarPose.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
                   Kinematics<Space, N, Scalar>& out) const noexcept {
-    sweep<true>(q, qd, out);
+    forward_pass<true>(q, qd, out);
   }
 
  private:
@@ -57,10 +57,10 @@ class PlanarArm {
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
   /// The tip's angle is θₙ, to which every joint adds its own.
   template <bool kWithRate, typename Space>
-  [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
+  [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                               Kinematics<Space, N, Scalar>& out) const noexcept {
-    constexpr bool kWithTurn = std::is_same_v<Space, PlanarPose>;
-    static_assert(kWithTurn || std::is_same_v<Space, Position<2>>, "a planar arm has tasks Position<2> and PlanarPose");
+    constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
+    static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>, "a planar arm has tasks Position<2> and PlanarPose");
     const Eigen::Index n = lengths_.size();
     out.J.resize(Space::kRows, n);
     if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
@@ -95,7 +95,7 @@ class PlanarArm {
         out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
       }
     }
-    if constexpr (kWithTurn) {
+    if constexpr (kWithOrientation) {
       out.tip(2) = angles(n - 1);
       out.J.row(2).setOnes();
       if constexpr (kWithRate) out.Jd.row(2).setZero();

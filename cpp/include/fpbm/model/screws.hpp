@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "fpbm/core/rotation.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -14,21 +14,21 @@ namespace fpbm {
 /// Jd its rate.
 template <int N, typename Scalar>
 struct Screws {
-  using Row3 = Vector<3, Scalar>;
+  using Vector3 = Vector<3, Scalar>;
   /// One row a joint, so that several joints are done at once. Eigen wants a single row to be stored as one.
-  using Rows3 =
+  using JointVectors3 =
       Eigen::Matrix<Scalar, N, 3, (N == 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign, kCapacity<N>, 3>;
 
-  Rows3 axes;
-  Rows3 points;
-  Rows3 axis_rates;
-  Rows3 point_rates;
+  JointVectors3 axes;
+  JointVectors3 points;
+  JointVectors3 axis_rates;
+  JointVectors3 point_rates;
 
   explicit Screws(Eigen::Index dof) : axes(dof, 3), points(dof, 3), axis_rates(dof, 3), point_rates(dof, 3) {}
 
   /// Sees every joint from the tip at p, which moves by v: what columns() and column_rates() ask for first.
   template <bool kWithRate>
-  void look_from(const Row3& p, [[maybe_unused]] const Row3& v) noexcept {
+  void relative_to_tip(const Vector3& p, [[maybe_unused]] const Vector3& v) noexcept {
     for (int i = 0; i < 3; ++i) {
       points.col(i).array() = p(i) - points.col(i).array();
       if constexpr (kWithRate) point_rates.col(i).array() = v(i) - point_rates.col(i).array();
@@ -40,7 +40,7 @@ struct Screws {
   void columns(Matrix<M, N, Scalar>& J) const noexcept {
     fill(
         J, axes, [this](int i) { return cross_entry(axes, points, i); },
-        [this](Eigen::Index j) { return cross_row(axes, points, j); });
+        [this](Eigen::Index j) { return cross_joint(axes, points, j); });
   }
 
   /// Their rates.
@@ -49,31 +49,31 @@ struct Screws {
     fill(
         Jd, axis_rates,
         [this](int i) { return cross_entry(axis_rates, points, i) + cross_entry(axes, point_rates, i); },
-        [this](Eigen::Index j) { return Row3(cross_row(axis_rates, points, j) + cross_row(axes, point_rates, j)); });
+        [this](Eigen::Index j) { return Vector3(cross_joint(axis_rates, points, j) + cross_joint(axes, point_rates, j)); });
   }
 
  private:
   /// Entry i of all joints' a × b.
-  [[nodiscard]] static auto cross_entry(const Rows3& a, const Rows3& b, int i) noexcept {
+  [[nodiscard]] static auto cross_entry(const JointVectors3& a, const JointVectors3& b, int i) noexcept {
     const int j = (i + 1) % 3;
     const int k = (i + 2) % 3;
     return a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
   }
 
   /// Joint j's a × b.
-  [[nodiscard]] static Row3 cross_row(const Rows3& a, const Rows3& b, Eigen::Index j) noexcept {
+  [[nodiscard]] static Vector3 cross_joint(const JointVectors3& a, const JointVectors3& b, Eigen::Index j) noexcept {
     return cross<Scalar>(a.row(j), b.row(j));
   }
 
   /// Linear rows over angular ones. Entry by entry, all joints at once, where that makes vector code of it; joint by
   /// joint where each number is many already.
   template <int M, typename Entry, typename Joint>
-  static void fill(Matrix<M, N, Scalar>& result, const Rows3& angular, [[maybe_unused]] const Entry& entry,
+  static void fill(Matrix<M, N, Scalar>& result, const JointVectors3& angular, [[maybe_unused]] const Entry& entry,
                    [[maybe_unused]] const Joint& joint) noexcept {
     if constexpr (kInLanes<Scalar>) {
       for (Eigen::Index j = 0; j < angular.rows(); ++j) result.col(j).template head<3>() = joint(j);
     } else {
-      Rows3 linear(angular.rows(), 3);
+      JointVectors3 linear(angular.rows(), 3);
       for (int i = 0; i < 3; ++i) linear.col(i) = entry(i);
       result.template topRows<3>() = linear.transpose();
     }

@@ -36,12 +36,12 @@ class SerialArm {
       const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
-      const Row3 p = turned_back * joint.placement.p;
+      const Vector3 p = turned_back * joint.placement.p;
       turned_back = to_axis.transpose();
       if (i == 0) {
         base_ = {p, R};
       } else {
-        const TurnedLink<Scalar> between({p, R});
+        const DecomposedLink<Scalar> between({p, R});
         links_[static_cast<std::size_t>(i - 1)] = between.link;
         offsets_(i - 1) += between.before;
         offsets_(i) = between.after;
@@ -69,13 +69,13 @@ class SerialArm {
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
                   Kinematics<Space, N, Scalar>& out) const noexcept {
-    sweep<true>(q, qd, out);
+    forward_pass<true>(q, qd, out);
   }
 
   /// Tip and J at q; leaves Jd alone.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
-    sweep<false>(q, q, out);
+    forward_pass<false>(q, q, out);
   }
 
  private:
@@ -94,30 +94,30 @@ class SerialArm {
     for (std::size_t i = 0; i < links_.size(); ++i) links_[i] = arm.links_[i].template cast<Scalar>();
   }
 
-  using Row3 = Vector<3, Scalar>;
+  using Vector3 = Vector<3, Scalar>;
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
   /// Out along the chain for the joints' axes, and from these J and Jd; the column of a prismatic joint is [zᵢ; 0], and
   /// its rate.
   template <bool kWithRate, typename Space>
-  [[gnu::flatten]] void sweep(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
+  [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                               Kinematics<Space, N, Scalar>& out) const noexcept {
-    constexpr bool kWithTurn = std::is_same_v<Space, Pose>;
-    static_assert(kWithTurn || std::is_same_v<Space, Position<3>>, "a serial arm has tasks Position<3> and Pose");
+    constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
+    static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>, "a serial arm has tasks Position<3> and Pose");
     const Vector<N, Scalar> angles = turns_.cwiseProduct(q) + offsets_;
     Vector<N, Scalar> sines;
     Vector<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
     Screws<N, Scalar> screws(dof_);
-    Row3 p = base_.p;
-    Row3 x = base_.R.col(0);
-    Row3 y = base_.R.col(1);
-    Row3 z = base_.R.col(2);
-    Row3 v = Row3::Zero();  // Of p,
-    Row3 w = Row3::Zero();  // and the frame's angular velocity.
-    const auto advance = [&](const Row3& step) {
+    Vector3 p = base_.p;
+    Vector3 x = base_.R.col(0);
+    Vector3 y = base_.R.col(1);
+    Vector3 z = base_.R.col(2);
+    Vector3 v = Vector3::Zero();  // Of p,
+    Vector3 w = Vector3::Zero();  // and the frame's angular velocity.
+    const auto advance = [&](const Vector3& step) {
       p += step;
       if constexpr (kWithRate) v += cross(w, step);
     };
@@ -134,17 +134,17 @@ class SerialArm {
       screws.points.row(i) = p;
       if constexpr (kWithRate) screws.point_rates.row(i) = v;
 
-      const Row3 turned = cosines(i) * x + sines(i) * y;
+      const Vector3 turned = cosines(i) * x + sines(i) * y;
       y = cosines(i) * y - sines(i) * x;
       x = turned;
       advance(link.step(0) * x + link.step(1) * y + link.step(2) * z);
-      const Row3 tilted = link.cosine * y + link.sine * z;
+      const Vector3 tilted = link.cosine * y + link.sine * z;
       z = link.cosine * z - link.sine * y;
       y = tilted;
     }
 
     out.J.resize(Space::kRows, dof_);
-    screws.template look_from<kWithRate>(p, v);
+    screws.template relative_to_tip<kWithRate>(p, v);
     screws.columns(out.J);
     if constexpr (kWithRate) {
       out.Jd.resize(Space::kRows, dof_);
@@ -155,7 +155,7 @@ class SerialArm {
       slide(screws.axes.row(i), out.J.col(i));
       if constexpr (kWithRate) slide(screws.axis_rates.row(i), out.Jd.col(i));
     }
-    if constexpr (kWithTurn) {
+    if constexpr (kWithOrientation) {
       Matrix<3, 3, Scalar> R;
       R << x, y, z;
       out.tip = {p, R.lazyProduct(tip_)};

@@ -1,14 +1,14 @@
 #pragma once
 
+#include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/realtime/tick.hpp"
-#include "fpbm/resolver/null_space.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
 
 /// What a loop changes in its reference before a scheme sees it: a target far away is brought nearer, so that it pulls
-/// no harder than one at a distance of options.pull (Buss 2004), and the integral of the error is added.
+/// no harder than one at a distance of options.max_error (Buss 2004), and the integral of the error is added.
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
@@ -16,8 +16,8 @@ class Correction {
 
   /// Throws std::invalid_argument where an option is out of range.
   explicit Correction(const TrackerOptions<Scalar>& options)
-      : dt_(options.dt), pull_(options.pull), gain_(options.integral_gain), bound_(options.integral_bound) {
-    validation::require_positive("pull", static_cast<double>(pull_));
+      : dt_(options.dt), max_error_(options.max_error), gain_(options.integral_gain), bound_(options.integral_bound) {
+    validation::require_positive("max_error", static_cast<double>(max_error_));
     validation::require_non_negative("integral_gain", static_cast<double>(gain_));
     validation::require_positive("integral_bound", static_cast<double>(bound_));
   }
@@ -26,8 +26,8 @@ class Correction {
   void begin(const Twist& error) noexcept {
     error_ = error;
     const Scalar length = error.norm();
-    far_ = !(length <= pull_);  // What is no number is not integrated either.
-    if (far_) excess_ = (Scalar(1) - pull_ / length) * error;
+    far_ = !(length <= max_error_);  // What is no number is not integrated either.
+    if (far_) excess_ = (Scalar(1) - max_error_ / length) * error;
   }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
@@ -46,7 +46,7 @@ class Correction {
 
  private:
   Scalar dt_;
-  Scalar pull_;
+  Scalar max_error_;
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;

@@ -4,7 +4,7 @@
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/resolver/damping.hpp"
+#include "fpbm/singular/damping.hpp"
 
 namespace fpbm {
 
@@ -25,10 +25,10 @@ template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
   /// How far away the target may seem at most [m, rad]: a farther one, out of reach perhaps, pulls no harder.
-  Scalar pull = Scalar(0.1);
+  Scalar max_error = Scalar(0.1);
   /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and takes away
   /// the error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
-  /// the task is slowed or damped, or its target farther than pull, and adds integral_bound at most [m/s², or m/s].
+  /// the task is slowed or damped, or its target farther than max_error, and adds integral_bound at most [m/s², or m/s].
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Stands in where the scheme has none.

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "fpbm/integrator/closed_loop.hpp"
-#include "fpbm/integrator/rk4.hpp"
+#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/sim/rk4.hpp"
 #include "fpbm/realtime/correction.hpp"
-#include "fpbm/realtime/course.hpp"
-#include "fpbm/realtime/slowing.hpp"
+#include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/tick.hpp"
-#include "fpbm/resolver/damp.hpp"
-#include "fpbm/resolver/limiter.hpp"
+#include "fpbm/scheme/set_damping.hpp"
+#include "fpbm/limits/limiter.hpp"
 
 /// One tick of a control loop.
 ///
@@ -30,7 +30,7 @@ class Tracker {
   static constexpr int N = Arm::kDof;
   static constexpr Level kLevel = Scheme::kLevel;
   using Target = Reference<Space, Scalar>;
-  using Row = Vector<N, Scalar>;
+  using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
   using Options = TrackerOptions<Scalar>;
@@ -55,8 +55,8 @@ class Tracker {
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
       : Tracker(arm, space, scheme, start, options, Limits<kLevel, N, Scalar>(arm.limits(), options.dt)) {}
 
-  Tracker(const Arm& arm, Space space, const Scheme& scheme, const Row& q0, const Options& options = {})
-      : Tracker(arm, space, scheme, JointState{q0, Row::Zero(q0.size())}, options) {}
+  Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointVector& q0, const Options& options = {})
+      : Tracker(arm, space, scheme, JointState{q0, JointVector::Zero(q0.size())}, options) {}
 
   /// One tick toward a reference, which goes on at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
@@ -65,14 +65,14 @@ class Tracker {
 
   /// One tick along a course, whose clock goes on with it.
   template <typename Path>
-  Result tick(Course<Path>& course) noexcept {
+  Result tick(PathFollower<Path>& course) noexcept {
     const Result result = advance([&course](Scalar seconds) noexcept { return course.ahead(seconds); });
     if (!stopping_) course.advance(dt_);
     return result;
   }
 
   /// The acceleration within the limits for a state measured now; the tracker's own state stays as it is.
-  [[nodiscard]] Result resolve_measured(const Row& q, const Row& qd, const Target& reference) noexcept {
+  [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
     Result result = idle(measured);
@@ -81,9 +81,9 @@ class Tracker {
       result.scale = Scalar(0);
       return result;
     }
-    Loop loop{arm_, scheme_, {}, measured, Row::Zero(q.size())};
+    Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
     X dx = packed(measured);
-    loop.look(dx);
+    loop.update(dx);
     watch(loop.kinematics, reference, result);
     result.status = loop.resolve(correction_(reference), dx);
     result.qdd = limited(loop.kinematics.J, measured, loop.qdd, result);
@@ -91,14 +91,14 @@ class Tracker {
     return result;
   }
 
-  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until go_on().
+  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume().
   void stop() noexcept { stopping_ = true; }
-  void go_on() noexcept { stopping_ = false; }
+  void resume() noexcept { stopping_ = false; }
 
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
 
-  /// Where the tip is, f(q) of the tracker's own state: where a Course starts as a rule.
+  /// Where the tip is, f(q) of the tracker's own state: where a PathFollower starts as a rule.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(state_.q, kinematics);
@@ -119,29 +119,29 @@ class Tracker {
   }
 
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
-    return {state.q, state.qd, Row::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
+    return {state.q, state.qd, JointVector::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
   }
 
   /// Whether a state is finite, and so far from overflow that one can still brake from it.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
-    return state.q.allFinite() && Row(state.qd * (Scalar(4) / dt_)).allFinite();
+    return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
   }
 
   /// `reference(seconds)` is the reference so far into the tick.
   template <typename References>
   Result advance(References&& reference) noexcept {
     Result result = idle(state_);
-    Loop loop{arm_, scheme_, {}, state_, Row::Zero(state_.q.size())};
+    Loop loop{arm_, scheme_, {}, state_, JointVector::Zero(state_.q.size())};
     X x = packed(state_);
     X dx = x;
-    loop.look(x);
+    loop.update(x);
     const Target now = reference(Scalar(0));
     watch(loop.kinematics, now, result);
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(correction_(reference(seconds)), stage_x, stage_dx);
     };
     result.status = loop.resolve(correction_(now), dx);
-    const Row field = dx.col(0);
+    const JointVector field = dx.col(0);
     if (!failed(result.status)) result.status = worse(result.status, RK4::step(derivative, Scalar(0), dt_, dx, x));
 
     JointState next{x.col(0), state_.qd};
@@ -152,16 +152,16 @@ class Tracker {
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
     if (stopping_ || failed(result.status) || !limiter_.limits().admits(state_, next)) {
-      Row wanted = next.qd;
+      JointVector desired = next.qd;
       if constexpr (kSecondOrder) {
-        wanted = (next.qd - state_.qd) / dt_;
+        desired = (next.qd - state_.qd) / dt_;
       } else if (!failed(result.status)) {
-        wanted = slowed(loop, limiter_.limits(), correction_(now), state_.q, field, wanted);
+        desired = slow_down(loop, limiter_.limits(), correction_(now), state_.q, field, desired);
       }
       // The Jacobian of the tick's middle: joints that take over then do so without a trace in the tip.
-      const Row middle = (state_.q + next.q) / Scalar(2);
+      const JointVector middle = (state_.q + next.q) / Scalar(2);
       arm_.kinematics(middle, loop.kinematics);
-      const Row u = limited(loop.kinematics.J, state_, wanted, result);
+      const JointVector u = limited(loop.kinematics.J, state_, desired, result);
       if constexpr (kSecondOrder) {
         next.q = state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * u);
         next.qd = state_.qd + dt_ * u;
@@ -178,11 +178,11 @@ class Tracker {
     return result;
   }
 
-  /// What is wanted, within the limits; where the scheme failed, or on request, the way to rest.
-  [[nodiscard, gnu::noinline]] Row limited(const Matrix<Space::kRows, N, Scalar>& J, const JointState& state,
-                                           const Row& wanted, Result& result) const noexcept {
+  /// What is desired, within the limits; where the scheme failed, or on request, the way to rest.
+  [[nodiscard, gnu::noinline]] JointVector limited(const Matrix<Space::kRows, N, Scalar>& J, const JointState& state,
+                                           const JointVector& desired, Result& result) const noexcept {
     const bool braking = stopping_ || failed(result.status);
-    const auto found = braking ? limiter_.brake(state) : limiter_.motion(J, state, wanted);
+    const auto found = braking ? limiter_.brake(state) : limiter_.motion(J, state, desired);
     result.scale = found.scale;
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "fpbm/core/space.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {

@@ -2,13 +2,13 @@
 
 #include <type_traits>
 
+#include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/validation.hpp"
-#include "fpbm/integrator/closed_loop.hpp"
-#include "fpbm/integrator/rk4.hpp"
+#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/sim/rk4.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/resolver/null_space.hpp"
 #include "fpbm/sim/anchored_path.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/time_grid.hpp"
@@ -93,15 +93,15 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = worse(result.status, status);
     if (failed(status)) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t, t) : references.hold();
-    const Truth<Scalar> on_course = watch.template on_course<Scheme::kLevel>(
+    const Mask<Scalar> on_course = watch.template on_course<Scheme::kLevel>(
         loop.kinematics, arrived, reference, loop.state, loop.qdd, grid.dt(), status == Status::kDamped);
     if (none_of(on_course)) {
       result.status = Status::kTaskLost;
       break;
     }
     for (Eigen::Index j = 0; j < loop.state.q.size(); ++j) {
-      spoil_unless(on_course, x(j, 0));
-      spoil_unless(on_course, loop.state.q(j));
+      set_nan_unless(on_course, x(j, 0));
+      set_nan_unless(on_course, loop.state.q(j));
     }
 
     result.time = t;

@@ -5,11 +5,11 @@
 #include <limits>
 #include <type_traits>
 
+#include "fpbm/core/level.hpp"
 #include "fpbm/core/space.hpp"
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/manipulability.hpp"
-#include "fpbm/resolver/null_space.hpp"
 #include "fpbm/sim/motion.hpp"
 
 namespace fpbm {
@@ -17,8 +17,8 @@ namespace fpbm {
 /// What a motion comes to. Of joint vectors it is the largest entry by size, ‖·‖∞; largest and peak are over time.
 template <typename Scalar = double>
 struct MotionSummary {
-  Scalar largest_error;       ///< Distance of the tip from its reference [m].
-  Scalar largest_turn_error;  ///< Angle between the tip's orientation and its reference [rad]; 0 where it is free.
+  Scalar max_error;       ///< Distance of the tip from its reference [m].
+  Scalar max_orientation_error;  ///< Angle between the tip's orientation and its reference [rad]; 0 where it is free.
   Scalar peak_velocity;       ///< [rad/s], or [m/s] for a prismatic joint, as everywhere below
   Scalar final_velocity;
   Scalar peak_acceleration;  ///< [rad/s²]

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/core/truth.hpp"
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/resolver/null_space.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -20,15 +20,15 @@ namespace fpbm {
 template <int M, typename Scalar = double>
 class ErrorWatch {
  public:
-  using Row = Vector<M, Scalar>;
+  using TaskVector = Vector<M, Scalar>;
 
   /// Whether e came here by its rate of h seconds ago. travel is the way of the reference in between, turn the
   /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
   /// turn and h [s] are in e's units.
-  [[nodiscard]] Truth<Scalar> follows(const Row& error, const Row& rate, Scalar h, Scalar travel, Scalar turn,
+  [[nodiscard]] Mask<Scalar> follows(const TaskVector& error, const TaskVector& rate, Scalar h, Scalar travel, Scalar turn,
                                       Scalar size) const noexcept {
     using std::sqrt;
-    if (!started_) return Truth<Scalar>(true);
+    if (!started_) return Mask<Scalar>(true);
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
     const Scalar expected = Scalar(kTolerance) * (travel + error.norm() + h * rate.norm());
     const Scalar truncation = Scalar(kTruncation) * turn * (turn * turn) * (turn * turn) * size;
@@ -37,7 +37,7 @@ class ErrorWatch {
   }
 
   /// From here on: e and its rate, where the reference may have stepped since follows() was asked.
-  void start_from(const Row& error, const Row& rate) noexcept {
+  void start_from(const TaskVector& error, const TaskVector& rate) noexcept {
     error_ = error;
     rate_ = rate;
     started_ = true;
@@ -48,8 +48,8 @@ class ErrorWatch {
   static constexpr auto kTruncation = static_cast<Number<Scalar>>(0.05);
 
   bool started_ = false;
-  Row error_ = Row::Zero();
-  Row rate_ = Row::Zero();
+  TaskVector error_ = TaskVector::Zero();
+  TaskVector rate_ = TaskVector::Zero();
 };
 
 /// Watches a rollout for the step in which the tip leaves its reference, by its position and, where the scheme is one
@@ -64,19 +64,19 @@ class TaskWatch {
   /// what it was led to, and reference, of which qdd is the answer, where it is led from here. They differ where a
   /// path's pieces meet. Where the scheme was damped, the reference must not outrun the tip by more than one step.
   template <Level kLevel>
-  [[nodiscard]] Truth<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics,
+  [[nodiscard]] Mask<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics,
                                         const Reference<Space, Scalar>& arrived,
                                         const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                         [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
-    using Row = Vector<Space::kRows, Scalar>;
+    using TaskVector = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();
     const Scalar reach = J.cwiseAbs().maxCoeff();
-    const Row velocity = J.lazyProduct(state.qd);
-    const Row e = Space::template difference<Scalar>(arrived.x, tip);
-    const Row ed = reference.xd - velocity;
+    const TaskVector velocity = J.lazyProduct(state.qd);
+    const TaskVector e = Space::template difference<Scalar>(arrived.x, tip);
+    const TaskVector ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
-    Truth<Scalar> follows = turn <= Scalar(kLargestTurn) && position_.follows(e, ed, h, travel, turn, reach);
+    Mask<Scalar> follows = turn <= Scalar(kLargestTurn) && position_.follows(e, ed, h, travel, turn, reach);
     if (damped) {
       follows = follows && e.norm() <= undamped_error_ + Scalar(kDampedSteps) * travel;
     } else {
@@ -84,7 +84,7 @@ class TaskWatch {
     }
     position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
-      const Row edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
+      const TaskVector edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
       const Scalar change = (arrived.xd - before_.xd).norm();
       follows = follows && velocity_.follows(arrived.xd - velocity, edd, h, change, turn, reach / h);
       velocity_.start_from(ed, edd);

@@ -19,7 +19,7 @@ class Circle {
   }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
-    constexpr auto kRate = static_cast<Scalar>(kTurn);
+    constexpr auto kRate = static_cast<Scalar>(kTwoPi);
     const SinCos<Scalar> phi = sincos(kRate * s);
     const Scalar x = radius_ * phi.cos;
     const Scalar y = radius_ * phi.sin;
@@ -39,7 +39,7 @@ class Lissajous {
   using Space = Position<2>;
 
   Lissajous(const Vector<2, Scalar>& amplitudes, const Vector<2, int>& frequencies, Scalar phase)
-      : amplitudes_(amplitudes), rates_(static_cast<Scalar>(kTurn) * frequencies.cast<Scalar>()), phase_(phase) {
+      : amplitudes_(amplitudes), rates_(static_cast<Scalar>(kTwoPi) * frequencies.cast<Scalar>()), phase_(phase) {
     const SinCos<Scalar> origin = sincos(phase);
     start_ = {amplitudes(0) * origin.cos, amplitudes(1) * origin.sin};
     validation::require_positive("amplitudes", amplitudes);
@@ -72,7 +72,7 @@ class Tricuspid {
   explicit Tricuspid(Scalar size) : size_(size) { validation::require_positive("size", static_cast<double>(size)); }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
-    constexpr auto kRate = static_cast<Scalar>(kTurn);
+    constexpr auto kRate = static_cast<Scalar>(kTwoPi);
     const SinCos<Scalar> phi = sincos(kRate * s);
     const Scalar c1 = size_ * Scalar(2) * phi.cos;
     const Scalar s1 = size_ * Scalar(2) * phi.sin;

@@ -15,17 +15,17 @@ namespace fpbm {
 template <int M, typename Scalar = double>
 class Spline {
  public:
-  using Row = Vector<M, Scalar>;
+  using Point = Vector<M, Scalar>;
 
   /// Value and the first two derivatives with respect to time.
   struct Sample {
-    Row x;
-    Row xd;
-    Row xdd;
+    Point x;
+    Point xd;
+    Point xdd;
   };
 
   /// At least two points, at strictly increasing times [s].
-  Spline(const std::vector<Row>& points, const std::vector<Scalar>& times) : times_(times), knots_(points.size()) {
+  Spline(const std::vector<Point>& points, const std::vector<Scalar>& times) : times_(times), knots_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) knots_[i].x = points[i];
     solve();
   }
@@ -41,12 +41,12 @@ class Spline {
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
     // From a's Taylor polynomial, what is missing at b.
-    const Row x = b.x - (a.x + h * (a.xd + h / 2 * a.xdd));
-    const Row xd = h * (b.xd - (a.xd + h * a.xdd));
-    const Row xdd = h * h * (b.xdd - a.xdd);
-    const Row c3 = 10 * x - 4 * xd + xdd / 2;
-    const Row c4 = -15 * x + 7 * xd - xdd;
-    const Row c5 = 6 * x - 3 * xd + xdd / 2;
+    const Point x = b.x - (a.x + h * (a.xd + h / 2 * a.xdd));
+    const Point xd = h * (b.xd - (a.xd + h * a.xdd));
+    const Point xdd = h * h * (b.xdd - a.xdd);
+    const Point c3 = 10 * x - 4 * xd + xdd / 2;
+    const Point c4 = -15 * x + 7 * xd - xdd;
+    const Point c5 = 6 * x - 3 * xd + xdd / 2;
     const Scalar s = u * h;
     return {a.x + s * (a.xd + s / 2 * a.xdd) + u * u * u * (c3 + u * (c4 + u * c5)),
             a.xd + s * a.xdd + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5))),
@@ -55,9 +55,9 @@ class Spline {
 
  private:
   struct Knot {
-    Row x = Row::Zero();
-    Row xd = Row::Zero();
-    Row xdd = Row::Zero();
+    Point x = Point::Zero();
+    Point xd = Point::Zero();
+    Point xdd = Point::Zero();
   };
   using Block = Matrix<2, 2, Scalar>;
   using Rates = Matrix<2, M, Scalar>;  // Velocity and acceleration of a knot.
@@ -72,8 +72,8 @@ class Spline {
       const Scalar h = times_[i + 1] - times_[i];
       const Scalar g = times_[i + 2] - times_[i + 1];
       Block diagonal = ends(h) + begins(g);
-      const Row before = (knots_[i + 1].x - knots_[i].x) / (h * h * h);
-      const Row after = (knots_[i + 2].x - knots_[i + 1].x) / (g * g * g);
+      const Point before = (knots_[i + 1].x - knots_[i].x) / (h * h * h);
+      const Point after = (knots_[i + 2].x - knots_[i + 1].x) / (g * g * g);
       Rates right;
       right.row(0) = 360 * (before / h + after / g).transpose();
       right.row(1) = 60 * (after - before).transpose();

@@ -7,10 +7,10 @@ namespace fpbm {
 /// How fast a tip may go; infinite where there is no bound.
 template <typename Scalar = double>
 struct TipBounds {
-  Scalar speed = std::numeric_limits<Scalar>::infinity();              ///< [m/s]
+  Scalar velocity = std::numeric_limits<Scalar>::infinity();              ///< [m/s]
   Scalar acceleration = std::numeric_limits<Scalar>::infinity();       ///< [m/s²]
-  Scalar turn_rate = std::numeric_limits<Scalar>::infinity();          ///< [rad/s]
-  Scalar turn_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
+  Scalar angular_velocity = std::numeric_limits<Scalar>::infinity();          ///< [rad/s]
+  Scalar angular_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
 };
 
 }  // namespace fpbm

@@ -49,14 +49,14 @@ class Waypoints {
   /// As fast as the bounds allow (to 1 %, and to whole hundredths of a second, so that the usual steps fit), each piece
   /// with its share of the time as above. Throws std::invalid_argument where no bound holds the tip back, too.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
-    require_bound("speed", bounds.speed);
+    require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);
-    require_bound("turn_rate", bounds.turn_rate);
-    require_bound("turn_acceleration", bounds.turn_acceleration);
+    require_bound("angular_velocity", bounds.angular_velocity);
+    require_bound("angular_acceleration", bounds.angular_acceleration);
     const TipBounds<Scalar> peak = lasting(points, Scalar(1)).peaks();
-    const Scalar duration = std::max(std::max(peak.speed / bounds.speed, peak.turn_rate / bounds.turn_rate),
+    const Scalar duration = std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
                                      std::max(std::sqrt(peak.acceleration / bounds.acceleration),
-                                              std::sqrt(peak.turn_acceleration / bounds.turn_acceleration)));
+                                              std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
     if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must hold the tip back");
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
@@ -88,12 +88,12 @@ class Waypoints {
   static constexpr bool kTurns = std::is_same_v<Space, Pose>;
   static constexpr int kLinear = Space::kRows == 2 || std::is_same_v<Space, PlanarPose> ? 2 : 3;
   static constexpr int kCoordinates = kTurns ? 7 : Space::kRows;
-  using Row = Vector<kCoordinates, Scalar>;
+  using Coordinates = Vector<kCoordinates, Scalar>;
 
   /// What the spline goes through: displacements from the first point, orientations by the shorter way.
-  static std::vector<Row> rows(const std::vector<Point>& points) {
+  static std::vector<Coordinates> rows(const std::vector<Point>& points) {
     require_points(points);
-    std::vector<Row> result(points.size());
+    std::vector<Coordinates> result(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       if constexpr (kTurns) {
         const Matrix<3, 3, Scalar> turn = points[i].R * points[0].R.transpose();
@@ -179,10 +179,10 @@ class Waypoints {
       for (int k = 0; k < kSamples; ++k) {
         const Scalar fraction = Scalar(k) / Scalar(kSamples);
         const auto at = sample(times[i - 1] + fraction * (times[i] - times[i - 1]));
-        peak.speed = std::max(peak.speed, at.xd.template head<kLinear>().norm());
+        peak.velocity = std::max(peak.velocity, at.xd.template head<kLinear>().norm());
         peak.acceleration = std::max(peak.acceleration, at.xdd.template head<kLinear>().norm());
-        peak.turn_rate = std::max(peak.turn_rate, at.xd.template tail<kAngular>().norm());
-        peak.turn_acceleration = std::max(peak.turn_acceleration, at.xdd.template tail<kAngular>().norm());
+        peak.angular_velocity = std::max(peak.angular_velocity, at.xd.template tail<kAngular>().norm());
+        peak.angular_acceleration = std::max(peak.angular_acceleration, at.xdd.template tail<kAngular>().norm());
       }
     }
     return peak;

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "fpbm/core/space.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/model/joint.hpp"
+#include "fpbm/model/kinematics.hpp"
+
+namespace fpbm {
+
+/// Kinematics of any number of joints, from those of a fixed number.
+template <typename Space, int N>
+void copy(const Kinematics<Space, N>& from, bool with_rate, Kinematics<Space, Eigen::Dynamic>& to) noexcept {
+  to.tip = from.tip;
+  to.J = from.J;
+  if (with_rate) to.Jd = from.Jd;
+}
+
+/// Any arm behind one type: in the plane where Positions is Position<2>, in space where it is Position<3>.
+///
+/// For programs that learn their arm at run time. Is an arm itself, of run-time size: every evaluation is one virtual
+/// call into the code of the arm that it holds, be that of fixed size. Immutable; copies share what they hold.
+template <typename Positions>
+class AnyArm {
+ public:
+  using Scalar = double;
+  using Pose = typename PoseOver<Positions>::type;
+  static constexpr int kDof = Eigen::Dynamic;
+
+  /// An arm whose tasks are Positions and Pose.
+  template <typename Arm>
+  explicit AnyArm(const Arm& arm) : held_(std::make_shared<const Held<Arm>>(arm)), limits_(dynamic(arm.limits())) {}
+
+  [[nodiscard]] int dof() const noexcept { return static_cast<int>(limits_.lower.size()); }
+  [[nodiscard]] const JointLimits<kDof>& limits() const noexcept { return limits_; }
+
+  /// Tip, J and Jd at (q, qd), for the task spaces Positions and Pose.
+  template <typename Space>
+  void kinematics(const Vector<kDof>& q, const Vector<kDof>& qd, Kinematics<Space, kDof>& out) const noexcept {
+    held_->kinematics(q, &qd, out);
+  }
+
+  /// Tip and J at q; leaves Jd alone.
+  template <typename Space>
+  void kinematics(const Vector<kDof>& q, Kinematics<Space, kDof>& out) const noexcept {
+    held_->kinematics(q, nullptr, out);
+  }
+
+ private:
+  /// qd: null where Jd is not wanted.
+  struct Holder {
+    Holder() = default;
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+    virtual ~Holder() = default;
+    virtual void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd,
+                            Kinematics<Positions, kDof>& out) const noexcept = 0;
+    virtual void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd,
+                            Kinematics<Pose, kDof>& out) const noexcept = 0;
+  };
+
+  template <typename Arm>
+  struct Held final : Holder {
+    explicit Held(const Arm& arm_) : arm(arm_) {}
+
+    void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd,
+                    Kinematics<Positions, kDof>& out) const noexcept override {
+      evaluate(q, qd, out);
+    }
+    void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd, Kinematics<Pose, kDof>& out) const noexcept override {
+      evaluate(q, qd, out);
+    }
+
+   private:
+    template <typename Space>
+    void evaluate(const Vector<kDof>& q, const Vector<kDof>* qd, Kinematics<Space, kDof>& out) const noexcept {
+      constexpr int N = Arm::kDof;
+      if constexpr (N == kDof) {
+        if (qd != nullptr) {
+          arm.kinematics(q, *qd, out);
+        } else {
+          arm.kinematics(q, out);
+        }
+      } else {
+        Kinematics<Space, N> sized;
+        if (qd != nullptr) {
+          arm.kinematics(Vector<N>(q), Vector<N>(*qd), sized);
+        } else {
+          arm.kinematics(Vector<N>(q), sized);
+        }
+        copy(sized, qd != nullptr, out);
+      }
+    }
+
+    Arm arm;
+  };
+
+  template <int N>
+  [[nodiscard]] static JointLimits<kDof> dynamic(const JointLimits<N>& limits) {
+    return {limits.lower, limits.upper, limits.velocity, limits.acceleration};
+  }
+
+  std::shared_ptr<const Holder> held_;
+  JointLimits<kDof> limits_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// Any scheme of one level for tasks in Space, behind one type.
+///
+/// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size: every
+/// evaluation is one virtual call into the code of the scheme that it holds, be that of fixed size. Immutable; copies
+/// share what they hold.
+template <Level kLevel_, typename Space>
+class AnyScheme {
+ public:
+  static constexpr Level kLevel = kLevel_;
+  static constexpr int kDof = Eigen::Dynamic;
+
+  template <typename Scheme>
+  explicit AnyScheme(const Scheme& scheme) : held_(std::make_shared<const Held<Scheme>>(scheme)) {
+    static_assert(Scheme::kLevel == kLevel, "a scheme of the same level");
+  }
+
+  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  void require_dof(Eigen::Index dof) const { held_->require_dof(dof); }
+
+  /// Joint velocities [rad/s] or accelerations [rad/s²].
+  [[nodiscard]] Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
+                               const State<kDof>& state, Vector<kDof>& u) const noexcept {
+    return held_->resolve(kinematics, reference, state, u);
+  }
+
+ private:
+  struct Holder {
+    Holder() = default;
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+    virtual ~Holder() = default;
+    virtual void require_dof(Eigen::Index dof) const = 0;
+    [[nodiscard]] virtual Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
+                                         const State<kDof>& state, Vector<kDof>& u) const noexcept = 0;
+  };
+
+  template <typename Scheme>
+  struct Held final : Holder {
+    explicit Held(const Scheme& scheme_) : scheme(scheme_) {}
+
+    void require_dof(Eigen::Index dof) const override { scheme.require_dof(dof); }
+
+    [[nodiscard]] Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
+                                 const State<kDof>& state, Vector<kDof>& u) const noexcept override {
+      constexpr int N = Scheme::kDof;
+      if constexpr (N == kDof) {
+        return scheme.resolve(kinematics, reference, state, u);
+      } else {
+        Kinematics<Space, N> sized;
+        sized.tip = kinematics.tip;
+        sized.J = kinematics.J;
+        State<N> sized_state;
+        sized_state.q = state.q;
+        if constexpr (kLevel == Level::kAcceleration) {
+          sized.Jd = kinematics.Jd;
+          sized_state.qd = state.qd;
+        }
+        Vector<N> sized_u;
+        const Status status = scheme.resolve(sized, reference, sized_state, sized_u);
+        if (!failed(status)) u = sized_u;
+        return status;
+      }
+    }
+
+    Scheme scheme;
+  };
+
+  std::shared_ptr<const Holder> held_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,179 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/joint.hpp"
+#include "fpbm/limits/box.hpp"
+#include "fpbm/limits/velocity_envelope.hpp"
+
+namespace fpbm {
+
+/// Bounds on positions, velocities and accelerations, kept tick by tick.
+///
+/// A state is viable where every joint's velocity is within its bound and within the envelopes of both ends of its
+/// range. From a viable state there is always an acceleration within its bound, held for one tick of length h, that
+/// leads to a viable state, and every joint can come to rest (viability: Del Prete 2018, here in discrete time). The
+/// envelope of a bound A on accelerations has offset A h/2, which is what one tick's delay costs. box() is the set of
+/// those accelerations (or, at velocity level, of velocities): whoever stays inside never violates a bound at any tick,
+/// nor between ticks.
+template <Level kLevel, int N, typename Scalar = double>
+class Limits {
+ public:
+  using JointVector = Vector<N, Scalar>;
+
+  /// tick: h [s]. A joint that has bounds needs one on its acceleration, except at velocity level, where it may then
+  /// change its velocity at once. Throws std::invalid_argument naming the joint and the value.
+  Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds) {
+    validation::require_positive("dt", static_cast<double>(tick));
+    const Eigen::Index n = bounds.lower.size();
+    upper_.resize(n);
+    lower_.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      require_ordered(i);
+      bounds_.acceleration(i) = acceleration(i);
+      const Scalar deceleration = std::isfinite(bounds_.acceleration(i)) ? bounds_.acceleration(i) : Scalar(1);
+      const Scalar offset = deceleration * tick / Scalar(2);
+      const Scalar beyond = offset * offset / (Scalar(2) * deceleration);  // So that the joint may rest on its bound.
+      upper_.set(i, {bounds.upper(i) + beyond, offset, deceleration}, bounds.upper(i));
+      lower_.set(i, {-bounds.lower(i) + beyond, offset, deceleration}, -bounds.lower(i));
+    }
+  }
+
+  /// Narrows joint i's velocity toward its upper or lower end. Throws std::invalid_argument where the joint could not
+  /// follow the envelope, or could leave its range within it.
+  void set_upper_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
+    upper_.set(i, envelope, rest_within(i, envelope, bounds_.upper(i)));
+  }
+  void set_lower_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
+    const VelocityEnvelope<Scalar> mirrored{-envelope.end, envelope.offset, envelope.deceleration};
+    lower_.set(i, mirrored, rest_within(i, mirrored, -bounds_.lower(i)));
+  }
+
+  /// The bounds, accelerations filled in.
+  [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
+  [[nodiscard]] Scalar tick() const noexcept { return tick_; }
+
+  /// Throws std::invalid_argument unless the state is viable.
+  void require_viable(const State<N, Scalar>& state) const {
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+      if (!(bounds_.lower(i) <= state.q(i) && state.q(i) <= bounds_.upper(i))) {
+        validation::fail(validation::element("q0", i), static_cast<double>(state.q(i)), "within the joint's range");
+      }
+      if (!viable(i, state.q(i), state.qd(i))) {
+        validation::fail(validation::element("qd0", i), static_cast<double>(state.qd(i)),
+                         "slow enough for the joint to stop within its bounds");
+      }
+    }
+  }
+
+  /// Whether one may go from a state to another in a tick, if the other's velocity is reached evenly.
+  [[nodiscard]] bool admits(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
+    bool good = true;
+    for (Eigen::Index i = 0; i < to.q.size(); ++i) {
+      const Scalar change = (to.qd(i) - from.qd(i)) / tick_;
+      good = good && -bounds_.acceleration(i) <= change && change <= bounds_.acceleration(i) &&
+             viable(i, to.q(i), to.qd(i));
+    }
+    return good;
+  }
+
+  /// What each joint may do in the next tick. From a state that is not viable, as one measured may be, what leads back
+  /// within the bounds on acceleration first and on velocity next.
+  [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept {
+    Box<N, Scalar> box{state.q, state.q};
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+      const Scalar v = bounds_.velocity(i);
+      const Scalar w = state.qd(i);
+      const Scalar most = w + bounds_.acceleration(i) * tick_;
+      const Scalar least = w - bounds_.acceleration(i) * tick_;
+      const Scalar fastest = std::clamp(v, least, most);
+      const Scalar slowest = std::clamp(-v, least, most);
+      Scalar up = std::clamp(upper_.furthest(i, state.q(i), w, tick_), slowest, fastest);
+      Scalar down = std::clamp(-lower_.furthest(i, -state.q(i), -w, tick_), slowest, fastest);
+      if (down > up) down = up = (down + up) / Scalar(2);
+      if constexpr (kLevel == Level::kAcceleration) {
+        up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
+        down = std::clamp((down - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
+      }
+      box.upper(i) = up;
+      box.lower(i) = down;
+    }
+    return box;
+  }
+
+  /// The way to rest: all joints slow down in proportion, as fast as their accelerations allow, and where a joint must
+  /// brake harder it does.
+  [[nodiscard]] JointVector brake(const State<N, Scalar>& state, const Box<N, Scalar>& box) const noexcept {
+    Scalar rate = Scalar(1) / tick_;
+    for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
+      const Scalar speed = std::abs(state.qd(i));
+      if (rate * speed > bounds_.acceleration(i)) rate = bounds_.acceleration(i) / speed;
+    }
+    if constexpr (kLevel == Level::kAcceleration) return box.nearest(-rate * state.qd);
+    return box.nearest((Scalar(1) - rate * tick_) * state.qd);
+  }
+
+ private:
+  using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
+
+  [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
+    return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
+  }
+
+  void require_ordered(Eigen::Index i) const {
+    const auto element = [i](const char* name) { return validation::element(name, i); };
+    if (!(bounds_.lower(i) < bounds_.upper(i))) {
+      validation::fail(element("limits.lower"), static_cast<double>(bounds_.lower(i)), "below limits.upper");
+    }
+    if (!(bounds_.velocity(i) > Scalar(0))) {
+      validation::fail(element("limits.velocity"), static_cast<double>(bounds_.velocity(i)), "positive");
+    }
+    if (!(bounds_.acceleration(i) > Scalar(0))) {
+      validation::fail(element("limits.acceleration"), static_cast<double>(bounds_.acceleration(i)), "positive");
+    }
+  }
+
+  /// Joint i's bound on acceleration, or what stands for it.
+  [[nodiscard]] Scalar acceleration(Eigen::Index i) const {
+    const Scalar given = bounds_.acceleration(i);
+    const Scalar range = bounds_.upper(i) - bounds_.lower(i);
+    if (std::isfinite(given) || (!std::isfinite(range) && !std::isfinite(bounds_.velocity(i)) &&
+                                 !std::isfinite(bounds_.lower(i)) && !std::isfinite(bounds_.upper(i)))) {
+      return given;
+    }
+    if (kLevel == Level::kAcceleration) {
+      validation::fail(validation::element("limits.acceleration", i), static_cast<double>(given),
+                       "finite where the joint's position or velocity is bounded: give one");
+    }
+    const Scalar speed = std::isfinite(bounds_.velocity(i)) ? bounds_.velocity(i) : range / tick_;
+    return std::isfinite(speed) ? Scalar(2) * speed / tick_ : given;
+  }
+
+  /// Where an envelope stops the joint, within its bound.
+  [[nodiscard]] Scalar rest_within(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar bound) const {
+    const auto name = [i](const char* field) { return validation::element("envelope", i) + "." + field; };
+    validation::require_positive(name("deceleration"), static_cast<double>(envelope.deceleration));
+    if (envelope.deceleration > bounds_.acceleration(i)) {
+      validation::fail(name("deceleration"), static_cast<double>(envelope.deceleration),
+                       "at most the joint's bound on acceleration");
+    }
+    if (!(envelope.offset >= envelope.deceleration * tick_ / Scalar(2))) {
+      validation::fail(name("offset"), static_cast<double>(envelope.offset), "at least deceleration dt / 2");
+    }
+    const Scalar rest = envelope.end - envelope.offset * envelope.offset / (Scalar(2) * envelope.deceleration);
+    if (!(rest <= bound)) {
+      validation::fail(name("end"), static_cast<double>(envelope.end), "such that the joint stops within its range");
+    }
+    return rest;
+  }
+
+  Scalar tick_;
+  JointLimits<N, Scalar> bounds_;
+  Envelopes upper_;
+  Envelopes lower_;  ///< Of −q.
+};
+
+}  // namespace fpbm

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <limits>
+
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
+
+namespace fpbm {
+
+/// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
+///
+/// Written out without a loop where M is fixed and small; no square root and M divisions in all.
+/// Value = Pair<Scalar> factorises two matrices at once.
+template <int M, typename Value = double>
+class Cholesky {
+ public:
+  using Scalar = typename ScalarOf<Value>::type;
+
+  /// Factorises A, of which only the lower triangle is read.
+  /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
+  /// where A is not finite. In lanes it returns kOk, and where there is no factor all solutions are NaN.
+  [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
+    size_ = A.rows();
+    const auto m = extent<M>(size_);
+    using std::max;
+    Value largest = A(0, 0);
+    each(kFirst, m, [&](auto i) {
+      largest = max(largest, A.coeff(i, i));
+      each(kFirst, next(i), [&](auto j) { L_[i][j] = A.coeff(i, j); });
+    });
+    const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
+    Mask<Scalar> regular(true);
+    each(kFirst, m, [&](auto j) {
+      const Value pivot = L_[j][j];
+      regular = regular && pivot > smallest;
+      reciprocal_[j] = Value(Scalar(1)) / pivot;
+      each(next(j), m, [&](auto i) {
+        const Value l = L_[i][j] * reciprocal_[j];
+        each(next(j), next(i), [&](auto k) { L_[i][k] -= l * L_[k][j]; });
+      });
+      each(next(j), m, [&](auto i) { L_[i][j] *= reciprocal_[j]; });
+    });
+    if constexpr (kInLanes<Scalar>) {
+      set_nan_unless(regular);
+      return Status::kOk;
+    } else {
+      return regular ? Status::kOk : lost(A, smallest);
+    }
+  }
+
+  /// Spoils all solutions in the lanes where truth does not hold.
+  void set_nan_unless(const Mask<Scalar>& truth) noexcept { fpbm::set_nan_unless(truth, reciprocal_[0]); }
+
+  /// Row in which factor() lost its pivot, the leading rows before it being positive definite.
+  [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
+
+  /// Solution x of A x = b.
+  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
+    const auto m = extent<M>(size_);
+    Vector<M, Value> x = b;
+    each(kFirst, m, [&](auto i) { each(kFirst, i, [&](auto j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
+    for (Eigen::Index i = m - 1; i >= 0; --i) {
+      x(i) *= reciprocal_[i];
+      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // What is known last comes last.
+    }
+    return x;
+  }
+
+  /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, and by M times at most too low.
+  [[nodiscard]] Value inverse_trace() const noexcept {
+    const auto m = extent<M>(size_);
+    Value inverse[kCapacity<M>][kCapacity<M>];  // Of L, its sign changed, below the diagonal.
+    Value trace = reciprocal_[0];
+    each(next(kFirst), m, [&](auto i) {
+      Value row = reciprocal_[i];
+      each(kFirst, i, [&](auto j) {
+        Value entry = L_[i][j];
+        each(next(j), i, [&](auto k) { entry -= L_[i][k] * inverse[k][j]; });
+        inverse[i][j] = entry;
+        row += entry * entry * reciprocal_[i];
+      });
+      trace += row;
+    });
+    return trace;
+  }
+
+ private:
+  [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, const Value& smallest) noexcept {
+    const Value one = Value(Scalar(1));
+    for (lost_pivot_ = 0; lost_pivot_ + 1 < size_; ++lost_pivot_) {
+      const Value& reciprocal = reciprocal_[lost_pivot_];
+      if (!(reciprocal > Value(Scalar(0)) && one > smallest * reciprocal)) break;
+    }
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        if (!is_finite(A(i, j))) return Status::kNotFinite;
+      }
+    }
+    return Status::kSingular;
+  }
+
+  /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
+  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
+  static constexpr Constant<0> kFirst{};
+
+  Value L_[kCapacity<M>][kCapacity<M>];  ///< Unit lower triangle, below the diagonal.
+  Value reciprocal_[kCapacity<M>];       ///< 1 / D.
+  Eigen::Index size_ = 0;
+  Eigen::Index lost_pivot_ = 0;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "fpbm/core/mask.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// PlainPair of a kind that know the four operations.
+template <typename Scalar>
+struct PlainPair {
+  Scalar a;
+  Scalar b;
+
+  [[nodiscard]] const Scalar& operator[](int i) const noexcept { return i == 0 ? a : b; }
+  friend PlainPair operator+(const PlainPair& x, const PlainPair& y) noexcept { return {x.a + y.a, x.b + y.b}; }
+  friend PlainPair operator-(const PlainPair& x, const PlainPair& y) noexcept { return {x.a - y.a, x.b - y.b}; }
+  friend PlainPair operator*(const PlainPair& x, const PlainPair& y) noexcept { return {x.a * y.a, x.b * y.b}; }
+  friend PlainPair operator/(const PlainPair& x, const PlainPair& y) noexcept { return {x.a / y.a, x.b / y.b}; }
+};
+
+/// What holds two Scalars: one vector register, where the compiler has such a type and the Scalar goes into it.
+template <typename Scalar, typename = void>
+struct PairStorage {
+  using type = PlainPair<Scalar>;
+};
+#if defined(__GNUC__)  // And all who say they are.
+template <typename Scalar>
+struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar>>> {
+  using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
+};
+#endif
+
+/// PlainPair Scalars side by side, calculated with as one: a small algorithm written for a Value solves two problems at once
+/// with Value = Pair<Scalar>. A comparison holds where it holds for both.
+template <typename Scalar>
+class Pair {
+ public:
+  Pair() = default;
+  Pair(const Scalar& a, const Scalar& b) noexcept : both_{a, b} {}
+  explicit Pair(const Scalar& a) noexcept : both_{a, a} {}
+
+  [[nodiscard]] Scalar first() const noexcept { return both_[0]; }
+  [[nodiscard]] Scalar second() const noexcept { return both_[1]; }
+
+  friend Pair operator+(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ + y.both_, kAll); }
+  friend Pair operator-(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ - y.both_, kAll); }
+  friend Pair operator*(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ * y.both_, kAll); }
+  friend Pair operator/(const Pair& x, const Pair& y) noexcept { return Pair(x.both_ / y.both_, kAll); }
+  Pair& operator+=(const Pair& y) noexcept { return *this = *this + y; }
+  Pair& operator-=(const Pair& y) noexcept { return *this = *this - y; }
+  Pair& operator*=(const Pair& y) noexcept { return *this = *this * y; }
+
+  friend Mask<Scalar> operator>(const Pair& x, const Pair& y) noexcept {
+    return x.first() > y.first() && x.second() > y.second();
+  }
+  friend Pair max(const Pair& x, const Pair& y) noexcept {
+    using std::max;
+    return {max(x.first(), y.first()), max(x.second(), y.second())};
+  }
+  friend bool is_finite(const Pair& x) noexcept { return std::isfinite(x.first()) && std::isfinite(x.second()); }
+
+ private:
+  using Both = typename PairStorage<Scalar>::type;
+  struct All {};
+  static constexpr All kAll{};
+
+  Pair(const Both& both, All) noexcept : both_(both) {}
+
+  Both both_;
+};
+
+/// What a Value is a pair of, or else the Value itself.
+template <typename Value>
+struct ScalarOf {
+  using type = Value;
+};
+template <typename Scalar>
+struct ScalarOf<Pair<Scalar>> {
+  using type = Scalar;
+};
+
+template <typename Scalar>
+[[nodiscard]] Scalar first(const Scalar& a) noexcept {
+  return a;
+}
+template <typename Scalar>
+[[nodiscard]] Scalar first(const Pair<Scalar>& a) noexcept {
+  return a.first();
+}
+
+template <typename Scalar>
+[[nodiscard]] std::enable_if_t<std::is_arithmetic_v<Scalar>, bool> is_finite(Scalar a) noexcept {
+  return std::isfinite(a);
+}
+
+/// What fails in some lanes fails there for both.
+template <typename Masks, typename Scalar>
+void set_nan_unless(const Masks& truth, Pair<Scalar>& value) noexcept {
+  Scalar a = value.first();
+  Scalar b = value.second();
+  set_nan_unless(truth, a);
+  set_nan_unless(truth, b);
+  value = {a, b};
+}
+
+/// Entry by entry.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Cols, Pair<Scalar>> side_by_side(const Matrix<Rows, Cols, Scalar>& a,
+                                                            const Matrix<Rows, Cols, Scalar>& b) noexcept {
+  Matrix<Rows, Cols, Pair<Scalar>> result;
+  result.resize(a.rows(), a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) result(i, j) = {a(i, j), b(i, j)};
+  }
+  return result;
+}
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> first(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
+  return a.unaryExpr([](const Pair<Scalar>& x) { return x.first(); });
+}
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> second(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
+  return a.unaryExpr([](const Pair<Scalar>& x) { return x.second(); });
+}
+
+}  // namespace fpbm
+
+/// So that matrices may hold pairs.
+template <typename Scalar>
+struct Eigen::NumTraits<fpbm::Pair<Scalar>> : Eigen::GenericNumTraits<fpbm::Pair<Scalar>> {
+  enum { RequireInitialization = 0 };  // NOLINT(readability-identifier-naming): Eigen's name.
+};

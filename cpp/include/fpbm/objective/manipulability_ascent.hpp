@@ -1,0 +1,53 @@
+#pragma once
+
+#include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/manipulability.hpp"
+#include "fpbm/objective/null_space.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// A scheme whose null space climbs to postures of higher manipulability w = √det(JJᵀ), away from singular ones
+/// (Yoshikawa 1985): u + gain ZZᵀ∇w, where u is the scheme's answer and Z an orthonormal basis of the null space of J.
+///
+/// Is a scheme itself, and may be wrapped in turn. At acceleration level ∇w acts as a force does: a scheme without
+/// null-space damping swings about the best posture for ever, one with NullSpace::with_damping comes to rest there.
+template <typename Scheme, typename Arm>
+struct ManipulabilityAscent {
+  using Scalar = typename Arm::Scalar;
+  static constexpr Level kLevel = Scheme::kLevel;
+
+  Scheme scheme;
+  Arm arm;      ///< The arm that moves, for the derivatives of its J.
+  Scalar gain;  ///< [rad²/s²], or [rad²/s] at velocity level, for each unit of w.
+
+  ManipulabilityAscent(const Scheme& scheme_, const Arm& arm_, Scalar gain_) : scheme(scheme_), arm(arm_), gain(gain_) {
+    validation::require_non_negative("manipulability_gain", static_cast<double>(gain));
+  }
+
+  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  void require_dof(Eigen::Index dof) const {
+    scheme.require_dof(dof);
+    validation::require_size("the arm of the ascent", arm.dof(), dof);
+  }
+
+  /// Joint velocities [rad/s] or accelerations [rad/s²], the tip's the same as the scheme's own.
+  template <typename Space, int N>
+  [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
+                               const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                               Vector<N, Scalar>& u) const noexcept {
+    Vector<N, Scalar> result = u;
+    const Status status = scheme.resolve(kinematics, reference, state, result);
+    if (failed(status)) return status;
+    const Vector<N, Scalar> z = gain * manipulability_gradient<Space>(arm, state.q);
+    const auto Z = null_basis(kinematics.J);
+    result += Z.lazyProduct((Z.transpose().lazyProduct(z)).eval());
+    if (!result.allFinite()) return Status::kNotFinite;
+    u = result;
+    return status;
+  }
+};
+
+}  // namespace fpbm

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/joint.hpp"
+
+namespace fpbm {
+
+/// Secondary motion z, which the schemes project on the null space of the task. Zero by default.
+///
+///   acceleration level: z = c − kₙ qd + kₚ (q_rest − q) − k_c ∇H    velocity level: the same without kₙ qd
+///
+/// Damping kₙ [1/s] brings the self-motion to rest, the rest posture draws the arm to q_rest [rad] with stiffness kₚ
+/// ([1/s²], or [1/s] at velocity level), centring keeps the joints off their bounds, and c ([rad/s²], or [rad/s]) is
+/// the free choice in the general solutions (3) and (5). The with_… functions return a changed copy, in which their
+/// part is added to what was there, and throw std::invalid_argument on a bad value.
+///
+/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), by which a closed path leaves no drift in the
+/// joints, is the rest posture at the start: with stiffness λ at velocity level; with damping 2λ and stiffness λ²,
+/// which is critical damping, at acceleration level.
+template <int N, typename Scalar = double>
+class NullSpace {
+ public:
+  [[nodiscard]] NullSpace with_damping(Scalar damping) const {
+    validation::require_non_negative("null_damping", damping);
+    NullSpace changed = *this;
+    changed.damping_ += damping;
+    return changed;
+  }
+
+  [[nodiscard]] NullSpace with_rest_posture(const Vector<N, Scalar>& q_rest, Scalar stiffness) const {
+    validation::require_finite("rest_posture", q_rest);
+    validation::require_positive("null_stiffness", stiffness);
+    return with_spring(Vector<N, Scalar>::Constant(q_rest.size(), stiffness), q_rest);
+  }
+
+  /// Draws each joint to the middle of its bounds, down the gradient of H = ½ Σ ((qᵢ − q̄ᵢ)/(uᵢ − lᵢ))² with
+  /// q̄ = (l + u)/2 (Liégeois 1977), times k_c = gain [rad²/s²], or [rad²/s] at velocity level. A joint that lacks a
+  /// bound takes no part.
+  [[nodiscard]] NullSpace with_joint_centring(const JointLimits<N, Scalar>& limits, Scalar gain) const {
+    validation::require_positive("joint_centring", gain);
+    const Eigen::Index dof = limits.lower.size();
+    validation::require_size("limits.upper", limits.upper.size(), dof);
+    Vector<N, Scalar> stiffness = Vector<N, Scalar>::Zero(dof);
+    Vector<N, Scalar> middle = Vector<N, Scalar>::Zero(dof);
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      const Scalar range = limits.upper(i) - limits.lower(i);
+      if (!(range > Scalar(0))) {
+        validation::fail(validation::element("limits.lower", i), static_cast<double>(limits.lower(i)),
+                         "below limits.upper");
+      }
+      if (!std::isfinite(static_cast<double>(range))) continue;
+      stiffness(i) = gain / (range * range);
+      middle(i) = limits.lower(i) + range / Scalar(2);
+    }
+    return with_spring(stiffness, middle);
+  }
+
+  [[nodiscard]] NullSpace with_free_choice(const Vector<N, Scalar>& c) const {
+    validation::require_finite("c", c);
+    return with_constant(c);
+  }
+
+  /// In lanes: get(lane) is each one's.
+  template <typename Get>
+  [[nodiscard]] static NullSpace side_by_side(const Get& get) {
+    NullSpace result;
+    const Eigen::Index dof = get(0).constant_.size();
+    result.damping_ = Scalar([&](auto lane) { return get(lane).damping_; });
+    for (std::size_t lane = 0; lane < Scalar::size(); ++lane) result.has_constant_ |= get(lane).has_constant_;
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      result.stiffness_(i) = Scalar([&](auto lane) { return get(lane).stiffness_(i); });
+      result.constant_(i) = Scalar([&](auto lane) { return get(lane).constant_(i); });
+    }
+    return result;
+  }
+
+  /// Throws std::invalid_argument where z is for another number of joints.
+  void require_dof(Eigen::Index dof) const {
+    if (has_constant_) validation::require_size("rest_posture, limits or c", constant_.size(), dof);
+  }
+
+  /// False where z is zero whatever the state.
+  template <Level kLevel>
+  [[nodiscard]] bool active() const noexcept {
+    return has_constant_ || (kLevel == Level::kAcceleration && !all_of(damping_ == Scalar(0)));
+  }
+
+  /// z in this state.
+  template <Level kLevel>
+  [[nodiscard]] Vector<N, Scalar> at(const State<N, Scalar>& state) const noexcept {
+    Vector<N, Scalar> z = Vector<N, Scalar>::Zero(state.q.size());
+    if (has_constant_) z += constant_ - stiffness_.cwiseProduct(state.q);
+    if constexpr (kLevel == Level::kAcceleration) z -= damping_ * state.qd;
+    return z;
+  }
+
+ private:
+  template <int, typename>
+  friend class NullSpace;
+
+  /// With stiffness ∘ (middle − q) more.
+  [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
+    NullSpace changed = with_constant(stiffness.cwiseProduct(middle));
+    changed.stiffness_ += stiffness;
+    return changed;
+  }
+
+  [[nodiscard]] NullSpace with_constant(const Vector<N, Scalar>& added) const {
+    NullSpace changed = *this;
+    if (!has_constant_) {
+      changed.constant_.setZero(added.size());
+      changed.stiffness_.setZero(added.size());
+      changed.has_constant_ = true;
+    }
+    validation::require_size("rest_posture, limits or c", added.size(), changed.constant_.size());
+    changed.constant_ += added;
+    return changed;
+  }
+
+  static constexpr Eigen::Index kSize = N == Eigen::Dynamic ? 0 : N;
+
+  Scalar damping_{0};
+  bool has_constant_ = false;
+  Vector<N, Scalar> stiffness_ = Vector<N, Scalar>::Zero(kSize);  ///< Of each joint.
+  Vector<N, Scalar> constant_ = Vector<N, Scalar>::Zero(kSize);   ///< c + kₚ q_rest + what centring adds.
+};
+
+}  // namespace fpbm

@@ -1,0 +1,104 @@
+#pragma once
+
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/kinematics.hpp"
+#include "fpbm/task/feedback.hpp"
+#include "fpbm/singular/lost_directions.hpp"
+#include "fpbm/objective/null_space.hpp"
+#include "fpbm/task/reference.hpp"
+
+namespace fpbm {
+
+/// The y of least norm among those that bring A y nearest to r, damped where A is nearly singular:
+///
+///   y = Aᵀ(AAᵀ + Δ)⁻¹r
+///
+/// with the Δ of LostDirections. Smooth in A; |y| ≤ 1.17 |r|/ε. Zero where ε is lost in round-off.
+template <int M, int K, typename Scalar>
+[[nodiscard]] Vector<K, Scalar> damped_least_squares(const Matrix<M, K, Scalar>& A, const Vector<M, Scalar>& r,
+                                                     Scalar epsilon_squared) noexcept {
+  const Matrix<M, M, Scalar> gram = A.lazyProduct(A.transpose());
+  Cholesky<M, Scalar> cholesky;
+  if (cholesky.factor(gram + LostDirections<M, Scalar>(gram, epsilon_squared).delta) != Status::kOk) {
+    return Vector<K, Scalar>::Zero(A.cols());
+  }
+  return A.transpose().lazyProduct(cholesky.solve(r));
+}
+
+/// A scheme with a second task in the null space of the first: the answer u of the scheme becomes u + Z y, where Z is
+/// an orthonormal basis of the null space of J, and y brings J₂(u + Z y) nearest to what the second task asks for
+/// (strict priority: Nakamura, Hanafusa and Yoshikawa 1987; Siciliano and Slotine 1991),
+///
+///   acceleration level: b₂ = xdd₂ − Jd₂qd + k₁(xd₂ − J₂qd) + k₂(x₂ ⊖ f₂(q))
+///   velocity level:     v₂ = xd₂ + k₂(x₂ ⊖ f₂(q)).
+///
+/// The first task does not notice, and the second is met where the arm has the joints for both. Where it has not, or
+/// the two tasks begin to conflict (an algorithmic singularity), y is damped and stays bounded.
+///
+/// The second task is the tip of an arm of its own: of the first joints of the chain, whose tip is the elbow, say, or a
+/// Gaze. Is a scheme itself, and may be wrapped in turn. What it wraps comes after it: the scheme's secondary motion
+/// goes on where neither task asks for anything. At acceleration level give the scheme NullSpace::with_damping, which
+/// is all that brakes motion there.
+template <typename Scheme, typename Arm, typename Space>
+struct SecondTask {
+  using Scalar = typename Arm::Scalar;
+  static constexpr Level kLevel = Scheme::kLevel;
+
+  Scheme scheme;
+  Arm arm;                             ///< Its joints are the first arm's first ones.
+  Reference<Space, Scalar> reference;  ///< Of the second task, to be replaced at will from call to call.
+  Scalar k1;                           ///< Velocity feedback gain [1/s], which velocity level has no use for.
+  Scalar k2;                           ///< Position feedback gain [1/s²], or [1/s] at velocity level.
+  Scalar radius;                       ///< ε as a share of ‖J₂‖_F, in (0, 1].
+
+  SecondTask(const Scheme& scheme_, const Arm& arm_, const Reference<Space, Scalar>& reference_, Scalar k1_, Scalar k2_,
+             Scalar radius_ = Scalar(0.05))
+      : scheme(scheme_), arm(arm_), reference(reference_), k1(k1_), k2(k2_), radius(radius_) {
+    validation::require_non_negative("second_task.k1", static_cast<double>(k1));
+    validation::require_non_negative("second_task.k2", static_cast<double>(k2));
+    validation::require_positive("second_task.radius", static_cast<double>(radius));
+    validation::require_fraction("second_task.radius", static_cast<double>(radius));
+  }
+
+  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  void require_dof(Eigen::Index dof) const {
+    scheme.require_dof(dof);
+    if (arm.dof() > dof) validation::fail("second_task.arm.dof", arm.dof(), "no more than the arm itself has");
+  }
+
+  /// Joint velocities [rad/s] or accelerations [rad/s²], the tip's the same as the scheme's own.
+  template <typename First, int N>
+  [[nodiscard]] Status resolve(const Kinematics<First, N, Scalar>& kinematics, const Reference<First, Scalar>& first,
+                               const State<N, Scalar>& state, Vector<N, Scalar>& u) const noexcept {
+    constexpr int M = Space::kRows;
+    constexpr int kFree = kNullity<First::kRows, N>;
+    const Eigen::Index head = arm.dof();
+    State<Arm::kDof, Scalar> seen{state.q.head(head), {}};
+    if constexpr (kLevel == Level::kAcceleration) seen.qd = state.qd.head(head);
+    Vector<N, Scalar> result = u;
+    const Status status = scheme.resolve(kinematics, first, state, result);
+    if (failed(status)) return status;
+
+    Kinematics<Space, Arm::kDof, Scalar> second;
+    Vector<M, Scalar> r;
+    if constexpr (kLevel == Level::kAcceleration) {
+      arm.kinematics(seen.q, seen.qd, second);
+      r = commanded_acceleration(k1, k2, second, reference, seen);
+    } else {
+      arm.kinematics(seen.q, second);
+      r = commanded_velocity(k2, second, reference);
+    }
+    r -= second.J.lazyProduct(result.head(head));
+    const auto Z = null_basis(kinematics.J);
+    const Matrix<M, kFree, Scalar> A = second.J.lazyProduct(Z.topRows(head));
+    result += Z.lazyProduct(damped_least_squares(A, r, radius * radius * second.J.squaredNorm()));
+    if (!result.allFinite()) return Status::kNotFinite;
+    u = result;
+    return status;
+  }
+};
+
+}  // namespace fpbm

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/objective/null_space.hpp"
+#include "fpbm/scheme/least_norm.hpp"
+#include "fpbm/scheme/weights.hpp"
+#include "fpbm/singular/damping.hpp"
+#include "fpbm/task/feedback.hpp"
+
+namespace fpbm {
+
+/// Every acceleration-level scheme of the paper, (5), (8), (9), (13) and (16), is this one law:
+///
+///   qdd = (1−α) J⁺b + α (J_W⁺b + N_W W⁻¹Jdᵀμ) + N_W z,   μ = (JW⁻¹Jᵀ)⁻¹xd,
+///   b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
+///
+/// With k₁, k₂ > 0 the tip error e obeys ë + k₁ė + k₂e = 0 whatever α and W. MAN(), WMVNAcceleration(), Balanced() and
+/// FPBM() in scheme/schemes.hpp make the paper's schemes.
+template <int N, typename Scalar = double, typename Weights = DiagonalWeights<N, Scalar>>
+struct AccelerationScheme {
+  static constexpr Level kLevel = Level::kAcceleration;
+  static constexpr int kDof = N;
+
+  Scalar alpha;  ///< Share of WMVN (9), in [0, 1]; MAN (8) has the rest.
+  Weights weights;
+  Scalar k1;                         ///< Velocity feedback gain [1/s].
+  Scalar k2;                         ///< Position feedback gain [1/s²].
+  NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
+
+  /// Throws std::invalid_argument where alpha is not in [0, 1], or a gain is negative or not finite.
+  AccelerationScheme(Scalar alpha_, const Weights& weights_, Scalar k1_, Scalar k2_,
+                     const NullSpace<N, Scalar>& null_space_ = {},
+                     const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : alpha(alpha_), weights(weights_), k1(k1_), k2(k2_), null_space(null_space_), singular(singular_) {
+    validation::require_fraction("alpha", alpha);
+    validation::require_non_negative("k1", k1);
+    validation::require_non_negative("k2", k2);
+  }
+
+  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  void require_dof(Eigen::Index dof) const {
+    weights.require_dof(dof);
+    null_space.require_dof(dof);
+  }
+
+  /// Joint accelerations qdd [rad/s²] that give the tip its reference acceleration, corrected by the feedback. Leaves
+  /// qdd unchanged where it fails.
+  template <typename Space>
+  [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
+                               const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                               Vector<N, Scalar>& qdd) const noexcept {
+    const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
+    if constexpr (kUnit) {
+      return resolve_single(b, kinematics, reference, state, qdd);
+    } else {
+      return takes_one_gram() ? resolve_single(b, kinematics, reference, state, qdd)
+                              : resolve_pair(b, kinematics, reference, state, qdd);
+    }
+  }
+
+ private:
+  static constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
+
+  /// Whether one of JJᵀ and JW⁻¹Jᵀ is enough: α = 1, or α = 0 with nothing to project by N_W.
+  [[nodiscard]] bool takes_one_gram() const noexcept {
+    return all_of(alpha == Scalar(1)) || (all_of(alpha == Scalar(0)) && all_of(singular.brake() == Scalar(0)) &&
+                                          !null_space.template active<kLevel>());
+  }
+
+  /// One factorisation: W = I, α = 1, or α = 0, where J⁺ alone is left.
+  template <typename Space>
+  [[nodiscard]] Status resolve_single(const Vector<Space::kRows, Scalar>& b,
+                                      const Kinematics<Space, N, Scalar>& kinematics,
+                                      const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                                      Vector<N, Scalar>& qdd) const noexcept {
+    constexpr int M = Space::kRows;
+    const auto& J = kinematics.J;
+    const bool weighted = !all_of(alpha == Scalar(0));
+    Matrix<N, M, Scalar> WinvJt = J.transpose();
+    if (!kUnit && weighted) WinvJt = weights.solve(J.transpose());
+    const Scalar inverse_bound = weighted ? weights.template inverse_bound<Scalar>() : Scalar(1);
+    const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
+      const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
+      return weights.solve(Jdtmu);
+    };
+    return least_norm<kLevel, M, N, Scalar>(WinvJt, inverse_bound, b, weighted, drift, null_space, singular, J, state,
+                                            qdd);
+  }
+
+  /// Two factorisations, made side by side:
+  ///
+  ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
+  ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z).
+  template <typename Space>
+  [[nodiscard, gnu::flatten]] Status resolve_pair(const Vector<Space::kRows, Scalar>& b,
+                                                  const Kinematics<Space, N, Scalar>& kinematics,
+                                                  const Reference<Space, Scalar>& reference,
+                                                  const State<N, Scalar>& state,
+                                                  Vector<N, Scalar>& qdd) const noexcept {
+    constexpr int M = Space::kRows;
+    const auto& J = kinematics.J;
+    DampedGram<M, N, Pair<Scalar>> gram(singular, J);  // Of JJᵀ and JW⁻¹Jᵀ.
+    const Status status = gram.factor(weights.with_unit(J), Scalar(1));
+    if (failed(status)) return status;
+
+    const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
+    const Vector<M, Scalar> lambda1 = first<M, 1, Scalar>(both);
+    const Vector<M, Scalar> mu = second<M, 1, Scalar>(both);
+    const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
+    Vector<N, Scalar> u = weights.solve(Jdtmu);
+    if (null_space.template active<kLevel>()) u += null_space.template at<kLevel>(state);
+    if (status == Status::kDamped) u -= gram.brake() * state.qd;
+    const Vector<M, Scalar> rest = alpha * b - J.lazyProduct(u);
+    const Vector<M, Scalar> lambda2 = second<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)));
+
+    const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
+    const Vector<N, Scalar> Jtlambda = J.transpose().lazyProduct(lambda2);
+    const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda);
+    if (!is_finite(result)) return Status::kNotFinite;
+    qdd = result;
+    return status;
+  }
+};
+
+}  // namespace fpbm

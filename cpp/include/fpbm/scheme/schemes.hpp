@@ -1,0 +1,99 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/scheme/acceleration_scheme.hpp"
+#include "fpbm/scheme/velocity_scheme.hpp"
+
+/// The paper's schemes by name, with its equation numbers: FPBM<7>(0.6, weights, 10, 25).
+///
+/// weights is a vector (the diagonal of W), a matrix (W itself), or DiagonalWeights, DenseWeights, UnitWeights.
+/// null_space is the secondary motion z; singular is the damping near singular postures, none by default.
+/// Each throws std::invalid_argument where a parameter is out of range.
+namespace fpbm {
+
+namespace named {
+
+/// T, which no argument deduces: k1 = 10 is no reason for a Scalar int.
+template <typename T>
+struct Same {
+  using type = T;
+};
+template <typename T>
+using NotDeduced = typename Same<T>::type;
+
+template <int N, typename Scalar, typename Weights>
+[[nodiscard]] auto weights_of(const Weights& weights) {
+  if constexpr (!std::is_base_of_v<Eigen::EigenBase<Weights>, Weights>) {
+    return weights;
+  } else if constexpr (Weights::ColsAtCompileTime == 1) {
+    return DiagonalWeights<N, Scalar>(Vector<N, Scalar>(weights));
+  } else {
+    return DenseWeights<N, Scalar>(Matrix<N, N, Scalar>(weights));
+  }
+}
+template <int N, typename Scalar, typename Weights>
+using WeightsOf = decltype(weights_of<N, Scalar>(std::declval<const Weights&>()));
+
+template <typename Scalar>
+[[nodiscard]] SingularDamping<Scalar> undamped() {
+  return SingularDamping<Scalar>::off();
+}
+
+}  // namespace named
+
+// NOLINTBEGIN(readability-identifier-naming): the paper's names.
+
+/// Minimum velocity norm, (6): qd = J⁺xd. With z it is the general solution (3), qd = J⁺xd + (I − J⁺J) z.
+template <int N, typename Scalar = double>
+[[nodiscard]] VelocityScheme<N, Scalar, UnitWeights> MVN(
+    named::NotDeduced<Scalar> k = Scalar(0), const NullSpace<N, Scalar>& null_space = {},
+    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return VelocityScheme<N, Scalar, UnitWeights>(UnitWeights{}, k, null_space, singular);
+}
+
+/// Weighted minimum velocity norm, (7): qd = J_W⁺xd, the qd of least qdᵀW qd.
+template <int N, typename Scalar = double, typename Weights>
+[[nodiscard]] VelocityScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>> WMVN(
+    const Weights& weights, named::NotDeduced<Scalar> k = Scalar(0), const NullSpace<N, Scalar>& null_space = {},
+    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return VelocityScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>>(named::weights_of<N, Scalar>(weights), k,
+                                                                        null_space, singular);
+}
+
+/// Minimum acceleration norm, (8): qdd = J⁺(xdd − Jd qd). With z it is the general solution (5).
+template <int N, typename Scalar = double>
+[[nodiscard]] AccelerationScheme<N, Scalar, UnitWeights> MAN(
+    const NullSpace<N, Scalar>& null_space = {},
+    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return {Scalar(0), UnitWeights{}, Scalar(0), Scalar(0), null_space, singular};
+}
+
+/// Feedback-added pseudoinverse-type balanced minimisation, (13): the balance (16) of MAN and WMVN with feedback.
+template <int N, typename Scalar = double, typename Weights>
+[[nodiscard]] AccelerationScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>> FPBM(
+    named::NotDeduced<Scalar> alpha, const Weights& weights, named::NotDeduced<Scalar> k1,
+    named::NotDeduced<Scalar> k2, const NullSpace<N, Scalar>& null_space = {},
+    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return {alpha, named::weights_of<N, Scalar>(weights), k1, k2, null_space, singular};
+}
+
+/// Balance of MAN (8) and WMVN (9) without feedback, (16): qdd = (1−α) MAN + α WMVN.
+template <int N, typename Scalar = double, typename Weights>
+[[nodiscard]] auto Balanced(named::NotDeduced<Scalar> alpha, const Weights& weights,
+                            const NullSpace<N, Scalar>& null_space = {},
+                            const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return FPBM<N, Scalar>(alpha, weights, Scalar(0), Scalar(0), null_space, singular);
+}
+
+/// Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated (Theorem 1):
+/// qdd = J_W⁺(xdd − Jd qd) + N_W W⁻¹Jdᵀ(JW⁻¹Jᵀ)⁻¹xd.
+template <int N, typename Scalar = double, typename Weights>
+[[nodiscard]] auto WMVNAcceleration(const Weights& weights, const NullSpace<N, Scalar>& null_space = {},
+                                    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+  return FPBM<N, Scalar>(Scalar(1), weights, Scalar(0), Scalar(0), null_space, singular);
+}
+
+// NOLINTEND(readability-identifier-naming)
+
+}  // namespace fpbm

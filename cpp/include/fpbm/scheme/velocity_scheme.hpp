@@ -1,0 +1,55 @@
+#pragma once
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/objective/null_space.hpp"
+#include "fpbm/scheme/least_norm.hpp"
+#include "fpbm/scheme/weights.hpp"
+#include "fpbm/singular/damping.hpp"
+#include "fpbm/task/feedback.hpp"
+
+namespace fpbm {
+
+/// Every velocity-level scheme of the paper, (3), (6) and (7):
+///
+///   qd = J_W⁺v + N_W z,   v = xd + k (x ⊖ f(q)).
+///
+/// MVN() and WMVN() in scheme/schemes.hpp make the paper's.
+template <int N, typename Scalar = double, typename Weights = DiagonalWeights<N, Scalar>>
+struct VelocityScheme {
+  static constexpr Level kLevel = Level::kVelocity;
+  static constexpr int kDof = N;
+
+  Weights weights;
+  Scalar k;                          ///< Position feedback gain [1/s].
+  NullSpace<N, Scalar> null_space;   ///< Secondary velocity z.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
+
+  /// Throws std::invalid_argument where k is negative or not finite.
+  explicit VelocityScheme(const Weights& weights_, Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {},
+                          const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
+      : weights(weights_), k(k_), null_space(null_space_), singular(singular_) {
+    validation::require_non_negative("k", k);
+  }
+
+  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  void require_dof(Eigen::Index dof) const {
+    weights.require_dof(dof);
+    null_space.require_dof(dof);
+  }
+
+  /// Joint velocities qd [rad/s] that give the tip its reference velocity. Leaves qd unchanged where it fails.
+  template <typename Space>
+  [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
+                               const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                               Vector<N, Scalar>& qd) const noexcept {
+    constexpr int M = Space::kRows;
+    const auto& J = kinematics.J;
+    const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
+    const auto no_drift = [](const auto&) noexcept { return Vector<N, Scalar>(); };
+    return least_norm<kLevel, M, N, Scalar>(WinvJt, weights.template inverse_bound<Scalar>(),
+                                            commanded_velocity(k, kinematics, reference), false, no_drift,
+                                            null_space, singular, J, state, qd);
+  }
+};
+
+}  // namespace fpbm

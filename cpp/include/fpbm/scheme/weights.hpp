@@ -1,0 +1,149 @@
+#pragma once
+
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/core/validation.hpp"
+
+/// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
+///
+/// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
+/// too small. The resolvers ask for three things: solve(A) = W⁻¹A, with_unit(J) = Jᵀ and W⁻¹Jᵀ side by side, and a
+/// bound on the largest eigenvalue of W⁻¹. require_dof throws std::invalid_argument where W is for another number of
+/// joints.
+namespace fpbm {
+
+/// W = I.
+struct UnitWeights {
+  void require_dof(Eigen::Index) const noexcept {}
+
+  template <typename Scalar>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return Scalar(1);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return A.derived();
+  }
+
+  template <int M, int N, typename Scalar>
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    const Matrix<N, M, Scalar> Jt = J.transpose();
+    return side_by_side<N, M, Scalar>(Jt, Jt);
+  }
+};
+
+/// W = diag(w).
+template <int N, typename Scalar = double>
+class DiagonalWeights {
+ public:
+  /// Throws std::invalid_argument unless all weights are positive and finite.
+  explicit DiagonalWeights(const Vector<N, Scalar>& weights) {
+    validation::require_dof("weights", weights.size(), 1);
+    validation::require_positive("weights", weights);
+    inverse_ = weights.minCoeff() * weights.cwiseInverse();
+  }
+
+  /// In lanes: get(lane) is each one's.
+  template <typename Get>
+  [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
+    DiagonalWeights result;
+    result.inverse_.resize(get(0).inverse_.size());
+    for (Eigen::Index i = 0; i < result.inverse_.size(); ++i) {
+      result.inverse_(i) = Scalar([&](auto lane) { return get(lane).inverse_(i); });
+    }
+    return result;
+  }
+
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
+
+  template <typename>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return Scalar(1);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return inverse_.asDiagonal() * A.derived();
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    Matrix<N, M, Pair<Scalar>> result;
+    result.resize(J.cols(), J.rows());
+    for (Eigen::Index i = 0; i < J.cols(); ++i) {
+      const Pair<Scalar> weight(Scalar(1), inverse_(i));
+      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * weight;
+    }
+    return result;
+  }
+
+ private:
+  template <int, typename>
+  friend class DiagonalWeights;
+
+  DiagonalWeights() = default;
+
+  Vector<N, Scalar> inverse_;
+};
+
+/// W dense.
+template <int N, typename Scalar = double>
+class DenseWeights {
+ public:
+  /// Throws std::invalid_argument unless W is finite, symmetric (to round-off) and positive definite.
+  explicit DenseWeights(const Matrix<N, N, Scalar>& W) {
+    validation::require_dof("weights", W.rows(), 1);
+    require_symmetric(W);
+    Cholesky<N, Scalar> cholesky;
+    if (cholesky.factor(W) != Status::kOk) {
+      const Eigen::Index i = cholesky.lost_pivot();
+      validation::fail(validation::element("weights", i, i), static_cast<double>(W(i, i)),
+                       "larger: W is not positive definite");
+    }
+    inverse_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) inverse_.col(j) = cholesky.solve(inverse_.col(j));
+    inverse_ /= inverse_.diagonal().maxCoeff();
+  }
+
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
+
+  template <typename>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return inverse_.trace();
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return inverse_.lazyProduct(A.derived());
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
+    return side_by_side<N, M, Scalar>(J.transpose(), solve(J.transpose()));
+  }
+
+ private:
+  static void require_symmetric(const Matrix<N, N, Scalar>& W) {
+    validation::require_size("weights (columns)", W.cols(), W.rows());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      for (Eigen::Index i = 0; i < W.rows(); ++i) {
+        validation::require_finite(validation::element("weights", i, j), static_cast<double>(W(i, j)));
+      }
+    }
+    using std::abs;
+    const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * W.cwiseAbs().maxCoeff();
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      for (Eigen::Index i = j + 1; i < W.rows(); ++i) {
+        if (abs(W(i, j) - W(j, i)) > tolerance) {
+          validation::fail(validation::element("weights", i, j), static_cast<double>(W(i, j)),
+                           "equal to its mirror image, since W is symmetric");
+        }
+      }
+    }
+  }
+
+  Matrix<N, N, Scalar> inverse_;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/singular/lost_directions.hpp"
+
+namespace fpbm {
+
+/// Damping near singular postures, so that every scheme stays bounded at and through them.
+///
+/// In place of JW⁻¹Jᵀ the schemes invert JW⁻¹Jᵀ + Δ (damped least squares: Nakamura and Hanafusa 1986, Wampler 1986),
+/// with the Δ of LostDirections, which acts only in what the tip is about to lose, and ε = radius ‖J‖_F. Δ is smooth in
+/// q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a largest diagonal
+/// entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
+///
+/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd, so
+/// that an arm that is drawn to a target out of reach comes to rest at the edge.
+template <typename Scalar = double>
+class SingularDamping {
+ public:
+  /// radius: share of ‖J‖_F, in [0, 1], below which a singular value counts as being lost; 0 switches damping off.
+  /// brake: damping of the null space at a singular posture [1/s]. Throws std::invalid_argument on a bad value.
+  explicit SingularDamping(Scalar radius = Scalar(0.02), Scalar brake = Scalar(10)) : radius_(radius), brake_(brake) {
+    validation::require_fraction("singular_radius", radius);
+    validation::require_non_negative("singular_brake", brake);
+  }
+
+  /// None: the schemes' own law to the end, which refuses a singular posture. What every scheme starts with.
+  [[nodiscard]] static SingularDamping off() noexcept { return SingularDamping(Scalar(0), Scalar(0)); }
+
+  [[nodiscard]] Scalar radius() const noexcept { return radius_; }
+  [[nodiscard]] Scalar brake() const noexcept { return brake_; }
+
+ private:
+  Scalar radius_;
+  Scalar brake_;
+};
+
+/// Lower bound on the least singular value of J, at most √M times too low: 1/√tr((JJᵀ)⁻¹). At a singular posture it is
+/// 0 or what round-off in JJᵀ leaves, of the order of √epsilon ‖J‖_F.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
+  using std::sqrt;
+  Cholesky<M, Scalar> cholesky;
+  const Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
+  if (cholesky.factor(gram) != Status::kOk) return Scalar(0);
+  return Scalar(1) / sqrt(cholesky.inverse_trace());
+}
+
+/// The factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular; of several with different W, side by side,
+/// where Value is Pair<Scalar>.
+template <int M, int N, typename Value>
+class DampedGram {
+ public:
+  using Scalar = typename ScalarOf<Value>::type;
+
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
+      : damping_(damping), J_(J) {}
+
+  /// Factorises JW⁻¹Jᵀ + Δ, given W⁻¹Jᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
+  /// Returns kDamped where Δ is not zero, or why there is no factor.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& WinvJt, Scalar inverse_bound) noexcept {
+    Matrix<M, M, Value> gram;  // Its lower triangle.
+    const auto rows = extent<M>(J_.rows());
+    const auto columns = extent<N>(J_.cols());
+    constexpr Constant<0> kFirst{};
+    each(kFirst, rows, [&](auto i) {
+      each(kFirst, next(i), [&](auto j) {
+        Value sum = Value(J_.coeff(i, 0)) * WinvJt.coeff(0, j);
+        each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * WinvJt.coeff(k, j); });
+        gram.coeffRef(i, j) = sum;
+      });
+    });
+    const Status status = cholesky_.factor(gram);
+    if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
+
+    // Most postures are far from singular, which the factor at hand tells: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
+    const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
+    const Scalar bound = threshold * inverse_bound;
+    const Mask<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
+    if constexpr (kInLanes<Scalar>) {
+      cholesky_.set_nan_unless(regular);
+      return status;
+    } else {
+      return status == Status::kOk && regular ? status : damped(gram, threshold, status);
+    }
+  }
+
+  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept { return cholesky_.solve(b); }
+
+  /// Damping that the null space gains [1/s].
+  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
+
+ private:
+  [[nodiscard, gnu::noinline]] Status damped(Matrix<M, M, Value>& gram, Scalar threshold, Status undamped) noexcept {
+    const LostDirections<M, Scalar> lost(J_.lazyProduct(J_.transpose()), threshold);
+    lost_ = lost.count;
+    if (!(lost_ > Scalar(0))) return undamped;
+    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
+    }
+    const Status status = cholesky_.factor(gram);
+    return status == Status::kOk ? Status::kDamped : status;
+  }
+
+  const SingularDamping<Scalar>& damping_;
+  const Matrix<M, N, Scalar>& J_;
+  Cholesky<M, Value> cholesky_;
+  Scalar lost_{0};  ///< tr Δ/ε²: about the number of lost directions.
+};
+
+}  // namespace fpbm

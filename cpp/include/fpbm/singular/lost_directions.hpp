@@ -1,0 +1,33 @@
+#pragma once
+
+#include "fpbm/linalg/symmetric_eigen.hpp"
+
+namespace fpbm {
+
+/// The directions of a task that an arm is about to lose, and what damps them.
+///
+/// Of G = JJᵀ, with eigenvalues σᵢ² and eigenvectors uᵢ,
+///
+///   Δ = Σ δ(σᵢ) uᵢuᵢᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, 0 beyond
+///
+/// (numerical filtering: Maciejewski and Klein 1988; Chiaverini 1997). A spectral function of G with two continuous
+/// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
+template <int M, typename Scalar>
+struct LostDirections {
+  Scalar count{0};                                            ///< tr Δ/ε²: about how many there are.
+  Matrix<M, M, Scalar> delta = Matrix<M, M, Scalar>::Zero();  ///< Δ
+
+  LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept {
+    const SymmetricEigen<M, Scalar> spectrum(gram);
+    for (int i = 0; i < M; ++i) {
+      const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
+      if (!(gap > Scalar(0))) continue;
+      const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
+      const Vector<M, Scalar> u = spectrum.vectors.col(i);
+      delta += (share * epsilon_squared) * u.lazyProduct(u.transpose());
+      count += share;
+    }
+  }
+};
+
+}  // namespace fpbm
