@@ -1,71 +1,66 @@
 #pragma once
 
-#include <atomic>
-#include <memory>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
+#include "fpbm/any/any_arm.hpp"
 #include "fpbm/model/chain.hpp"
-#include "fpbm/model/coupled_arm.hpp"
-#include "fpbm/model/planar_arm.hpp"
-#include "fpbm/model/serial_arm.hpp"
-#include "fpbm/sim/rollout.hpp"
-#include "outcome.hpp"
-#include "path.hpp"
-#include "recorder.hpp"
-#include "scheme.hpp"
 
 namespace fpbm::bindings {
 
 inline constexpr int kDynamic = Eigen::Dynamic;
-using Joints = Vector<kDynamic>;
+using JointVector = Vector<kDynamic>;
 
-/// An arm with a task in Space, behind its number of joints: every call ends in code made for just that number.
-template <typename Space_>
-class TaskModel : public std::enable_shared_from_this<TaskModel<Space_>> {
- public:
-  using Space = Space_;
+/// Throws std::invalid_argument where a task in Space has more rows than the arm has joints.
+template <typename Space>
+void require_enough_joints(Eigen::Index dof) {
+  if (dof < Space::kRows) {
+    throw std::invalid_argument("task: it has " + std::to_string(Space::kRows) + " rows, and the arm " +
+                                std::to_string(dof) + " joints: must not be more rows than joints");
+  }
+}
 
-  TaskModel() = default;
-  TaskModel(const TaskModel&) = delete;
-  TaskModel& operator=(const TaskModel&) = delete;
-  virtual ~TaskModel() = default;
+/// An arm of either kind, with what it was made from.
+struct Arm {
+  explicit Arm(const JointVector& lengths);
+  explicit Arm(const Chain<>& chain);
+  virtual ~Arm() = default;  // So that Python gets back the object of the class that it made.
 
-  [[nodiscard]] virtual Kinematics<Space, kDynamic> kinematics(const Joints& q, const Joints& qd) const = 0;
-  [[nodiscard]] virtual RolloutResult<kDynamic> simulate(const PyScheme& scheme, const AnyPath<Space>& path,
-                                                         const State<kDynamic>& start, const TimeGrid<double>& grid,
-                                                         const Wanted<Space>& wanted) const = 0;
-  /// How many motions of this arm go side by side; 1 where there is no such code for the arm or the processor.
-  [[nodiscard]] virtual int lanes() const noexcept = 0;
-  /// As many motions as there are lanes, as RunInLanes says.
-  virtual void run_in_lanes(const AnyPath<Space>& path, const TimeGrid<double>& grid, const PyScheme* const* schemes,
-                            const Joints* starts, const std::atomic<bool>& stop, Outcome* outcomes) const = 0;
-  /// Throws std::invalid_argument where a parameter of the scheme does not fit the arm.
-  virtual void require(const PyScheme& scheme) const = 0;
+  std::variant<AnyArm<Position<2>>, AnyArm<Position<3>>> any;
+  std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of an arm in the plane, the chain of one in space.
+  std::vector<std::string> joint_names;
+
+  [[nodiscard]] int dof() const noexcept {
+    return std::visit([](const auto& arm) { return arm.dof(); }, any);
+  }
+  [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept {
+    return std::visit([](const auto& arm) -> const JointLimits<kDynamic>& { return arm.limits(); }, any);
+  }
+
+  /// Calls visitor(arm, Space) with the AnyArm and the task space of that name.
+  /// Throws std::invalid_argument where there is none.
+  template <typename Visitor>
+  auto visit(const std::string& task, Visitor&& visitor) const {
+    return std::visit(
+        [&](const auto& arm) {
+          if (task == "position") return visitor(arm, positions(arm));
+          if (task == "pose") return visitor(arm, poses(arm));
+          throw std::invalid_argument("task = '" + task + "': must be 'position' or 'pose'");
+        },
+        any);
+  }
+
+ private:
+  template <typename Positions>
+  static Positions positions(const AnyArm<Positions>&) {
+    return {};
+  }
+  template <typename Positions>
+  static typename PoseOver<Positions>::type poses(const AnyArm<Positions>&) {
+    return {};
+  }
 };
-
-/// An arm with each of its tasks.
-template <typename Positions>
-struct ArmModels {
-  std::shared_ptr<const TaskModel<Positions>> position;
-  std::shared_ptr<const TaskModel<typename PoseOver<Positions>::type>> pose;
-};
-
-/// What an arm of the library is made from, and the space of its tip's positions.
-template <typename Arm>
-struct ArmTraits {
-  using Source = Chain<>;
-  using Positions = Position<3>;
-};
-template <int N>
-struct ArmTraits<PlanarArm<N>> {
-  using Source = Joints;
-  using Positions = Position<2>;
-};
-
-template <typename Arm>
-using ModelsOf = ArmModels<typename ArmTraits<Arm>::Positions>;
-
-/// The models of an arm. Source files written by CMake define it, one for each kind and number of joints.
-template <typename Arm>
-ModelsOf<Arm> make_models(const typename ArmTraits<Arm>::Source& source);
 
 }  // namespace fpbm::bindings

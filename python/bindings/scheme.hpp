@@ -1,26 +1,21 @@
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <string>
+#include <type_traits>
 #include <variant>
 
-#include "fpbm/scheme/fpbm.hpp"
-#include "fpbm/scheme/man.hpp"
-#include "fpbm/scheme/wmvn.hpp"
+#include "arm.hpp"
+#include "fpbm/any/any_scheme.hpp"
+#include "fpbm/scheme/acceleration_scheme.hpp"
+#include "fpbm/scheme/velocity_scheme.hpp"
 
 namespace fpbm::bindings {
 
-template <typename Space>
-class TaskModel;
-struct Recipe;
-
-/// A second task as Python sees it: the tip of another arm on a point, or the tip's z axis along a direction.
-struct PySecondTask {
+/// A second task: the tip of another arm on a point, or the tip's z axis along a direction.
+struct SecondTaskData {
   template <typename Space>
   struct Point {
-    std::shared_ptr<const TaskModel<Space>> arm;
-    int dof;
+    AnyArm<Space> arm;
     typename Space::template Point<double> x;
   };
   struct Direction {
@@ -30,79 +25,79 @@ struct PySecondTask {
   std::variant<Point<Position<2>>, Point<Position<3>>, Direction> what;
   double k1;
   double k2;
-  std::string repr;
-  std::shared_ptr<const Recipe> recipe;
 };
 
-/// A scheme as Python sees it: its parameters, before the number of joints is known.
-///
-/// Every scheme is one of three of the library's: WMVN (7) with W = I is MVN (6); FPBM (13) without feedback is the
-/// balance (16), of which α = 1 is WMVN (9). MAN (8) stands alone.
-struct PyScheme {
-  enum class Law : unsigned char { kWMVN, kMAN, kFPBM };
-  using Diagonal = Vector<Eigen::Dynamic>;
-  using Dense = Matrix<Eigen::Dynamic, Eigen::Dynamic>;
+/// The parameters of a scheme, before the number of joints is known. Missing ones are neutral.
+struct Scheme {
+  using Diagonal = Vector<kDynamic>;
+  using Dense = Matrix<kDynamic, kDynamic>;
 
-  Law law;
-  std::variant<std::monostate, Diagonal, Dense> weights = std::monostate{};  ///< None: W = I.
+  Level level;
+  std::variant<std::monostate, Diagonal, Dense> weights = {};  ///< None: W = I.
   double alpha = 0.0;
   double k = 0.0;
   double k1 = 0.0;
   double k2 = 0.0;
   double null_damping = 0.0;
   double null_stiffness = 0.0;
-  std::optional<Diagonal> rest_posture = std::nullopt;
-  std::optional<Diagonal> c = std::nullopt;
+  std::optional<JointVector> rest_posture = {};
+  std::optional<JointVector> c = {};
   double joint_centring = 0.0;
   double manipulability_gain = 0.0;
-  std::optional<PySecondTask> second_task = std::nullopt;
+  std::optional<SecondTaskData> second_task = {};
   SingularDamping<> singular = SingularDamping<>::off();
-  std::string repr = {};
-  std::shared_ptr<const Recipe> recipe = nullptr;
 
-  [[nodiscard]] Level level() const noexcept { return law == Law::kWMVN ? Level::kVelocity : Level::kAcceleration; }
+  /// The scheme for an arm, objectives and all. Plain schemes of 4 joints in the plane, and of 6 and 7 in space, run in
+  /// code of fixed size. kLevel is the scheme's level.
+  /// Throws std::invalid_argument where a parameter is out of range or does not fit the arm.
+  template <Level kLevel, typename Space>
+  [[nodiscard]] AnyScheme<kLevel, Space> make(const AnyArmFor<Space>& arm) const;
 
-  /// Whether there are objectives that wrap the library's scheme and need an arm.
-  [[nodiscard]] bool has_wrappers() const noexcept { return manipulability_gain != 0.0 || second_task.has_value(); }
+  /// The scheme for that many joints, without an arm.
+  /// Throws std::invalid_argument as make() does, and where an objective needs an arm.
+  template <Level kLevel, typename Space>
+  [[nodiscard]] AnyScheme<kLevel, Space> make_without_arm(Eigen::Index dof) const;
 
-  /// Calls visitor(scheme) with the library's scheme of N joints, dof of them where N is dynamic.
-  /// Throws std::invalid_argument where a parameter is wrong, does not fit the number of joints, or needs an arm.
-  template <int N, typename Visitor>
-  auto visit(int dof, Visitor&& visitor) const {
-    if (has_wrappers() || joint_centring != 0.0) {
-      throw std::invalid_argument(
-          "scheme: joint_centring, manipulability_gain and second_task need an arm, and there is none here");
-    }
-    return visit_core<N>(JointLimits<N>::none(dof), visitor);
+  /// Calls visitor(scheme) with what make() returns for this scheme's level.
+  template <typename Space, typename Visitor>
+  auto visit(const AnyArmFor<Space>& arm, Visitor&& visitor) const {
+    if (level == Level::kVelocity) return visitor(make<Level::kVelocity, Space>(arm));
+    return visitor(make<Level::kAcceleration, Space>(arm));
   }
 
-  /// The same for an arm of these limits, but for the objectives that wrap.
-  template <int N, typename Visitor>
-  auto visit_core(const JointLimits<N>& limits, Visitor&& visitor) const {
-    const Eigen::Index dof = limits.lower.size();
-    const NullSpace<N> null_space = make_null_space<N>(limits);
-    if (law == Law::kMAN) return visitor(MAN<N>(null_space, singular));
-    if (const auto* W = std::get_if<Dense>(&weights)) {
-      validation::require_size("weights", W->rows(), dof);
-      return visit_weighted<N>(DenseWeights<N>(*W), null_space, visitor);
-    }
-    Vector<N> w = Vector<N>::Ones(dof);
-    if (const auto* diagonal = std::get_if<Diagonal>(&weights)) {
-      validation::require_size("weights", diagonal->size(), dof);
-      w = *diagonal;
-    }
-    return visit_weighted<N>(DiagonalWeights<N>(w), null_space, visitor);
+  /// This scheme, with that damping near singular postures where it has none of its own.
+  [[nodiscard]] Scheme with_default_damping(const SingularDamping<>& damping) const {
+    Scheme result = *this;
+    if (result.singular.radius() == 0.0) result.singular = damping;
+    return result;
   }
 
- private:
-  template <int N, typename Weights, typename Visitor>
-  auto visit_weighted(const Weights& W, const NullSpace<N>& null_space, Visitor&& visitor) const {
-    if (law == Law::kWMVN) return visitor(WMVN<N, double, Weights>(W, k, null_space, singular));
-    return visitor(FPBM<N, double, Weights>(alpha, W, k1, k2, null_space, singular));
+  /// Whether all of it is in law(): no objective wraps it.
+  [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
+
+  /// The library's scheme without the objectives that wrap it, for joints of these limits.
+  template <Level kLevel, int N, typename Weights>
+  [[nodiscard]] auto law(const Weights& W, const JointLimits<N>& limits) const {
+    if constexpr (kLevel == Level::kVelocity) {
+      return VelocityScheme<N, double, Weights>(W, k, null_space(limits), singular);
+    } else {
+      return AccelerationScheme<N, double, Weights>(alpha, W, k1, k2, null_space(limits), singular);
+    }
   }
 
+  /// The weights as a diagonal of dof entries, which are 1 unless given. Throws std::invalid_argument where they are of
+  /// another number. W must not be dense.
   template <int N>
-  [[nodiscard]] NullSpace<N> make_null_space(const JointLimits<N>& limits) const {
+  [[nodiscard]] DiagonalWeights<N> diagonal_weights(Eigen::Index dof) const {
+    const auto* w = std::get_if<Diagonal>(&weights);
+    if (w == nullptr) return DiagonalWeights<N>(Vector<N>::Ones(dof));
+    validation::require_size("weights", w->size(), dof);
+    return DiagonalWeights<N>(Vector<N>(*w));
+  }
+
+  /// The secondary motion z of joints of these limits.
+  template <int N>
+  [[nodiscard]] NullSpace<N> null_space(const JointLimits<N>& limits) const {
     const Eigen::Index dof = limits.lower.size();
     NullSpace<N> result;
     result = result.with_damping(null_damping);

@@ -1,64 +1,68 @@
 #include "tracker.hpp"
 
-#include "fpbm/realtime/tracker.hpp"
-#include "objectives.hpp"
+#include <stdexcept>
 
 namespace fpbm::bindings {
-namespace {
-
-template <typename Space, typename Scheme>
-class Loop final : public LoopModel<Space> {
- public:
-  using typename LoopModel<Space>::Result;
-  using AnyTracker = Tracker<AnyArm<Space>, Space, Scheme>;
-
-  explicit Loop(const AnyTracker& tracker) : tracker_(tracker) {}
-
-  Result tick(const Reference<Space>& reference) override { return tracker_.tick(reference); }
-  Result tick(AnyCourse<Space>& course) override { return tracker_.tick(course); }
-  Result resolve_measured([[maybe_unused]] const State<kDynamic>& measured,
-                          [[maybe_unused]] const Reference<Space>& reference) override {
-    if constexpr (Scheme::kLevel == Level::kAcceleration) {
-      return tracker_.resolve_measured(measured.q, measured.qd, reference);
-    } else {
-      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
-    }
-  }
-  void stop() override { tracker_.stop(); }
-  void resume() override { tracker_.resume(); }
-  [[nodiscard]] const State<kDynamic>& state() const override { return tracker_.state(); }
-  [[nodiscard]] typename Space::template Point<double> tip() const override { return tracker_.tip(); }
-
- private:
-  AnyTracker tracker_;
-};
-
-}  // namespace
 
 template <typename Space>
-std::shared_ptr<LoopModel<Space>> make_loop(const WholeArm<Space>& arm, PyScheme scheme, const State<kDynamic>& start,
-                                            const TrackerOptions<>& options, const JointLimits<kDynamic>& limits) {
-  if (scheme.singular.radius() == 0.0) scheme.singular = options.singular;
-  return std::visit(
-      [&](const auto& whole) -> std::shared_ptr<LoopModel<Space>> {
-        using Scheme = std::decay_t<decltype(whole)>;
-        using AnyLoopOf = Loop<Space, Scheme>;
-        const Limits<Scheme::kLevel, kDynamic> kept(limits, options.dt);
-        return std::make_shared<AnyLoopOf>(
-            typename AnyLoopOf::AnyTracker({arm.model, arm.dof()}, Space{}, whole, start, options, kept));
-      },
-      whole_scheme(scheme, arm));
+template <Level kLevel>
+auto AnyTracker<Space>::make(const Arm& arm, const Scheme& scheme, const State<kDynamic>& start,
+                             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits) -> At<kLevel> {
+  const Limits<kLevel, kDynamic> kept(limits, options.dt);
+  const Scheme damped = scheme.with_default_damping(options.singular);
+  return {arm, Space{}, damped.make<kLevel, Space>(arm), start, options, kept};
 }
 
-template std::shared_ptr<LoopModel<Position<2>>> make_loop(const WholeArm<Position<2>>&, PyScheme,
-                                                           const State<kDynamic>&, const TrackerOptions<>&,
-                                                           const JointLimits<kDynamic>&);
-template std::shared_ptr<LoopModel<PlanarPose>> make_loop(const WholeArm<PlanarPose>&, PyScheme, const State<kDynamic>&,
-                                                          const TrackerOptions<>&, const JointLimits<kDynamic>&);
-template std::shared_ptr<LoopModel<Position<3>>> make_loop(const WholeArm<Position<3>>&, PyScheme,
-                                                           const State<kDynamic>&, const TrackerOptions<>&,
-                                                           const JointLimits<kDynamic>&);
-template std::shared_ptr<LoopModel<Pose>> make_loop(const WholeArm<Pose>&, PyScheme, const State<kDynamic>&,
-                                                    const TrackerOptions<>&, const JointLimits<kDynamic>&);
+template <typename Space>
+AnyTracker<Space>::AnyTracker(const Arm& arm, const Scheme& scheme, const State<kDynamic>& start,
+                              const TrackerOptions<>& options, const JointLimits<kDynamic>& limits)
+    : tracker_(scheme.level == Level::kVelocity
+                   ? decltype(tracker_)(make<Level::kVelocity>(arm, scheme, start, options, limits))
+                   : decltype(tracker_)(make<Level::kAcceleration>(arm, scheme, start, options, limits))) {}
+
+template <typename Space>
+auto AnyTracker<Space>::tick(const Target& reference) noexcept -> Result {
+  return std::visit([&](auto& tracker) { return tracker.tick(reference); }, tracker_);
+}
+
+template <typename Space>
+auto AnyTracker<Space>::tick(Follower<Space>& follower) noexcept -> Result {
+  return std::visit([&](auto& tracker) { return tracker.tick(follower); }, tracker_);
+}
+
+template <typename Space>
+auto AnyTracker<Space>::resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference)
+    -> Result {
+  auto* tracker = std::get_if<At<Level::kAcceleration>>(&tracker_);
+  if (tracker == nullptr) {
+    throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
+  }
+  return tracker->resolve_measured(q, qd, reference);
+}
+
+template <typename Space>
+void AnyTracker<Space>::stop() noexcept {
+  std::visit([](auto& tracker) { tracker.stop(); }, tracker_);
+}
+
+template <typename Space>
+void AnyTracker<Space>::resume() noexcept {
+  std::visit([](auto& tracker) { tracker.resume(); }, tracker_);
+}
+
+template <typename Space>
+const State<kDynamic>& AnyTracker<Space>::state() const noexcept {
+  return std::visit([](const auto& tracker) -> const State<kDynamic>& { return tracker.state(); }, tracker_);
+}
+
+template <typename Space>
+typename Space::template Point<double> AnyTracker<Space>::tip() const noexcept {
+  return std::visit([](const auto& tracker) { return tracker.tip(); }, tracker_);
+}
+
+template class AnyTracker<Position<2>>;
+template class AnyTracker<PlanarPose>;
+template class AnyTracker<Position<3>>;
+template class AnyTracker<Pose>;
 
 }  // namespace fpbm::bindings

@@ -1,49 +1,54 @@
 #pragma once
 
-#include <memory>
-#include <utility>
 #include <variant>
 
+#include "fpbm/any/any_path.hpp"
 #include "fpbm/realtime/path_follower.hpp"
-#include "fpbm/realtime/tick.hpp"
-#include "whole_arm.hpp"
+#include "fpbm/realtime/tracker.hpp"
+#include "scheme.hpp"
 
 namespace fpbm::bindings {
 
 template <typename Space>
-using AnyCourse = PathFollower<AnyPath<Space>>;
+using Follower = PathFollower<AnyPath<Space>>;
 
-/// A tracker of any arm under any scheme.
-template <typename Space>
-class LoopModel {
+/// A tracker of any arm for a task in Space, under any scheme of either level. Compiled once, in tracker.cpp.
+template <typename Space_>
+class AnyTracker {
  public:
+  using Space = Space_;
+  using Arm = AnyArmFor<Space>;
+  using Target = Reference<Space>;
   using Result = Tick<Space, kDynamic>;
+  static constexpr int N = kDynamic;
 
-  LoopModel() = default;
-  LoopModel(const LoopModel&) = delete;
-  LoopModel& operator=(const LoopModel&) = delete;
-  virtual ~LoopModel() = default;
+  /// Throws std::invalid_argument where scheme, state, options or limits do not fit, as fpbm::Tracker does.
+  AnyTracker(const Arm& arm, const Scheme& scheme, const State<kDynamic>& start, const TrackerOptions<>& options,
+             const JointLimits<kDynamic>& limits);
 
-  virtual Result tick(const Reference<Space>& reference) = 0;
-  virtual Result tick(AnyCourse<Space>& course) = 0;
+  Result tick(const Target& reference) noexcept;
+  Result tick(Follower<Space>& follower) noexcept;
   /// Throws std::invalid_argument at velocity level.
-  virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
-  virtual void stop() = 0;
-  virtual void resume() = 0;
-  [[nodiscard]] virtual const State<kDynamic>& state() const = 0;
-  [[nodiscard]] virtual typename Space::template Point<double> tip() const = 0;
+  Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference);
+  void stop() noexcept;
+  void resume() noexcept;
+  [[nodiscard]] const State<kDynamic>& state() const noexcept;
+  [[nodiscard]] typename Space::template Point<double> tip() const noexcept;
+
+ private:
+  template <Level kLevel>
+  using At = Tracker<Arm, Space, AnyScheme<kLevel, Space>>;
+
+  template <Level kLevel>
+  static At<kLevel> make(const Arm& arm, const Scheme& scheme, const State<kDynamic>& start,
+                         const TrackerOptions<>& options, const JointLimits<kDynamic>& limits);
+
+  std::variant<At<Level::kVelocity>, At<Level::kAcceleration>> tracker_;
 };
 
-template <typename... Spaces>
-struct LoopOver {
-  using Models = std::variant<std::shared_ptr<LoopModel<Spaces>>...>;
-  using Courses = std::variant<AnyCourse<Spaces>...>;
-};
-using AnyLoop = LoopOver<Position<2>, PlanarPose, Position<3>, Pose>;
-
-/// A tracker in code of run-time size. Throws std::invalid_argument where scheme, state, options or limits do not fit.
-template <typename Space>
-std::shared_ptr<LoopModel<Space>> make_loop(const WholeArm<Space>& arm, PyScheme scheme, const State<kDynamic>& start,
-                                            const TrackerOptions<>& options, const JointLimits<kDynamic>& limits);
+extern template class AnyTracker<Position<2>>;
+extern template class AnyTracker<PlanarPose>;
+extern template class AnyTracker<Position<3>>;
+extern template class AnyTracker<Pose>;
 
 }  // namespace fpbm::bindings

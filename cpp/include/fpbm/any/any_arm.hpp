@@ -10,6 +10,27 @@
 
 namespace fpbm {
 
+/// The space of tip positions of the arms that have tasks in Space.
+template <typename Space>
+struct PositionsUnder {
+  using type = Space;
+};
+template <>
+struct PositionsUnder<PlanarPose> {
+  using type = Position<2>;
+};
+template <>
+struct PositionsUnder<Pose> {
+  using type = Position<3>;
+};
+
+template <typename Positions>
+class AnyArm;
+
+/// Any arm that has tasks in Space.
+template <typename Space>
+using AnyArmFor = AnyArm<typename PositionsUnder<Space>::type>;
+
 /// Kinematics of any number of joints, from those of a fixed number.
 template <typename Space, int N>
 void copy(const Kinematics<Space, N>& from, bool with_rate, Kinematics<Space, Eigen::Dynamic>& to) noexcept {
