@@ -5,83 +5,46 @@ schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration le
 FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
+from . import arms, errors, paths, schemes
 from ._core import (
-    FPBM,
-    MAN,
     MAX_DOF,
-    MVN,
-    WMVN,
-    Arm,
-    Balanced,
-    Circle,
-    PathFollower,
-    Gaze,
-    JointLimits,
     Kinematics,
-    Line,
-    Lissajous,
-    Path,
-    PlanarArm,
-    Scheme,
-    SecondTask,
+    PathFollower,
     Status,
     Tick,
     Tracker,
-    Tricuspid,
-    Waypoints,
-    WMVNAcceleration,
     __version__,
     failed,
     rotation,
     rotation_vector,
 )
-from ._errors import ResolutionError, SweepInterrupted
-from ._lanes import LANES
-from .joint import Joint
-from .run import Run, RunStatus, load
-from .serial_arm import SerialArm
-from .simulate import simulate
-from .sweep import sweep
-from .sweep_result import Sweep
-from .track import track
-from .tuning import TuneInterrupted, Tuning, tune
-from .view import view
+from .arms import *
+from .errors import *
+from .io.run_file import load
+from .motion.lanes import LANES
+from .motion.run import Run
+from .motion.run_status import RunStatus
+from .motion.simulation import simulate
+from .motion.sweep_result import Sweep
+from .motion.sweeping import sweep
+from .motion.tracking import track
+from .paths import *
+from .schemes import *
+from .tuning import Tuning, tune
+from .viewer import view
 
 __all__ = [
-    "FPBM",
     "LANES",
-    "MAN",
     "MAX_DOF",
-    "MVN",
-    "WMVN",
-    "Arm",
-    "Balanced",
-    "Circle",
-    "PathFollower",
-    "Gaze",
-    "Joint",
-    "JointLimits",
     "Kinematics",
-    "Line",
-    "Lissajous",
-    "Path",
-    "PlanarArm",
-    "ResolutionError",
+    "PathFollower",
     "Run",
     "RunStatus",
-    "Scheme",
-    "SecondTask",
-    "SerialArm",
     "Status",
     "Sweep",
-    "SweepInterrupted",
     "Tick",
     "Tracker",
-    "Tricuspid",
-    "TuneInterrupted",
     "Tuning",
-    "WMVNAcceleration",
-    "Waypoints",
     "__version__",
     "failed",
     "load",
@@ -93,3 +56,4 @@ __all__ = [
     "tune",
     "view",
 ]
+__all__ += arms.__all__ + errors.__all__ + paths.__all__ + schemes.__all__

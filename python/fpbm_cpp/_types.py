@@ -1,4 +1,4 @@
-"""What the package's functions take and give."""
+"""The array type of the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Orientations as others write them."""
+"""Quaternions of rotation matrices."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .._types import Array
 def quaternions(rotations: Array) -> Array:
     """Unit quaternions (x, y, z, w) of rotation matrices, shape (N, 4) of (N, 3, 3).
 
-    Of the two that are one orientation, each is the one nearer to that before; w of the first is not negative.
+    Of the two quaternions of an orientation, each row takes the one nearer to the row before; the first has w >= 0.
     """
     vectors = np.array([rotation_vector(R) for R in rotations]).reshape(-1, 3)
     half = np.linalg.norm(vectors, axis=1, keepdims=True) / 2
     result = np.hstack([vectors / 2 * np.sinc(half / np.pi), np.cos(half)])
-    turned = (result[1:] * result[:-1]).sum(axis=1) < 0
-    result[1:] *= np.where(turned, -1, 1).cumprod()[:, None]
+    flipped = (result[1:] * result[:-1]).sum(axis=1) < 0
+    result[1:] *= np.where(flipped, -1, 1).cumprod()[:, None]
     return result

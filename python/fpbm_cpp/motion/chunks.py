@@ -1,26 +1,29 @@
-"""Chunks of a sweep, and those who run them: threads of our own, or any executor."""
+"""Chunks of a sweep, and running them: in threads of our own, or in any executor."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from queue import Empty, SimpleQueue
-from typing import Any, Callable, NamedTuple
+from typing import Any, NamedTuple
 
-from . import _core
-from ._core import Arm, Path, Scheme, Stop
-from ._types import Array
+from .._core import Stop, sweep_chunk
+from .._types import Array
+from ..arms import Arm
+from ..paths import Path
+from ..schemes import Scheme
+from .tracking import LimitOptions
 
-# Outcomes, one for each motion, and the arrays of each where the whole motions are wanted.
+# Outcomes, one for each motion, and the arrays of each if the whole motions are wanted.
 Result = tuple[Any, list[Any]]
 
-# How often a platform whose locks no signal wakes looks for Ctrl-C [s].
-TICK = 0.1
+# How often to look for Ctrl-C, on platforms where a signal does not end a wait for a lock [s].
+POLL = 0.1
 
 
 class Chunk(NamedTuple):
-    """Motions that are run one after another by one worker: schemes[which[i]] from q0s[i]. It can be pickled."""
+    """Motions that one worker runs one after another: schemes[which[i]] from q0s[i]. It can be pickled."""
 
     arm: Arm
     path: Path
@@ -31,11 +34,12 @@ class Chunk(NamedTuple):
     hold: float
     task: str
     motions: bool
+    limited: LimitOptions | None
 
 
 def run_chunk(chunk: Chunk, stop: Stop | None = None) -> Result:
-    """Run a chunk, in whichever process this is. Motions that stop keeps from ending are marked as not run."""
-    return _core.sweep_chunk(*chunk, Stop() if stop is None else stop)
+    """Run a chunk, in whichever process this is. Motions that stop cuts short are marked as not run."""
+    return sweep_chunk(*chunk, Stop() if stop is None else stop)
 
 
 def run_chunks(
@@ -45,11 +49,11 @@ def run_chunks(
     take: Callable[[int, Result], object],
     report: Callable[[int], object],
 ) -> None:
-    """Run all chunks; take(i, result) in this thread as they arrive, and report() how many motions are done.
+    """Run all chunks. In this thread, take(i, result) receives each as it arrives, report(n) the motions done so far.
 
-    Where that is interrupted or fails, what has not begun is cancelled, what runs in this process stops within a
-    sample, and what other processes run is left to them. On KeyboardInterrupt, all that is finished is still taken,
-    the last chunk perhaps a second time.
+    On an exception, chunks that have not begun are cancelled, those in this process stop within a sample, and those in
+    other processes are left to them. On KeyboardInterrupt, all that is finished is still taken, the last chunk perhaps
+    a second time.
     """
     if executor is None:
         with ThreadPoolExecutor(workers or os.cpu_count()) as threads:
@@ -66,7 +70,7 @@ def run_chunks(
             future.add_done_callback(arrived.put)
         while pending:
             try:
-                future = arrived.get(timeout=TICK)
+                future = arrived.get(timeout=POLL)
             except Empty:
                 continue
             result = future.result()

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import PlanarArm
-from .._files import write_whole
+from .._types import Array
 from ..joint_text import joint_units
+from ..motion.run import Run
 from .orientation import quaternions
+from .write_whole import write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from .run import Run
 
 
 class Column(NamedTuple):
@@ -64,10 +63,9 @@ def table(run: Run) -> Iterator[Column]:
             yield Column(f"{quantity}_{joint}", unit + per, values)
     yield from _points(run, run.x, "")
     yield from _points(run, run.x_ref, "_ref")
-    linear = run.positions.shape[1]
-    for axis, values in zip("xyz", run.error[:, :linear].T):
+    for axis, values in zip("xyz", run.position_error.T):
         yield Column(f"error_{axis}", "m", values)
-    angular = run.error[:, linear:].T
+    angular = run.orientation_error.T
     for ending, values in zip(("",) if len(angular) == 1 else ("_x", "_y", "_z"), angular):
         yield Column(f"orientation_error{ending}", "rad", values)
     if run.scale is not None:
@@ -77,12 +75,11 @@ def table(run: Run) -> Iterator[Column]:
             yield Column(f"saturated_{joint}", "", flags)
 
 
-def _points(run: Run, x: NDArray[np.float64], ending: str) -> Iterator[Column]:
-    """Where the tip is or is to be: its coordinates, and in a pose its angle or quaternion."""
+def _points(run: Run, x: Array, ending: str) -> Iterator[Column]:
+    """Coordinates of the tip or its reference, and in a pose its angle or quaternion."""
     positions = x[:, :3, 3] if x.ndim == 3 else x
-    planar_pose = run.task == "pose" and isinstance(run.arm, PlanarArm)
-    names = (("x", "m"), ("y", "m"), ("angle", "rad") if planar_pose else ("z", "m"))
-    for (name, unit), values in zip(names, positions.T):
+    planar_pose = run.task == "pose" and x.ndim == 2
+    for (name, unit), values in zip((("x", "m"), ("y", "m"), ("angle", "rad") if planar_pose else ("z", "m")), positions.T):
         yield Column(name + ending, unit, values)
     if x.ndim == 3:
         for name, values in zip(("qx", "qy", "qz", "qw"), quaternions(x[:, :3, :3]).T):

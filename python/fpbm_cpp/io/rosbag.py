@@ -7,16 +7,14 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from .._core import PlanarArm
 from .._types import Array
+from ..arms import PlanarArm
+from ..motion.run import Run
 from .orientation import quaternions
-
-if TYPE_CHECKING:
-    from .run import Run
 
 # (topic, time [ns], message)
 Stamped = tuple[str, int, Any]
@@ -35,10 +33,10 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
     if target.exists() or target.is_symlink():
         raise FileExistsError(f"{target}: exists already, and a bag is not written over anything")
     store = get_typestore(Stores.ROS2_HUMBLE)
-    # A bag's files bear its name, so it is its parent's name that says that it is unfinished.
+    # A bag's files have its name, so an unfinished bag is marked by the name of its parent.
     part = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".part", dir=target.absolute().parent))
     try:
-        # Version 9 writes qualities of service as ROS 2 Humble cannot parse them; later releases read both.
+        # ROS 2 Humble cannot parse the qualities of service of version 9; later releases read both.
         with Writer(part / target.name, version=8) as writer:
             topics: dict[str, Any] = {}
             for topic, time, message in _messages(run, store.types, frame, trajectory):
@@ -52,23 +50,23 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
 
 
 def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[Stamped]:
-    """All messages of a run, in the order of time."""
+    """All messages of a run, in order of time."""
     header, time = types["std_msgs/msg/Header"], types["builtin_interfaces/msg/Time"]
     joint_state = types["sensor_msgs/msg/JointState"]
     if trajectory:
         yield "/joint_trajectory", 0, _trajectory(run, types, header(time(0, 0), frame))
-    tips = zip(*_poses(run, run.x), *_poses(run, run.x_ref, prescribed=True))
+    tips = zip(*_poses(run, run.x), *_poses(run, run.x_ref, reference=True))
     nothing = np.zeros(0)
-    for t, q, qd, (p, turn, p_ref, turn_ref) in zip(_nanoseconds(run.t), run.q, run.qd, tips):
+    for t, q, qd, (p, r, p_ref, r_ref) in zip(_nanoseconds(run.t), run.q, run.qd, tips):
         stamp = header(time(*divmod(t, 10**9)), frame)
         yield "/joint_states", t, joint_state(stamp, run.arm.joint_names, q, qd, nothing)
-        yield "/tip", t, _pose(types, stamp, p, turn)
-        yield "/tip_reference", t, _pose(types, stamp, p_ref, turn_ref)
+        yield "/tip", t, _pose(types, stamp, p, r)
+        yield "/tip_reference", t, _pose(types, stamp, p_ref, r_ref)
 
 
 def _pose(types: Any, header: Any, position: Array, quaternion: Array) -> Any:
-    point, turn = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
-    pose = types["geometry_msgs/msg/Pose"](point(*position.tolist()), turn(*quaternion.tolist()))
+    point, orientation = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
+    pose = types["geometry_msgs/msg/Pose"](point(*position.tolist()), orientation(*quaternion.tolist()))
     return types["geometry_msgs/msg/PoseStamped"](header, pose)
 
 
@@ -86,18 +84,18 @@ def _nanoseconds(t: Array) -> list[int]:
     return whole
 
 
-def _poses(run: Run, x: Array, prescribed: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions. Where the task leaves the tip's orientation free, that of the arm, or none.
+def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
+    """Positions in space, and quaternions. Where the task leaves the orientation free: the arm's, or, of the reference, none.
 
-    A planar arm lies in the xy plane and turns about z.
+    A planar arm lies in the xy plane and rotates about z.
     """
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
     if isinstance(run.arm, PlanarArm):
-        angles = x[:, 2] if run.task == "pose" else np.zeros(len(x)) if prescribed else run.q.sum(axis=1)
+        angles = x[:, 2] if run.task == "pose" else np.zeros(len(x)) if reference else run.q.sum(axis=1)
         half, none = angles / 2, np.zeros(len(x))
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])
-    if prescribed:
+    if reference:
         return x, np.tile([0.0, 0.0, 0.0, 1.0], (len(x), 1))
-    turns = [run.arm.kinematics(q, q, task="pose").tip[:3, :3] for q in run.q]
-    return x, quaternions(np.array(turns).reshape(-1, 3, 3))
+    rotations = [run.arm.forward(q)[:3, :3] for q in run.q]
+    return x, quaternions(np.array(rotations).reshape(-1, 3, 3))

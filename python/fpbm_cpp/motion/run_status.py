@@ -12,12 +12,12 @@ from .._types import Array
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How a simulation ended: why, when, and where.
+    """How a motion ended: why, when, and where.
 
     Attributes
     ----------
     code : Status
-        Status.OK, DAMPED or SLOWED when the whole motion is done; otherwise why it stopped.
+        Status.OK, DAMPED or SLOWED if the whole motion is done; otherwise why it stopped.
     time : float
         Time of the last sample [s].
     q : numpy.ndarray, shape (n,)
@@ -35,7 +35,7 @@ class RunStatus:
 
     @property
     def advice(self) -> str:
-        """What to do about it; empty when all is well."""
+        """What to do about it; empty if all is well."""
         return advice(self.code)
 
     def __bool__(self) -> bool:

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from ..joint_text import joint_units
+from ..motion.run import Run
 from .orientation import quaternions
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .run import Run
-
-# (name, dimensions, values, units), "1" where there is none, as in the CF conventions.
+# (name, dimensions, values, units); a number without a unit has "1", as in the CF conventions.
 Variable = tuple[str, tuple[str, ...], Any, str]
 
 
@@ -37,22 +36,21 @@ def to_xarray(run: Run) -> xr.Dataset:
 
 
 def _variables(run: Run) -> Iterator[Variable]:
-    of_joints, of_axes, of_turn = ("time", "joint"), ("time", "axis"), ("time", "quaternion")
-    units = sorted(set(joint_units(run.arm)), reverse=True)  # Both, where some joints turn and some slide.
+    of_joints, of_axes, of_orientation = ("time", "joint"), ("time", "axis"), ("time", "quaternion")
+    units = sorted(set(joint_units(run.arm)), reverse=True)  # Both, if some joints are revolute and some prismatic.
     for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
         yield name, of_joints, values, ", ".join(unit + per for unit in units)
     yield "x", of_axes, run.positions, "m"
     yield "x_ref", of_axes, run.reference_positions, "m"
-    linear = run.positions.shape[1]
-    yield "error", of_axes, run.error[:, :linear], "m"
+    yield "error", of_axes, run.position_error, "m"
     if run.x.ndim == 3:
-        yield "orientation", of_turn, quaternions(run.x[:, :3, :3]), "1"
-        yield "orientation_ref", of_turn, quaternions(run.x_ref[:, :3, :3]), "1"
-        yield "orientation_error", of_axes, run.error[:, linear:], "rad"
-    elif run.error.shape[1] > linear:
+        yield "orientation", of_orientation, quaternions(run.x[:, :3, :3]), "1"
+        yield "orientation_ref", of_orientation, quaternions(run.x_ref[:, :3, :3]), "1"
+        yield "orientation_error", of_axes, run.orientation_error, "rad"
+    elif run.task == "pose":
         yield "angle", ("time",), run.x[:, 2], "rad"
         yield "angle_ref", ("time",), run.x_ref[:, 2], "rad"
-        yield "orientation_error", ("time",), run.error[:, 2], "rad"
+        yield "orientation_error", ("time",), run.orientation_error[:, 0], "rad"
     if run.scale is not None:
         yield "scale", ("time",), run.scale, "1"
     if run.saturated is not None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Callable, Union
+from typing import TypeAlias
 
-Progress = Union[bool, Callable[[int, int], object], None]
+Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
 
 @contextmanager

@@ -1,26 +1,26 @@
-"""What many motions come to."""
+"""The key figures of many motions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Status, failed
-from ._types import Array
-
-if TYPE_CHECKING:
-    from ._core import Arm, Path, Scheme
+from .._core import Status, failed
+from .._types import Array
+from ..arms import Arm
+from ..paths import Path
+from ..schemes import Scheme
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sweep:
     """Key figures of every scheme from every start: arrays of shape (S, K), of S schemes from K starts.
 
-    Of joint vectors they are the largest entry by size; largest and peak are over time. Not a number where there is
-    none: of a motion that was not run, or stopped before its first sample.
+    A figure of joint vectors is of the largest entry by size; largest and peak are over time. Entries are nan where
+    there is no figure: where a motion was not run, or stopped before its first sample.
 
     Attributes
     ----------
@@ -32,13 +32,13 @@ class Sweep:
         Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
         which is 0 where the task leaves it free.
     peak_velocity, final_velocity : numpy.ndarray
-        Of the joints [rad/s], or [m/s] where one slides.
+        Of the joints [rad/s], or [m/s] where one is prismatic.
     peak_acceleration, final_acceleration : numpy.ndarray
         Of the joints [rad/s^2], [m/s^2]; at velocity level, finite differences of the velocities.
     manipulability : numpy.ndarray
         The least sqrt(det(J J')) of the task on the way (Yoshikawa, 1985).
     motions : numpy.ndarray of Run, or None
-        The whole motions where they were asked for; None where one was not run.
+        The whole motions if they were asked for; None where one was not run.
     arm, path, schemes, q0s, task
         What moved, along what, how, from where, and as what task: S schemes, and starts of shape (K, n).
     """
@@ -61,7 +61,7 @@ class Sweep:
 
     @property
     def done(self) -> NDArray[np.bool_]:
-        """Which motions were run, whatever became of them; all, unless the sweep was interrupted."""
+        """Which motions were run, complete or not: all, unless the sweep was interrupted."""
         return ~np.isnan(self.time)
 
     @property
@@ -72,8 +72,7 @@ class Sweep:
 
     def __str__(self) -> str:
         """One line for each scheme: how many motions are complete, and the worst of those."""
-        rows = [self._row(i) for i in range(len(self.schemes))]
-        return "\n".join([repr(self), *rows])
+        return "\n".join([repr(self), *map(self._row, range(len(self.schemes)))])
 
     def _row(self, i: int) -> str:
         scheme, ok = repr(self.schemes[i]), self.ok[i]

@@ -1,4 +1,4 @@
-"""All motions of a sweep, how they are shared out, and what they come to together."""
+"""All motions of a sweep, divided into chunks and put together again."""
 
 from __future__ import annotations
 
@@ -8,18 +8,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._chunks import Chunk
-from ._core import Arm, Path, Scheme, Status
-from ._types import Array
-from .simulate import make_run
+from .._core import Status
+from .._types import Array
+from ..arms import Arm
+from ..paths import Path
+from ..schemes import Scheme
+from .chunks import Chunk
+from .simulation import make_run, motion_options
 from .sweep_result import Sweep
+from .tracking import LimitOptions
 
-# Motions of a chunk come in multiples of GROUP, the most lanes that there are. There are to be CHUNKS at least, for
-# many workers to share, and none is to be of more than SAMPLES samples, some tenths of a second's work. The number of
-# workers does not come in.
+# A chunk's motions are a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks, for many
+# workers to share, of at most SAMPLES samples each, some tenths of a second of work. The number of workers plays no
+# part, so that the results do not depend on it.
 GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
 
-# By their numbers in the compiled part; the last, at -1, of a motion that was not run.
+# By their numbers in the compiled part; the last, at -1, is that of a motion that was not run.
 STATUSES = np.array([*Status, None], dtype=object)
 
 
@@ -34,6 +38,7 @@ class Plan:
     dt: float
     hold: float
     task: str
+    limited: LimitOptions | None
     motions: bool
     samples: int
 
@@ -52,21 +57,22 @@ class Plan:
         """What a worker needs to run these motions."""
         law, start = np.divmod(np.arange(part.start, part.stop), len(self.starts))
         schemes, which = list(self.schemes[law[0] : law[-1] + 1]), (law - law[0]).tolist()
-        how = self.dt, self.hold, self.task, self.motions
+        how = self.dt, self.hold, self.task, self.motions, self.limited
         return Chunk(self.arm, self.path, schemes, which, self.starts[start], *how)
 
     def result(self, outcomes: NDArray[Any], arrays: list[Any]) -> Sweep:
-        """The sweep of all outcomes, and of each motion's arrays where the whole motions are wanted."""
+        """The sweep of all outcomes, and of each motion's arrays if the whole motions are wanted."""
         shape = len(self.schemes), len(self.starts)
         status = STATUSES[outcomes["status"]]
         motions = np.full(len(self), None, dtype=object)
         if self.motions:
-            options = {"dt": self.dt, "hold": self.hold, "qd0": [0.0] * self.arm.dof}
+            limited = {} if self.limited is None else self.limited._asdict()
             for i in np.flatnonzero(outcomes["status"] >= 0):
                 _, samples, time, _ = outcomes[i]
                 k, j = divmod(i, len(self.starts))
-                at = self.starts[j], self.arm, self.path, self.schemes[k], self.task, dict(options)
-                motions[i] = make_run(status[i], float(time), int(samples), arrays[i], *at)
+                made_of = self.starts[j], self.arm, self.path, self.schemes[k], self.task
+                options = {**motion_options(self.arm, self.dt, self.hold), **limited}
+                motions[i] = make_run(status[i], float(time), int(samples), arrays[i], *made_of, options)
         summary = outcomes["summary"]
         return Sweep(
             status=status.reshape(shape),

@@ -8,13 +8,16 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from . import _core
-from ._chunks import Result, run_chunks
-from ._core import Arm, Path, Scheme
-from ._errors import SweepInterrupted
-from ._plan import Plan
-from ._progress import Progress, reporting
+from .._core import check_sweep, not_run
+from ..arms import Arm, JointLimits
+from ..errors import SweepInterrupted
+from ..paths import Path
+from ..schemes import Scheme
+from .chunks import Result, run_chunks
+from .plan import Plan
+from .progress import Progress, reporting
 from .sweep_result import Sweep
+from .tracking import LimitOptions
 
 
 def sweep(
@@ -26,6 +29,12 @@ def sweep(
     *,
     hold: float = 0.0,
     task: str = "position",
+    limits: JointLimits | None = None,
+    max_error: float = 0.1,
+    integral_gain: float = 0.0,
+    integral_bound: float = 1.0,
+    singular_radius: float = 0.02,
+    singular_brake: float = 10.0,
     executor: Executor | None = None,
     workers: int | None = None,
     progress: Progress = None,
@@ -33,9 +42,10 @@ def sweep(
 ) -> Sweep:
     """Simulate every scheme from every start, each motion as simulate() does, and keep the key figures of each.
 
-    Runs on all cores, without the interpreter's lock, or wherever an executor runs things, several motions side by side
-    in the processor's lanes, where they agree with simulate() to 1e-12. The results are the same to the last bit
-    whoever runs them, however many. A motion that must stop early raises nothing: its status says so.
+    With limits, each motion keeps them as track() does. Runs on all cores, without the interpreter's lock, or in the
+    executor's workers. Without limits, several motions run side by side in the processor's lanes, where they agree with
+    simulate() to 1e-12. The results are the same to the last bit for any number of workers. A motion that must stop
+    early raises nothing: its status says so.
 
     Parameters
     ----------
@@ -48,16 +58,19 @@ def sweep(
     dt : float
         Step [s]; it must divide the path's duration and the hold.
     hold : float
-        How long to stay at rest on the path's end afterwards [s].
+        Time to stay at rest on the path's end afterwards [s].
     task : str
         'position', or 'pose' to track the tip's orientation as well.
+    limits : JointLimits, optional
+        Limits that every motion keeps: arm.limits are the arm's own. None by default.
+    max_error, integral_gain, integral_bound, singular_radius, singular_brake : float
+        As for track(); they need limits.
     executor : concurrent.futures.Executor, optional
-        Who runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
+        Runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
     workers : int, optional
-        Without an executor, how many threads; as many as there are processors unless given.
+        Number of threads if there is no executor; as many as processors by default.
     progress : bool or callable, optional
-        True for a progress bar, which needs the extra 'progress'; or what to call with (done, total), numbers of
-        motions.
+        True for a progress bar, which needs the extra 'progress'; or a function of (done, total), numbers of motions.
     motions : bool
         Keep the whole motions as well, in the result's motions: 8 bytes for each number of simulate()'s arrays.
 
@@ -69,13 +82,13 @@ def sweep(
     Raises
     ------
     ValueError
-        Where an argument is out of range, not finite, or of the wrong shape; nothing is run.
+        If an argument is out of range, not finite, or of the wrong shape; nothing is run.
     TypeError
-        Where one of the schemes is none.
+        If one of the schemes is none.
     SweepInterrupted
-        On Ctrl-C, a KeyboardInterrupt whose sweep holds what is finished.
+        On Ctrl-C: a KeyboardInterrupt whose sweep holds what is finished.
     ImportError
-        Where progress=True and the extra is missing; nothing is run.
+        If progress=True and the extra is missing; nothing is run.
     """
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
@@ -87,10 +100,15 @@ def sweep(
         raise ValueError("workers: must be left out where there is an executor, which has its own")
     if workers is not None and workers < 1:
         raise ValueError(f"workers = {workers}: must be 1 at least")
-    starts, samples = _core.check_sweep(arm, path, list(laws), q0s, dt, hold, task)
-    plan = Plan(arm, path, laws, starts, float(dt), float(hold), task, bool(motions), samples)
+    limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
+    if limits is None and limited != LimitOptions():
+        raise ValueError("limits: must be given where max_error, an integral or a singular option is")
+    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task)
+    plan = Plan(
+        arm, path, laws, starts, float(dt), float(hold), task, None if limits is None else limited, motions, samples
+    )
     parts = plan.parts()
-    outcomes = _core.not_run(len(plan))
+    outcomes = not_run(len(plan))
     arrays: list[Any] = [None] * len(plan)
 
     def take(i: int, result: Result) -> None:

@@ -1,11 +1,11 @@
-"""Which code sweeps run in: that for the lanes of this processor, or the code for every one."""
+"""The code that sweeps run in: for the lanes of this processor, or for any processor."""
 
 from __future__ import annotations
 
 import os
 from importlib import import_module
 
-from . import _core
+from .._core import processor_kinds, use_lanes
 
 CHOICE = "FPBM_LANES"
 KINDS = ("avx512", "avx2")
@@ -21,15 +21,15 @@ def choose() -> int:
         raise ValueError(
             f"{CHOICE} is {choice!r}, but must be one of {', '.join(map(repr, (*KINDS, 'none')))}, or unset"
         )
-    for kind in _core.processor_kinds():
+    for kind in processor_kinds():
         if choice not in ("", kind):
             continue
         try:
-            code = import_module(f"{__package__}._lanes_{kind}").code
+            code = import_module(f".._lanes_{kind}", __package__).code
         except ImportError:  # Left out of this build.
             continue
-        return _core.use_lanes(code)
-    return _core.use_lanes(None)
+        return use_lanes(code)
+    return use_lanes(None)
 
 
 LANES = choose()

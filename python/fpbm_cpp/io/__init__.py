@@ -1,0 +1,1 @@
+"""Motions and arms in files: runs and back, tables, datasets, ROS bags, URDF, C++ headers."""
