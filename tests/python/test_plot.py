@@ -16,7 +16,7 @@ from matplotlib.colors import to_hex
 from plot_runs import a_run, a_run_in_space, a_run_within_limits, a_stopped_run, assert_tidy, luminance, panels
 
 import fpbm_cpp as fp
-from fpbm_cpp.plot import DARK, LIGHT, OVERVIEW, PANELS, compose
+from fpbm_cpp.plot import DARK, LIGHT, OVERVIEW, PANELS, plot_run
 
 
 def headings(run: fp.Run, *names: str) -> list[str]:
@@ -42,7 +42,7 @@ def test_overview_within_limits_has_what_they_did() -> None:
 
 @pytest.mark.parametrize("name", PANELS)
 def test_each_panel_alone_is_as_wide_as_a_column(name: str) -> None:
-    run = a_run_in_space() if name == "axis_turn_errors" else a_run_within_limits()
+    run = a_run_in_space() if name == "axis_orientation_errors" else a_run_within_limits()
     figure = run.plot(panels=[name])
     assert list(panels(figure)) == [PANELS[name].heading]
     assert figure.get_figwidth() == 3.5
@@ -54,7 +54,7 @@ def test_panels_in_the_order_asked_for() -> None:
 
 
 def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
-    assert headings(a_run(), "scale", "error", "saturation", "axis_turn_errors") == ["Tip error"]
+    assert headings(a_run(), "scale", "error", "saturation", "axis_orientation_errors") == ["Tip error"]
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_panels_that_a_run_has_nothing_for_are_left_out() -> None:
     [
         (["velocity"], "panels: 'velocity' must be one of arm, error, axis_errors, .*null_space$"),
         ("velocity", "panels: 'velocity' must be one of arm"),
-        (["arm", "error", "arm"], "panels: 'arm' stands twice"),
+        (["arm", "error", "arm"], "panels: 'arm' is given twice"),
         (["scale"], r"panels: \('scale',\) leave nothing to draw of this run"),
         ([], r"panels: \(\) leave nothing"),
     ],
@@ -72,12 +72,8 @@ def test_wrong_panels(names: list[str], message: str) -> None:
         a_run().plot(panels=names)
 
 
-def test_so_many_panels_of_the_paper() -> None:
-    assert [title.split(") ")[1] for title in panels(compose(a_run(), "without accelerations", panels=3))] == [
-        "Arm",
-        "Tip error",
-        "Joint velocities",
-    ]
+def test_a_title_of_ones_own() -> None:
+    assert plot_run(a_run(), "two words", panels=["error"]).get_suptitle() == "two words"
 
 
 @pytest.mark.parametrize("dark", [False, True])
@@ -157,7 +153,7 @@ def test_title_is_short_of_digits() -> None:
 
 
 def test_names_of_the_overview() -> None:
-    assert set(PANELS) - set(OVERVIEW) == {"axis_errors", "axis_turn_errors"}
+    assert set(PANELS) - set(OVERVIEW) == {"axis_errors", "axis_orientation_errors"}
 
 
 def test_threads_and_no_global_state() -> None:
@@ -173,7 +169,7 @@ def test_threads_and_no_global_state() -> None:
     assert "matplotlib.pyplot" not in sys.modules
 
 
-def test_missing_matplotlib_is_said_plainly() -> None:
+def test_missing_matplotlib() -> None:
     program = "import sys; sys.modules['matplotlib'] = None\nimport fpbm_cpp.plot"
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert result.stderr.strip().endswith('ImportError: plotting needs matplotlib: pip install "fpbm_cpp[plot]"')

@@ -1,4 +1,4 @@
-"""Films: their length and what moves in them, and that they are written whole or not at all."""
+"""Animations: their length, what moves in them, and that they are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from PIL import Image
 from plot_runs import a_run, a_run_in_space, a_run_within_limits
 
 import fpbm_cpp as fp
-from fpbm_cpp.plot import animate, film
+from fpbm_cpp.plot import animate, animation_file
 from fpbm_cpp.plot.theme import LIGHT
 
 SMALL: dict[str, Any] = {"dpi": 60}
@@ -49,7 +49,7 @@ def test_gif_moves_in_all_its_panels(run: Any, tmp_path: Path) -> None:
     assert trails[-1] > 2 * trails[0]
 
 
-def test_time_of_a_gif_is_kept_by_frames_of_unlike_lengths(tmp_path: Path) -> None:
+def test_duration_of_a_gif(tmp_path: Path) -> None:
     animate(a_run(), tmp_path / "a.gif", fps=30, speed=4.0, panels=["error"], **SMALL)
     assert seconds(tmp_path / "a.gif") == pytest.approx(16 / 30, abs=0.01)
 
@@ -98,16 +98,16 @@ def test_no_such_folder(tmp_path: Path) -> None:
         animate(a_run(), tmp_path / "none" / "a.gif")
 
 
-def test_missing_ffmpeg_is_said_plainly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _: None)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    with pytest.raises(ImportError, match=r'^a .mp4 needs ffmpeg: pip install "fpbm_cpp\[film\]", or write a .gif$'):
+    with pytest.raises(ImportError, match=r'^a .mp4 needs ffmpeg: pip install "fpbm_cpp\[animation\]", or write a .gif$'):
         animate(a_run(), tmp_path / "a.mp4")
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
-def test_what_was_there_stays_where_writing_fails(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film, "_ffmpeg", lambda: shutil.which("cat"))
+def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(animation_file, "_ffmpeg", lambda: shutil.which("cat"))
     file = tmp_path / f"a{suffix}"
     file.write_text("old")
 
@@ -116,13 +116,13 @@ def test_what_was_there_stays_where_writing_fails(suffix: str, tmp_path: Path, m
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        film.film_writer(file, 25.0)(broken())
+        animation_file.animation_writer(file, 25.0)(broken())
     assert file.read_text() == "old"
     assert [file.name for file in tmp_path.iterdir()] == [file.name]
 
 
-def test_what_ffmpeg_says_is_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film, "_ffmpeg", lambda: shutil.which("cat"))
+def test_errors_of_ffmpeg_are_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(animation_file, "_ffmpeg", lambda: shutil.which("cat"))
     with pytest.raises(OSError, match=r"^ffmpeg: .*cat: "):
-        film.film_writer(tmp_path / "a.mp4", 25.0)(np.zeros((3, 2, 2, 3), np.uint8))
+        animation_file.animation_writer(tmp_path / "a.mp4", 25.0)(np.zeros((3, 2, 2, 3), np.uint8))
     assert not list(tmp_path.iterdir())

@@ -52,7 +52,7 @@ def test_compare_positions_by_the_names_of_their_schemes() -> None:
 
 
 def test_compare_nothing() -> None:
-    with pytest.raises(ValueError, match="runs: must hold one at least"):
+    with pytest.raises(ValueError, match="runs: must hold at least one run"):
         compare([])
 
 

@@ -91,7 +91,7 @@ def test_long_errors_are_drawn_by_their_envelope() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "rows", "unit"), [("axis_errors", slice(3), "m"), ("axis_turn_errors", slice(3, 6), "rad")]
+    ("name", "rows", "unit"), [("axis_errors", slice(3), "m"), ("axis_orientation_errors", slice(3, 6), "rad")]
 )
 def test_errors_per_axis_are_in_a_power_of_ten(name: str, rows: slice, unit: str) -> None:
     run = a_run_in_space()

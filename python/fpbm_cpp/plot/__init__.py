@@ -1,11 +1,11 @@
-"""Figures and films of motions, in the size and text of a paper, on white or on black.
+"""Figures and animations of motions, sized for a paper, on a white or a dark background.
 
-One motion by compose() and Run.plot(), several by compare(), in motion by animate(); each panel is a function of axes
-and run, for figures of one's own. Nothing here touches matplotlib.pyplot: figures are objects without global state,
-made as well without a display or in several threads. Show one with IPython's display(run.plot()) or write it with
-run.plot().savefig("run.pdf").
+plot_run() and Run.plot() draw one motion, compare() draws several, animate() writes an animation. Each panel is a
+function of axes and run, for figures of your own. Nothing here uses matplotlib.pyplot: figures are plain objects
+without global state, and work without a display and in several threads. Show one with IPython's display(run.plot()),
+or write it with run.plot().savefig("run.pdf").
 
-Data flows one way: theme ← lines ← panels (arm, errors, joints, limits, measures) ← compose, compare, animate.
+Imports go one way: theme ← lines ← panels (arm, errors, joints, limits, measures) ← run_figure, comparison, animation.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ except ModuleNotFoundError as missing:
     raise ImportError('plotting needs matplotlib: pip install "fpbm_cpp[plot]"') from missing
 
 from ..skeleton import joint_points
-from .animate import animate
+from .animation import animate
 from .arm import arm_panel
-from .compare import compare
-from .compose import compose, plot_run
-from .errors import error_panel, tip_error_panel, turn_error_panel
+from .comparison import compare
+from .errors import error_panel, orientation_error_panel, tip_error_panel
 from .joints import acceleration_panel, position_panel, velocity_panel
 from .limits import saturation_panel, scale_panel
-from .measures import least_singular_values, manipulability_panel, null_space_panel, null_space_velocities
+from .measures import manipulability_panel, min_singular_values, null_space_panel, null_space_velocities
 from .panels import OVERVIEW, PANELS
+from .run_figure import plot_run
 from .theme import DARK, DASHES, LIGHT, OKABE_ITO, Theme
 
 __all__ = [
@@ -39,18 +39,17 @@ __all__ = [
     "animate",
     "arm_panel",
     "compare",
-    "compose",
     "error_panel",
     "joint_points",
-    "least_singular_values",
     "manipulability_panel",
+    "min_singular_values",
     "null_space_panel",
     "null_space_velocities",
+    "orientation_error_panel",
     "plot_run",
     "position_panel",
     "saturation_panel",
     "scale_panel",
     "tip_error_panel",
-    "turn_error_panel",
     "velocity_panel",
 ]

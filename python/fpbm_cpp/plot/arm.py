@@ -1,31 +1,29 @@
-"""Panel of the arm: postures at equal intervals of time, in the plane or in space, with what its tip draws."""
+"""Panel of the arm: postures at equal intervals of time, in the plane or in space, and the tip's path."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from .._types import Array
+from ..arms import Arm
+from ..motion.run import Run
 from ..skeleton import joint_points, tip_axes
 from .legends import head_legend
 from .theme import LIGHT, TEXT, Theme
-
-if TYPE_CHECKING:
-    from .._core import Arm
-    from .._types import Array
-    from ..run import Run
 
 SNAPSHOTS = 11
 LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, "solid_capstyle": "round"}
 
 
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Postures at equal intervals of time, fading into the past, with the tip's path on its target and its last frame.
+    """Postures at equal intervals of time, the tip's path and its target, and the tip's axes at the end.
 
-    Axes made with projection='3d' for an arm in space, plain ones for a planar arm.
+    An arm in space needs axes made with projection='3d', a planar arm plain ones.
     """
     t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
     time = Normalize(0.0, float(t[-1]) or 1.0)
@@ -35,31 +33,31 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     draw_base(axes, run.arm, q[-1], theme)
     tip = axes.plot(*run.positions.T, color=theme.tip, lw=2.4, label="tip")
     target = draw_target(axes, run, theme)
-    draw_tip_frame(axes, run.arm, q[-1], theme)
+    _draw_tip_axes(axes, run.arm, q[-1], theme)
     frame_arm(axes, theme)
-    _draw_scale(axes, ScalarMappable(time, theme.fade), theme)
+    _draw_time_scale(axes, ScalarMappable(time, theme.fade), theme)
     head_legend(axes, theme, [*tip, *target])
 
 
 def draw_base(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
-    """Where the arm stands: a foot in the plane, a disc in space."""
+    """Draw the arm's base: a square in the plane, a circle in space."""
     if axes.name != "3d":
         axes.plot(0.0, 0.0, "s", color=theme.soft, ms=8, zorder=4)
         axes.plot(0.0, 0.0, "o", color=theme.paper, ms=3, zorder=4)
         return
     radius = 0.06 * np.ptp(joint_points(arm, q), axis=0).max()
-    turn = np.linspace(0.0, 2 * np.pi, 33)
-    axes.plot(radius * np.cos(turn), radius * np.sin(turn), 0.0 * turn, color=theme.soft, lw=1.6)
+    angle = np.linspace(0.0, 2 * np.pi, 33)
+    axes.plot(radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle, color=theme.soft, lw=1.6)
 
 
 def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
-    """The path that the tip is to follow."""
+    """Draw the path that the tip is to follow."""
     style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
     return list(axes.plot(*run.reference_positions.T, **style))
 
 
-def draw_tip_frame(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
-    """The tip's axes in a posture: x, y and z in red, green and blue, as is the custom."""
+def _draw_tip_axes(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
+    """Draw the tip's axes in posture q: x, y and z in red, green and blue."""
     points = joint_points(arm, q)
     length = 0.12 * np.ptp(points, axis=0).max()
     for axis, colour in zip(tip_axes(arm, q).T, theme.axes):
@@ -68,7 +66,7 @@ def draw_tip_frame(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
 
 
 def frame_arm(axes: Any, theme: Theme) -> None:
-    """Axes alike in all directions, with one distance between ticks, once all is drawn."""
+    """Give all axes one scale and one distance between ticks, once all is drawn."""
     space = axes.name == "3d"
     ends = np.array([axes.get_xlim(), axes.get_ylim(), *([axes.get_zlim()] if space else [])])
     reach = np.ptp(ends, axis=1)
@@ -88,18 +86,17 @@ def frame_arm(axes: Any, theme: Theme) -> None:
     axes.view_init(elev=20, azim=-55)
     axes.tick_params(pad=-3.0)
     for axis, least, most in zip(every, lower + 0.08 * reach, upper - 0.08 * reach):
-        axis.set_ticks(step * np.arange(np.ceil(least / step), np.floor(most / step) + 1))  # None in a corner.
+        axis.set_ticks(step * np.arange(np.ceil(least / step), np.floor(most / step) + 1))  # No tick in a corner.
         axis.set_pane_color(theme.pane)
         axis.line.set_color(theme.ink)
-        axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space have no other way.
+        axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space offer no other way.
         axis.labelpad = -5.0
 
 
-def _draw_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:
-    """What colour is what time."""
-    bar = axes.figure.colorbar(
-        colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=0.13 if axes.name == "3d" else 0.02
-    )
+def _draw_time_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:
+    """Draw the colour bar of the postures' times."""
+    pad = 0.13 if axes.name == "3d" else 0.02
+    bar = axes.figure.colorbar(colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=pad)
     bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
     bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
     bar.outline.set(edgecolor=theme.ink, linewidth=0.7)

@@ -1,24 +1,22 @@
-"""Panels of the tip's error: its size on a logarithmic axis, or axis by axis."""
+"""Panels of the tip's error: its norm on a logarithmic axis, or its components."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._types import Array
+from ..motion.run import Run
 from .legends import head_legend
 from .lines import draw_lines, envelope, in_decades, over_time
 from .theme import LIGHT, LINE, Theme
 
-if TYPE_CHECKING:
-    from .._types import Array
-    from ..run import Run
-
 
 def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """How far the tip is from its reference, and how far turned where the task is a pose, on a logarithmic axis."""
-    parts = {"[m]": _linear(run), "[rad]": _angular(run)}
+    """Norm of the position error and, where the task is a pose, of the orientation error, on a logarithmic axis."""
+    parts = {"[m]": run.position_error, "[rad]": run.orientation_error}
     for (name, rows), (colour, dash) in zip(parts.items(), theme.styles()):
         if rows.shape[1]:
             axes.plot(*envelope(run.t, np.linalg.norm(rows, axis=1)), color=colour, ls=dash, lw=LINE, label=name)
@@ -29,26 +27,18 @@ def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Tip error per axis, in the power of ten that suits it."""
-    _per_axis(axes, theme, run.t, _linear(run), ["x", "y", "z"], "m")
+    """Position error along each axis, in units of a power of ten."""
+    _components(axes, theme, run.t, run.position_error, ["x", "y", "z"], "m")
 
 
-def turn_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Error of the tip's orientation, about each axis, in the power of ten that suits it."""
-    angular = _angular(run)
-    names = ["angle"] if angular.shape[1] == 1 else ["about x", "y", "z"]
-    _per_axis(axes, theme, run.t, angular, names, "rad")
+def orientation_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Orientation error about each axis, in units of a power of ten."""
+    error = run.orientation_error
+    names = ["angle"] if error.shape[1] == 1 else ["about x", "y", "z"]
+    _components(axes, theme, run.t, error, names, "rad")
 
 
-def _linear(run: Run) -> Array:
-    return run.error[:, : run.positions.shape[1]]
-
-
-def _angular(run: Run) -> Array:
-    return run.error[:, run.positions.shape[1] :]
-
-
-def _per_axis(axes: Any, theme: Theme, t: Array, error: Array, names: Sequence[str], unit: str) -> None:
+def _components(axes: Any, theme: Theme, t: Array, error: Array, names: Sequence[str], unit: str) -> None:
     largest = float(np.abs(error).max(initial=0.0))
     exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
     scale = f"[$10^{{{exponent}}}$ {unit}]" if exponent else f"[{unit}]"

@@ -3,44 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from .._core import JointLimits
+from .._types import Array
+from ..arms import Arm, JointLimits
 from ..joint_text import joint_labels, joint_units
+from ..motion.run import Run
 from .legends import side_legend
 from .lines import draw_lines
 from .theme import LIGHT, Theme
 
-if TYPE_CHECKING:
-    from .._core import Arm
-    from .._types import Array
-    from ..run import Run
-
-NEAR = 0.1  # Of the way between a joint's bounds.
+NEAR = 0.1  # Of the distance between a joint's bounds.
 
 
 def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint positions, and those bounds that a joint comes near."""
+    """Joint positions, and the bounds that a joint comes near."""
     limits = _limits(run)
     _joint_lines(axes, theme, run, run.q, r"$q$", "", limits.lower, limits.upper)
 
 
 def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint velocities, and those bounds that a joint comes near."""
+    """Joint velocities, and the bounds that a joint comes near."""
     bound = _limits(run).velocity
     _joint_lines(axes, theme, run, run.qd, r"$\dot q$", "/s", -bound, bound)
 
 
 def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint accelerations, and those bounds that a joint comes near."""
+    """Joint accelerations, and the bounds that a joint comes near."""
     bound = _limits(run).acceleration
     _joint_lines(axes, theme, run, run.qdd, r"$\ddot q$", "/s²", -bound, bound)
 
 
 def joint_names(arm: Arm) -> list[str]:
-    """The joints' names, for a legend; those that slide are told from those that turn, where there are both."""
+    """The joints' names for a legend; prismatic joints are marked where there are revolute ones too."""
     units = joint_units(arm)
     return [
         f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(joint_labels(arm), units)
@@ -48,13 +45,13 @@ def joint_names(arm: Arm) -> list[str]:
 
 
 def unit_of(runs: Sequence[Run], per: str) -> str:
-    """Unit of all joints, or both."""
+    """Unit of a quantity of all joints: 'rad/s', or 'rad/s, m/s' where some are prismatic."""
     units = sorted({unit for run in runs for unit in joint_units(run.arm)}, reverse=True)
     return ", ".join(unit + per for unit in units)
 
 
 def _limits(run: Run) -> JointLimits:
-    """What the motion was kept within, or else the arm's own."""
+    """The limits that the motion kept, or else the arm's own."""
     given = run.options.get("limits")
     return given if isinstance(given, JointLimits) else run.arm.limits
 
@@ -64,19 +61,19 @@ def _joint_lines(
 ) -> None:
     draw_lines(axes, theme, run.t, values, joint_names(run.arm), f"{symbol} [{unit_of([run], per)}]")
     if len(values):
-        _bounds(axes, theme, values, lower, upper)
+        _draw_bounds(axes, theme, values, lower, upper)
     side_legend(axes, theme)
 
 
-def _bounds(axes: Any, theme: Theme, values: Array, lower: Array, upper: Array) -> None:
-    """A line at each bound that a joint comes near: in that joint's colour, or in ink where several share it."""
-    way = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
-    near = {-1: values.min(axis=0) - lower < NEAR * way, 1: upper - values.max(axis=0) < NEAR * way}
+def _draw_bounds(axes: Any, theme: Theme, values: Array, lower: Array, upper: Array) -> None:
+    """A line at each bound that a joint comes near, in that joint's colour, or in ink where several share the bound."""
+    span = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
     colours = [colour for (colour, _), _ in zip(theme.styles(), lower)]
     label = "bound"
-    for side, bounds in ((-1, lower), (1, upper)):
-        for bound in np.unique(bounds[near[side]]):
-            owners = np.flatnonzero(near[side] & (bounds == bound))
+    for bounds, distance in ((lower, values.min(axis=0) - lower), (upper, upper - values.max(axis=0))):
+        near = distance < NEAR * span
+        for bound in np.unique(bounds[near]):
+            owners = np.flatnonzero(near & (bounds == bound))
             colour = colours[owners[0]] if len(owners) == 1 else theme.ink
             axes.axhline(bound, color=colour, lw=0.8, ls=(0, (1, 1)), label=label, zorder=1.5)
             label = "_bound"

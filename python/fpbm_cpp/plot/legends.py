@@ -1,4 +1,4 @@
-"""Where legends go: in the line of a heading, beside one panel, or below all."""
+"""Legends: in the line of a heading, beside one panel, or below all panels."""
 
 from __future__ import annotations
 
@@ -8,19 +8,13 @@ from typing import Any
 
 from .theme import TEXT, Theme
 
+FOOT_ROW = 0.19  # Height of a row of the legend below all panels [in].
+
 
 def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -> None:
     """Legend of a few lines, right of the heading."""
-    _legend(
-        axes,
-        theme,
-        handles=handles or axes.get_lines(),
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        borderpad=0.2,
-        ncols=9,
-        handlelength=1.5,
-    )
+    place = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderpad": 0.2}
+    _legend(axes, theme, handles=handles or axes.get_lines(), ncols=9, handlelength=1.5, **place)
 
 
 def side_legend(axes: Any, theme: Theme) -> None:
@@ -31,7 +25,7 @@ def side_legend(axes: Any, theme: Theme) -> None:
 
 
 def foot_legend(part: Any, theme: Theme, panels: Sequence[Any], width: float, names: Sequence[str] = ()) -> None:
-    """One legend for all panels, whose own it replaces."""
+    """One legend for all panels, in place of their own."""
     entries: dict[str, Any] = dict(zip(names, panels[0].get_lines()))
     for axes in panels:
         if axes.get_legend():
@@ -41,13 +35,13 @@ def foot_legend(part: Any, theme: Theme, panels: Sequence[Any], width: float, na
     _legend(part, theme, handles=list(entries.values()), labels=list(entries), loc="center", ncols=across)
 
 
-def foot_rows(names: Sequence[str], width: float) -> int:
-    """How many rows a legend below all takes."""
-    return ceil(len(names) / _across(names, width)) if names else 0
+def foot_height(names: Sequence[str], width: float) -> float:
+    """Height of a legend below all panels [in]."""
+    return FOOT_ROW * ceil(len(names) / _across(names, width)) if names else 0.0
 
 
 def _across(names: Sequence[str], width: float) -> int:
-    """How many entries stand side by side: as the longest allows [in], alike in all rows."""
+    """Number of entries in a row: as many as the longest name allows in this width [in], and equal in all rows."""
     room = max(1, int(width / (0.5 + 0.072 * max(map(len, names)))))
     return ceil(len(names) / ceil(len(names) / room))
 

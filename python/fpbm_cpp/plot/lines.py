@@ -1,24 +1,22 @@
-"""Lines over time: one for each column of what is drawn."""
+"""Lines over time, one for each column of an array."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.ticker import LogLocator, NullLocator
 
+from .._types import Array
 from .theme import LINE, Theme
-
-if TYPE_CHECKING:
-    from .._types import Array
 
 SPANS = 400
 LEAST = float(np.finfo(float).eps)
 
 
 def draw_lines(axes: Any, theme: Theme, t: Array, values: Array, names: Sequence[str], label: str) -> None:
-    """One line for each column."""
+    """Draw one line for each column."""
     for column, name, (colour, dash) in zip(values.T, names, theme.styles()):
         axes.plot(t, column, color=colour, ls=dash, lw=LINE, label=name)
     over_time(axes, label)
@@ -26,13 +24,13 @@ def draw_lines(axes: Any, theme: Theme, t: Array, values: Array, names: Sequence
 
 
 def over_time(axes: Any, label: str) -> None:
-    """Time on the x axis from end to end."""
+    """Label the axes; time fills the x axis from end to end."""
     axes.set(xlabel="time [s]", ylabel=label)
     axes.margins(x=0.0)
 
 
 def label_time_below(column: Sequence[Any]) -> None:
-    """Of panels one below the other, label time on the last only; their y labels stand in line."""
+    """Label time on the last of these panels, which stand one below the other, and align their y labels."""
     for axes in column[:-1]:
         axes.tick_params(labelbottom=False)
         axes.set_xlabel("")
@@ -41,13 +39,13 @@ def label_time_below(column: Sequence[Any]) -> None:
 
 
 def from_zero(axes: Any) -> None:
-    """A y axis from zero upward."""
+    """Start the y axis at zero."""
     axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
     axes.locator_params(axis="y", nbins=4)
 
 
 def in_decades(axes: Any) -> None:
-    """A y axis of whole powers of ten, labelled sparsely."""
+    """Make the y axis logarithmic, from one power of ten to another."""
     drawn = [line.get_ydata() for line in axes.get_lines() if len(line.get_ydata())]
     least, most = (float(end([end(values) for values in drawn])) if drawn else 1.0 for end in (np.min, np.max))
     lower, upper = np.floor(np.log10(least)), np.ceil(np.log10(most))
@@ -58,7 +56,7 @@ def in_decades(axes: Any) -> None:
 
 
 def envelope(t: Array, values: Array) -> tuple[Array, Array]:
-    """The largest value in each of SPANS spans of time: the course of an error without the noise of its round-off."""
+    """The largest value in each of SPANS intervals: an error's trend without the noise of round-off."""
     values = np.maximum(values, LEAST)
     if len(t) <= SPANS:
         return t, values

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..motion.run import Run
 from .arm import arm_panel
-from .errors import error_panel, tip_error_panel, turn_error_panel
+from .errors import error_panel, orientation_error_panel, tip_error_panel
 from .joints import acceleration_panel, position_panel, velocity_panel
 from .limits import saturation_panel, scale_panel
 from .measures import manipulability_panel, null_space_panel
 from .theme import Theme
 
-if TYPE_CHECKING:
-    from ..run import Run
-
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel's heading, how it is drawn, whether its lines are the joints, and which runs it has something for."""
+    """A panel: its heading, its function, whether it has a line for each joint, and whether a run has data for it."""
 
     heading: str
     draw: Callable[[Any, Run, Theme], None]
@@ -31,7 +29,9 @@ PANELS = {
     "arm": Panel("Arm", arm_panel),
     "error": Panel("Tip error", tip_error_panel),
     "axis_errors": Panel("Tip error", error_panel),
-    "axis_turn_errors": Panel("Orientation error", turn_error_panel, suits=lambda run: run.task == "pose"),
+    "axis_orientation_errors": Panel(
+        "Orientation error", orientation_error_panel, suits=lambda run: run.task == "pose"
+    ),
     "positions": Panel("Joint positions", position_panel, of_joints=True),
     "velocities": Panel("Joint velocities", velocity_panel, of_joints=True),
     "accelerations": Panel("Joint accelerations", acceleration_panel, of_joints=True),
@@ -44,13 +44,13 @@ OVERVIEW = tuple(name for name in PANELS if not name.startswith("axis"))
 
 
 def choose(run: Run, panels: str | Sequence[str] | None) -> list[str]:
-    """The panels asked for, or the overview, as far as the run has something for them. Raises ValueError."""
+    """The panels asked for, or OVERVIEW, without those that the run has no data for. Raises ValueError."""
     asked = OVERVIEW if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
     for name in asked:
         if name not in PANELS:
             raise ValueError(f"panels: {name!r} must be one of {', '.join(PANELS)}")
         if asked.count(name) > 1:
-            raise ValueError(f"panels: {name!r} stands twice")
+            raise ValueError(f"panels: {name!r} is given twice")
     names = [name for name in asked if PANELS[name].suits(run)]
     if not names:
         raise ValueError(f"panels: {asked} leave nothing to draw of this run")

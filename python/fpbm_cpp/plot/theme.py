@@ -1,27 +1,29 @@
-"""The one look of all figures: colours, dashes and sizes of a paper's column, on white or on black."""
+"""The style of all figures: colours, dashes, and sizes that suit a paper's column."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
 
 from matplotlib.colors import Colormap, LinearSegmentedColormap
+from matplotlib.figure import Figure
 
-# Okabe and Ito's colours, told apart by colour-blind readers. Yellow is last, and no line's on white.
+# Okabe and Ito's colours, which colour-blind readers can tell apart. No line on white is drawn in yellow, the last.
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#F0E442")
 DASHES = ("-", "--", ":", "-.")
 
 TEXT = 9.0  # [pt]
-COLUMN, PAGE = 3.5, 64 / 9  # Width of one column of a journal and, nearly, of two [in].
+COLUMN, PAGE = 3.5, 64 / 9  # Width of one column of a journal, and of nearly two [in].
+TITLE_ROW = 0.17  # Height of a line of the title [in].
 DPI = 270  # A page is 1920 pixels wide.
 LINE = 1.4  # [pt]
 
 
 @dataclass(frozen=True)
 class Theme:
-    """What figures are drawn in: colours by what they are for, and of lines and of postures in turn."""
+    """Colours of a figure: background, text, the parts of the arm, lines, and postures from the first to the last."""
 
     paper: str
     ink: str
@@ -34,7 +36,7 @@ class Theme:
     fade: Colormap
 
     def styles(self) -> Iterator[tuple[str, str]]:
-        """Colour and dash of each line in turn: 28 that differ, neighbours in both, for readers of greyscale."""
+        """Colour and dash of each line: 28 different pairs; neighbours differ in both, also when printed in grey."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 
@@ -63,12 +65,20 @@ DARK = Theme(
 
 
 def theme_of(dark: bool) -> Theme:
-    """The theme of a figure on black, or on white."""
+    """The dark theme or the light one."""
     return DARK if dark else LIGHT
 
 
+def sheet(width: float, heights: Sequence[float], title: str, theme: Theme) -> tuple[Figure, list[Any]]:
+    """An empty figure, and its parts one below the other, of these heights [in]."""
+    head = TITLE_ROW * (title.count("\n") + 1) if title else 0.0
+    figure = Figure((width, head + sum(heights)), dpi=DPI, layout="constrained", facecolor=theme.paper)
+    figure.suptitle(title, fontsize=TEXT + 1, color=theme.ink)
+    return figure, list(figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0])
+
+
 def dress(axes: Any, theme: Theme, heading: str) -> None:
-    """Background, heading, grid and sizes of text, before anything is drawn."""
+    """Set background, heading, grid and text sizes, before anything is drawn."""
     axes.set_facecolor(theme.paper)
     axes.set_title(heading, loc="left", fontsize=TEXT, fontweight="bold", color=theme.ink, pad=4.0)
     axes.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)

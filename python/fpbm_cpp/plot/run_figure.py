@@ -1,4 +1,4 @@
-"""Figure of one motion: the panels that are asked for, laid out on a column or a page."""
+"""Figure of one motion: its panels, laid out on a column or a page."""
 
 from __future__ import annotations
 
@@ -6,63 +6,58 @@ import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from matplotlib.figure import Figure
 
+from ..motion.run import Run
 from .joints import joint_names
-from .legends import foot_legend, foot_rows
+from .legends import foot_height, foot_legend
 from .lines import label_time_below
 from .panels import PANELS, Panel, choose
-from .theme import COLUMN, DPI, PAGE, TEXT, Theme, dress, theme_of
+from .theme import COLUMN, PAGE, TITLE_ROW, Theme, dress, sheet, theme_of
 
-if TYPE_CHECKING:
-    from ..run import Run
-
-PAPER = ("arm", "axis_errors", "velocities", "accelerations")
-ROW, FOOT_ROW, TITLE_ROW, SLIDE = 1.45, 0.19, 0.17, 4.0  # [in]
+ROW, SLIDE = 1.45, 4.0  # [in]
 
 
-def compose(
-    run: Run, title: str = "", panels: int | str | Sequence[str] | None = None, *, dark: bool = False
+def plot_run(
+    run: Run, title: str | None = None, panels: str | Sequence[str] | None = None, *, dark: bool = False
 ) -> Figure:
-    """Figure of a run: the arm on the left, the first panels over time beside it, the rest below it.
+    """Figure of a run, as far as it went: the arm on the left, the first panels beside it, the others below it.
 
-    Sized for a paper, in text of 9 points: as wide as two columns, or as one where there are few panels and no arm.
+    Its text is 9 points high. It is two columns of a paper wide, or one column where there are few panels and no arm.
 
     Parameters
     ----------
     run : Run
         The motion.
-    title : str
-        Heading of the figure.
+    title : str, optional
+        Title of the figure; by default the scheme and the path.
     panels : sequence of str, optional
-        Names from PANELS, all but the errors per axis unless given. Those that the run has nothing for are left out:
-        'scale' and 'saturation' where no limits were kept, 'axis_turn_errors' where the task is no pose. A number
-        stands for so many panels of the paper's figures.
+        Names from PANELS; by default all but the components of the error. Panels that the run has no data for are left
+        out: 'scale' and 'saturation' without joint limits, 'axis_orientation_errors' where the task is a position.
     dark : bool
-        On black instead of white.
+        Dark background.
 
     Raises
     ------
     ValueError
-        Where a name is not in PANELS or stands twice, or no panel is left.
+        If a name is not in PANELS or is given twice, or no panel is left.
     """
-    names = choose(run, PAPER[:panels] if isinstance(panels, int) else panels)
+    names = choose(run, panels)
+    if title is None:
+        title = _title(run, 85 if len(_columns(names)[0]) > 1 else 42)
     return lay_out(run, title, {name: PANELS[name] for name in names}, theme_of(dark), lettered=len(names) > 1)[0]
 
 
-def plot_run(run: Run, *, panels: str | Sequence[str] | None = None, dark: bool = False) -> Figure:
-    """Figure of a whole run, as far as it went: compose() under a title that says what moved, how and along what."""
-    columns, _ = _columns(choose(run, panels))
+def _title(run: Run, width: int) -> str:
+    """Scheme and path, in lines of so many characters, and when the motion stopped if it stopped early."""
     scheme, path = (re.sub(r"\d+\.\d{5,}", _short, repr(part)) for part in (run.scheme, run.path))
-    width = 85 if len(columns) > 1 else 42
     whole = f"{scheme} along {path}"
     lines = [whole] if len(whole) <= width else [scheme, f"along {path}"]
     if not run.status:
         lines.append(f"stopped after t = {run.status.time:g} s")
-    title = [row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …")]
-    return compose(run, "\n".join(title), panels, dark=dark)
+    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …"))
 
 
 def _short(number: re.Match[str]) -> str:
@@ -75,15 +70,11 @@ def lay_out(
     """Figure of these panels, and the axes of each."""
     columns, rows = _columns(list(panels))
     width = PAGE if len(columns) > 1 else COLUMN
-    joints = joint_names(run.arm) if any(panel.of_joints for panel in panels.values()) else []
-    foot = FOOT_ROW * foot_rows(joints, width)
-    head = TITLE_ROW * (title.count("\n") + 1) if title else 0.0
+    foot = foot_height(joint_names(run.arm) if any(panel.of_joints for panel in panels.values()) else [], width)
     # Up to three panels beside the arm fill a slide of 16:9.
-    body = SLIDE - head - foot if "arm" in panels and rows <= 3 else ROW * rows + 0.25
-    figure = Figure((width, head + body + foot), dpi=DPI, layout="constrained", facecolor=theme.paper)
-    figure.suptitle(title, fontsize=TEXT + 1, color=theme.ink)
-    heights = [body, foot] if joints else [body]
-    upper, *lower = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
+    slide = SLIDE - foot - (TITLE_ROW * (title.count("\n") + 1) if title else 0.0)
+    body = slide if "arm" in panels and rows <= 3 else ROW * rows + 0.25
+    figure, (upper, *lower) = sheet(width, [body, foot] if foot else [body], title, theme)
     drawn = _grid(upper, columns, rows, space=run.positions.shape[1] == 3)
     for letter, (name, axes) in zip("abcdefghijkl", drawn.items()):
         dress(axes, theme, f"({letter}) {panels[name].heading}" if lettered else panels[name].heading)
@@ -96,7 +87,7 @@ def lay_out(
 
 
 def _columns(names: Sequence[str]) -> tuple[list[list[str]], int]:
-    """What stands in each column, and how many rows there are: the arm takes those that nothing else needs."""
+    """The panels of each column, and the number of rows; the arm takes the rows that its column has left."""
     rest = [name for name in names if name != "arm"]
     if "arm" in names:
         rows = ceil(len(rest) / 2) + 1
