@@ -5,19 +5,19 @@
 #include <type_traits>
 #include <utility>
 
-/// What comparing two Scalars comes to: a bool or, where a Scalar is many numbers side by side, a mask with a truth for
-/// each, which no branch takes. Code for any Scalar says all_of(truth), or leaves the choice to where(truth, x) = y, as
-/// std::experimental::simd does.
+/// Result of a comparison: bool, or a mask of lanes, which cannot drive an `if`.
+///
+/// Code for any Scalar uses all_of(mask), or where(mask, x) = y as std::experimental::simd does.
 namespace fpbm {
 
 template <typename Scalar>
 using Mask = decltype(std::declval<const Scalar&>() > std::declval<const Scalar&>());
 
-/// Whether a Scalar is many numbers, of which some may fail and the others go on.
+/// Whether a Scalar holds several numbers, one a lane. A lane may fail while the others go on.
 template <typename Scalar>
 inline constexpr bool kInLanes = !std::is_same_v<Mask<Scalar>, bool>;
 
-/// One of the numbers that a Scalar is.
+/// Type of one lane of a Scalar; Scalar itself where it is a single number.
 template <typename Scalar, typename = void>
 struct NumberOf {
   using type = Scalar;
@@ -37,7 +37,7 @@ using Number = typename NumberOf<Scalar>::type;
   return !truth;
 }
 
-/// What fails in some lanes becomes NaN there, and stays it; a single number's failure is its Status.
+/// Sets a lane of value to NaN where its mask is false. Does nothing to a single number, whose failure is a Status.
 template <typename Masks, typename Scalar>
 void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar& value) noexcept {
   if constexpr (kInLanes<Scalar>) {
@@ -45,13 +45,14 @@ void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar
   }
 }
 
-/// Whether all entries are finite. In lanes they need not be: what is not, the others do not see.
+/// Whether all entries are finite; always true in lanes, where a failed lane does not disturb the others.
 template <typename Derived>
 [[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::MatrixBase<Derived>& values) noexcept {
   if constexpr (kInLanes<typename Derived::Scalar>) {
     return true;
   } else {
-    return values.allFinite();
+    using Scalar = typename Derived::Scalar;
+    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "fpbm/core/sincos.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/sincos.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {

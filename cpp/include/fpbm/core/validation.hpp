@@ -2,27 +2,80 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
-/// What constructors demand of their arguments. Each failure names the argument, the index and the value.
+namespace fpbm {
+
+/// An argument that is out of range or of the wrong size.
+class ParameterError : public std::invalid_argument {
+ public:
+  ParameterError(std::string name, int index, double value, const std::string& message)
+      : std::invalid_argument(message), name_(std::move(name)), index_(index), value_(value) {}
+
+  /// The argument.
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Its entry, or -1 where the argument as a whole is wrong.
+  [[nodiscard]] int index() const noexcept { return index_; }
+  /// What it is: a number, a number of entries, or NaN where it is no number.
+  [[nodiscard]] double value() const noexcept { return value_; }
+
+ private:
+  std::string name_;
+  int index_;
+  double value_;
+};
+
+}  // namespace fpbm
+
+/// What constructors require of their arguments. Each failure is a ParameterError, whose message names the argument,
+/// the index and the value.
 namespace fpbm::validation {
 
-[[noreturn]] inline void fail(const std::string& argument, double value, const char* demand) {
+/// An argument, or an entry of it, and how messages name it.
+struct Argument {
+  Argument(const char* argument) : Argument(std::string(argument)) {}
+  Argument(const std::string& argument) : name(argument), text(argument) {}
+  Argument(const std::string& argument, Eigen::Index i, const std::string& label)
+      : name(argument), index(static_cast<int>(i)), text(label) {}
+
+  std::string name;
+  int index = -1;
+  std::string text;
+
+  /// A part of it: element("joints", 2) + ".axis".
+  [[nodiscard]] friend Argument operator+(Argument argument, const std::string& part) {
+    if (argument.index < 0) argument.name += part;
+    argument.text += part;
+    return argument;
+  }
+};
+
+inline Argument element(const char* argument, Eigen::Index i) {
+  return {argument, i, std::string(argument) + "[" + std::to_string(i) + "]"};
+}
+
+/// An entry of a matrix, whose index is its row.
+inline Argument element(const char* argument, Eigen::Index i, Eigen::Index j) {
+  return {argument, i, std::string(argument) + "[" + std::to_string(i) + ", " + std::to_string(j) + "]"};
+}
+
+/// Throws a ParameterError that says "<argument><what>".
+[[noreturn]] inline void reject(const Argument& argument, const std::string& what,
+                                double value = std::numeric_limits<double>::quiet_NaN()) {
+  throw ParameterError(argument.name, argument.index, value, argument.text + what);
+}
+
+/// Throws a ParameterError that says "<argument> = <value>: must be <demand>".
+[[noreturn]] inline void fail(const Argument& argument, double value, const char* demand) {
   char number[32];
   std::snprintf(number, sizeof number, "%.9g", value);
-  throw std::invalid_argument(argument + " = " + number + ": must be " + demand);
-}
-
-inline std::string element(const char* argument, Eigen::Index i) {
-  return std::string(argument) + "[" + std::to_string(i) + "]";
-}
-
-inline std::string element(const char* argument, Eigen::Index i, Eigen::Index j) {
-  return std::string(argument) + "[" + std::to_string(i) + ", " + std::to_string(j) + "]";
+  reject(argument, std::string(" = ") + number + ": must be " + demand, value);
 }
 
 /// demand(number) for the number, or each of the numbers, that a Scalar is.
@@ -36,21 +89,21 @@ void each_number(const Scalar& value, Demand&& demand) {
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
-void require_positive(const std::string& argument, const Scalar& values) {
+void require_positive(const Argument& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value > 0.0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
   });
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
-void require_non_negative(const std::string& argument, const Scalar& values) {
+void require_non_negative(const Argument& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value >= 0.0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
   });
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
-void require_finite(const std::string& argument, const Scalar& values) {
+void require_finite(const Argument& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!std::isfinite(value)) fail(argument, value, "finite");
   });
@@ -58,7 +111,7 @@ void require_finite(const std::string& argument, const Scalar& values) {
 
 /// Balance between two schemes: 0 ≤ value ≤ 1.
 template <typename Scalar, typename = Mask<Scalar>>
-void require_fraction(const std::string& argument, const Scalar& values) {
+void require_fraction(const Argument& argument, const Scalar& values) {
   each_number(values, [&](double value) {
     if (!(value >= 0.0 && value <= 1.0)) fail(argument, value, "in [0, 1]");
   });
@@ -74,10 +127,11 @@ void require_finite(const char* argument, const Eigen::MatrixBase<Derived>& valu
   for (Eigen::Index i = 0; i < values.size(); ++i) require_finite(element(argument, i), values(i));
 }
 
-inline void require_size(const char* argument, Eigen::Index size, Eigen::Index expected) {
+inline void require_size(const Argument& argument, Eigen::Index size, Eigen::Index expected) {
   if (size != expected) {
-    throw std::invalid_argument(std::string(argument) + " has " + std::to_string(size) + " entries: must have " +
-                                std::to_string(expected) + ", one per joint");
+    reject(argument,
+           " has " + std::to_string(size) + " entries: must have " + std::to_string(expected) + ", one per joint",
+           static_cast<double>(size));
   }
 }
 
@@ -91,9 +145,10 @@ void require_joint_vector(const char* argument, const Eigen::MatrixBase<Derived>
 /// Number of joints: at least one for each task row, at most kMaxDof.
 inline void require_dof(const char* argument, Eigen::Index dof, int task_rows) {
   if (dof < task_rows || dof > kMaxDof) {
-    throw std::invalid_argument(std::string(argument) + " has " + std::to_string(dof) + " entries: must have " +
-                                std::to_string(task_rows) + " to " + std::to_string(kMaxDof) +
-                                ", one per joint, and no fewer than the task has rows");
+    reject(argument,
+           " has " + std::to_string(dof) + " entries: must have " + std::to_string(task_rows) + " to " +
+               std::to_string(kMaxDof) + ", one per joint, and no fewer than the task has rows",
+           static_cast<double>(dof));
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/limits/box.hpp"
+#include "fpbm/linalg/cholesky.hpp"
 
 namespace fpbm {
 
@@ -16,7 +16,7 @@ namespace fpbm {
 /// goes in, unlike a guess at which joints are on their bounds: it does not chatter.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
-                                         const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {
+                                                  const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {
   Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
   gram.diagonal().array() += mu;
   Cholesky<M, Scalar> cholesky;

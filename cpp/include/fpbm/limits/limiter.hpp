@@ -1,8 +1,8 @@
 #pragma once
 
+#include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/saturation.hpp"
-#include "fpbm/limits/box_least_squares.hpp"
 
 namespace fpbm {
 
@@ -45,11 +45,11 @@ class Limiter {
   }
 
  private:
-  /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), s being the scale and s₀ the little one
-  /// below which the arm yields. At velocity level s is what is left of the task's velocity.
+  /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), s being the scale and s₀ the
+  /// little one below which the arm yields. At velocity level s is what is left of the task's velocity.
   template <int M>
-  void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box, const JointVector& desired,
-             Saturated<N, Scalar>& found) const noexcept {
+  void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box,
+             const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
     const Vector<M, Scalar> task = J.lazyProduct(desired);
     Scalar scale = found.scale;
     if constexpr (kLevel == Level::kVelocity) scale = J.lazyProduct(found.u).dot(task) / task.squaredNorm();

@@ -5,9 +5,9 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
-#include "fpbm/model/joint.hpp"
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
+#include "fpbm/model/joint.hpp"
 
 namespace fpbm {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/limits/box.hpp"
+#include "fpbm/linalg/null_basis.hpp"
 
 namespace fpbm {
 

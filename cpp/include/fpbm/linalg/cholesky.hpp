@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "fpbm/linalg/pair.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/pair.hpp"
 
 namespace fpbm {
 

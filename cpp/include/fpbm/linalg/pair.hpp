@@ -34,8 +34,8 @@ struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar>>> {
 };
 #endif
 
-/// PlainPair Scalars side by side, calculated with as one: a small algorithm written for a Value solves two problems at once
-/// with Value = Pair<Scalar>. A comparison holds where it holds for both.
+/// PlainPair Scalars side by side, calculated with as one: a small algorithm written for a Value solves two problems at
+/// once with Value = Pair<Scalar>. A comparison holds where it holds for both.
 template <typename Scalar>
 class Pair {
  public:

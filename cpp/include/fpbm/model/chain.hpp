@@ -22,26 +22,26 @@ struct Chain {
 namespace chain_check {
 
 template <typename Scalar>
-void require_transform(const std::string& name, const Transform<Scalar>& transform) {
-  validation::require_finite((name + ".p").c_str(), transform.p);
-  validation::require_finite((name + ".R").c_str(), transform.R.reshaped());
+void require_transform(const validation::Argument& name, const Transform<Scalar>& transform) {
+  validation::require_finite((name + ".p").text.c_str(), transform.p);
+  validation::require_finite((name + ".R").text.c_str(), transform.R.reshaped());
   const Matrix<3, 3, Scalar> gram = transform.R.transpose() * transform.R;
   const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
   const Vector<3, Scalar> x = transform.R.col(0);
   const Vector<3, Scalar> y = transform.R.col(1);
   if ((gram - Matrix<3, 3, Scalar>::Identity()).cwiseAbs().maxCoeff() > tolerance ||
       cross(x, y).dot(transform.R.col(2)) < Scalar(0)) {
-    throw std::invalid_argument(name + ".R: must be a rotation matrix");
+    validation::reject(name + ".R", ": must be a rotation matrix");
   }
 }
 
 template <typename Scalar>
-void require_bounds(const std::string& name, JointType type, const JointBounds<Scalar>& bounds) {
+void require_bounds(const validation::Argument& name, JointType type, const JointBounds<Scalar>& bounds) {
   const auto lower = static_cast<double>(bounds.lower);
   const auto upper = static_cast<double>(bounds.upper);
   if (!(lower < upper)) validation::fail(name + ".lower", lower, ("below upper = " + std::to_string(upper)).c_str());
   if (type == JointType::kContinuous && (std::isfinite(lower) || std::isfinite(upper))) {
-    throw std::invalid_argument(name + " is continuous: must have no lower and no upper bound");
+    validation::reject(name, " is continuous: must have no lower and no upper bound");
   }
   if (!(bounds.velocity > Scalar(0))) {
     validation::fail(name + ".velocity", static_cast<double>(bounds.velocity), "positive");
@@ -64,11 +64,12 @@ Eigen::Index require_chain(const Chain<Scalar>& chain, int n = Eigen::Dynamic) {
   if (n != Eigen::Dynamic) validation::require_size("joints", dof, n);
   for (Eigen::Index i = 0; i < dof; ++i) {
     const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
-    const std::string name = joint.name.empty() ? validation::element("joints", i) : "joint '" + joint.name + "'";
+    validation::Argument name = validation::element("joints", i);
+    if (!joint.name.empty()) name.text = "joint '" + joint.name + "'";
     chain_check::require_transform(name + ".placement", joint.placement);
-    validation::require_finite((name + ".axis").c_str(), joint.axis);
-    if (!(joint.axis.norm() > Scalar(0))) throw std::invalid_argument(name + ".axis is zero: must point somewhere");
-    if (joint.mimic.joint >= 0) throw std::invalid_argument(name + " moves with another: must be in a CoupledArm");
+    validation::require_finite((name + ".axis").text.c_str(), joint.axis);
+    if (!(joint.axis.norm() > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
+    if (joint.mimic.joint >= 0) validation::reject(name, " moves with another: must be in a CoupledArm");
     chain_check::require_bounds(name, joint.type, joint.bounds);
   }
   chain_check::require_transform("tip", chain.tip);

@@ -41,7 +41,7 @@ class CoupledArm {
         limits_.set(column(i), joint.bounds);
         continue;
       }
-      const std::string name = validation::element("joints", i) + ".mimic";
+      const validation::Argument name = validation::element("joints", i) + ".mimic";
       const Mimic<Scalar>& mimic = joint.mimic;
       if (mimic.joint >= length || column(mimic.joint) < 0) {
         validation::fail(name + ".joint", mimic.joint, "the index of a joint with a drive of its own");

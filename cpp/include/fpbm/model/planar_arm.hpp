@@ -58,9 +58,10 @@ class PlanarArm {
   /// The tip's angle is θₙ, to which every joint adds its own.
   template <bool kWithRate, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                              Kinematics<Space, N, Scalar>& out) const noexcept {
+                                     Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
-    static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>, "a planar arm has tasks Position<2> and PlanarPose");
+    static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>,
+                  "a planar arm has tasks Position<2> and PlanarPose");
     const Eigen::Index n = lengths_.size();
     out.J.resize(Space::kRows, n);
     if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
@@ -71,7 +72,7 @@ class PlanarArm {
     Vector<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
-    [[maybe_unused]] Scalar rate(0);
+    [[maybe_unused]] Scalar rate(0);  // Of the link's angle.
     for (Eigen::Index i = 0; i < n; ++i) {
       const Scalar x = lengths_(i) * cosines(i);
       const Scalar y = lengths_(i) * sines(i);
@@ -83,18 +84,12 @@ class PlanarArm {
         out.Jd(1, i) = -rate * y;
       }
     }
-    Vector<2, Scalar> way = Vector<2, Scalar>::Zero();  // From a joint to the tip, turned by 90°.
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-      way += out.J.col(i).template head<2>();
-      out.J.col(i).template head<2>() = way;
+    for (Eigen::Index i = n - 2; i >= 0; --i) {
+      out.J.col(i).template head<2>() += out.J.col(i + 1).template head<2>();
+      if constexpr (kWithRate) out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
     }
-    out.tip(0) = way(1);
-    out.tip(1) = -way(0);
-    if constexpr (kWithRate) {
-      for (Eigen::Index i = n - 2; i >= 0; --i) {
-        out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
-      }
-    }
+    out.tip(0) = out.J(1, 0);
+    out.tip(1) = -out.J(0, 0);
     if constexpr (kWithOrientation) {
       out.tip(2) = angles(n - 1);
       out.J.row(2).setOnes();

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -49,7 +49,9 @@ struct Screws {
     fill(
         Jd, axis_rates,
         [this](int i) { return cross_entry(axis_rates, points, i) + cross_entry(axes, point_rates, i); },
-        [this](Eigen::Index j) { return Vector3(cross_joint(axis_rates, points, j) + cross_joint(axes, point_rates, j)); });
+        [this](Eigen::Index j) {
+          return Vector3(cross_joint(axis_rates, points, j) + cross_joint(axes, point_rates, j));
+        });
   }
 
  private:

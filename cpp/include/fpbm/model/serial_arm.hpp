@@ -102,9 +102,10 @@ class SerialArm {
   /// its rate.
   template <bool kWithRate, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                              Kinematics<Space, N, Scalar>& out) const noexcept {
+                                     Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
-    static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>, "a serial arm has tasks Position<3> and Pose");
+    static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
+                  "a serial arm has tasks Position<3> and Pose");
     const Vector<N, Scalar> angles = turns_.cwiseProduct(q) + offsets_;
     Vector<N, Scalar> sines;
     Vector<N, Scalar> cosines;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/task/reference.hpp"

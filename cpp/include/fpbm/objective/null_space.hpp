@@ -27,6 +27,7 @@ class NullSpace {
     validation::require_non_negative("null_damping", damping);
     NullSpace changed = *this;
     changed.damping_ += damping;
+    changed.has_damping_ = !all_of(changed.damping_ == Scalar(0));
     return changed;
   }
 
@@ -69,7 +70,10 @@ class NullSpace {
     NullSpace result;
     const Eigen::Index dof = get(0).constant_.size();
     result.damping_ = Scalar([&](auto lane) { return get(lane).damping_; });
-    for (std::size_t lane = 0; lane < Scalar::size(); ++lane) result.has_constant_ |= get(lane).has_constant_;
+    for (std::size_t lane = 0; lane < Scalar::size(); ++lane) {
+      result.has_damping_ |= get(lane).has_damping_;
+      result.has_constant_ |= get(lane).has_constant_;
+    }
     for (Eigen::Index i = 0; i < dof; ++i) {
       result.stiffness_(i) = Scalar([&](auto lane) { return get(lane).stiffness_(i); });
       result.constant_(i) = Scalar([&](auto lane) { return get(lane).constant_(i); });
@@ -85,7 +89,7 @@ class NullSpace {
   /// False where z is zero whatever the state.
   template <Level kLevel>
   [[nodiscard]] bool active() const noexcept {
-    return has_constant_ || (kLevel == Level::kAcceleration && !all_of(damping_ == Scalar(0)));
+    return has_constant_ || (kLevel == Level::kAcceleration && has_damping_);
   }
 
   /// z in this state.
@@ -123,6 +127,7 @@ class NullSpace {
   static constexpr Eigen::Index kSize = N == Eigen::Dynamic ? 0 : N;
 
   Scalar damping_{0};
+  bool has_damping_ = false;
   bool has_constant_ = false;
   Vector<N, Scalar> stiffness_ = Vector<N, Scalar>::Zero(kSize);  ///< Of each joint.
   Vector<N, Scalar> constant_ = Vector<N, Scalar>::Zero(kSize);   ///< c + kₚ q_rest + what centring adds.

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "fpbm/linalg/cholesky.hpp"
-#include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/task/feedback.hpp"
-#include "fpbm/singular/lost_directions.hpp"
 #include "fpbm/objective/null_space.hpp"
+#include "fpbm/singular/lost_directions.hpp"
+#include "fpbm/task/feedback.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {

@@ -11,8 +11,8 @@ namespace fpbm {
 /// than the joints have, which would make them swing: the field slowed until it does not. The field is the one at q.
 template <typename Loop, typename Target, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> slow_down(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits,
-                                       const Target& reference, const Vector<N, Scalar>& q,
-                                       const Vector<N, Scalar>& field, const Vector<N, Scalar>& desired) noexcept {
+                                          const Target& reference, const Vector<N, Scalar>& q,
+                                          const Vector<N, Scalar>& field, const Vector<N, Scalar>& desired) noexcept {
   const auto& bounds = limits.bounds();
   Scalar ahead = limits.tick();
   for (Eigen::Index i = 0; i < field.size(); ++i) {

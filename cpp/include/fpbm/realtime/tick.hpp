@@ -28,7 +28,8 @@ struct TrackerOptions {
   Scalar max_error = Scalar(0.1);
   /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and takes away
   /// the error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
-  /// the task is slowed or damped, or its target farther than max_error, and adds integral_bound at most [m/s², or m/s].
+  /// the task is slowed or damped, or its target farther than max_error, and adds integral_bound at most [m/s², or
+  /// m/s].
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Stands in where the scheme has none.

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "fpbm/sim/closed_loop.hpp"
-#include "fpbm/sim/rk4.hpp"
+#include "fpbm/limits/limiter.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/scheme/set_damping.hpp"
-#include "fpbm/limits/limiter.hpp"
+#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/sim/rk4.hpp"
 
 /// One tick of a control loop.
 ///
@@ -180,7 +180,7 @@ class Tracker {
 
   /// What is desired, within the limits; where the scheme failed, or on request, the way to rest.
   [[nodiscard, gnu::noinline]] JointVector limited(const Matrix<Space::kRows, N, Scalar>& J, const JointState& state,
-                                           const JointVector& desired, Result& result) const noexcept {
+                                                   const JointVector& desired, Result& result) const noexcept {
     const bool braking = stopping_ || failed(result.status);
     const auto found = braking ? limiter_.brake(state) : limiter_.motion(J, state, desired);
     result.scale = found.scale;

@@ -52,42 +52,26 @@ struct AccelerationScheme {
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
+    constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
+    const auto& J = kinematics.J;
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    if constexpr (kUnit) {
-      return resolve_single(b, kinematics, reference, state, qdd);
-    } else {
-      return takes_one_gram() ? resolve_single(b, kinematics, reference, state, qdd)
-                              : resolve_pair(b, kinematics, reference, state, qdd);
+    if (all_of(alpha == Scalar(0)) && (kUnit || !projects())) {
+      return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
     }
+    if (kUnit || all_of(alpha == Scalar(1))) {
+      const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
+        const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
+        return weights.solve(Jdtmu);
+      };
+      return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
+    }
+    return resolve_pair(b, kinematics, reference, state, qdd);
   }
 
  private:
-  static constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
-
-  /// Whether one of JJᵀ and JW⁻¹Jᵀ is enough: α = 1, or α = 0 with nothing to project by N_W.
-  [[nodiscard]] bool takes_one_gram() const noexcept {
-    return all_of(alpha == Scalar(1)) || (all_of(alpha == Scalar(0)) && all_of(singular.brake() == Scalar(0)) &&
-                                          !null_space.template active<kLevel>());
-  }
-
-  /// One factorisation: W = I, α = 1, or α = 0, where J⁺ alone is left.
-  template <typename Space>
-  [[nodiscard]] Status resolve_single(const Vector<Space::kRows, Scalar>& b,
-                                      const Kinematics<Space, N, Scalar>& kinematics,
-                                      const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                                      Vector<N, Scalar>& qdd) const noexcept {
-    constexpr int M = Space::kRows;
-    const auto& J = kinematics.J;
-    const bool weighted = !all_of(alpha == Scalar(0));
-    Matrix<N, M, Scalar> WinvJt = J.transpose();
-    if (!kUnit && weighted) WinvJt = weights.solve(J.transpose());
-    const Scalar inverse_bound = weighted ? weights.template inverse_bound<Scalar>() : Scalar(1);
-    const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
-      const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
-      return weights.solve(Jdtmu);
-    };
-    return least_norm<kLevel, M, N, Scalar>(WinvJt, inverse_bound, b, weighted, drift, null_space, singular, J, state,
-                                            qdd);
+  /// Whether there may be a motion for N_W to project.
+  [[nodiscard]] bool projects() const noexcept {
+    return null_space.template active<kLevel>() || !all_of(singular.brake() == Scalar(0));
   }
 
   /// Two factorisations, made side by side:
@@ -102,8 +86,9 @@ struct AccelerationScheme {
                                                   Vector<N, Scalar>& qdd) const noexcept {
     constexpr int M = Space::kRows;
     const auto& J = kinematics.J;
-    DampedGram<M, N, Pair<Scalar>> gram(singular, J);  // Of JJᵀ and JW⁻¹Jᵀ.
-    const Status status = gram.factor(weights.with_unit(J), Scalar(1));
+    DampedGram<M, N, Pair<Scalar>> gram(singular, J);                // Of JJᵀ and JW⁻¹Jᵀ.
+    const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);  // Jᵀ and W⁻¹Jᵀ.
+    const Status status = gram.factor(WinvJt, Scalar(1));
     if (failed(status)) return status;
 
     const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
@@ -117,8 +102,8 @@ struct AccelerationScheme {
     const Vector<M, Scalar> lambda2 = second<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)));
 
     const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
-    const Vector<N, Scalar> Jtlambda = J.transpose().lazyProduct(lambda2);
-    const Vector<N, Scalar> result = J.transpose().lazyProduct(shared) + u + weights.solve(Jtlambda);
+    const Vector<N, Pair<Scalar>> parts = WinvJt.lazyProduct(side_by_side<M, 1, Scalar>(shared, lambda2));
+    const Vector<N, Scalar> result = u + first<N, 1, Scalar>(parts) + second<N, 1, Scalar>(parts);
     if (!is_finite(result)) return Status::kNotFinite;
     qdd = result;
     return status;

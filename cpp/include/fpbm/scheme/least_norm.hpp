@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/objective/null_space.hpp"
@@ -7,29 +9,32 @@
 
 namespace fpbm {
 
+/// For laws without a drift.
+struct NoDrift {};
+
 /// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
 ///
 ///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
 ///
-/// WinvJt: W⁻¹Jᵀ. inverse_bound: bound on the largest eigenvalue of W⁻¹. drift(gram) is a part of u₀ that needs the
-/// factorised Gram matrix JW⁻¹Jᵀ; it counts where drifts is true.
+/// drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ, or NoDrift.
 /// Damped near singular postures, and then kDamped. Leaves u unchanged where it fails. Flattened, since a large
 /// translation unit may not inline small calls.
-template <Level kLevel, int M, int N, typename Scalar, typename Drift>
-[[nodiscard, gnu::flatten]] Status least_norm(const Matrix<N, M, Scalar>& WinvJt, Scalar inverse_bound,
-                                              const Vector<M, Scalar>& v, bool drifts, const Drift& drift,
+template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Drift>
+[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Drift& drift,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
+  const auto WinvJt = weights.solve_Jt(J);
   DampedGram<M, N, Scalar> gram(damping, J);
-  const Status status = gram.factor(WinvJt, inverse_bound);
+  const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
   if (failed(status)) return status;
 
-  Vector<N, Scalar> result;
+  constexpr bool kDrifts = !std::is_same_v<Drift, NoDrift>;
   const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
-  if (drifts || braked || null_space.template active<kLevel>()) {
+  Vector<N, Scalar> result;
+  if (kDrifts || braked || null_space.template active<kLevel>()) {
     Vector<N, Scalar> u0 = null_space.template at<kLevel>(state);
-    if (drifts) u0 += drift(gram);
+    if constexpr (kDrifts) u0 += drift(gram);
     if (braked) u0 -= gram.brake() * state.qd;
     const Vector<M, Scalar> rest = v - J.lazyProduct(u0);
     result = u0 + WinvJt.lazyProduct(gram.solve(rest));

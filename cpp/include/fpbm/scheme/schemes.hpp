@@ -58,23 +58,21 @@ template <int N, typename Scalar = double, typename Weights>
     const Weights& weights, named::NotDeduced<Scalar> k = Scalar(0), const NullSpace<N, Scalar>& null_space = {},
     const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
   return VelocityScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>>(named::weights_of<N, Scalar>(weights), k,
-                                                                        null_space, singular);
+                                                                         null_space, singular);
 }
 
 /// Minimum acceleration norm, (8): qdd = J⁺(xdd − Jd qd). With z it is the general solution (5).
 template <int N, typename Scalar = double>
 [[nodiscard]] AccelerationScheme<N, Scalar, UnitWeights> MAN(
-    const NullSpace<N, Scalar>& null_space = {},
-    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+    const NullSpace<N, Scalar>& null_space = {}, const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
   return {Scalar(0), UnitWeights{}, Scalar(0), Scalar(0), null_space, singular};
 }
 
 /// Feedback-added pseudoinverse-type balanced minimisation, (13): the balance (16) of MAN and WMVN with feedback.
 template <int N, typename Scalar = double, typename Weights>
 [[nodiscard]] AccelerationScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>> FPBM(
-    named::NotDeduced<Scalar> alpha, const Weights& weights, named::NotDeduced<Scalar> k1,
-    named::NotDeduced<Scalar> k2, const NullSpace<N, Scalar>& null_space = {},
-    const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
+    named::NotDeduced<Scalar> alpha, const Weights& weights, named::NotDeduced<Scalar> k1, named::NotDeduced<Scalar> k2,
+    const NullSpace<N, Scalar>& null_space = {}, const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
   return {alpha, named::weights_of<N, Scalar>(weights), k1, k2, null_space, singular};
 }
 

@@ -42,13 +42,8 @@ struct VelocityScheme {
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd) const noexcept {
-    constexpr int M = Space::kRows;
-    const auto& J = kinematics.J;
-    const Matrix<N, M, Scalar> WinvJt = weights.solve(J.transpose());
-    const auto no_drift = [](const auto&) noexcept { return Vector<N, Scalar>(); };
-    return least_norm<kLevel, M, N, Scalar>(WinvJt, weights.template inverse_bound<Scalar>(),
-                                            commanded_velocity(k, kinematics, reference), false, no_drift,
-                                            null_space, singular, J, state, qd);
+    const auto v = commanded_velocity(k, kinematics, reference);
+    return least_norm<kLevel>(weights, v, NoDrift{}, null_space, singular, kinematics.J, state, qd);
   }
 };
 

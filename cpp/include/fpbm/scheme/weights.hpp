@@ -1,15 +1,18 @@
 #pragma once
 
+#include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/pair.hpp"
-#include "fpbm/core/validation.hpp"
 
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
 ///
 /// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
-/// too small. The resolvers ask for three things: solve(A) = W⁻¹A, with_unit(J) = Jᵀ and W⁻¹Jᵀ side by side, and a
-/// bound on the largest eigenvalue of W⁻¹. require_dof throws std::invalid_argument where W is for another number of
-/// joints.
+/// too small. Each has the same functions:
+///   solve(a)         W⁻¹a of a vector
+///   solve_Jt(J)      W⁻¹Jᵀ
+///   with_unit(J)     Jᵀ and W⁻¹Jᵀ side by side
+///   inverse_bound()  a bound on the largest eigenvalue of W⁻¹
+///   require_dof(n)   throws std::invalid_argument where W is for another number of joints
 namespace fpbm {
 
 /// W = I.
@@ -22,8 +25,13 @@ struct UnitWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return A.derived();
+  [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return a.derived();
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto solve_Jt(const Eigen::MatrixBase<Derived>& J) const noexcept {
+    return J.derived().transpose();
   }
 
   template <int M, int N, typename Scalar>
@@ -63,8 +71,13 @@ class DiagonalWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return inverse_.asDiagonal() * A.derived();
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return inverse_.asDiagonal() * a.derived();
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Scalar> solve_Jt(const Matrix<M, N, Scalar>& J) const noexcept {
+    return solve(J.transpose());
   }
 
   template <int M>
@@ -114,13 +127,18 @@ class DenseWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return inverse_.lazyProduct(A.derived());
+  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return inverse_.lazyProduct(a.derived());
+  }
+
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Scalar> solve_Jt(const Matrix<M, N, Scalar>& J) const noexcept {
+    return solve(J.transpose());
   }
 
   template <int M>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    return side_by_side<N, M, Scalar>(J.transpose(), solve(J.transpose()));
+    return side_by_side<N, M, Scalar>(J.transpose(), solve_Jt(J));
   }
 
  private:

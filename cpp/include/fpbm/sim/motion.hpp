@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "fpbm/core/space.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/space.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {

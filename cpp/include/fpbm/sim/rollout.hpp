@@ -3,14 +3,14 @@
 #include <type_traits>
 
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/status.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
-#include "fpbm/sim/closed_loop.hpp"
-#include "fpbm/sim/rk4.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/sim/anchored_path.hpp"
+#include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/motion.hpp"
+#include "fpbm/sim/rk4.hpp"
 #include "fpbm/sim/time_grid.hpp"
 #include "fpbm/sim/watch.hpp"
 #include "fpbm/task/reference.hpp"

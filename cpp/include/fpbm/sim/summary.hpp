@@ -6,8 +6,8 @@
 #include <type_traits>
 
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/space.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/space.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/manipulability.hpp"
 #include "fpbm/sim/motion.hpp"
@@ -17,9 +17,9 @@ namespace fpbm {
 /// What a motion comes to. Of joint vectors it is the largest entry by size, ‖·‖∞; largest and peak are over time.
 template <typename Scalar = double>
 struct MotionSummary {
-  Scalar max_error;       ///< Distance of the tip from its reference [m].
+  Scalar max_error;              ///< Distance of the tip from its reference [m].
   Scalar max_orientation_error;  ///< Angle between the tip's orientation and its reference [rad]; 0 where it is free.
-  Scalar peak_velocity;       ///< [rad/s], or [m/s] for a prismatic joint, as everywhere below
+  Scalar peak_velocity;          ///< [rad/s], or [m/s] for a prismatic joint, as everywhere below
   Scalar final_velocity;
   Scalar peak_acceleration;  ///< [rad/s²]
   Scalar final_acceleration;

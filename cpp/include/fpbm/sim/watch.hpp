@@ -25,8 +25,8 @@ class ErrorWatch {
   /// Whether e came here by its rate of h seconds ago. travel is the way of the reference in between, turn the
   /// largest step of a joint [rad], size the largest value that a joint adds to what e is a difference of, and all but
   /// turn and h [s] are in e's units.
-  [[nodiscard]] Mask<Scalar> follows(const TaskVector& error, const TaskVector& rate, Scalar h, Scalar travel, Scalar turn,
-                                      Scalar size) const noexcept {
+  [[nodiscard]] Mask<Scalar> follows(const TaskVector& error, const TaskVector& rate, Scalar h, Scalar travel,
+                                     Scalar turn, Scalar size) const noexcept {
     using std::sqrt;
     if (!started_) return Mask<Scalar>(true);
     const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
@@ -65,9 +65,9 @@ class TaskWatch {
   /// path's pieces meet. Where the scheme was damped, the reference must not outrun the tip by more than one step.
   template <Level kLevel>
   [[nodiscard]] Mask<Scalar> on_course(const Kinematics<Space, N, Scalar>& kinematics,
-                                        const Reference<Space, Scalar>& arrived,
-                                        const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                                        [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
+                                       const Reference<Space, Scalar>& arrived,
+                                       const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                                       [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h, bool damped) noexcept {
     using TaskVector = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar turn = h * state.qd.cwiseAbs().maxCoeff();

@@ -9,8 +9,8 @@ namespace fpbm {
 
 /// v = xd + k (x ⊖ f(q)): what J qd is to be.
 template <typename Space, int N, typename Scalar>
-[[nodiscard]] Vector<Space::kRows, Scalar> commanded_velocity(Scalar k, const Kinematics<Space, N, Scalar>& kinematics,
-                                                              const Reference<Space, Scalar>& reference) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_velocity(
+    Scalar k, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference) noexcept {
   Vector<Space::kRows, Scalar> v = reference.xd;
   if (!all_of(k == Scalar(0))) v += k * Space::template difference<Scalar>(reference.x, kinematics.tip);
   return v;
@@ -18,13 +18,14 @@ template <typename Space, int N, typename Scalar>
 
 /// b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)): what J qdd is to be.
 template <typename Space, int N, typename Scalar>
-[[nodiscard]] Vector<Space::kRows, Scalar> commanded_acceleration(Scalar k1, Scalar k2,
-                                                                  const Kinematics<Space, N, Scalar>& kinematics,
-                                                                  const Reference<Space, Scalar>& reference,
-                                                                  const State<N, Scalar>& state) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
+    Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
+    const State<N, Scalar>& state) noexcept {
   Vector<Space::kRows, Scalar> b = reference.xdd - kinematics.Jd.lazyProduct(state.qd);
-  if (!all_of(k1 == Scalar(0))) b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
-  if (!all_of(k2 == Scalar(0))) b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  if (!all_of(k1 + k2 == Scalar(0))) {
+    b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
+    b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  }
   return b;
 }
 

@@ -8,8 +8,8 @@ namespace fpbm {
 template <typename Scalar = double>
 struct TipBounds {
   Scalar velocity = std::numeric_limits<Scalar>::infinity();              ///< [m/s]
-  Scalar acceleration = std::numeric_limits<Scalar>::infinity();       ///< [m/s²]
-  Scalar angular_velocity = std::numeric_limits<Scalar>::infinity();          ///< [rad/s]
+  Scalar acceleration = std::numeric_limits<Scalar>::infinity();          ///< [m/s²]
+  Scalar angular_velocity = std::numeric_limits<Scalar>::infinity();      ///< [rad/s]
   Scalar angular_acceleration = std::numeric_limits<Scalar>::infinity();  ///< [rad/s²]
 };
 

@@ -54,9 +54,10 @@ class Waypoints {
     require_bound("angular_velocity", bounds.angular_velocity);
     require_bound("angular_acceleration", bounds.angular_acceleration);
     const TipBounds<Scalar> peak = lasting(points, Scalar(1)).peaks();
-    const Scalar duration = std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
-                                     std::max(std::sqrt(peak.acceleration / bounds.acceleration),
-                                              std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
+    const Scalar duration =
+        std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
+                 std::max(std::sqrt(peak.acceleration / bounds.acceleration),
+                          std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
     if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must hold the tip back");
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
@@ -111,7 +112,7 @@ class Waypoints {
 
   static void require_points(const std::vector<Point>& points) {
     if (points.size() < 2) {
-      throw std::invalid_argument("points has " + std::to_string(points.size()) + " entries: must have 2 at least");
+      validation::reject("points", " has " + std::to_string(points.size()) + " entries: must have 2 at least");
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       Scalar numbers[Space::kSize];
@@ -126,8 +127,8 @@ class Waypoints {
 
   static const std::vector<Scalar>& required(const std::vector<Scalar>& times, std::size_t points) {
     if (times.size() != points) {
-      throw std::invalid_argument("times has " + std::to_string(times.size()) + " entries: must have " +
-                                  std::to_string(points) + ", one per point");
+      validation::reject("times", " has " + std::to_string(times.size()) + " entries: must have " +
+                                      std::to_string(points) + ", one per point");
     }
     if (times[0] != Scalar(0)) validation::fail("times[0]", static_cast<double>(times[0]), "0");
     for (std::size_t i = 1; i < times.size(); ++i) {
@@ -153,8 +154,8 @@ class Waypoints {
       lengths[i] = way.template head<kLinear>().norm();
       angles[i] = way.template tail<Space::kRows - kLinear>().norm();
       if (!(lengths[i] + angles[i] > Scalar(0))) {
-        throw std::invalid_argument(validation::element("points", static_cast<Eigen::Index>(i)) +
-                                    ": must differ from the one before");
+        validation::reject(validation::element("points", static_cast<Eigen::Index>(i)),
+                           ": must differ from the one before");
       }
     }
     const Scalar length = std::accumulate(lengths.begin(), lengths.end(), Scalar(0));
