@@ -1,0 +1,229 @@
+"""Chains of joints from URDF files.
+
+Names, numbers and the tree must be sound in the whole file; anything else matters only between base and tip.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from graphlib import CycleError, TopologicalSorter
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._core import MAX_DOF, rotation
+from .._types import Array
+from ..arms import Joint
+from ..errors import ParameterError
+from .urdf_file import UrdfJoint, read_robot
+
+TYPES = ("revolute", "continuous", "prismatic", "fixed")
+Tree = dict[str, "UrdfJoint | None"]  # The joint above each link, None above the root.
+Follow = tuple[str, float, float]  # Leader, ratio, offset: a position is ratio times the leader's, plus offset.
+
+
+def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array]:
+    """Read the joints that move from link base (the root unless given) to link tip, and the tip's frame.
+
+    Each joint is placed as seen from the one before [m]; the tip, shape (4, 4), as seen from the last. Fixed joints are
+    folded into these frames. A joint that mimics another keeps that one's index, ratio and offset, and the other's
+    bounds are narrowed so that both stay within theirs. Where the other does not move between base and tip, the joint
+    is held where the other's zero puts it, and a UserWarning says so.
+
+    Raises an OSError where the file cannot be read, a ParameterError where tip or base is none of its links, and a
+    ValueError that begins with the path where it is no sound URDF or has no such chain.
+    """
+    name = os.fsdecode(path)
+    try:
+        links, every = read_robot(name)
+        way = _way(_tree(links, every), tip, base)
+        follows = _follows(way, {joint.name: joint.mimic for joint in every})
+        joints, frame, held = _chain(way, follows)
+        joints = _coupled(joints, follows)
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    for joint in held:
+        leader, _, offset = follows[joint.name]
+        position = f"{offset:g} {'m' if joint.type == 'prismatic' else 'rad'}"
+        reason = f"it mimics {leader!r}, which does not move between base and tip"
+        warnings.warn(f"{name}: joint {joint.name!r} is held at {position}: {reason}", stacklevel=3)
+    return joints, frame
+
+
+def _tree(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
+    above: Tree = dict.fromkeys(links)
+    for joint in joints:
+        for role, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in above:
+                raise ValueError(f"joint {joint.name!r}: {role} link {link!r} does not exist")
+        other = above[joint.child]
+        if other is not None:
+            raise ValueError(f"link {joint.child!r} is the child of two joints, {other.name!r} and {joint.name!r}")
+        above[joint.child] = joint
+    try:
+        TopologicalSorter({link: (joint.parent,) for link, joint in above.items() if joint}).prepare()
+    except CycleError as error:
+        raise ValueError(f"its links form a loop: {_listed(error.args[1])}") from None
+    roots = [link for link, joint in above.items() if joint is None]
+    if len(roots) != 1:
+        raise ValueError(f"links that are no joint's child: {_listed(roots)}: must be one, the root")
+    return above
+
+
+def _listed(names: Iterable[str]) -> str:
+    shown = list(map(repr, names))
+    more = [f"{len(shown) - 12} more"] if len(shown) > 12 else []
+    return ", ".join(shown[:12] + more) or "none"
+
+
+def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
+    """The joints from base to tip."""
+    up = _to_root(above, "tip", tip)
+    links = [tip, *(joint.parent for joint in up)]
+    if base is None:
+        base = links[-1]
+    others = {base, *(joint.parent for joint in _to_root(above, "base", base))}
+    if base not in links:
+        fork = next(link for link in links if link in others)
+        raise ValueError(
+            f"tip {tip!r} is not below base {base!r}, they have {fork!r} in common: "
+            f"base must lie between the root {links[-1]!r} and the tip"
+        )
+    way = up[: links.index(base)][::-1]
+    count = _moving(way)
+    if not 1 <= count <= MAX_DOF:
+        raise ValueError(f"{count or 'no'} joints move between base {base!r} and tip {tip!r}: must be 1 to {MAX_DOF}")
+    return way
+
+
+def _moving(joints: Iterable[UrdfJoint]) -> int:
+    return sum(joint.type != "fixed" for joint in joints)
+
+
+def _to_root(above: Tree, role: str, link: str) -> list[UrdfJoint]:
+    if link not in above:
+        raise ParameterError(role, None, link, f"{role} = {link!r}: must be a link{_hint(above, str(link))}")
+    joints = []
+    while (joint := above[link]) is not None:
+        joints.append(joint)
+        link = joint.parent
+    return joints
+
+
+def _hint(above: Tree, link: str) -> str:
+    """Links that may have been meant, and the ends of all branches, that with the most joints first."""
+    parents = {joint.parent for joint in above.values() if joint}
+    leaves = (name for name in above if name not in parents)
+    ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
+    close = difflib.get_close_matches(link, list(above)[:300])  # Of thousands it would take long.
+    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {_listed(ends)}"
+
+
+def _follows(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
+    """For each joint on the way that mimics: the joint that it follows in the end, which mimics none."""
+    follows = {}
+    for joint in way:
+        if joint.type == "fixed" or joint.mimic is None:
+            continue
+        leader, ratio, offset = joint.name, 1.0, 0.0
+        passed: list[str] = []
+        while (mimic := mimics[leader]) is not None:
+            passed.append(leader)
+            leader, multiplier, plus = mimic
+            ratio, offset = ratio * multiplier, offset + ratio * plus
+            if leader not in mimics:
+                raise ValueError(f"joint {passed[-1]!r} mimics {leader!r}, which does not exist")
+            if leader in passed:
+                raise ValueError(f"mimics form a loop: {_listed([*passed[passed.index(leader) :], leader])}")
+            if len(passed) > MAX_DOF:
+                raise ValueError(f"joint {joint.name!r}: more than {MAX_DOF} joints mimic one another in a row")
+        if not (0.0 < abs(ratio) < inf and abs(offset) < 1e100):
+            by = f"ratio {ratio:g} and offset {offset:g}"
+            raise ValueError(f"joint {joint.name!r} mimics {leader!r} by {by}: must be finite, the ratio not zero")
+        follows[joint.name] = (leader, ratio, offset)
+    return follows
+
+
+def _chain(way: Iterable[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Array, list[UrdfJoint]]:
+    """The joints that move, the tip's frame, and the joints that are held."""
+    moving = {joint.name for joint in way if joint.type != "fixed"}
+    joints: list[Joint] = []
+    held = []
+    frame = np.eye(4)
+    for joint in way:
+        if joint.type not in TYPES:
+            raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed")
+        roll, pitch, yaw = joint.rpy
+        R = rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0])
+        frame = frame @ _frame(joint.xyz, R)
+        if joint.type == "fixed":
+            continue
+        if not np.any(joint.axis):
+            raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
+        leader, _, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
+        if leader in moving:
+            joints.append(_joint(joint, frame))
+            frame = np.eye(4)
+        else:
+            held.append(joint)
+            along = offset * np.array(joint.axis) / np.linalg.norm(joint.axis)
+            slides = joint.type == "prismatic"
+            frame = frame @ (_frame(along, np.eye(3)) if slides else _frame(np.zeros(3), rotation(along)))
+    if not joints:
+        raise ValueError(f"no joints move but those that are held: {_listed(joint.name for joint in held)}")
+    return joints, frame, held
+
+
+def _frame(p: ArrayLike, R: ArrayLike) -> Array:
+    T = np.eye(4)
+    T[:3, 3], T[:3, :3] = p, R
+    return T
+
+
+def _joint(joint: UrdfJoint, placement: Array) -> Joint:
+    stated = joint.limit.get
+    lower, upper = stated("lower", 0.0), stated("upper", 0.0)  # The format's defaults.
+    velocity, acceleration = stated("velocity"), stated("acceleration", inf)
+    if joint.type == "continuous":
+        lower, upper, velocity = -inf, inf, stated("velocity", inf)
+    if velocity is None:
+        raise ValueError(f"joint {joint.name!r} is {joint.type} and has no <limit> with a velocity")
+    if lower >= upper:
+        raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}")
+    for what, value in (("velocity", velocity), ("acceleration", acceleration)):
+        if value <= 0.0:
+            raise ValueError(f"joint {joint.name!r}: {what} = {value:g}: must be positive")
+    return Joint(str(joint.type), placement, joint.axis, lower, upper, velocity, acceleration, joint.name)
+
+
+def _coupled(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
+    """The joints with their mimics, and each leader bounded so that its followers stay within their own bounds."""
+    coupled = list(joints)
+    index = {joint.name: i for i, joint in enumerate(joints)}
+    for i, follower in enumerate(joints):
+        if follower.name not in follows:
+            continue
+        name, ratio, offset = follows[follower.name]
+        coupled[i] = replace(follower, mimic=(index[name], ratio, offset))
+        leader = coupled[index[name]]
+        ends = sorted(((follower.lower - offset) / ratio, (follower.upper - offset) / ratio))
+        lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
+        if lower >= upper:
+            room = f"lower = {lower:g}, upper = {upper:g}"
+            raise ValueError(f"joint {name!r}: those that mimic it leave it no room: {room}")
+        coupled[index[name]] = replace(
+            leader,
+            type="revolute" if leader.type == "continuous" and upper < inf else leader.type,
+            lower=lower,
+            upper=upper,
+            velocity=min(leader.velocity, follower.velocity / abs(ratio)),
+            acceleration=min(leader.acceleration, follower.acceleration / abs(ratio)),
+        )
+    return coupled
