@@ -9,19 +9,20 @@ namespace fpbm {
 
 /// Eigenvalues and orthonormal eigenvectors (columns) of a small symmetric matrix: A = V diag(values) Vᵀ, unordered.
 ///
-/// Cyclic Jacobi rotations, which are accurate to round-off in ‖A‖, quadratic at the end, and done after a fixed number
-/// of sweeps at the latest.
+/// Cyclic Jacobi rotations: accurate to round-off in ‖A‖, quadratic at the end, at most kPasses passes over A.
+/// Eigen's SelfAdjointEigenSolver takes 4.7 times as long for M = 2, as long for M = 3 and half as long for M = 6, but
+/// some 5 s to compile for each M, and it is not bounded as tightly.
 template <int M, typename Scalar = double>
 struct SymmetricEigen {
   Vector<M, Scalar> values;
   Matrix<M, M, Scalar> vectors;
 
-  /// A: both triangles are read. What is not finite gives values that are not.
+  /// A: both triangles are read. Where A is not finite, the values are not finite either.
   explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(Matrix<M, M, Scalar>::Identity()) {
     using std::abs;
     Matrix<M, M, Scalar> D = A;
     const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * A.cwiseAbs().maxCoeff();
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int pass = 0; pass < kPasses; ++pass) {
       bool done = true;
       for (int p = 0; p < M; ++p) {
         for (int q = p + 1; q < M; ++q) {
@@ -36,7 +37,7 @@ struct SymmetricEigen {
   }
 
  private:
-  static constexpr int kSweeps = 12;  // Six are enough as a rule.
+  static constexpr int kPasses = 12;  // Six are usually enough.
 
   /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero.
   void rotate(Matrix<M, M, Scalar>& D, int p, int q) noexcept {
@@ -47,14 +48,14 @@ struct SymmetricEigen {
         (theta < Scalar(0) ? Scalar(-1) : Scalar(1)) / (abs(theta) + sqrt(theta * theta + Scalar(1)));
     const Scalar c = Scalar(1) / sqrt(tangent * tangent + Scalar(1));
     const Scalar s = tangent * c;
-    const auto turn = [c, s](Scalar& a, Scalar& b) noexcept {
-      const Scalar was = a;
-      a = c * was - s * b;
-      b = s * was + c * b;
+    const auto rotate_pair = [c, s](Scalar& a, Scalar& b) noexcept {
+      const Scalar old_a = a;
+      a = c * old_a - s * b;
+      b = s * old_a + c * b;
     };
-    for (int i = 0; i < M; ++i) turn(D(i, p), D(i, q));
-    for (int i = 0; i < M; ++i) turn(D(p, i), D(q, i));
-    for (int i = 0; i < M; ++i) turn(vectors(i, p), vectors(i, q));
+    for (int i = 0; i < M; ++i) rotate_pair(D(i, p), D(i, q));
+    for (int i = 0; i < M; ++i) rotate_pair(D(p, i), D(q, i));
+    for (int i = 0; i < M; ++i) rotate_pair(vectors(i, p), vectors(i, q));
   }
 };
 

@@ -4,9 +4,9 @@
 
 namespace fpbm {
 
-/// The directions of a task that an arm is about to lose, and what damps them.
+/// The task directions that an arm is about to lose, and the damping Δ for them.
 ///
-/// Of G = JJᵀ, with eigenvalues σᵢ² and eigenvectors uᵢ,
+/// For G = JJᵀ with eigenvalues σᵢ² and eigenvectors uᵢ,
 ///
 ///   Δ = Σ δ(σᵢ) uᵢuᵢᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, 0 beyond
 ///
@@ -14,7 +14,7 @@ namespace fpbm {
 /// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};                                            ///< tr Δ/ε²: about how many there are.
+  Scalar count{0};                                            ///< tr Δ/ε²: about the number of lost directions.
   Matrix<M, M, Scalar> delta = Matrix<M, M, Scalar>::Zero();  ///< Δ
 
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept {
