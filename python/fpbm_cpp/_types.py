@@ -1,8 +1,24 @@
-"""The array type of the package."""
+"""The array types of the package."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+if TYPE_CHECKING:
+    # How type checkers see the array fields of data classes: they take array_like and read as arrays.
+
+    class ArrayField:
+        def __get__(self, thing: object, owner: Any = None) -> Array: ...
+        def __set__(self, thing: object, value: ArrayLike) -> None: ...
+
+    class OptionalArrayField:
+        def __get__(self, thing: object, owner: Any = None) -> Array | None: ...
+        def __set__(self, thing: object, value: ArrayLike | None) -> None: ...
+
+else:
+    ArrayField = OptionalArrayField = Array

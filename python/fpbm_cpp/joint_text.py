@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ._core import Arm
-from .serial_arm import SerialArm
+from .arms import Arm, SerialArm
 
 
 def joint_labels(arm: Arm) -> list[str]:

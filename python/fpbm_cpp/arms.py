@@ -1,0 +1,267 @@
+"""Arms in the plane and in space, their joints, and the bounds of their joints' motion."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from math import inf
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._core import Arm as CoreArm
+from ._core import dh, preset
+from ._types import Array, ArrayField
+from .errors import ParameterError
+from .parameter import Data, Parameter, data, parameter
+
+__all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
+
+IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
+
+
+@data
+class JointLimits(Data):
+    """Bounds of each joint's motion: infinite where there is none. Prismatic joints have m for rad.
+
+    Raises ParameterError where a bound is not a number, or has another length.
+    """
+
+    kind: ClassVar[str] = "limits"
+    lower: ArrayField = parameter(kw_only=True, shape="(n,)", infinite=True, unit="rad", help="Lowest joint positions.")
+    upper: ArrayField = parameter(kw_only=True, shape="(n,)", infinite=True, unit="rad", help="Highest joint positions.")
+    velocity: ArrayField = parameter(
+        kw_only=True, shape="(n,)", infinite=True, unit="rad/s", help="Highest joint velocities, either way."
+    )
+    acceleration: ArrayField = parameter(
+        kw_only=True, shape="(n,)", infinite=True, unit="rad/s^2", help="Highest joint accelerations, either way."
+    )
+
+    def _finish(self) -> None:
+        for name in ("upper", "velocity", "acceleration"):
+            size, given = len(self.lower), getattr(self, name)
+            if len(given) != size:
+                raise ParameterError(
+                    name, None, given, f"{name} has {len(given)} entries: must have {size}, one per joint"
+                )
+
+
+@data
+class Joint(Data):
+    """One joint of a chain, prismatic joints with m for rad."""
+
+    type: str = parameter(
+        default="revolute", choices=("revolute", "continuous", "prismatic"), help="How the joint moves."
+    )
+    placement: ArrayField = parameter(
+        default=IDENTITY,
+        shape="(4, 4)",
+        unit="m",
+        help="The joint's frame, seen from the joint before, both at zero.",
+    )
+    axis: ArrayField = parameter(
+        default=(0.0, 0.0, 1.0), shape="(3,)", help="In the joint's frame; its length does not matter."
+    )
+    lower: float = parameter(default=-inf, infinite=True, unit="rad", help="Lowest position.")
+    upper: float = parameter(default=inf, infinite=True, unit="rad", help="Highest position.")
+    velocity: float = parameter(default=inf, infinite=True, unit="rad/s", help="Highest velocity, either way.")
+    acceleration: float = parameter(
+        default=inf, infinite=True, unit="rad/s^2", help="Highest acceleration, either way."
+    )
+    name: str = parameter(default="", help="'joint_1' and so on where empty.")
+    mimic: tuple[int, float, float] | None = parameter(
+        default=None,
+        help="Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is "
+        "ratio times the other's plus offset. The joint is no degree of freedom.",
+    )
+
+    def _finish(self) -> None:
+        if self.mimic is not None:
+            joint, ratio, offset = self.mimic
+            object.__setattr__(self, "mimic", (int(joint), float(ratio), float(offset)))
+
+
+class Arm(Data, CoreArm):
+    """A robot arm of n joints."""
+
+    kind: ClassVar[str]
+
+    @cached_property
+    def limits(self) -> JointLimits:
+        """Bounds of the joints' motion."""
+        lower, upper, velocity, acceleration = self.bounds()
+        return JointLimits(lower=lower, upper=upper, velocity=velocity, acceleration=acceleration)
+
+    def first(self, joints: int) -> Arm:
+        """The arm of the first so many joints: of an elbow, say. Raises ParameterError."""
+        if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 0 < joints < self.dof:
+            text = f"joints = {joints!r}: must be from 1 to {self.dof - 1}, the arm's first so many"
+            raise ParameterError("joints", None, joints, text)
+        return self._first(int(joints))
+
+    def _first(self, joints: int) -> Arm:
+        raise NotImplementedError
+
+
+@data
+class PlanarArm(Arm):
+    """Planar arm of n revolute joints.
+
+    f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first from the
+    base frame's x axis. The pose of the tip is (x, y, th_n).
+
+    Raises ParameterError where a length is out of range, or there are too few or too many.
+    """
+
+    kind: ClassVar[str] = "planar"
+    lengths: ArrayField = parameter(
+        shape="(n,)", unit="m", low=0.0, open_low=True, help="Link lengths, 2 to MAX_DOF of them."
+    )
+
+    def _finish(self) -> None:
+        CoreArm.__init__(self, self.lengths)
+
+    def _first(self, joints: int) -> PlanarArm:
+        return PlanarArm(self.lengths[:joints])
+
+
+@data
+class SerialArm(Arm):
+    """A chain of revolute, continuous and prismatic joints in space.
+
+    Joint positions are in radians or metres. The base frame is the one that the first joint's placement is seen from.
+
+    Raises ParameterError where an axis is zero, a number is not finite, a frame is not one, or a joint's bounds leave
+    it no room.
+    """
+
+    kind: ClassVar[str] = "joints"
+    joints: Sequence[Joint] = parameter(help="From base to tip, 1 to MAX_DOF of them. Nameless ones are given names.")
+    tip: ArrayField = parameter(
+        default=IDENTITY, shape="(4, 4)", unit="m", help="The tip's frame, seen from the last joint."
+    )
+
+    def _finish(self) -> None:
+        named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(self.joints, 1))
+        object.__setattr__(self, "joints", named)
+        CoreArm.__init__(self, list(named), self.tip)
+
+    def _first(self, joints: int) -> SerialArm:
+        return SerialArm(self.joints[:joints])
+
+    def __str__(self) -> str:
+        return f"<SerialArm of {self.dof} joints, {self.joints[0].name} to {self.joints[-1].name}>"
+
+    @classmethod
+    def from_joints(cls, joints: Sequence[Joint], tip: ArrayLike = IDENTITY) -> SerialArm:
+        """Arm of these joints from base to tip: SerialArm(joints, tip)."""
+        return cls(joints, tip)
+
+    @classmethod
+    def from_dh(
+        cls,
+        table: ArrayLike,
+        convention: str,
+        *,
+        types: Sequence[str] | None = None,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        names: Sequence[str] | None = None,
+        base: ArrayLike | None = None,
+        tip: ArrayLike | None = None,
+    ) -> SerialArm:
+        """Arm of a table of Denavit-Hartenberg parameters.
+
+        Frame i is, seen from frame i - 1, Rz(theta) Tz(d) Tx(a) Rx(alpha) in the classic convention, and
+        Rx(alpha) Tx(a) Rz(theta) Tz(d) in the modified one (Craig), where a and alpha are those of the link before.
+
+        Parameters
+        ----------
+        table : array_like, shape (n, 4)
+            One row (a, alpha, d, theta) a joint [m, rad, m, rad]; the joint position is added to theta, or to d where
+            the joint is prismatic.
+        convention : str
+            'classic' or 'modified'.
+        types : sequence of str, optional
+            'revolute' (unless given), 'continuous' or 'prismatic'.
+        lower, upper, velocity, acceleration : array_like, shape (n,), optional
+            Bounds of each joint's motion.
+        names : sequence of str, optional
+            The joints'.
+        base, tip : array_like, shape (4, 4), optional
+            Frame 0 in the base frame, and the tip's frame seen from frame n.
+        """
+        rows = Parameter(name="table", shape="(n, 4)").check(table)
+        joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
+        columns = {
+            name: Parameter(name=name, default=None, shape="(n,)", infinite=True).check(values)
+            for name, values in (("lower", lower), ("upper", upper), ("velocity", velocity), ("acceleration", acceleration))
+        }
+        for name, values in {**columns, "names": names}.items():
+            if values is not None and len(values) != len(rows):
+                text = f"{name} has {len(values)} entries: must have {len(rows)}, one per joint"
+                raise ParameterError(name, None, values, text)
+            for joint, value in zip(joints, () if values is None else values):
+                joint["name" if name == "names" else name] = value
+        if base is not None and joints:
+            joints[0]["placement"] = Parameter(name="base", shape="(4, 4)").check(base) @ joints[0]["placement"]
+        return cls(_joints(joints), end if tip is None else end @ Parameter(name="tip", shape="(4, 4)").check(tip))
+
+    @classmethod
+    def from_urdf(cls, path: str | os.PathLike[str], tip: str, base: str | None = None) -> SerialArm:
+        """Arm between two links of a URDF file.
+
+        Fixed joints become part of the frames; bounds and names are kept; mimic joints follow. A joint that mimics one
+        that does not move between base and tip is held where that one's zero puts it.
+
+        Parameters
+        ----------
+        path : path
+            The file; xacro files must be expanded first.
+        tip, base : str
+            Names of links; base is the root link unless given.
+
+        Raises
+        ------
+        ValueError
+            Where the file is no sound URDF or has no chain between these links.
+        OSError
+            Where the file cannot be read.
+
+        Warns
+        -----
+        UserWarning
+            Where a mimic joint is held.
+        """
+        from .io.urdf import read_urdf
+
+        return cls(*read_urdf(path, tip, base))
+
+    @classmethod
+    def preset(cls, name: str) -> SerialArm:
+        """Arm of a data sheet, up to its flange: one of PRESETS, 'panda' say. Raises ParameterError."""
+        joints, tip = preset(name)
+        return cls(_joints(joints), tip)
+
+
+def _joints(fields: list[dict[str, Any]]) -> list[Joint]:
+    return [Joint(**joint) for joint in fields]
+
+
+def _from_urdf(file: str, tip: str, base: str | None = None) -> SerialArm:
+    return SerialArm.from_urdf(file, tip, base)
+
+
+# What makes an arm, by the kind that a table has.
+ARMS: dict[str, Callable[..., Arm]] = {
+    "preset": SerialArm.preset,
+    PlanarArm.kind: PlanarArm,
+    "urdf": _from_urdf,
+    "dh": SerialArm.from_dh,
+    SerialArm.kind: SerialArm,
+}

@@ -1,0 +1,263 @@
+"""Paths of the tip: shapes, waypoints, and paths made from other paths."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from math import pi
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
+from ._core import Path as CorePath
+from ._types import ArrayField, OptionalArrayField
+from .errors import ParameterError
+from .parameter import Data, Parameter, data, parameter, parameters
+
+__all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
+
+PLANES = ("xy", "xz", "yx", "yz", "zx", "zy")
+
+# What shapes have in common.
+DURATION: dict[str, Any] = {"usual": 10.0, "unit": "s", "low": 0.0, "open_low": True, "help": "T."}
+TIME_LAW: dict[str, Any] = {"choices": TIME_LAWS, "help": "How the fraction s of the way grows with time."}
+
+
+class Path(Data, CorePath):
+    """Where the tip is to be, over T seconds, from rest to rest; then held.
+
+    A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
+    unless in_plane() lays them elsewhere. Paths of positions leave the tip's orientation free under task='position' and
+    hold it under task='pose', unless with_rotation() rotates it.
+
+    The time laws give the fraction s of the way, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose
+    acceleration steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there;
+    'constant_speed', tau.
+    """
+
+    kind: ClassVar[str]
+
+    @cached_property
+    def duration(self) -> float:
+        """T [s]."""
+        return self._duration()
+
+    def in_plane(self, plane: str | ArrayLike) -> Path:
+        """This path of the plane, laid into a plane of space.
+
+        plane: the base frame's axes that its x and y run along, as in 'yz', or any two directions at right angles,
+        shape (2, 3).
+        """
+        return InPlane(self, plane)
+
+    def with_rotation(self, rotation: ArrayLike, *, time_law: str = "quintic") -> Path:
+        """This path of positions, with the tip rotated on the way, from rest to rest over the whole duration.
+
+        rotation: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the
+        orientation that the tip starts in. To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the
+        orientation.
+        """
+        return WithRotation(self, rotation, time_law=time_law)
+
+    def then(self, path: Path) -> Path:
+        """This path, and from its end another."""
+        return Sequence((self, path))
+
+    def _finish(self) -> None:
+        CorePath.__init__(self, self._compiled())
+
+    def _compiled(self) -> CorePath:
+        raise NotImplementedError
+
+
+@data
+class Circle(Path):
+    """Circle, counter-clockwise from its rightmost point.
+
+    r (cos phi - 1, sin phi), phi = 2 pi s.
+    """
+
+    kind = "circle"
+    radius: float = parameter(usual=0.1, unit="m", low=0.0, open_low=True, help="r.")
+    duration: float = parameter(**DURATION)
+    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+
+    def _compiled(self) -> CorePath:
+        return circle(self.radius, self.duration, self.time_law)
+
+
+@data
+class Lissajous(Path):
+    """Lissajous figure.
+
+    (a_x (cos(f_x phi + delta) - cos delta), a_y (sin(f_y phi + delta) - sin delta)), phi = 2 pi s.
+    """
+
+    kind = "lissajous"
+    amplitude: ArrayField = parameter(
+        usual=0.1, shape="() or (2,)", unit="m", low=0.0, open_low=True, help="a, one for both axes or one each."
+    )
+    duration: float = parameter(**DURATION)
+    frequencies: ArrayField = parameter(
+        default=(2, 1), kw_only=True, shape="(2,)", whole=True, low=1.0, help="f: whole, so that the figure closes."
+    )
+    phase: float = parameter(default=pi / 6, kw_only=True, unit="rad", help="delta.")
+    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+
+    def _compiled(self) -> CorePath:
+        return lissajous(self.amplitude, self.duration, self.frequencies, self.phase, self.time_law)
+
+
+@data
+class Tricuspid(Path):
+    """Tricuspid (deltoid), from its rightmost cusp.
+
+    a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s.
+    """
+
+    kind = "tricuspid"
+    size: float = parameter(usual=0.05, unit="m", low=0.0, open_low=True, help="a.")
+    duration: float = parameter(**DURATION)
+    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+
+    def _compiled(self) -> CorePath:
+        return tricuspid(self.size, self.duration, self.time_law)
+
+
+@data
+class Line(Path):
+    """Straight line."""
+
+    kind = "line"
+    displacement: ArrayField = parameter(
+        usual=(0.1, 0.0), shape="(2,) or (3,)", unit="m", help="From the start of the line to its end."
+    )
+    duration: float = parameter(**DURATION)
+    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+
+    def _compiled(self) -> CorePath:
+        return line(self.displacement, self.duration, self.time_law)
+
+
+class _Derived(float):
+    """A duration that follows from times or bounds, and was not given."""
+
+
+@data
+class Waypoints(Path):
+    """A smooth path through points, from rest to rest.
+
+    A quintic spline: of all curves through the points at those times, the one of least jerk. Acceleration is continuous
+    everywhere, the ends included. Orientations are splines of quaternions, and turn by the shorter way.
+
+    Give one of: the duration, of which each piece gets a share by its length; the times; bounds of the tip's motion, for
+    the shortest duration that they allow, to 1 %, rounded up to 0.01 s.
+    """
+
+    kind = "waypoints"
+    points: ArrayField = parameter(
+        shape="(k, 2) or (k, 3) or (k, 4, 4)",
+        unit="m",
+        help="Positions or poses, two at least. Only differences from the first matter, since a path starts where the "
+        "tip is: coordinates in the base frame do as well as displacements.",
+    )
+    duration: float | None = parameter(  # type: ignore[assignment]  # Always a number once constructed.
+        default=None, kw_only=True, unit="s", low=0.0, open_low=True, help="T."
+    )
+    times: OptionalArrayField = parameter(
+        default=None, kw_only=True, shape="(k,)", unit="s", help="When each point is passed, the first at 0."
+    )
+    velocity: float | None = parameter(
+        default=None, kw_only=True, unit="m/s", low=0.0, open_low=True, help="Highest speed of the tip."
+    )
+    acceleration: float | None = parameter(
+        default=None, kw_only=True, unit="m/s^2", low=0.0, open_low=True, help="Its highest acceleration."
+    )
+    angular_velocity: float | None = parameter(
+        default=None, kw_only=True, unit="rad/s", low=0.0, open_low=True, help="Its highest angular velocity."
+    )
+    angular_acceleration: float | None = parameter(
+        default=None, kw_only=True, unit="rad/s^2", low=0.0, open_low=True, help="Its highest angular acceleration."
+    )
+
+    def __post_init__(self) -> None:
+        if isinstance(self.duration, _Derived):  # From dataclasses.replace().
+            object.__setattr__(self, "duration", None)
+        super().__post_init__()
+        if self.duration is None:
+            object.__setattr__(self, "duration", _Derived(self._duration()))
+
+    def _values(self) -> dict[str, Any]:
+        values = super()._values()
+        return {**values, "duration": None} if isinstance(self.duration, _Derived) else values
+
+    def _compiled(self) -> CorePath:
+        bounds = (self.velocity, self.acceleration, self.angular_velocity, self.angular_acceleration)
+        ways = [self.duration is not None, self.times is not None, any(bound is not None for bound in bounds)]
+        if sum(ways) != 1:
+            text = "duration, times or bounds of velocity: must be given, one of the three"
+            raise ParameterError("duration", None, self.duration, text)
+        return waypoints(self.points, self.duration, self.times, *bounds)
+
+
+@data
+class InPlane(Path):
+    """A path of the plane, laid into a plane of space: path.in_plane(plane)."""
+
+    path: Path = parameter(help="A path of positions in the plane.")
+    plane: ArrayField = parameter(
+        choices=PLANES,
+        shape="(2, 3)",
+        help="The base frame's axes that the path's x and y run along, or two directions at right angles.",
+    )
+
+    def _compiled(self) -> CorePath:
+        plane: Any = self.plane
+        return in_plane(self.path, np.eye(3)[["xyz".index(axis) for axis in plane]] if isinstance(plane, str) else plane)
+
+
+@data
+class WithRotation(Path):
+    """A path of positions, with the tip rotated on the way: path.with_rotation(rotation, time_law=...)."""
+
+    path: Path = parameter(help="A path of positions.")
+    rotation: ArrayField = parameter(
+        shape="() or (3,)",
+        unit="rad",
+        help="Rotation vector along the base frame's axes, or an angle in the plane, from the orientation at the start.",
+    )
+    time_law: str = parameter(default="quintic", kw_only=True, choices=TIME_LAWS, help="How the rotation grows with time.")
+
+    def _compiled(self) -> CorePath:
+        return with_rotation(self.path, self.rotation, self.time_law)
+
+
+@data
+class Sequence(Path):
+    """Paths one after another: path.then(next). Sequences among them are replaced by their paths."""
+
+    kind = "sequence"
+    paths: tuple[Path, ...] = parameter(help="In their order, one at least.")
+
+    def _compiled(self) -> CorePath:
+        parts: list[Path] = []
+        for path in self.paths:
+            parts.extend(path.paths if isinstance(path, Sequence) else [path])
+        if not parts:
+            raise ParameterError("paths", None, (), "paths: must be one at least")
+        object.__setattr__(self, "paths", tuple(parts))
+        return sequence(parts)
+
+
+# The shapes by the kind that a table has, and how any of them is laid and rotated.
+PATHS: dict[str, type[Path]] = {shape.kind: shape for shape in (Circle, Lissajous, Tricuspid, Line, Waypoints)}
+PATH_OPTIONS: dict[str, Parameter] = {
+    name: replace(parameters(maker)[own], name=name, default=None, usual=None)
+    for name, maker, own in (
+        ("in_plane", InPlane, "plane"),
+        ("with_rotation", WithRotation, "rotation"),
+        ("rotation_time_law", WithRotation, "time_law"),
+    )
+}

@@ -1,0 +1,237 @@
+"""Redundancy resolution schemes. Numbers in brackets are the equations of Wang et al., IEEE Access 2019."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ._core import Scheme as CoreScheme
+from ._types import ArrayField, OptionalArrayField
+from .arms import Arm
+from .errors import ParameterError
+from .parameter import Data, data, parameter, parameters
+
+__all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
+
+# What is declared alike in more than one class.
+ALPHA: dict[str, Any] = {"usual": 0.6, "low": 0.0, "high": 1.0, "help": "Share of WMVN; MAN has the rest."}
+WEIGHTS: dict[str, Any] = {
+    "shape": "(n,) or (n, n)",
+    "low": 0.0,
+    "open_low": True,
+    "help": "Diagonal of W, or W itself, symmetric positive definite. Only ratios matter.",
+}
+POSITION_GAIN: dict[str, Any] = {"low": 0.0, "unit": "1/s", "help": "Position feedback: xd + k (x - f(q)) in place of xd."}
+K1: dict[str, Any] = {
+    "low": 0.0,
+    "unit": "1/s",
+    "help": "Feedback gain on velocity, which velocity-level schemes do without.",
+}
+K2: dict[str, Any] = {
+    "low": 0.0,
+    "unit": "1/s^2, 1/s at velocity level",
+    "help": "Feedback gain on position or direction.",
+}
+
+
+@data
+class SecondTask(Data):
+    """A point for a second arm's tip, in the null space of the first task.
+
+    The second arm is of the first joints of the first one: its tip an elbow, say. The first task comes strictly first.
+    """
+
+    kind: ClassVar[str] = "point"
+    arm: Arm = parameter(help="The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
+    x: ArrayField = parameter(shape="(2,) or (3,)", unit="m", help="Where its tip is to be, in the base frame.")
+    k1: float = parameter(default=10.0, kw_only=True, **K1)
+    k2: float = parameter(default=25.0, kw_only=True, **K2)
+
+    def _finish(self) -> None:
+        if not isinstance(self.arm, Arm):
+            raise ParameterError("arm", None, self.arm, f"arm = {self.arm!r:.80}: must be an arm")
+        rows = len(self.arm.jacobian(np.zeros(self.arm.dof)))
+        if len(self.x) != rows:
+            raise ParameterError("x", None, self.x, f"x has {len(self.x)} entries: must have {rows}")
+
+    def _compiled(self) -> tuple[Any, ...]:
+        return "point", self.arm, self.x, self.k1, self.k2
+
+
+@data
+class Gaze(Data):
+    """A direction for the tip's z axis, in the null space of the first task.
+
+    Of an arm in space; the axis may still turn about itself. The first task comes strictly first.
+    """
+
+    kind: ClassVar[str] = "gaze"
+    direction: ArrayField = parameter(
+        shape="(3,)", help="Where the axis is to point, in the base frame; its length does not matter."
+    )
+    k1: float = parameter(default=10.0, kw_only=True, **K1)
+    k2: float = parameter(default=25.0, kw_only=True, **K2)
+
+    def _finish(self) -> None:
+        if not np.any(self.direction):
+            raise ParameterError("direction", None, self.direction, "direction = 0: must point somewhere")
+
+    def _compiled(self) -> tuple[Any, ...]:
+        return "direction", self.direction, self.k1, self.k2
+
+
+@data
+class Scheme(Data, CoreScheme):
+    """A redundancy resolution scheme: what all of them have."""
+
+    kind: ClassVar[str]
+    level: ClassVar[str]
+    """'velocity' where resolve() returns qd, 'acceleration' where it returns qdd."""
+
+    # What the scheme fixes of the law of its level.
+    fixed: ClassVar[dict[str, float]] = {}
+
+    rest_posture: OptionalArrayField = parameter(
+        default=None, kw_only=True, shape="(n,)", unit="rad", help="Posture that the null space is drawn to."
+    )
+    null_stiffness: float = parameter(
+        default=0.0, kw_only=True, low=0.0, unit="1/s^2, 1/s at velocity level", help="How strongly."
+    )
+    c: OptionalArrayField = parameter(
+        default=None,
+        kw_only=True,
+        shape="(n,)",
+        unit="rad/s^2, rad/s at velocity level",
+        help="The free choice in the general solution (5), (3) at velocity level.",
+    )
+    joint_centring: float = parameter(
+        default=0.0,
+        kw_only=True,
+        low=0.0,
+        unit="rad^2/s^2, rad^2/s at velocity level",
+        help="Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
+        "limits bound both ways (Liegeois, 1977).",
+    )
+    manipulability_gain: float = parameter(
+        default=0.0,
+        kw_only=True,
+        low=0.0,
+        unit="rad^2/s^2, rad^2/s at velocity level",
+        help="Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
+        "without which it swings for ever.",
+    )
+    second_task: SecondTask | Gaze | None = parameter(
+        default=None,
+        kw_only=True,
+        help="What the null space does first of all: the other options have what it leaves.",
+    )
+    singular_radius: float = parameter(
+        default=0.0,
+        kw_only=True,
+        low=0.0,
+        high=1.0,
+        help="Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
+        "postures; 0.02 is a good one.",
+    )
+    singular_brake: float = parameter(
+        default=10.0, kw_only=True, low=0.0, unit="1/s", help="Damping of the null space there."
+    )
+
+    def _finish(self) -> None:
+        values = {name: getattr(self, name) for name in parameters(type(self))}
+        if self.second_task is not None:
+            if not isinstance(self.second_task, (SecondTask, Gaze)):
+                text = f"second_task = {self.second_task!r:.80}: must be a SecondTask or a Gaze"
+                raise ParameterError("second_task", None, self.second_task, text)
+            values["second_task"] = self.second_task._compiled()
+        CoreScheme.__init__(self, self.level, {**self.fixed, **values})
+
+
+class VelocityScheme(Scheme):
+    """A scheme that resolves to joint velocities."""
+
+    level = "velocity"
+
+
+@data
+class AccelerationScheme(Scheme):
+    """A scheme that resolves to joint accelerations."""
+
+    level = "acceleration"
+    null_damping: float = parameter(
+        default=0.0,
+        usual=2.0,
+        kw_only=True,
+        low=0.0,
+        unit="1/s",
+        help="Damping of the self-motion, which nothing in the paper's schemes damps.",
+    )
+
+
+@data
+class MVN(VelocityScheme):
+    """Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3)."""
+
+    kind = "mvn"
+    k: float = parameter(default=0.0, kw_only=True, **POSITION_GAIN)
+
+
+@data
+class WMVN(VelocityScheme):
+    """Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd."""
+
+    kind = "wmvn"
+    weights: ArrayField = parameter(**WEIGHTS)
+    k: float = parameter(default=0.0, kw_only=True, **POSITION_GAIN)
+
+
+@data
+class MAN(AccelerationScheme):
+    """Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5)."""
+
+    kind = "man"
+    fixed: ClassVar[dict[str, float]] = {"alpha": 0.0}
+
+
+@data
+class WMVNAcceleration(AccelerationScheme):
+    """Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated.
+
+    qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.
+    """
+
+    kind = "wmvn_acceleration"
+    fixed: ClassVar[dict[str, float]] = {"alpha": 1.0}
+    weights: ArrayField = parameter(**WEIGHTS)
+
+
+@data
+class Balanced(AccelerationScheme):
+    """Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9)."""
+
+    kind = "balanced"
+    alpha: float = parameter(**ALPHA)
+    weights: ArrayField = parameter(**WEIGHTS)
+
+
+@data
+class FPBM(AccelerationScheme):
+    """Feedback-added pseudoinverse-type balanced minimisation, (13).
+
+    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so that the tip error
+    e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.
+    """
+
+    kind = "fpbm"
+    alpha: float = parameter(**ALPHA)
+    weights: ArrayField = parameter(**WEIGHTS)
+    k1: float = parameter(usual=10.0, low=0.0, unit="1/s", help="Feedback gain on velocity.")
+    k2: float = parameter(usual=25.0, low=0.0, unit="1/s^2", help="Feedback gain on position.")
+
+
+# By the kind that a table has.
+SCHEMES: dict[str, type[Scheme]] = {
+    scheme.kind: scheme for scheme in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)
+}
+SECOND_TASKS: dict[str, type[Data]] = {task.kind: task for task in (SecondTask, Gaze)}
