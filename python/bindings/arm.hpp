@@ -1,11 +1,11 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "fpbm/any/any_arm.hpp"
+#include "fpbm/core/validation.hpp"
 #include "fpbm/model/chain.hpp"
 
 namespace fpbm::bindings {
@@ -17,8 +17,8 @@ using JointVector = Vector<kDynamic>;
 template <typename Space>
 void require_enough_joints(Eigen::Index dof) {
   if (dof < Space::kRows) {
-    throw std::invalid_argument("task: it has " + std::to_string(Space::kRows) + " rows, and the arm " +
-                                std::to_string(dof) + " joints: must not be more rows than joints");
+    validation::reject("task", ": it has " + std::to_string(Space::kRows) + " rows, and the arm " +
+                                   std::to_string(dof) + " joints: must not be more rows than joints");
   }
 }
 
@@ -47,7 +47,7 @@ struct Arm {
         [&](const auto& arm) {
           if (task == "position") return visitor(arm, positions(arm));
           if (task == "pose") return visitor(arm, poses(arm));
-          throw std::invalid_argument("task = '" + task + "': must be 'position' or 'pose'");
+          validation::reject("task", " = '" + task + "': must be 'position' or 'pose'");
         },
         any);
   }

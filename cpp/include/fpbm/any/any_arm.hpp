@@ -90,7 +90,8 @@ class AnyArm {
                     Kinematics<Positions, kDof>& out) const noexcept override {
       evaluate(q, qd, out);
     }
-    void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd, Kinematics<Pose, kDof>& out) const noexcept override {
+    void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd,
+                    Kinematics<Pose, kDof>& out) const noexcept override {
       evaluate(q, qd, out);
     }
 

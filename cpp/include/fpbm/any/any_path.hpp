@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// Any path in a task space, behind one type. Is a path itself: every sample is one virtual call. Copies share what they
-/// hold.
+/// Any path in a task space, behind one type. Is a path itself: every sample is one virtual call. Copies share what
+/// they hold.
 template <typename Space_>
 class AnyPath {
  public:

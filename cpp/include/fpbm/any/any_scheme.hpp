@@ -13,9 +13,9 @@ namespace fpbm {
 
 /// Any scheme of one level for tasks in Space, behind one type.
 ///
-/// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size: every
-/// evaluation is one virtual call into the code of the scheme that it holds, be that of fixed size. Immutable; copies
-/// share what they hold.
+/// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size:
+/// every evaluation is one virtual call into the code of the scheme that it holds, be that of fixed size. Immutable;
+/// copies share what they hold.
 template <Level kLevel_, typename Space>
 class AnyScheme {
  public:

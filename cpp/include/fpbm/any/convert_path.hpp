@@ -1,29 +1,30 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/core/validation.hpp"
 #include "fpbm/task/in_plane.hpp"
 #include "fpbm/task/with_rotation.hpp"
 
 namespace fpbm {
 
-/// The path for a task in the space To. A path of the plane lies in the xy plane of space; a path of positions holds the
-/// tip's orientation where To is a space of poses.
-/// Throws std::invalid_argument where a task in To cannot follow the path.
+/// The path for a task in the space To. A path of the plane lies in the xy plane of space; a path of positions holds
+/// the tip's orientation where To is a space of poses. Throws std::invalid_argument where a task in To cannot follow
+/// the path.
 template <typename To, typename From>
 [[nodiscard]] AnyPath<To> convert_path(const AnyPath<From>& path) {
   constexpr bool kFlat = std::is_same_v<To, Position<2>> || std::is_same_v<To, PlanarPose>;
   if constexpr (std::is_same_v<To, From>) {
     return path;
   } else if constexpr (std::is_same_v<From, PlanarPose> || std::is_same_v<From, Pose>) {
-    throw std::invalid_argument(std::string("path: it turns the tip, which needs ") +
-                                (kFlat == std::is_same_v<From, PlanarPose> ? "task='pose'" : "another kind of arm"));
+    constexpr bool kPoseWillDo = kFlat == std::is_same_v<From, PlanarPose>;
+    validation::reject("path", std::string(": it turns the tip, which needs ") +
+                                   (kPoseWillDo ? "task='pose'" : "another kind of arm"));
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
-    throw std::invalid_argument("path: it lies in space, and the arm in a plane");
+    validation::reject("path", ": it lies in space, and the arm in a plane");
   } else if constexpr (std::is_same_v<To, Position<3>>) {
     return AnyPath<To>(InPlane(path, Vector<3>::UnitX(), Vector<3>::UnitY()));
   } else if constexpr (std::is_same_v<typename PoseOver<From>::type, To>) {

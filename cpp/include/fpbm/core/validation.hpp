@@ -37,7 +37,7 @@ class ParameterError : public std::invalid_argument {
 /// the index and the value.
 namespace fpbm::validation {
 
-/// An argument, or an entry of it, and how messages name it.
+/// An argument, or an entry of it, and how messages name it: text begins with name.
 struct Argument {
   Argument(const char* argument) : Argument(std::string(argument)) {}
   Argument(const std::string& argument) : name(argument), text(argument) {}

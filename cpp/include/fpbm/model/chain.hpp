@@ -64,8 +64,8 @@ Eigen::Index require_chain(const Chain<Scalar>& chain, int n = Eigen::Dynamic) {
   if (n != Eigen::Dynamic) validation::require_size("joints", dof, n);
   for (Eigen::Index i = 0; i < dof; ++i) {
     const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
-    validation::Argument name = validation::element("joints", i);
-    if (!joint.name.empty()) name.text = "joint '" + joint.name + "'";
+    const validation::Argument name =
+        joint.name.empty() ? validation::element("joints", i) : validation::Argument("joint '" + joint.name + "'");
     chain_check::require_transform(name + ".placement", joint.placement);
     validation::require_finite((name + ".axis").text.c_str(), joint.axis);
     if (!(joint.axis.norm() > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
