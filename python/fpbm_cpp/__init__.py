@@ -5,7 +5,7 @@ schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration le
 FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, errors, paths, schemes
+from . import arms, paths, schemes
 from ._core import (
     MAX_DOF,
     Kinematics,
@@ -19,7 +19,7 @@ from ._core import (
     rotation_vector,
 )
 from .arms import *
-from .errors import *
+from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted
 from .io.run_file import load
 from .motion.lanes import LANES
 from .motion.run import Run
@@ -37,13 +37,17 @@ __all__ = [
     "LANES",
     "MAX_DOF",
     "Kinematics",
+    "ParameterError",
     "PathFollower",
+    "ResolutionError",
     "Run",
     "RunStatus",
     "Status",
     "Sweep",
+    "SweepInterrupted",
     "Tick",
     "Tracker",
+    "TuneInterrupted",
     "Tuning",
     "__version__",
     "failed",
@@ -56,4 +60,4 @@ __all__ = [
     "tune",
     "view",
 ]
-__all__ += arms.__all__ + errors.__all__ + paths.__all__ + schemes.__all__
+__all__ += arms.__all__ + paths.__all__ + schemes.__all__

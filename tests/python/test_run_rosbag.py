@@ -59,14 +59,14 @@ def test_a_bag_holds_the_run(name, tmp_path):
         assert found[:, :d].tobytes() == positions.tobytes()
         assert (found[:, d:] == 0).all()
     for k in range(0, len(run.t), 10):
-        turn, wanted = (numbers(messages[topic][k][1].pose.orientation) for topic in ("/tip", "/tip_reference"))
+        tip, reference = (numbers(messages[topic][k][1].pose.orientation) for topic in ("/tip", "/tip_reference"))
         R = np.eye(4)
         if isinstance(run.arm, fp.PlanarArm):
             R[:3, :3] = fp.rotation([0, 0, run.q[k].sum()])
         else:
             R = run.arm.forward(run.q[k])
-        np.testing.assert_allclose(rotation(turn), R[:3, :3], atol=1e-12)
-        np.testing.assert_allclose(rotation(wanted), R[:3, :3] if run.task == "pose" else np.eye(3), atol=1e-3)
+        np.testing.assert_allclose(rotation(tip), R[:3, :3], atol=1e-12)
+        np.testing.assert_allclose(rotation(reference), R[:3, :3] if run.task == "pose" else np.eye(3), atol=1e-3)
 
 
 def rotation(quaternion):

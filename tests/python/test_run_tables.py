@@ -12,7 +12,7 @@ import pytest
 from test_track import BENT, PANDA, TIGHT
 
 import fpbm_cpp as fp
-from fpbm_cpp.run.orientation import quaternions
+from fpbm_cpp.io.orientation import quaternions
 
 FLAT = fp.PlanarArm([1, 1, 1, 1])
 RAIL = fp.SerialArm(
@@ -74,11 +74,11 @@ def expect_columns(columns, run):
         if run.task == "pose" and flat:
             expected[f"angle{ending}"] = x[:, 2]
         elif run.task == "pose":
-            turns = quaternions(x[:, :3, :3])
-            expected.update({f"q{axis}{ending}": turns[:, i] for i, axis in enumerate("xyzw")})
+            orientations = quaternions(x[:, :3, :3])
+            expected.update({f"q{axis}{ending}": orientations[:, i] for i, axis in enumerate("xyzw")})
     rows = [f"error_{axis}" for axis in ("xy" if flat else "xyz")]
     if run.task == "pose":
-        rows += ["orientation_error"] if flat else ["turn_error_x", "turn_error_y", "turn_error_z"]
+        rows += ["orientation_error"] if flat else ["orientation_error_x", "orientation_error_y", "orientation_error_z"]
     expected.update({name: run.error[:, i] for i, name in enumerate(rows)})
     if run.scale is not None:
         expected["scale"] = run.scale
@@ -166,15 +166,15 @@ def test_xarray(run):
 def test_quaternions_are_the_rotations_and_never_jump():
     rng = np.random.default_rng(0)
     axis = rng.normal(size=3)
-    turns = np.linspace(0, 4 * np.pi, 500)[:, None] * axis / np.linalg.norm(axis)
-    rotations = np.array([fp.rotation(turn) for turn in turns])
+    vectors = np.linspace(0, 4 * np.pi, 500)[:, None] * axis / np.linalg.norm(axis)
+    rotations = np.array([fp.rotation(vector) for vector in vectors])
     result = quaternions(rotations)
     np.testing.assert_allclose(np.linalg.norm(result, axis=1), 1, atol=1e-14)
     assert np.abs(np.diff(result, axis=0)).max() < 0.02
     v, w = result[:, :3], result[:, 3]
-    rng_vectors = rng.normal(size=3)
-    turned = rng_vectors + 2 * np.cross(v, np.cross(v, rng_vectors) + w[:, None] * rng_vectors)
-    np.testing.assert_allclose(turned, rotations @ rng_vectors, atol=1e-13)
+    p = rng.normal(size=3)
+    rotated = p + 2 * np.cross(v, np.cross(v, p) + w[:, None] * p)
+    np.testing.assert_allclose(rotated, rotations @ p, atol=1e-13)
     assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)
 
 

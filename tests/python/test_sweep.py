@@ -214,6 +214,68 @@ def test_whole_motions_from_other_processes(arm, reference):
         assert motion.arm is arm
 
 
+TIGHT = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[0.3] * 4, acceleration=[2] * 4)
+LIMITED = {
+    "planar": TIGHT,
+    "planar pose": TIGHT,
+    "planar, 9 joints": fp.JointLimits(lower=[-3] * 9, upper=[3] * 9, velocity=[0.1] * 9, acceleration=[1] * 9),
+    "panda": PANDA.limits,
+    "panda pose": PANDA.limits,
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_within_limits_a_sweep_is_many_tracks(case):
+    arm, path, task, q0 = CASES[case]
+    schemes = every_scheme(arm.dof)
+    q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (2, arm.dof))
+    how = {"limits": LIMITED[case], "max_error": 0.05, "integral_gain": 0.1, "singular_radius": 0.03}
+    sweep = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True, **how)
+    figures = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, **how)
+    same(figures, sweep)
+    for i, scheme in enumerate(schemes):
+        for k, start in enumerate(q0s):
+            run = fp.track(arm, path, scheme, start, dt=0.01, hold=0.5, task=task, **how)
+            expect_run(sweep, i, k, run)
+            assert sweep.motions[i, k] == run
+            assert sweep.motions[i, k].replay() == run
+    if "planar" in case:
+        assert fp.Status.SLOWED in sweep.status
+
+
+def test_workers_change_nothing_within_limits(arm, reference):
+    """Starts that break no limit; some motions never leave them."""
+    starts = reference.q0s[:40]
+    how = {"limits": TIGHT, "dt": 0.01}
+    alone = fp.sweep(arm, reference.path, reference.schemes, starts, workers=1, **how)
+    same(fp.sweep(arm, reference.path, reference.schemes, starts, workers=3, **how), alone)
+    with ProcessPoolExecutor(1) as processes:
+        same(fp.sweep(arm, reference.path, reference.schemes, starts, executor=processes, **how), alone)
+    assert {fp.Status.SLOWED} <= set(alone.status.ravel())
+    assert alone.peak_velocity.max() <= 0.3 + 1e-12
+    assert fp.sweep(arm, reference.path, reference.schemes, starts, 0.01).peak_velocity.max() > 0.3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"max_error": 0.05}, "limits: must be given"),
+        ({"singular_radius": 0.0}, "limits: must be given"),
+        ({"limits": TIGHT, "max_error": -1}, "max_error = -1: must be positive"),
+        ({"limits": TIGHT, "integral_gain": -1}, "integral_gain = -1"),
+        ({"limits": PANDA.limits}, "limits has 7 entries"),
+        ({"limits": TIGHT, "q0s": [[0.3] * 4, [0.3, 4, 0, 0]]}, r"q0s\[1\]\[1\] = 4: must be within"),
+        (
+            {"limits": fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[1] * 4, acceleration=[np.inf] * 4)},
+            r"limits.acceleration\[0\] = inf: must be finite",
+        ),
+    ],
+)
+def test_bad_limits(arm, circle, q0, change, words):
+    with pytest.raises(ValueError, match=words):
+        fp.sweep(arm, **{"path": circle, "schemes": fp.MAN(), "q0s": q0, **change})
+
+
 def test_motions_that_fail_say_so(arm, q0):
     out = fp.Line([5, 0], 5.0, time_law="quintic")
     sweep = fp.sweep(arm, out, [fp.MVN(), fp.MAN()], [q0, np.zeros(4)], motions=True)

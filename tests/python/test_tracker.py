@@ -69,7 +69,7 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
     n = arm.dof
     middle = (limits.lower + limits.upper) / 2
     scheme = fp.FPBM(0.6, rng.uniform(1, 4, n), 10, 25, null_damping=2, singular_radius=0.02)
-    tracker = fp.Tracker(arm, scheme, middle, task=task, limits=limits, pull=1e9)
+    tracker = fp.Tracker(arm, scheme, middle, task=task, limits=limits, max_error=1e9)
     met = feasible = agreed = 0
     while feasible < 300:
         q, qd = random_viable(rng, limits, speed=rng.uniform(0, 0.4))
@@ -80,13 +80,13 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
         lower, upper = box(limits, q, qd)
         assert (tick.qdd >= lower - 1e-6).all()
         assert (tick.qdd <= upper + 1e-6).all()
-        wanted = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
-        if ((lower <= wanted) & (wanted <= upper)).all():
+        desired = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
+        if ((lower <= desired) & (desired <= upper)).all():
             continue
         met += 1
         J = arm.jacobian(q, task=task)
         answer = optimize.linprog(
-            np.zeros(n), A_eq=J, b_eq=J @ wanted, bounds=np.column_stack([lower, upper]), method="highs"
+            np.zeros(n), A_eq=J, b_eq=J @ desired, bounds=np.column_stack([lower, upper]), method="highs"
         )
         if answer.status != 0:
             assert tick.scale < 1 + 1e-9
@@ -94,24 +94,24 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
         feasible += 1
         if tick.scale == 1:
             agreed += 1
-            assert np.abs(J @ (tick.qdd - wanted)).max() < 1e-9 * max(1, np.abs(J @ wanted).max())
+            assert np.abs(J @ (tick.qdd - desired)).max() < 1e-9 * max(1, np.abs(J @ desired).max())
             assert tick.status in (fp.Status.OK, fp.Status.DAMPED)
     print(f"{case}: {met} states met a limit, in {feasible} the task is feasible, in {agreed} of these it was done")
     assert agreed >= 0.99 * feasible
 
 
-def test_a_course_is_followed_paused_resumed_and_finished(panda, settling):
+def test_a_path_is_followed_paused_resumed_and_finished(panda, settling):
     tracker = fp.Tracker(panda, settling, BENT, task="pose")
-    course = tracker.course(fp.Circle(0.05, 2.0).in_plane("yz"), ramp=0.2)
+    follower = tracker.follow(fp.Circle(0.05, 2.0).in_plane("yz"), ramp=0.2)
     for i in range(4000):
         if i == 500:
-            course.pause()
+            follower.pause()
         if i == 1000:
-            course.resume()
-        tick = tracker.tick(course)
+            follower.resume()
+        tick = tracker.tick(follower)
         assert tick.status is fp.Status.OK
         assert np.abs(tick.error).max() < 1e-5
-    assert course.done
+    assert follower.done
     assert np.abs(tracker.qd).max() < 1e-2
     np.testing.assert_array_equal(tick.q, tracker.q)
 
@@ -167,7 +167,7 @@ def test_objectives_that_need_the_arm(panda):
     ("options", "words"),
     [
         ({"dt": 0}, "dt = 0: must be positive"),
-        ({"pull": -1}, "pull = -1: must be positive"),
+        ({"max_error": -1}, "max_error = -1: must be positive"),
         ({"integral_gain": -1}, "integral_gain = -1"),
         ({"singular_radius": 2}, "singular_radius = 2"),
         ({"task": "dance"}, "task = 'dance'"),
@@ -193,7 +193,7 @@ def test_bad_references(panda, settling):
         tracker.tick([0, 0, 0], [0, np.nan, 0])
     other = fp.Tracker(panda, settling, BENT, task="pose")
     with pytest.raises(ValueError, match="laid out for another task"):
-        tracker.tick(other.course(fp.Circle(0.1, 1.0).in_plane("xy")))
+        tracker.tick(other.follow(fp.Circle(0.1, 1.0).in_plane("xy")))
     slow = fp.Tracker(panda, fp.MVN(), BENT)
     with pytest.raises(ValueError, match="velocity-level"):
         slow.resolve_measured(BENT, np.zeros(7), slow.tip)

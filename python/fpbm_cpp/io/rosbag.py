@@ -85,7 +85,7 @@ def _nanoseconds(t: Array) -> list[int]:
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions. Where the task leaves the orientation free: the arm's, or, of the reference, none.
+    """Positions in space, and quaternions: for a task of position, the arm's, and of the reference the identity.
 
     A planar arm lies in the xy plane and rotates about z.
     """

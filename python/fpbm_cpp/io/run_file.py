@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import operator
 import os
 import platform
@@ -14,32 +15,63 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
-from .._core import Status, __version__
-from .._files import write_whole
-from .recipe import from_data, to_data
-from .run import Run
-from .status import RunStatus
+from .._core import Status, __version__, processor_kinds
+from ..arms import PlanarArm, SerialArm
+from ..motion.run import ARRAYS, LIMITED, Run
+from ..motion.run_status import RunStatus
+from ..schemes import SCHEMES
+from ..table import EVERY_PATH, from_table, to_table
+from .write_whole import write_whole
 
 FORMAT = "fpbm_cpp run"
 VERSION = 1  # Of the format: one more for each that older packages cannot read.
-ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
-LIMITED = ("scale", "saturated")  # Of runs that kept the joints' limits.
+
+# What a table of a file may stand for: nothing that is read from another file.
+ARMS = {arm.kind: arm for arm in (PlanarArm, SerialArm)}
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
     """Write a run to a file, whole or not at all."""
-    provenance = _provenance(run, note, seed)
-    meta = {"format": FORMAT, "version": VERSION, **_description(run), "provenance": provenance}
+    meta = {
+        "format": FORMAT,
+        "version": VERSION,
+        "arm": to_table(run.arm),
+        "path": to_table(run.path),
+        "scheme": to_table(run.scheme),
+        "task": run.task,
+        "options": {name: to_table(value) for name, value in run.options.items()},
+        "status": {"code": run.status.code.name, "time": run.status.time, "q": run.status.q.tolist()},
+        "provenance": _provenance(run, note, seed),
+    }
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, meta=np.array(json.dumps(meta, allow_nan=False)), **_arrays(run))
+    np.savez_compressed(buffer, meta=np.array(json.dumps(_encoded(meta), allow_nan=False)), **run.arrays())
     write_whole(FilePath(file), buffer.getvalue())
 
 
 def load(file: str | os.PathLike[str]) -> Run:
-    """Read a run that save() wrote. Raises ValueError where the file holds none, OSError where it cannot be read."""
+    """Read a run that Run.save wrote: arrays, arm, path, scheme and all, equal to the last bit.
+
+    Nothing in a file is executed: arm, path and scheme are made from numbers by this package's own classes.
+
+    Parameters
+    ----------
+    file : path
+        The file.
+
+    Returns
+    -------
+    Run
+        The run; its provenance says when, where and by which versions it was made, with its note and seed.
+
+    Raises
+    ------
+    ValueError
+        If the file is no run, is damaged, names anything outside this package, or has a newer format.
+    OSError
+        If it cannot be read.
+    """
     content = FilePath(file).read_bytes()
-    # Whatever can be wrong with a file, what reads it has no list of.
+    # Readers of damaged files raise exceptions of every kind.
     try:
         meta, arrays = _members(content)
     except Exception as error:
@@ -55,31 +87,22 @@ def load(file: str | os.PathLike[str]) -> Run:
         raise ValueError(f"{file}: holds no run: {error}") from error
 
 
-def same(one: Run, other: Run) -> bool:
-    """Whether two runs are of the same things and equal to the last bit, wherever and whenever they were made."""
-    return _bits(one) == _bits(other) and _description(one) == _description(other)
+def _encoded(value: Any) -> Any:
+    """A value with {"float": "inf"} and the like for the numbers that JSON lacks."""
+    if isinstance(value, dict):
+        return {name: _encoded(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_encoded(item) for item in value]
+    return {"float": repr(value)} if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _arrays(run: Run) -> dict[str, Any]:
-    arrays = {name: getattr(run, name) for name in (*ARRAYS, *LIMITED)}
-    return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
-
-
-def _bits(run: Run) -> dict[str, Any]:
-    return {name: (array.shape, array.dtype, array.tobytes()) for name, array in _arrays(run).items()}
-
-
-def _description(run: Run) -> dict[str, Any]:
-    """All but the arrays, as JSON holds it."""
-    status = {"code": run.status.code.name, "time": run.status.time, "q": run.status.q}
-    return {
-        "arm": to_data(run.arm),
-        "path": to_data(run.path),
-        "scheme": to_data(run.scheme),
-        "task": run.task,
-        "options": {name: to_data(value) for name, value in run.options.items()},
-        "status": {name: to_data(value) for name, value in status.items()},
-    }
+def _decoded(table: dict[str, Any]) -> Any:
+    """What _encoded() made this of; of tables in tables, the inner ones come first."""
+    if table.keys() == {"float"} and table["float"] in ("inf", "-inf", "nan"):
+        return float(table["float"])
+    if "arm" in table and "format" not in table:  # A second task's.
+        table["arm"] = from_table(table["arm"], ARMS, "arm")
+    return table
 
 
 def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
@@ -92,7 +115,7 @@ def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
         "numpy": np.__version__,
         "python": platform.python_version(),
         "system": platform.system(),
-        "processor": [platform.machine(), *_core.processor_kinds()],
+        "processor": [platform.machine(), *processor_kinds()],
     }
     given = {"note": note, "seed": None if seed is None else _whole_numbers(seed)}
     return {**origin, **{name: value for name, value in given.items() if value is not None}}
@@ -111,29 +134,32 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
     with np.load(io.BytesIO(content), allow_pickle=False) as members:
         if "meta" not in members:
             raise ValueError("it says nothing of arm, path and scheme")
-        meta = json.loads(str(members["meta"]))
+        meta = json.loads(str(members["meta"]), object_hook=_decoded)
         if meta["format"] != FORMAT or not isinstance(meta["version"], int):
             raise ValueError(f"its format is {meta['format']!r} {meta['version']!r}")
         return meta, {name: members[name] for name in (*ARRAYS, *LIMITED) if name in members}
 
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
-    arm, path, scheme, task = (from_data(meta[name]) for name in ("arm", "path", "scheme", "task"))
-    known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=task)
+    kinds = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}
+    arm, path, scheme = (from_table(meta[name], kinds[name], name) for name in kinds)
+    known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
     rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
     shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": ()}
     for name, array in arrays.items():
         shape, kind = (rows, *shapes.get(name, (n,))), "bool" if name == "saturated" else "float64"
         if array.shape != shape or array.dtype != kind:
             raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")
-    status = {name: from_data(value) for name, value in meta["status"].items()}
+    status, options = meta["status"], dict(meta["options"])
+    if options.get("limits") is not None:
+        options["limits"] = from_table(options["limits"], name="limits")
     return Run(
         **arrays,
-        status=RunStatus(Status[status["code"]], status["time"], status["q"]),
+        status=RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float)),
         arm=arm,
         path=path,
         scheme=scheme,
-        task=task,
-        options={name: from_data(value) for name, value in meta["options"].items()},
+        task=meta["task"],
+        options=options,
         provenance=dict(meta["provenance"]),
     )

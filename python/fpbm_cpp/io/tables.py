@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
@@ -79,7 +78,9 @@ def _points(run: Run, x: Array, ending: str) -> Iterator[Column]:
     """Coordinates of the tip or its reference, and in a pose its angle or quaternion."""
     positions = x[:, :3, 3] if x.ndim == 3 else x
     planar_pose = run.task == "pose" and x.ndim == 2
-    for (name, unit), values in zip((("x", "m"), ("y", "m"), ("angle", "rad") if planar_pose else ("z", "m")), positions.T):
+    for (name, unit), values in zip(
+        (("x", "m"), ("y", "m"), ("angle", "rad") if planar_pose else ("z", "m")), positions.T
+    ):
         yield Column(name + ending, unit, values)
     if x.ndim == 3:
         for name, values in zip(("qx", "qy", "qz", "qw"), quaternions(x[:, :3, :3]).T):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
-from ..arms import Arm
+from ..arms import Arm, JointLimits
 from ..paths import Path
 from ..schemes import Scheme
 from .conveniences import Conveniences
@@ -84,7 +84,7 @@ class Run(Conveniences):
 
     @property
     def orientation_error(self) -> Array:
-        """Angular rows of the error [rad], shape (N, 1) or (N, 3); (N, 0) where the task leaves the orientation free."""
+        """Angular rows of the error [rad], shape (N, 1) or (N, 3); (N, 0) for a task of position."""
         return self.error[:, self.positions.shape[1] :]
 
     @property
@@ -101,6 +101,12 @@ class Run(Conveniences):
         if x.ndim == 3:
             return x[:, :3, 3]
         return x[:, :2] if self.task == "pose" else x
+
+    @property
+    def limits(self) -> JointLimits:
+        """The joints' limits that track() was given; otherwise the arm's own."""
+        given: JointLimits | None = self.options.get("limits")
+        return self.arm.limits if given is None else given
 
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the task, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
@@ -121,13 +127,17 @@ class Run(Conveniences):
         if not isinstance(other, Run):
             return NotImplemented
         here, there = self.arrays(), other.arrays()
-        return here.keys() == there.keys() and self._things() == other._things() and all(
-            (one.shape, one.dtype, one.tobytes()) == (there[name].shape, there[name].dtype, there[name].tobytes())
-            for name, one in here.items()
+        return (
+            here.keys() == there.keys()
+            and self._things() == other._things()
+            and all(
+                (one.shape, one.dtype, one.tobytes()) == (there[name].shape, there[name].dtype, there[name].tobytes())
+                for name, one in here.items()
+            )
         )
 
     def __repr__(self) -> str:
         return (
-            f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm!r} along {self.path!r}; "
+            f"<Run of {len(self.t)} samples: {self.scheme!r} on {self.arm} along {self.path!r}; "
             f"largest tip error {self.max_error():.3g} m; {self.status}>"
         )

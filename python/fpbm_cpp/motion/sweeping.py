@@ -103,10 +103,9 @@ def sweep(
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
     if limits is None and limited != LimitOptions():
         raise ValueError("limits: must be given where max_error, an integral or a singular option is")
-    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task)
-    plan = Plan(
-        arm, path, laws, starts, float(dt), float(hold), task, None if limits is None else limited, motions, samples
-    )
+    kept = None if limits is None else limited
+    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
+    plan = Plan(arm, path, laws, starts, float(dt), float(hold), task, kept, motions, samples)
     parts = plan.parts()
     outcomes = not_run(len(plan))
     arrays: list[Any] = [None] * len(plan)
