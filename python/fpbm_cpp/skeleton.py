@@ -1,29 +1,33 @@
-"""Where the base, the joints and the tip of an arm are: what it takes to draw one."""
+"""Positions and axes of an arm's base, joints and tip, for drawing."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from ._core import PlanarArm
-from .serial_arm import SerialArm
-
-if TYPE_CHECKING:
-    from ._core import Arm
-    from ._types import Array
+from ._types import Array
+from .arms import Arm, PlanarArm, SerialArm
 
 
 def joint_points(arm: Arm, q: Array) -> Array:
-    """Points [m] that draw an arm in postures q, shape (..., n).
+    """Positions of base, joints and tip [m] in postures q, shape (..., n).
 
-    Base, joints and tip: shape (..., n + 1, 2) for a planar arm, whose first joint is its base, and (..., k + 2, 3) for
-    a serial arm of k joints, those that follow another included.
+    Shape (..., n + 1, 2) for a planar arm, whose first joint is its base, and (..., k + 2, 3) for a serial arm of k
+    joints, mimic joints included.
     """
     if isinstance(arm, PlanarArm):
-        return _planar(arm, q)
+        heading = np.cumsum(q, axis=-1)
+        links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+        return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
     assert isinstance(arm, SerialArm)
-    return _serial(arm, q)
+    return _forward_pass(arm, q)[0]
+
+
+def joint_axes(arm: Arm, q: Array) -> Array:
+    """Unit vectors along the joints' axes in postures q, shape (..., n, 3), or (..., k, 3) with mimic joints."""
+    if isinstance(arm, PlanarArm):
+        return np.broadcast_to([0.0, 0.0, 1.0], (*q.shape, 3))
+    assert isinstance(arm, SerialArm)
+    return _forward_pass(arm, q)[1]
 
 
 def tip_axes(arm: Arm, q: Array) -> Array:
@@ -31,43 +35,36 @@ def tip_axes(arm: Arm, q: Array) -> Array:
     if isinstance(arm, PlanarArm):
         sine, cosine = np.sin(q.sum()), np.cos(q.sum())
         return np.array([[cosine, -sine], [sine, cosine]])
-    assert isinstance(arm, SerialArm)
     return np.asarray(arm.forward(q)[:3, :3])
 
 
-def _planar(arm: PlanarArm, q: Array) -> Array:
-    heading = np.cumsum(q, axis=-1)
-    links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-    return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
-
-
-def _serial(arm: SerialArm, q: Array) -> Array:
+def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array]:
+    """Positions of base, joints and tip, and axes of the joints."""
     p = np.zeros((*q.shape[:-1], 3))
     R = np.broadcast_to(np.eye(3), (*p.shape, 3))
-    points = [p]
+    points, axes = [p], []
     for joint, position in zip(arm.joints, _positions(arm, q)):
-        placement = np.asarray(joint.placement, dtype=float)
-        p, R = p + R @ placement[:3, 3], R @ placement[:3, :3]
-        axis = np.asarray(joint.axis, dtype=float)
-        axis = axis / np.linalg.norm(axis)
+        p, R = p + R @ joint.placement[:3, 3], R @ joint.placement[:3, :3]
+        axis = joint.axis / np.linalg.norm(joint.axis)
+        axes.append(R @ axis)
         if joint.type == "prismatic":
-            p = p + position[..., None] * (R @ axis)
+            p = p + position[..., None] * axes[-1]
         else:
-            R = R @ _turns(axis, position)
+            R = R @ _rotations(axis, position)
         points.append(p)
-    return np.stack([*points, p + R @ arm.tip[:3, 3]], axis=-2)
+    return np.stack([*points, p + R @ arm.tip[:3, 3]], axis=-2), np.stack(axes, axis=-2)
 
 
 def _positions(arm: SerialArm, q: Array) -> list[Array]:
-    """Position of each joint of the chain, those that follow another included."""
+    """Position of each joint of the chain, mimic joints included."""
     driven = [i for i, joint in enumerate(arm.joints) if joint.mimic is None]
     own = {i: q[..., column] for column, i in enumerate(driven)}
     followed = ((i, joint.mimic) for i, joint in enumerate(arm.joints))
     return [own[i] if mimic is None else mimic[1] * own[mimic[0]] + mimic[2] for i, mimic in followed]
 
 
-def _turns(axis: Array, angle: Array) -> Array:
-    """Rotations about a unit axis (Rodrigues)."""
+def _rotations(axis: Array, angle: Array) -> Array:
+    """Rotation matrices about a unit axis (Rodrigues' formula)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     sine, cosine = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]

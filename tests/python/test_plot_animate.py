@@ -101,7 +101,8 @@ def test_no_such_folder(tmp_path: Path) -> None:
 def test_missing_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _: None)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    with pytest.raises(ImportError, match=r'^a .mp4 needs ffmpeg: pip install "fpbm_cpp\[animation\]", or write a .gif$'):
+    message = r'^a .mp4 needs ffmpeg: pip install "fpbm_cpp\[animation\]", or write a .gif$'
+    with pytest.raises(ImportError, match=message):
         animate(a_run(), tmp_path / "a.mp4")
 
 

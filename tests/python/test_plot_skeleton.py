@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
-from fpbm_cpp.skeleton import joint_points, tip_axes
+from fpbm_cpp.skeleton import joint_axes, joint_points, tip_axes
 
 
 def test_joint_points() -> None:
@@ -59,6 +59,20 @@ def test_joint_points_end_at_the_tip(name: str) -> None:
         if all(joint.mimic is None for joint in arm.joints[: i + 1]):
             here = fp.SerialArm(arm.joints[: i + 1])
             np.testing.assert_allclose(points[0, 0, i + 1], here.forward(q[0, 0, : i + 1])[:3, 3], atol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["panda", "mixed"])
+def test_joint_axes_move_the_tip(name: str) -> None:
+    arm = some_arms()[name]
+    q = np.random.default_rng(8).uniform(-1.5, 1.5, arm.dof)
+    axes, points = joint_axes(arm, q), joint_points(arm, q)
+    slides = np.array([joint.type == "prismatic" for joint in arm.joints])[:, None]
+    swept = np.where(slides, axes, np.cross(axes, points[-1] - points[1:-1]))
+    np.testing.assert_allclose(swept.T, arm.jacobian(q), atol=1e-14)
+
+
+def test_joint_axes_of_a_planar_arm() -> None:
+    assert joint_axes(fp.PlanarArm([1.0, 0.5]), np.zeros((3, 2))).tolist() == [[[0.0, 0.0, 1.0]] * 2] * 3
 
 
 @pytest.mark.parametrize("name", some_arms())

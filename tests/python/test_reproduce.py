@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -131,7 +132,7 @@ def test_circles_one_after_another_share_their_ends(paper: cases.Paper, monkeypa
     monkeypatch.setattr(claims, "CIRCLES", 3)
     runs = claims.chained(paper, paper.figure(2).scheme)
     assert len(runs) == 3
-    for before, after in zip(runs, runs[1:]):
+    for before, after in pairwise(runs):
         np.testing.assert_array_equal(after.q[0], before.q[-1])
         np.testing.assert_array_equal(after.qd[0], before.qd[-1])
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import objectives, search
 from fpbm_cpp.tuning.pareto import unbeaten
-from fpbm_cpp.tuning.sensitivity import changes, every, neighbours
+from fpbm_cpp.tuning.sensitivity import changes, neighbours
 from fpbm_cpp.tuning.trials import Trials
 
 pytest.importorskip("cmaes")
@@ -87,9 +88,9 @@ def test_the_range_used_is_one_on_a_bound():
     run = fp.simulate(PANDA, fp.Line([0.0, 0.0, 0.01], 0.1), fp.MVN(), READY, dt=0.01)
     for bound in (PANDA.limits.lower, PANDA.limits.upper):
         run.q[:] = (PANDA.limits.lower + PANDA.limits.upper) / 2
-        assert objectives.range_used(run) == 0.0
+        assert objectives.limit_distance(run) == 0.0
         run.q[3, 5] = bound[5]
-        assert objectives.range_used(run) == pytest.approx(1.0, abs=1e-14)
+        assert objectives.limit_distance(run) == pytest.approx(1.0, abs=1e-14)
 
 
 def test_it_finds_what_is_better(tuning):
@@ -160,7 +161,7 @@ def test_only_what_is_searched_varies():
 def test_what_is_infeasible_is_never_returned():
     """At steps of 0.25 s RK4 errs, by 3e-5 m to 1e-4 m."""
     bound = 3.25e-5
-    tuning = quick("peak_acceleration", dt=0.25, max_error=bound, trials=80)
+    tuning = quick("peak_acceleration", dt=0.25, tolerance=bound, trials=80)
     trials = tuning.trials
     assert 5 < trials.feasible.sum() < 75
     assert (trials.error[trials.feasible] <= bound).all()
@@ -182,7 +183,7 @@ def test_an_objective_that_is_not_finite_is_infeasible():
 
 def test_a_baseline_that_is_infeasible():
     gains = {"k1": (0.5, 5), "k2": (0.5, 5)}
-    tuning = quick(baseline=fp.FPBM(0.0, [1, 1, 1, 1], 0, 0), search=gains, dt=0.25, max_error=2e-4)
+    tuning = quick(baseline=fp.FPBM(0.0, [1, 1, 1, 1], 0, 0), search=gains, dt=0.25, tolerance=2e-4)
     assert not tuning.trials.feasible[0]
     assert np.isnan(tuning.baseline_value)
     assert np.isnan(tuning.improvement)
@@ -193,8 +194,8 @@ def test_a_baseline_that_is_infeasible():
 def test_where_nothing_is_feasible():
     with pytest.raises(RuntimeError, match="none of 9 schemes is feasible: 9 stopped early"):
         fp.tune(ARM, fp.Line([5, 0], 5.0), Q0, dt=0.05, trials=8)
-    with pytest.raises(RuntimeError, match=r"0 stopped early .* the others err by .* at least, where max_error"):
-        quick(dt=0.25, max_error=1e-12)
+    with pytest.raises(RuntimeError, match=r"0 stopped early .* the others err by at least .*, where tolerance"):
+        quick(dt=0.25, tolerance=1e-12)
 
 
 def test_sensitivity(tuning):
@@ -218,16 +219,38 @@ def test_a_parameter_that_cannot_step():
 
 
 def test_a_step_to_what_is_infeasible_has_no_price():
-    around = neighbours(fp.FPBM(0.5, [1, 2], 1, 1, null_damping=1))
-    schemes, ones = np.array(every(around), dtype=object), np.ones(2 * len(around))
+    scheme = fp.FPBM(0.5, [1, 2], 1, 1, null_damping=1)
+    around = neighbours(scheme)
+    schemes, ones = np.array(list(around.values()), dtype=object), np.ones(len(around))
     feasible = np.arange(len(ones)) > 0
-    steps = changes(1.0, around, Trials(schemes, ones, ones, ones, ones, feasible))
+    steps = changes(scheme, 1.0, around, Trials(schemes, ones, ones, ones, ones, feasible))
     assert np.concatenate(list(steps.values())).tolist() == [np.inf, *[0.0] * (len(ones) - 1)]
+
+
+def test_trials_are_tracked_within_limits():
+    path = fp.Circle(0.1, 1.0).in_plane("yz")
+    whole = fp.track(PANDA, path, fp.FPBM(0.6, np.arange(1.0, 8.0), 1, 1), READY, dt=0.01)
+    velocity = np.full(7, 0.9 * np.abs(whole.qd).max())
+    limits = replace(PANDA.limits, velocity=velocity)
+    tuning = fp.tune(
+        PANDA, path, READY, "energy", dt=0.01, limits=limits, tolerance=0.05, trials=12, workers=1, integral_gain=0.1
+    )
+    trials = tuning.trials
+    assert trials.peak_velocity.max() <= velocity[0] + 1e-9
+    for scheme, value, error in zip(trials.schemes, trials.value, trials.error):
+        run = fp.track(PANDA, path, scheme, READY, dt=0.01, limits=limits, integral_gain=0.1)
+        assert run.max_error() == pytest.approx(error, abs=1e-9)
+        assert objectives.energy(run) == pytest.approx(value, rel=1e-9)
+
+
+def test_options_of_tracking_need_limits():
+    with pytest.raises(ValueError, match="integral_gain"):
+        quick(integral_gain=0.1)
 
 
 def test_text(tuning):
     text = str(tuning)
-    assert "peak_velocity of PlanarArm([1, 1, 1, 1]) along Circle(0.45" in text
+    assert "peak_velocity of PlanarArm(lengths=[1, 1, 1, 1]) along Circle(radius=0.45" in text
     assert f"{tuning.value:.5g} rad/s, " in text
     assert "121 schemes tried, 121 feasible" in text
     rows = [line.split() for line in text.splitlines()]
@@ -274,8 +297,8 @@ def test_interruption_within_an_objective():
     [
         ({"objective": "speed"}, "objective = 'speed': must be one of 'peak_velocity', 'peak_acceleration', .*, or a"),
         ({"objective": "limit_distance"}, "objective = 'limit_distance': the arm has no joint that is bounded both"),
-        ({"search": {"beta": (0, 1)}}, "search: 'beta' is none of 'alpha', 'weights', 'k1', 'k2', 'null_damping'"),
-        ({"search": {}}, "search: must name one parameter at least"),
+        ({"search": {"beta": (0, 1)}}, "search: 'beta' must be one of 'alpha', 'weights', 'k1', 'k2', 'null_damping'"),
+        ({"search": {}}, "search: must name at least one parameter"),
         ({"search": {"alpha": (0.8, 0.2)}}, r"search\['alpha'\] = \(0.8, 0.2\): must be finite, with low < high"),
         ({"search": {"alpha": (0.8, 1.2)}}, r"search\['alpha'\] = \(0.8, 1.2\): must lie in \[0, 1\]"),
         ({"search": {"k1": (0, 10)}}, r"search\['k1'\] = \(0, 10\): must be positive, since it is searched on a log"),
@@ -285,10 +308,10 @@ def test_interruption_within_an_objective():
         ({"search": {"weights": (1, np.inf)}}, r"search\['weights'\].*: must be finite"),
         ({"baseline": fp.FPBM(0.5, np.eye(4), 1, 1)}, "baseline = .*: W must be diagonal, of 4 weights"),
         ({"baseline": fp.FPBM(0.5, [1, 2, 3], 1, 1)}, "baseline = .*: W must be diagonal, of 4 weights"),
-        ({"trials": 0}, "trials = 0: must be a whole number, 1 at least"),
-        ({"trials": 2.5}, "trials = 2.5: must be a whole number, 1 at least"),
+        ({"trials": 0}, "trials = 0: must be a whole number, at least 1"),
+        ({"trials": 2.5}, "trials = 2.5: must be a whole number, at least 1"),
         ({"seed": -1}, "seed = -1: must be a whole number, 0 at least"),
-        ({"max_error": 0}, "max_error = 0: must be positive and finite"),
+        ({"tolerance": 0}, "tolerance = 0: must be positive and finite"),
         ({"q0": [0, 0, 0]}, r"q0 = \[0.0, 0.0, 0.0\]: must be 4 finite numbers"),
         ({"q0": [0, 0, 0, np.nan]}, "q0 = .*: must be 4 finite numbers"),
         ({"dt": 0.003}, "dt = 0.003: must be a divisor of duration = 10"),
@@ -311,7 +334,7 @@ def test_a_baseline_of_another_kind():
         quick(baseline=fp.MAN())
 
 
-def test_what_is_missing_is_said(tuning, monkeypatch):
+def test_missing_libraries(tuning, monkeypatch):
     monkeypatch.setitem(sys.modules, "cmaes", None)
     with pytest.raises(ImportError, match=r'tuning needs cmaes: pip install "fpbm_cpp\[tune\]"'):
         quick()

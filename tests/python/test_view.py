@@ -24,15 +24,17 @@ pytest.importorskip("yourdfpy")
 
 from viser.transforms import SO3
 
+from fpbm_cpp.parameter import parameters
 from fpbm_cpp.skeleton import joint_points
-from fpbm_cpp.viewer import Viewer
-from fpbm_cpp.viewer.film import FRAMES, Film
+from fpbm_cpp.viewer import Viewer, controls
+from fpbm_cpp.viewer import viewer as viewer_module
 from fpbm_cpp.viewer.links import Links
 from fpbm_cpp.viewer.meshes import Model
-from fpbm_cpp.viewer.schemes import GAINS, Family
+from fpbm_cpp.viewer.playback import FRAMES, Playback
 from fpbm_cpp.viewer.space import along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
+Q0 = np.pi / np.array([12, 12, 15, 15])
 CLICK = SimpleNamespace(client="somebody", target=None)  # What the page's own events have and ours have not.
 
 
@@ -40,11 +42,14 @@ def fpbm(n=4, **options):
     return fp.FPBM(0.6, np.arange(1, n + 1), 10, 25, **options)
 
 
-def a_viewer(scheme=None, **how):
+def a_run(scheme=None, path=None, q0=Q0, **how):
     """The paper's robot on a small circle."""
-    path = how.pop("path", fp.Circle(0.2, 2.0))
-    q0 = how.pop("q0", np.pi / np.array([12, 12, 15, 15]))
-    return Viewer(fp.PlanarArm([1, 1, 1, 1]), path, scheme or fpbm(), q0, **{"dt": 0.01, "port": 0, **how})
+    arm, path = fp.PlanarArm([1, 1, 1, 1]), path or fp.Circle(0.2, 2.0)
+    return fp.simulate(arm, path, scheme or fpbm(), q0, partial=True, **{"dt": 0.01, **how})
+
+
+def a_viewer(scheme=None, **how):
+    return Viewer(a_run(scheme, **how), port=0)
 
 
 @pytest.fixture(scope="module")
@@ -128,8 +133,8 @@ def test_the_page_chooses_schemes_and_gains(viewer):
 
 def test_what_is_set_from_here_is_run_once(viewer, monkeypatch):
     runs = []
-    run = type(viewer._job).run
-    monkeypatch.setattr(type(viewer._job), "run", lambda *given: runs.append(given) or run(*given))
+    rerun = viewer_module.rerun
+    monkeypatch.setattr(viewer_module, "rerun", lambda *given: runs.append(given) or rerun(*given))
     viewer.scheme = fp.Balanced(0.1, [1, 1, 2, 2])
     assert len(runs) == 1
 
@@ -154,13 +159,23 @@ def test_gains_beyond_a_slider_make_room(viewer):
     ],
 )
 def test_schemes_keep_their_options(scheme):
-    family = Family(scheme, 4)
-    assert repr(family.scheme(family.kind, family.gains)) == repr(scheme)
-    for kind in GAINS:
-        other = family.scheme(kind, family.gains)
-        assert type(other).__name__ == kind
-        for name, value in family.options.items():
-            np.testing.assert_array_equal(other.__reduce__()[0].keywords[name], value)
+    assert controls.changed(scheme, type(scheme), {}) == scheme
+    values = {"alpha": 0.7, "weights": np.ones(4), "k1": 1.0, "k2": 2.0}
+    for name, kind in controls.KINDS.items():
+        other = controls.changed(scheme, kind, values)
+        assert type(other).__name__ == name
+        for option in parameters(fp.Scheme):
+            np.testing.assert_array_equal(getattr(other, option), getattr(scheme, option))
+        for value in values.keys() & parameters(kind).keys():
+            np.testing.assert_array_equal(getattr(other, value), values[value])
+
+
+def test_sliders_are_those_of_the_declarations(viewer):
+    sliders = viewer._controls._sliders
+    assert set(sliders) == {"alpha", "k", "k1", "k2", "null_damping"}
+    assert (sliders["alpha"].label, sliders["alpha"].max) == ("α", 1.0)
+    assert (sliders["k2"].label, sliders["k2"].hint) == ("k₂", "Feedback gain on position. [1/s^2]")
+    assert sliders["null_damping"].label == "null damping"
 
 
 def test_a_dense_weight_matrix_is_kept(viewer):
@@ -263,7 +278,7 @@ def test_quantities_over_time(viewer):
         chart._quantity.value = quantity
         assert chart._plot.title.startswith(quantity)
         assert len(chart._plot.data) == len(chart._plot.series)
-    assert "turn error" not in chart._quantity.options
+    assert "orientation error" not in chart._quantity.options
     chart._quantity.value = "tip error"
     power = chart._plot.title.split("10")[1].split(" m]")[0]
     exponent = int(power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
@@ -277,10 +292,10 @@ def test_a_finished_run():
     path = fp.Circle(0.05, 1.0).in_plane("yz")
     qd0 = np.full(8, 0.01)
     run = fp.simulate(arm, path, fpbm(8), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose")
-    with Viewer.of(run, port=0) as viewer:
+    with Viewer(run, port=0) as viewer:
         assert viewer.run is run
-        assert "turn error" in say(viewer)
-        assert "turn error" in viewer._chart._quantity.options
+        assert "orientation error" in say(viewer)
+        assert "orientation error" in viewer._chart._quantity.options
         viewer.scheme = fp.MAN()
         same(viewer.run, fp.simulate(arm, path, fp.MAN(), [0.1, *READY], dt=0.01, hold=0.5, qd0=qd0, task="pose"))
         viewer._chart._quantity.value = "joint velocities"
@@ -295,7 +310,7 @@ def test_what_is_said_is_no_markup(viewer):
 
 def test_limits_are_kept_on_request():
     arm, path = fp.SerialArm.preset("panda"), fp.Circle(0.05, 1.0).in_plane("yz")
-    with Viewer(arm, path, fpbm(7), READY, dt=0.01, port=0) as viewer:
+    with Viewer(fp.simulate(arm, path, fpbm(7), READY, dt=0.01), port=0) as viewer:
         box = viewer._controls._limited
         assert box.visible
         assert viewer.run.scale is None
@@ -309,56 +324,58 @@ def test_limits_are_kept_on_request():
 
 
 def test_the_limits_of_a_run_stay():
-    wide, q0 = np.full(4, 9.0), np.pi / np.array([12, 12, 15, 15])
+    wide = np.full(4, 9.0)
     limits = fp.JointLimits(lower=-wide, upper=wide, velocity=np.full(4, 0.1), acceleration=wide)
-    run = fp.track(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 2.0), fpbm(), q0, dt=0.01, limits=limits)
-    with Viewer.of(run, port=0) as viewer:
+    run = fp.track(fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 2.0), fpbm(), Q0, dt=0.01, limits=limits)
+    with Viewer(run, port=0) as viewer:
         assert viewer._controls.limited
         viewer.scheme = fpbm(null_damping=2)
-        same(viewer.run, fp.track(run.arm, run.path, viewer.scheme, q0, dt=0.01, limits=limits))
+        same(viewer.run, fp.track(run.arm, run.path, viewer.scheme, Q0, dt=0.01, limits=limits))
         assert abs(viewer.run.qd).max() == pytest.approx(0.1, abs=1e-12)
 
 
-def test_film_of_a_long_run():
-    arm, path = fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 10.0)
-    film = Film(fp.simulate(arm, path, fpbm(), np.full(4, 0.3), dt=1e-3))
-    assert len(film.frames) == len(film.tip) == len(film.target) == len(film.manipulability) == FRAMES
-    assert film.frames[0] == 0
-    assert film.frames[-1] == 10000
+def test_playback_of_a_long_run():
+    run = a_run(path=fp.Circle(0.2, 10.0), dt=1e-3)
+    playback = Playback(run)
+    frames = playback.frames
+    assert len(frames) == len(playback.tip) == len(playback.target) == FRAMES
+    assert (frames[0], frames[-1]) == (0, 10000)
+    np.testing.assert_array_equal(playback.manipulability, run.manipulability()[frames])
     for sample in (0, 1, 19, 20, 21, 5000, 9999, 10000):
-        frame = film.frame(sample)
-        assert film.frames[frame] <= sample
-        assert frame == FRAMES - 1 or sample < film.frames[frame + 1]
-    assert film.at(1.2344) == 1234
-    assert film.at(77.0) == 10000
+        frame = playback.frame(sample)
+        assert frames[frame] <= sample
+        assert frame == FRAMES - 1 or sample < frames[frame + 1]
+    assert playback.sample(1.2344) == 1234
+    assert playback.sample(77.0) == 10000
 
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(lambda d: np.linalg.norm(d) > 1e-3))
-def test_turns_along_a_direction(direction):
+def test_rotations_along_a_direction(direction):
     d = np.array(direction)
     np.testing.assert_allclose(SO3(along(d)).apply(np.array([0.0, 0, 1])), d / np.linalg.norm(d), atol=1e-6)
 
 
-def test_turns_upside_down():
+def test_rotation_upside_down():
     np.testing.assert_allclose(SO3(along(np.array([0.0, 0, -2]))).apply(np.array([0.0, 0, 1])), [0, 0, -1], atol=1e-12)
 
 
 def with_mimic():
     """A rail, and a joint that follows another by a half."""
-    turn = np.eye(4)
-    turn[:3, :3] = fp.rotation([0.3, -0.8, 0.4])
-    turn[:3, 3] = [0.2, 0.1, 0.4]
+    frame = np.eye(4)
+    frame[:3, :3] = fp.rotation([0.3, -0.8, 0.4])
+    frame[:3, 3] = [0.2, 0.1, 0.4]
     kinds = ["prismatic", "revolute", "continuous", "revolute", "revolute"]
     joints = [
-        fp.Joint(kind, turn, (0.2, 1, 0.1 * i), mimic=(1, 0.5, 0.1) if i == 3 else None) for i, kind in enumerate(kinds)
+        fp.Joint(kind, frame, (0.2, 1, 0.1 * i), mimic=(1, 0.5, 0.1) if i == 3 else None)
+        for i, kind in enumerate(kinds)
     ]
-    return fp.SerialArm(joints, turn)
+    return fp.SerialArm(joints, frame)
 
 
 def test_links_and_joints_are_where_the_arm_has_them():
     arm = with_mimic()
     q = np.array([0.3, 0.4, -0.5, 0.6])
-    with Viewer(arm, fp.Line([0.01, 0, 0], 1.0), fp.MVN(), q, dt=0.01, port=0) as viewer:
+    with Viewer(fp.simulate(arm, fp.Line([0.01, 0, 0], 1.0), fp.MVN(), q, dt=0.01), port=0) as viewer:
         links = viewer._scene._arm
         q = q + 0.2
         links.pose(q)
@@ -455,7 +472,7 @@ def test_without_any_mesh_the_arm_is_drawn_from_its_links(file):
     arm = fp.SerialArm.from_urdf(file, tip="hand")
     path = fp.Line([0.01, 0, 0], 1.0)
     with pytest.warns(UserWarning, match="2 meshes are not found, the first is nowhere.stl"):
-        viewer = Viewer(arm, path, fp.MVN(), [0.3, 0.2, 0.5, 0.4], dt=0.01, urdf=file, port=0)
+        viewer = Viewer(fp.simulate(arm, path, fp.MVN(), [0.3, 0.2, 0.5, 0.4], dt=0.01), urdf=file, port=0)
     with viewer:
         assert isinstance(viewer._scene._arm, Links)
 
@@ -479,9 +496,9 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
         path = fp.Line([0.01, 0] if isinstance(bad, fp.PlanarArm) else [0.01, 0, 0], 1.0)
         q0 = np.linspace(0.3, 0.6, bad.dof)
         with pytest.raises(ValueError, match=words):
-            Viewer(bad, path, fp.MVN(), q0, urdf=model, port=0).close()
+            Viewer(fp.simulate(bad, path, fp.MVN(), q0, dt=0.01), urdf=model, port=0).close()
     with pytest.raises(FileNotFoundError):
-        fp.view(arm, path, fp.MVN(), q0, urdf=tmp_path / "none.urdf", open_browser=False)
+        fp.view(arm, path, fp.MVN(), q0, dt=0.01, urdf=tmp_path / "none.urdf", open_browser=False)
 
 
 @pytest.mark.parametrize(
@@ -495,9 +512,13 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
     ],
 )
 def test_bad_arguments(change, words):
+    def view(q0=Q0, **how):
+        arm, path = fp.PlanarArm([1, 1, 1, 1]), fp.Circle(0.2, 2.0)
+        fp.view(arm, path, fp.MVN(), q0, **{"dt": 0.01, "port": 0, "open_browser": False, **how})
+
     before = threading.active_count()
     with pytest.raises(ValueError, match=words):
-        a_viewer(**change)
+        view(**change)
     assert threading.active_count() == before
 
 
@@ -507,7 +528,7 @@ def test_a_port_in_use():
         taken.listen()
         port = taken.getsockname()[1]
         with pytest.raises(OSError, match=f"port {port} is in use: choose another one, or 0 for one that is free"):
-            a_viewer(port=port)
+            Viewer(a_run(), port=port)
 
 
 def test_it_serves_until_it_is_closed():
@@ -566,9 +587,22 @@ except ImportError as error:
 
 
 def test_importing_the_package_imports_no_viewer():
-    code = "import fpbm_cpp, sys; print('viser' in sys.modules, 'fpbm_cpp.viewer' in sys.modules)"
+    code = "import fpbm_cpp, sys; print('viser' in sys.modules, 'fpbm_cpp.viewer.viewer' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "False False\n"
+
+
+@pytest.mark.parametrize("end", ["viewer.close()", "viewer.time = 0.5"])
+def test_viser_prints_nothing(end):
+    code = f"""
+import fpbm_cpp as fp
+from fpbm_cpp.viewer import Viewer
+run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
+viewer = Viewer(run, port=0)
+{end}
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert (run.stdout, run.stderr) == ("", "")
 
 
 FLAGS = [

@@ -1,6 +1,6 @@
-"""The paper end to end: its 18 motions, figures, tables, errata and claims.
+"""The paper's results from beginning to end: 18 motions, figures, tables, errata and claims.
 
-Data flows one way: paper.json → cases (runs) → tables, figures, claims → report.
+Imports go one way: paper.json → cases (runs) → tables, figures, claims → report.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .._files import write_whole
+from ..io.write_whole import write_whole
 from .cases import Result, load, run_all
 from .claims import Claim, check_claims
 from .figures import make_figure, rendered
@@ -21,7 +21,7 @@ __all__ = ["Reproduction", "reproduce"]
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came out: every run, table and claim, a summary in sentences, and the files written."""
+    """All runs, tables and claims, a summary in sentences, and the files written."""
 
     results: list[Result]
     tables: list[Table]
@@ -36,20 +36,20 @@ class Reproduction:
 
 
 def reproduce(out: Path, say: Callable[[str], None] = lambda step: None) -> Reproduction:
-    """Run the whole paper and write report.md, fig1.png … fig8.png and fig1.pdf … fig8.pdf.
+    """Run all of the paper's cases, and write report.md, fig1.png … fig8.png and fig1.pdf … fig8.pdf.
 
     Parameters
     ----------
     out : pathlib.Path
-        Directory to write to, made where it does not exist. Only these 17 files in it are touched; each is written
-        whole or not at all.
+        Folder to write to, created if it does not exist. Only these 17 files in it are touched; each is written whole
+        or not at all.
     say : callable
-        Told what is being done, a few words at a time.
+        Called with a few words at each step.
 
     Raises
     ------
     OSError
-        Where a file cannot be written.
+        If a file cannot be written.
     """
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)

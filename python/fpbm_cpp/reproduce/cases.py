@@ -1,28 +1,29 @@
-"""The paper as data: the arm, the paths, and the 18 motions with what was printed and what is right."""
+"""The paper as data: the arm, the paths, and the 18 motions with their printed and their correct numbers."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
-from .._core import FPBM, MAN, Circle, Lissajous, Path, PlanarArm, Scheme, Tricuspid
 from .._types import Array
-from ..run import Run
-from ..simulate import simulate
+from ..arms import PlanarArm
+from ..motion.run import Run
+from ..motion.simulation import simulate
+from ..paths import PATHS, Path
+from ..schemes import FPBM, MAN, Scheme
 
 DT = 1e-3  # [s]
-PATHS: Mapping[str, Callable[..., Path]] = {"circle": Circle, "lissajous": Lissajous, "tricuspid": Tricuspid}
 NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tricuspid"}
 
 
 @dataclass(frozen=True)
 class Case:
-    """One motion of the paper; what was not printed is None.
+    """One motion of the paper.
 
     Attributes
     ----------
@@ -33,9 +34,10 @@ class Case:
     fpbm : mapping
         Parameters of FPBM; empty for MAN.
     table, row, figure
-        Where it is printed: '1' or '2, 3', the name of the row, the figure's number.
+        Where the paper has it: '1' or '2, 3', the name of the row, the figure's number.
     printed_qd, printed_error, misprinted_joint
-        Final joint velocities [rad/s], largest tip error [m], and the joint (1 to n) whose velocity is a misprint.
+        Printed final joint velocities [rad/s] and largest tip error [m], None if not printed, and the joint (1 to n)
+        whose velocity is a misprint.
     """
 
     path: str
@@ -62,7 +64,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Erratum:
-    """A misprint in the set-up, with the posture [deg] or the circle's radius [m] that the text gives."""
+    """An error in the paper's set-up, with the posture [deg] or the circle's radius [m] that its text gives."""
 
     text: str
     q0_degrees: Sequence[float] | None = None
@@ -71,7 +73,7 @@ class Erratum:
 
 @dataclass(frozen=True, eq=False)
 class Paper:
-    """The set-up and every case."""
+    """The set-up and all cases."""
 
     source: str
     arm: PlanarArm
@@ -99,12 +101,12 @@ class Result:
     @property
     def from_reference(self) -> float:
         """Largest difference of final positions [rad] and velocities [rad/s] from the independent solution."""
-        theirs = [self.case.reference_q, self.case.reference_qd]
-        return float(np.abs([self.run.q[-1], self.run.qd[-1]] - np.array(theirs)).max())
+        reference = [self.case.reference_q, self.case.reference_qd]
+        return float(np.abs([self.run.q[-1], self.run.qd[-1]] - np.array(reference)).max())
 
     @property
     def from_printed(self) -> float | None:
-        """Largest difference of final velocities from the printed ones [rad/s], misprints left out."""
+        """Largest difference of final velocities from the printed ones [rad/s], without misprints."""
         if self.case.printed_qd is None:
             return None
         good = np.arange(1, len(self.case.printed_qd) + 1) != self.case.misprinted_joint
@@ -125,5 +127,5 @@ def load() -> Paper:
 
 
 def run_all(paper: Paper) -> list[Result]:
-    """Every case, run."""
+    """Simulate every case."""
     return [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]

@@ -1,26 +1,27 @@
-"""What the paper claims, confirmed or corrected, and what else its schemes do; every number is computed here."""
+"""The paper's claims, confirmed or corrected, and four findings of our own; every number is computed here."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from .._core import FPBM, MAN, Balanced, Scheme
 from .._types import Array
-from ..run import Run
+from ..motion.run import Run
+from ..schemes import FPBM, MAN, Balanced, Scheme
 from .cases import DT, NAMES, Paper, Result
 
-COARSE = 0.2  # 50 steps over a path [s]
+COARSE = 0.2  # Step of the coarse runs [s]: 50 steps over a path.
 HOLD = 30.0  # [s]
 CIRCLES = 20
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement, whether it holds, and the numbers behind that."""
+    """A statement, whether it holds, and the numbers that show it."""
 
     statement: str
     verdict: str
@@ -28,7 +29,7 @@ class Claim:
 
 
 def check_claims(paper: Paper, results: Sequence[Result]) -> list[Claim]:
-    """All of them, the paper's first."""
+    """All claims, the paper's first."""
     return [
         _tip_error(paper),
         _peak_velocity(results),
@@ -77,8 +78,8 @@ def _final_velocity(results: Sequence[Result]) -> Claim:
 
 
 def _larger_weights(paper: Paper, results: Sequence[Result]) -> Claim:
-    weights = np.array(paper.figure(2).fpbm["weights"])
-    run, *scaled = (paper.simulate("circle", _fpbm(paper, weights=c * weights)) for c in (1, 2, 1000))
+    fpbm = _fpbm(paper)
+    run, *scaled = (paper.simulate("circle", replace(fpbm, weights=c * fpbm.weights)) for c in (1, 2, 1000))
     changes = [max(float(np.abs(getattr(s, a) - getattr(run, a)).max()) for a in ("q", "qd", "qdd")) for s in scaled]
     rows = sorted((r for r in results if r.case.row), key=lambda r: _speed(r.run))
     largest = max(rows, key=lambda r: sum(r.case.fpbm["weights"]))
@@ -104,7 +105,7 @@ def _rest(paper: Paper) -> Claim:
         f"FPBM of Fig. 2, target held for {HOLD:g} s after T: the tip stays, the joints move on by {moved:.2f} rad. "
         f"Over {CIRCLES} circles, each from where the last one ended, the peak joint velocity grows from "
         f"{peaks[0]:.2f} to {max(peaks):.2f} rad/s (circle {np.argmax(peaks) + 1}). The motion becomes unpredictable "
-        f"as well: half the step moves the end of circle 1 by {apart[0]:.0e} rad, of circle {middle} by "
+        f"too: half the step moves the end of circle 1 by {apart[0]:.0e} rad, of circle {middle} by "
         f"{apart[middle - 1]:.0e} rad, of circle {CIRCLES} by {apart[-1]:.1g} rad. Nothing in the paper damps "
         "self-motion.",
     )
@@ -116,15 +117,16 @@ def _printed_error(results: Sequence[Result]) -> Claim:
     return Claim(
         "FPBM's tip error is about 1e-5 m",
         _verdict(bool(ours.max() > 0.1 * printed.min())),
-        f"The printed errors, {printed.min():.1e} to {printed.max():.1e} m, are the tolerance of the variable-step "
-        f"solver used there: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. They say nothing about α or W.",
+        f"The printed errors, {printed.min():.1e} to {printed.max():.1e} m, are the tolerance of the paper's variable-"
+        f"step solver: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. They say nothing about α or W.",
     )
 
 
 def _cure(paper: Paper) -> Claim:
-    moved = _moved_on_hold(paper, _fpbm(paper, null_damping=2.0))
-    runs = chained(paper, _fpbm(paper, null_damping=2.0, rest_posture=paper.q0, null_stiffness=1.0))
-    ends = [float(np.abs(b.q[-1] - a.q[-1]).max()) for a, b in zip(runs, runs[1:])]
+    damped = _fpbm(paper, null_damping=2.0)
+    moved = _moved_on_hold(paper, damped)
+    runs = chained(paper, replace(damped, rest_posture=paper.q0, null_stiffness=1.0))
+    ends = [float(np.abs(b.q[-1] - a.q[-1]).max()) for a, b in pairwise(runs)]
     return Claim(
         "Damping the null space brings the joints to rest and leaves the task alone (ours)",
         _verdict(moved < 0.01 and max(ends) < 1e-4),
@@ -136,12 +138,12 @@ def _cure(paper: Paper) -> Claim:
 
 
 def _two_causes(paper: Paper) -> Claim:
-    p = paper.figure(2).fpbm
+    fpbm = _fpbm(paper)
     schemes = {
         "MAN": MAN(),
-        "MAN with feedback": _fpbm(paper, alpha=0.0),
-        "balance without feedback": Balanced(p["alpha"], p["weights"]),
-        "FPBM": _fpbm(paper),
+        "MAN with feedback": replace(fpbm, alpha=0.0),
+        "balance without feedback": Balanced(fpbm.alpha, fpbm.weights),
+        "FPBM": fpbm,
     }
     runs = {name: paper.simulate("circle", scheme, dt=COARSE) for name, scheme in schemes.items()}
     man, feedback, balance, _ = runs.values()
@@ -166,20 +168,20 @@ def _trade_off(results: Sequence[Result]) -> Claim:
 
 
 def chained(paper: Paper, scheme: Scheme, dt: float = DT) -> list[Run]:
-    """Circles one after another, each from the joint state in which the last one ended."""
+    """Circles one after another, each from the joint state in which the one before ended."""
     runs = [paper.simulate("circle", scheme, dt=dt)]
     for _ in range(CIRCLES - 1):
         runs.append(paper.simulate("circle", scheme, dt=dt, q0=runs[-1].q[-1], qd0=runs[-1].qd[-1]))
     return runs
 
 
-def _fpbm(paper: Paper, **changed: Any) -> Scheme:
-    """The scheme of Fig. 2, with some parameters changed."""
-    return FPBM(**{**paper.figure(2).fpbm, **changed})
+def _fpbm(paper: Paper, **more: Any) -> FPBM:
+    """The scheme of Fig. 2, with more parameters."""
+    return FPBM(**paper.figure(2).fpbm, **more)
 
 
 def _against_man(results: Sequence[Result], measure: Callable[[Run], float]) -> tuple[dict[str, float], str]:
-    """FPBM's largest measure over MAN's for each path of the figures, and all the measures in words."""
+    """Ratio of FPBM's largest measure to MAN's for each path of the figures, and a sentence of all measures."""
     shown = sorted((r for r in results if r.case.figure), key=lambda r: r.case.figure)
     ratios, words = {}, []
     for man in (r for r in shown if not r.case.fpbm):

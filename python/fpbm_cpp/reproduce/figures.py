@@ -6,8 +6,10 @@ from io import BytesIO
 
 from matplotlib.figure import Figure
 
-from ..plot import compose
+from ..plot import plot_run
 from .cases import NAMES, Case, Result
+
+PANELS = ("arm", "axis_errors", "velocities", "accelerations")
 
 
 def caption(case: Case) -> str:
@@ -20,14 +22,14 @@ def caption(case: Case) -> str:
 
 
 def make_figure(result: Result) -> Figure:
-    """The figure of a case; those of the tricuspid have no accelerations."""
+    """The figure of a case; the paper's figures of the tricuspid have no accelerations."""
     title = f"Fig. {result.case.figure}   {caption(result.case)}"
-    return compose(result.run, title, panels=3 if result.case.path == "tricuspid" else 4)
+    return plot_run(result.run, title, PANELS[:3] if result.case.path == "tricuspid" else PANELS)
 
 
 def rendered(drawn: Figure, kind: str) -> bytes:
-    """The figure as 'png' or 'pdf'; the same bytes every time."""
+    """The figure as 'png' or 'pdf': the same bytes every time."""
     file = BytesIO()
     drawn.savefig(file, format=kind, metadata={"CreationDate": None} if kind == "pdf" else None)
-    drawn.set_layout_engine("none")  # Laid out once for both kinds.
+    drawn.set_layout_engine("none")  # The second file takes the layout of the first.
     return file.getvalue()

@@ -1,4 +1,4 @@
-"""The report: what was run, figures, tables, errata, claims."""
+"""The report: settings, figures, tables, errata, claims."""
 
 from __future__ import annotations
 
@@ -7,32 +7,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from .._core import Circle, __version__
+from .._core import __version__
+from ..paths import Circle
 from .cases import DT, Erratum, Paper, Result
 from .claims import Claim
 from .figures import caption
 from .tables import Table
 
-TOLERANCE = 1e-9  # between our runs and the independent solution [rad, rad/s]
+TOLERANCE = 1e-9  # Between our runs and the independent solution [rad, rad/s].
 
 
 def summary(results: Sequence[Result]) -> list[str]:
-    """How far the runs are from the independent solution and from print."""
+    """How far the runs are from the independent solution and from the printed numbers."""
     largest = max(r.from_reference for r in results)
-    fpbm, man = (max(r.from_printed or 0.0 for r in results if bool(r.case.fpbm) is wanted) for wanted in (True, False))
+    fpbm, man = (max(r.from_printed or 0.0 for r in results if bool(r.case.fpbm) is kind) for kind in (True, False))
     errors = [r.run.max_error() for r in results]
     return [
         f"Independent solution (DOP853, rtol 1e-12): {len(results)} cases, largest difference {largest:.1e} rad or "
-        f"rad/s; {'agreed' if largest <= TOLERANCE else 'NOT AGREED'} to {TOLERANCE:.0e}.",
-        f"Printed final joint velocities: FPBM within {fpbm:.1e} rad/s, MAN within {man:.1e} rad/s (MAN amplifies the "
-        f"error of the solver used there); {sum(bool(r.case.misprinted_joint) for r in results)} misprints left out.",
-        f"Printed tip errors (about 1e-5 m) are the tolerance of the variable-step solver used there; ours, "
-        f"{min(errors):.0e} m to {max(errors):.0e} m, are rounding.",
+        f"rad/s; they {'agree' if largest <= TOLERANCE else 'DO NOT AGREE'} to {TOLERANCE:.0e}.",
+        f"Printed final joint velocities: FPBM agrees to {fpbm:.1e} rad/s, MAN to {man:.1e} rad/s (MAN amplifies the "
+        f"error of the paper's solver), without {sum(bool(r.case.misprinted_joint) for r in results)} misprints.",
+        f"The printed tip errors, about 1e-5 m, are the tolerance of the paper's variable-step solver; ours, "
+        f"{min(errors):.0e} m to {max(errors):.0e} m, are round-off.",
     ]
 
 
 def make_report(paper: Paper, results: Sequence[Result], tables: Sequence[Table], claims: Sequence[Claim]) -> str:
-    """The whole report as Markdown; its figures are fig1.png and so on beside it."""
+    """The whole report as Markdown; its figures are fig1.png and so on in the same folder."""
     posture = ", ".join(f"{angle:g}°" for angle in np.rad2deg(paper.q0).round(9))
     figures = sorted((r.case.figure, caption(r.case)) for r in results if r.case.figure)
     errata = [
@@ -72,14 +73,14 @@ def _misprint(result: Result) -> str:
 
 
 def _both_ways(paper: Paper, erratum: Erratum) -> str:
-    """How far from print the motion of Fig. 2 ends with the text's value and with ours."""
+    """How far from the printed numbers the motion of Fig. 2 ends, with the text's value and with ours."""
     case, circle = paper.figure(2), paper.paths["circle"]
-    told = replace(
+    printed = replace(
         paper,
         q0=np.deg2rad(erratum.q0_degrees) if erratum.q0_degrees else paper.q0,
         paths={"circle": Circle(erratum.radius, circle.duration) if erratum.radius else circle},
     )
-    text, ours = (Result(case, p.simulate(case.path, case.scheme)).from_printed for p in (told, paper))
+    text, ours = (Result(case, p.simulate(case.path, case.scheme)).from_printed for p in (printed, paper))
     return (
         f"Fig. 2's final joint velocities are {text:.0e} rad/s off with the text's value, {ours:.0e} rad/s with ours."
     )

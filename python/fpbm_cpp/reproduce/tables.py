@@ -1,9 +1,10 @@
-"""Tables of printed values, ours and the difference, as aligned text and as Markdown."""
+"""Tables of printed values, our values and their differences, as plain text and as Markdown."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from .cases import NAMES, Case, Result
 
@@ -12,14 +13,14 @@ COLUMNS = "Final joint velocities [rad/s] and largest tip error [m]"
 
 @dataclass(frozen=True)
 class Table:
-    """A title, a header and rows of text; the first two columns are words, the rest numbers."""
+    """A title, a header and rows of text; the first two columns are words, the others numbers."""
 
     title: str
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
     def text(self) -> str:
-        """For the terminal."""
+        """The table for a terminal."""
         widths = [max(map(len, column)) for column in zip(self.header, *self.rows)]
         lines = [
             "  ".join(f"{cell:{'<' if i < 2 else '>'}{width}}" for i, (cell, width) in enumerate(zip(row, widths)))
@@ -28,14 +29,14 @@ class Table:
         return "\n".join([self.title, COLUMNS, *(line.rstrip() for line in lines)])
 
     def markdown(self) -> str:
-        """For report.md."""
+        """The table for report.md."""
         rule = (":--",) * 2 + ("--:",) * (len(self.header) - 2)
         lines = ["| " + " | ".join(row) + " |" for row in (self.header, rule, *self.rows)]
         return "\n".join([f"### {self.title}\n\n{COLUMNS}.\n", *lines]).replace("*", r"\*")
 
 
 def make_tables(results: Sequence[Result]) -> list[Table]:
-    """Table 1, Tables 2 and 3, and the numbers printed in the text about the figures."""
+    """Table 1, Tables 2 and 3, and the numbers in the text about the figures."""
     return [
         _table(
             "Table 1. Circle, FPBM, W = diag(1, 2, 3, 4), k1 = k2 = 1",
@@ -62,7 +63,7 @@ def _table(title: str, results: Sequence[Result], label: Callable[[Case], tuple[
 
 
 def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
-    """Printed values, ours and their difference; only ours where nothing was printed."""
+    """Printed values, our values and their differences; only ours where nothing was printed."""
     case, ours, error = result.case, result.run.qd[-1], result.run.max_error()
     rows = [("ours", *(f"{v:.6f}" for v in ours), f"{error:.1e}")]
     if case.printed_qd is not None:
@@ -71,6 +72,5 @@ def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
         errors = ("", "") if printed is None else (f"{printed:.3e}", f"{error - printed:.3e}")
         rows.insert(0, ("printed", *(f"{v:.6f}{mark}" for v, mark in zip(case.printed_qd, marks)), errors[0]))
         rows.append(("difference", *(f"{d:.1e}" for d in ours - case.printed_qd), errors[1]))
-    words = [*label, *[""] * (len(rows) - len(label))]
-    rows += [("",) * len(rows[0])] * (len(words) - len(rows))
-    return [(word, *row) for word, row in zip(words, rows)]
+    blank = ("",) * len(rows[0])
+    return [(word or "", *(row or blank)) for word, row in zip_longest(label, rows)]

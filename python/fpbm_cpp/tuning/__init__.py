@@ -1,10 +1,10 @@
 """Tuning: the parameters of FPBM that suit an arm and a path best.
 
-Data flows one way: space (schemes) → search (which to try) → trials (what came of them) → result.
+Imports go one way: space (schemes) → search (which to try) → trials (their motions) → result.
 """
 
-from .result import TuneInterrupted, Tuning
+from .result import Tuning
 from .trials import Trials
-from .tune import tune
+from .tuner import tune
 
-__all__ = ["Trials", "TuneInterrupted", "Tuning", "tune"]
+__all__ = ["Trials", "Tuning", "tune"]

@@ -1,4 +1,4 @@
-"""The points of a plane that no other beats in both coordinates."""
+"""Pareto fronts of two quantities."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from .._types import Array
 
 
 def unbeaten(x: Array, y: Array) -> NDArray[np.intp]:
-    """Which points have none that is as small in both coordinates and smaller in one, by x; of equal ones, the first.
+    """Indices of the points that no other point beats, sorted by x.
 
-    Points of which a coordinate is not a number are none.
+    A point beats another if it is at most as large in both coordinates and smaller in one. Of equal points only the
+    first counts, and a point with a NaN does not.
     """
     order = np.lexsort((y, x))
     order = order[~np.isnan(x[order] + y[order])]

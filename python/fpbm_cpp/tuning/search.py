@@ -1,7 +1,7 @@
-"""Searches of the unit cube by CMA-ES (Hansen and Ostermeier, 2001): for the least of one number, and the front of two.
+"""Searches of the unit cube by CMA-ES (Hansen and Ostermeier, 2001): for the least score, and the front of two scores.
 
-Each is a generator that never ends: it yields points, shape (B, d), and is sent what they score, shape (B,) or (B, 2),
-not a number where a point is infeasible.
+Each is an endless generator: it yields points, shape (B, d), and is sent their scores, shape (B,) or (B, 2), NaN where
+a point is infeasible.
 """
 
 from __future__ import annotations
@@ -19,16 +19,13 @@ if TYPE_CHECKING:
 
 Search = Generator[Array, Array, None]
 
-# A generation fills a processor's lanes, and its deviation at the start reaches over the cube.
-LANES, DEVIATION = 8, 0.3
-# Where all of a generation score alike to this share, a search begins again elsewhere.
-ALIKE = 1e-3
-# How many weightings of two scores a front is searched by, the least weight of either, and the share of their sum.
-WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01
+LANES, DEVIATION = 8, 0.3  # A generation fills a processor's lanes, and its first deviation covers the cube.
+ALIKE = 1e-3  # A search starts again elsewhere when a generation's scores differ by less than this share.
+WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Of two scores: how many, the least weight of one, the sum's share.
 
 
 def require_cmaes() -> None:
-    """Raise ImportError, with what to install, where the searches' library is missing."""
+    """Raise ImportError, with what to install, if the searches' library is missing."""
     try:
         import cmaes  # noqa: F401
     except ImportError:
@@ -36,7 +33,7 @@ def require_cmaes() -> None:
 
 
 def least(size: int, seed: int) -> Search:
-    """For the least score, from the cube's middle, then from anywhere."""
+    """Search for the least score, first from the cube's middle, then from random points."""
     random = np.random.default_rng(seed)
     middle = np.full(size, 0.5)
     while True:
@@ -51,11 +48,11 @@ def least(size: int, seed: int) -> Search:
 
 
 def front(size: int, seed: int) -> Search:
-    """For the front of two scores: side by side, for the least of several weightings of them.
+    """Search for the front of two scores: side by side for the least of several weightings of them.
 
-    A weighting is a Chebyshev norm, of the distance from the front's best in units of the front's extent so far: there
-    is one for each point of a front, also in its hollows, which sums do not find (Bowman, 1976). A little of the sum
-    tells points apart that the norm does not.
+    A weighting is a Chebyshev norm of the distance from the best of each score, in units of the front's extent so far.
+    Every point of a front is the least of such a norm, also in its hollows, where weighted sums find nothing (Bowman,
+    1976). A small share of the sum decides between points with equal norms.
     """
     random = np.random.default_rng(seed)
     shares = np.linspace(LEAST_WEIGHT, 1.0 - LEAST_WEIGHT, WEIGHTINGS)
@@ -74,7 +71,7 @@ def front(size: int, seed: int) -> Search:
 
 
 def _begin(middle: Array, count: int, random: np.random.Generator) -> CMA:
-    """A search from a middle, by generations of so many points."""
+    """A search around a point, in generations of so many points."""
     from cmaes import CMA
 
     cube = np.tile([0.0, 1.0], (len(middle), 1))
@@ -86,5 +83,5 @@ def _ask(search: CMA) -> Array:
 
 
 def _tell(search: CMA, points: Array, scores: Array) -> None:
-    """Infeasible points come last."""
+    """Tell a search its scores; infeasible points count as worst."""
     search.tell(list(zip(points, np.where(np.isnan(scores), np.inf, scores).tolist())))

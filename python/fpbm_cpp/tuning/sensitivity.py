@@ -1,60 +1,57 @@
-"""How firm a choice is: what the objective does as one parameter steps aside."""
+"""How much the objective changes when one parameter of a scheme takes a step."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from .._core import FPBM
-from .._scheme import arguments
-from .space import parameters
+from ..schemes import FPBM
+from .space import tunable
 from .trials import Trials
 
 ALPHA_STEP, STEP = 0.05, 0.1
 
-# Of each number of a scheme, by name, the scheme with a lower one and that with a higher, None where there is none.
-Neighbours = Mapping[str, "tuple[FPBM | None, FPBM | None]"]
+Neighbours = Mapping[tuple[str, int], FPBM]
 
 
-def flat(scheme: FPBM) -> dict[str, float]:
-    """A scheme's parameters with a name for each number, weights[0] and so on."""
-    values = parameters(scheme)
-    weights = {f"weights[{i}]": float(weight) for i, weight in enumerate(values["weights"])}
-    return {key: x for name in values for key, x in (weights.items() if name == "weights" else [(name, values[name])])}
-
-
-def neighbours(scheme: FPBM) -> Neighbours:
-    """The schemes a step away: ALPHA_STEP of alpha, within [0, 1], or the share STEP of all else."""
-    return {name: (_stepped(scheme, name, -1.0), _stepped(scheme, name, 1.0)) for name in flat(scheme)}
-
-
-def most_neighbours(scheme: FPBM) -> int:
-    """How many neighbours there are at most."""
-    return 2 * len(flat(scheme))
-
-
-def every(around: Neighbours) -> list[FPBM]:
-    """All neighbours, in order."""
-    return [scheme for pair in around.values() for scheme in pair if scheme is not None]
-
-
-def changes(value: float, around: Neighbours, trials: Trials) -> dict[str, tuple[float, float]]:
-    """What each step adds to a value, from the trials of all neighbours in order; as in Tuning.sensitivity."""
-    values = iter(np.where(trials.feasible, trials.value, np.inf).tolist())
+def numbers(scheme: FPBM) -> dict[str, float]:
+    """A scheme's tunable parameters, with a name for each number: 'weights[0]' and so on."""
     return {
-        name: (np.nan if down is None else next(values) - value, np.nan if up is None else next(values) - value)
-        for name, (down, up) in around.items()
+        f"{name}[{i}]" if np.ndim(value) else name: entry
+        for name, value in tunable(scheme).items()
+        for i, entry in enumerate(np.atleast_1d(value).tolist())
     }
 
 
-def _stepped(scheme: FPBM, name: str, side: float) -> FPBM | None:
-    made, value = arguments(scheme), flat(scheme)[name]
-    stepped = min(max(value + side * ALPHA_STEP, 0.0), 1.0) if name == "alpha" else value * (1.0 + side * STEP)
-    if stepped == value:
-        return None
-    if name.startswith("weights"):
-        weights = np.array(made["weights"], float)
-        weights[int(name[len("weights[") : -1])] = stepped
-        return FPBM(**{**made, "weights": weights})
-    return FPBM(**{**made, name: stepped})
+def neighbours(scheme: FPBM) -> Neighbours:
+    """The schemes one step away, by the number that steps and the step's sign; a number that cannot step has none.
+
+    A step is ALPHA_STEP for alpha, within [0, 1], and the share STEP of the value for all others.
+    """
+    around: dict[tuple[str, int], FPBM] = {}
+    for name, value in numbers(scheme).items():
+        for sign in (-1, 1):
+            alpha = min(max(value + sign * ALPHA_STEP, 0.0), 1.0)
+            stepped = alpha if name == "alpha" else value * (1.0 + sign * STEP)
+            if stepped != value:
+                around[name, sign] = _with(scheme, name, stepped)
+    return around
+
+
+def changes(scheme: FPBM, value: float, around: Neighbours, trials: Trials) -> dict[str, tuple[float, float]]:
+    """What each step adds to a scheme's value, from the trials of its neighbours in order; see Tuning.sensitivity."""
+    added = dict(zip(around, np.where(trials.feasible, trials.value - value, np.inf).tolist()))
+    return {name: (added.get((name, -1), np.nan), added.get((name, 1), np.nan)) for name in numbers(scheme)}
+
+
+def _with(scheme: FPBM, name: str, value: float) -> FPBM:
+    """The scheme with another value of one number."""
+    parameter, _, index = name.rstrip("]").partition("[")
+    changed: Any = value
+    if index:
+        changed = np.array(getattr(scheme, parameter))
+        changed[int(index)] = value
+    return replace(scheme, **{parameter: changed})

@@ -1,88 +1,88 @@
-"""What of a scheme is varied, and how far: points of the unit cube, and the schemes that they stand for."""
+"""The parameters that a search varies, and their ranges: each point of the unit cube stands for a scheme."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .._core import FPBM
-from .._scheme import arguments
 from .._types import Array
+from ..parameter import parameters
+from ..schemes import FPBM
 
-PARAMETERS = ("alpha", "weights", "k1", "k2", "null_damping")
+TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 
-# k1 and k2 act on the tip's error alone, and without disturbances there is none.
+# k1 and k2 act on the tip's error alone, which is zero without disturbances.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
 
 
-def parameters(scheme: FPBM) -> dict[str, Any]:
-    """The parameters of a scheme that can be tuned: numbers, and an array of the weights."""
-    made = arguments(scheme)
-    return {name: np.array(made[name], float) if name == "weights" else float(made[name]) for name in PARAMETERS}
+def tunable(scheme: FPBM) -> dict[str, Any]:
+    """The parameters of a scheme that can be tuned."""
+    return {name: getattr(scheme, name) for name in TUNABLE}
 
 
 def paper_choice(dof: int) -> FPBM:
-    """The paper's choice, its W = diag(1, 2, 3, 4) carried on to arms of other numbers of joints."""
+    """The paper's choice, with W = diag(1, 2, 3, 4) continued for arms of more joints."""
     return FPBM(0.6, np.arange(1.0, dof + 1), k1=1.0, k2=1.0)
 
 
 @dataclass(frozen=True)
 class Space:
-    """The schemes that a baseline's are varied to: one for each point of the unit cube.
+    """The schemes that differ from a baseline in the parameters searched, one for each point of the unit cube.
 
-    Of each coordinate, the parameter that it belongs to, and its range, which is that of a logarithm but for alpha.
+    names holds the parameter of each coordinate; low and high are its range, that of the logarithm where log is true.
     """
 
     baseline: FPBM
     names: tuple[str, ...]
     low: Array
     high: Array
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates."""
-        return len(self.names)
+    log: NDArray[np.bool_]
 
     def scheme(self, point: Array) -> FPBM:
         """The scheme of a point."""
-        made = arguments(self.baseline)
         values = np.clip(self.low + point * (self.high - self.low), self.low, self.high)
-        for name in dict.fromkeys(self.names):
-            own = values[[other == name for other in self.names]]
-            if name == "weights":
-                made["weights"] = np.concatenate([[1.0], np.exp(own)])
-            else:
-                made[name] = float(own[0] if name == "alpha" else np.exp(own[0]))
-        return FPBM(**made)
+        values[self.log] = np.exp(values[self.log])
+        columns: dict[str, list[float]] = {}
+        for name, value in zip(self.names, values.tolist()):
+            columns.setdefault(name, []).append(value)
+        changes: dict[str, Any] = {name: [1.0, *own] if name == "weights" else own[0] for name, own in columns.items()}
+        return replace(self.baseline, **changes)
 
 
 def make_space(search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> Space:
-    """The space of a search; raises ValueError for what cannot be searched."""
-    if np.shape(arguments(baseline)["weights"]) != (dof,):
+    """The space of a search. Raises ValueError for what cannot be searched."""
+    if np.shape(baseline.weights) != (dof,):
         raise ValueError(f"baseline = {baseline!r}: W must be diagonal, of {dof} weights")
-    names, ranges = [], []
-    for name, wanted in (SEARCH if search is None else search).items():
-        if name not in PARAMETERS:
-            raise ValueError(f"search: {name!r} is none of {', '.join(map(repr, PARAMETERS))}")
-        count = dof - 1 if name == "weights" else 1
-        for low, high in _ranges(name, wanted, count):
-            names.append(name)
-            ranges.append((low, high) if name == "alpha" else (np.log(low), np.log(high)))
+    names: list[str] = []
+    ranges: list[Array] = []
+    for name, given in (SEARCH if search is None else search).items():
+        if name not in TUNABLE:
+            raise ValueError(f"search: {name!r} must be one of {', '.join(map(repr, TUNABLE))}")
+        own = _ranges(name, given, dof - 1 if name == "weights" else 1)
+        names += [name] * len(own)
+        ranges.append(own)
     if not names:
-        raise ValueError("search: must name one parameter at least")
-    low, high = np.array(ranges).T
-    return Space(baseline, tuple(names), low, high)
+        raise ValueError("search: must name at least one parameter")
+    log = np.array([not _bounded(name) for name in names])
+    limits = np.concatenate(ranges)
+    limits[log] = np.log(limits[log])
+    return Space(baseline, tuple(names), limits[:, 0], limits[:, 1], log)
 
 
-def _ranges(name: str, wanted: ArrayLike, count: int) -> Array:
+def _bounded(name: str) -> bool:
+    """Whether a parameter has an upper bound; all others are searched on a logarithmic scale."""
+    return bool(np.isfinite(parameters(FPBM)[name].high))
+
+
+def _ranges(name: str, given: ArrayLike, count: int) -> Array:
     """The ranges of a parameter's coordinates, shape (count, 2)."""
-    what = f"search[{name!r}] = {wanted!r}"
+    what, bounds = f"search[{name!r}] = {given!r}", parameters(FPBM)[name]
     try:
-        ranges = np.asarray(wanted, float)
+        ranges = np.asarray(given, float)
     except (TypeError, ValueError):
         ranges = np.empty(0)
     if ranges.shape not in ((2,), (count, 2)):
@@ -90,8 +90,8 @@ def _ranges(name: str, wanted: ArrayLike, count: int) -> Array:
         raise ValueError(f"{what}: must be a pair (low, high){also}")
     if not np.all(np.isfinite(ranges)) or not np.all(ranges[..., 0] < ranges[..., 1]):
         raise ValueError(f"{what}: must be finite, with low < high")
-    if name == "alpha" and not np.all((ranges >= 0.0) & (ranges <= 1.0)):
-        raise ValueError(f"{what}: must lie in [0, 1]")
-    if name != "alpha" and not np.all(ranges > 0.0):
+    if _bounded(name) and not np.all((ranges >= bounds.low) & (ranges <= bounds.high)):
+        raise ValueError(f"{what}: must lie in [{bounds.low:g}, {bounds.high:g}]")
+    if not _bounded(name) and not np.all(ranges > 0.0):
         raise ValueError(f"{what}: must be positive, since it is searched on a logarithmic scale")
-    return np.broadcast_to(ranges, (count, 2))
+    return np.array(np.broadcast_to(ranges, (count, 2)))

@@ -1,4 +1,4 @@
-"""Schemes that were tried, and what came of each."""
+"""Schemes that were tried, and the results of their motions."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
-from ..sweep_result import Sweep
+from ..motion.sweep_result import Sweep
 from .objectives import Measure
 from .pareto import unbeaten
-from .space import PARAMETERS, parameters
+from .space import TUNABLE
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Trials:
-    """T schemes and their motions: arrays of shape (T,), in the order in which they were tried.
+    """T schemes and the results of their motions: arrays of shape (T,), in the order in which they were tried.
 
     Attributes
     ----------
     schemes : numpy.ndarray of FPBM
-        The schemes, ready to use.
+        The schemes.
     value : numpy.ndarray
-        The objective; not a number where the motion stopped early.
+        The objective; NaN if the motion stopped early.
     peak_velocity, peak_acceleration : numpy.ndarray
         Of the fastest joint [rad/s], [rad/s^2].
     error : numpy.ndarray
-        Largest error of the tip [m], or, where that of its orientation [rad] is the larger number, that.
+        Largest position error of the tip [m] or, where it is a larger number, its largest orientation error [rad].
     feasible : numpy.ndarray of bool
-        Whether the motion is complete, its objective finite, and its error within the bound.
+        Whether the motion is complete, its objective finite, and its error within the tolerance.
     """
 
     schemes: NDArray[Any]
@@ -43,29 +43,28 @@ class Trials:
 
     @property
     def parameters(self) -> dict[str, Array]:
-        """The schemes' parameters by name, arrays of shape (T,), and (T, n) of the weights."""
-        rows = [parameters(scheme) for scheme in self.schemes]
-        return {name: np.array([row[name] for row in rows]) for name in PARAMETERS}
+        """The schemes' parameters by name: arrays of shape (T,), and (T, n) for the weights."""
+        return {name: np.array([getattr(scheme, name) for scheme in self.schemes]) for name in TUNABLE}
 
     def front(self) -> Trials:
-        """The feasible trials that no other beats in peak velocity and peak acceleration both, by peak velocity."""
+        """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
         return self[unbeaten(*self.peaks().T)]
 
     def scores(self) -> Array:
-        """The value of each, not a number where it is infeasible."""
+        """The value of each; NaN if it is infeasible."""
         return np.where(self.feasible, self.value, np.nan)
 
     def peaks(self) -> Array:
-        """Peak velocity and peak acceleration of each, shape (T, 2), not a number where it is infeasible."""
+        """Peak velocity and peak acceleration of each, shape (T, 2); NaN if it is infeasible."""
         pairs = np.column_stack([self.peak_velocity, self.peak_acceleration])
         return np.where(self.feasible[:, None], pairs, np.nan)
 
     def best(self) -> int:
-        """Which feasible trial has the least value, the first of several; there must be one."""
+        """Index of the first feasible trial of the least value; there must be a feasible one."""
         return int(np.nanargmin(self.scores()))
 
     def __getitem__(self, which: Any) -> Trials:
-        """Some of the trials: a slice, a mask, or an array of numbers."""
+        """Some of the trials: a slice, a mask, or an array of indices."""
         return Trials(*(getattr(self, field.name)[which] for field in fields(self)))
 
     def __len__(self) -> int:
@@ -75,21 +74,15 @@ class Trials:
         return f"<{len(self)} trials, {int(self.feasible.sum())} feasible>"
 
 
-def trials_of(sweep: Sweep, measure: Measure, max_error: float) -> Trials:
-    """What came of the schemes of a sweep from one start."""
+def trials_of(sweep: Sweep, measure: Measure, tolerance: float) -> Trials:
+    """The trials of a sweep's schemes from one start."""
     value, schemes = measure(sweep), np.empty(len(sweep.schemes), dtype=object)
     schemes[:] = sweep.schemes
     error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
-    return Trials(
-        schemes,
-        value,
-        sweep.peak_velocity[:, 0],
-        sweep.peak_acceleration[:, 0],
-        error,
-        sweep.ok[:, 0] & np.isfinite(value) & (error <= max_error),
-    )
+    feasible = sweep.ok[:, 0] & np.isfinite(value) & (error <= tolerance)
+    return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)
 
 
 def joined(parts: Sequence[Trials]) -> Trials:
-    """All trials of several, one after another."""
+    """All trials, one part after another."""
     return Trials(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Trials)))

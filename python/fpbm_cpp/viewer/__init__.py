@@ -1,15 +1,25 @@
-"""The viewer in the browser: a page with the arm, the time, and the scheme's gains. Needs the extra 'view'.
+"""The viewer: a page in the browser with the arm, the time and the scheme's parameters. Needs the extra 'view'.
 
-Data flows one way. What the page asks for is a scheme (controls) and a time (player); a job makes a run of the scheme,
-a film is what is drawn of a run, and the scene, the chart and the read-out draw it.
+Data flows one way. The page asks for a scheme (controls) and a time (player); the motion is made again under the
+scheme (rerun) and prepared for drawing (playback); the scene, the chart and the readout draw it.
 """
 
-try:
-    import viser  # noqa: F401
-    import yourdfpy  # noqa: F401
-except ModuleNotFoundError as missing:
-    raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
+from __future__ import annotations
 
-from .viewer import Viewer
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["Viewer"]
+from .entry import view
+
+if TYPE_CHECKING:
+    from .viewer import Viewer
+
+__all__ = ["Viewer", "view"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import Viewer, which needs viser, when it is first used."""
+    if name != "Viewer":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from .viewer import Viewer
+
+    return Viewer

@@ -1,51 +1,61 @@
-"""One quantity over time, with a line at the time that is shown."""
+"""Chart of one quantity over time, with a line at the time shown."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from viser import GuiApi
 
 from .._types import Array
 from ..joint_text import joint_labels, joint_units
-from .colours import LINES, NOW
-from .film import Film
+from .playback import Playback
 
-# Quantities at the samples of a run, and what they are measured in; of joints, what their units become.
-OF_JOINTS: dict[str, tuple[Callable[[Film], Array], str]] = {
-    "joint velocities": (lambda film: film.qd, "/s"),
-    "joint accelerations": (lambda film: film.qdd, "/s²"),
-    "joint positions": (lambda film: film.q, ""),
-}
-OF_TIP: dict[str, tuple[Callable[[Film], Array], str]] = {
-    "tip error": (lambda film: film.tip_error[film.frames], "m"),
-    "turn error": (lambda film: film.orientation_error[film.frames], "rad"),
-    "manipulability": (lambda film: film.manipulability, ""),
-}
+# Okabe and Ito's colours, as in the figures.
+LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#F0E442")
+NOW = "#888888"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-class Chart:
-    """A chart of the quantity that is chosen at the page, over the time that was planned."""
+class Quantity(NamedTuple):
+    """Values at the frames, and their unit; a quantity of the joints has the joints' unit and this."""
 
-    def __init__(self, gui: GuiApi, film: Film, duration: float) -> None:
-        self._film = film
+    values: Callable[[Playback], Array]
+    unit: str
+    of_joints: bool = False
+
+
+QUANTITIES = {
+    "joint velocities": Quantity(lambda playback: playback.run.qd[playback.frames], "/s", of_joints=True),
+    "joint accelerations": Quantity(lambda playback: playback.run.qdd[playback.frames], "/s²", of_joints=True),
+    "joint positions": Quantity(lambda playback: playback.run.q[playback.frames], "", of_joints=True),
+    "tip error": Quantity(lambda playback: playback.tip_error[playback.frames], "m"),
+    "orientation error": Quantity(lambda playback: playback.orientation_error[playback.frames], "rad"),
+    "manipulability": Quantity(lambda playback: playback.manipulability, ""),
+}
+
+
+class Chart:
+    """A chart of the quantity chosen on the page, over the planned duration."""
+
+    def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
+        self._playback = playback
         self._duration = duration
         self._sample = 0
-        quantities = [name for name in (*OF_JOINTS, *OF_TIP) if name != "turn error" or film.run.task == "pose"]
+        names = [name for name in QUANTITIES if name != "orientation error" or playback.run.task == "pose"]
         with gui.add_folder("Over time"):
-            self._quantity = gui.add_dropdown("quantity", tuple(quantities))
+            self._quantity = gui.add_dropdown("quantity", tuple(names))
             nothing = {"label": ""}
             axes = ({"size": 32}, {"size": 44})
             self._plot = gui.add_uplot(
                 (np.zeros(1), np.zeros(1)), (nothing, nothing), axes=axes, height=220, padding=(8, 16, 0, 0)
             )
-        self._quantity.on_update(lambda _: self.show(self._film))
+        self._quantity.on_update(lambda _: self.show(self._playback))
 
-    def show(self, film: Film) -> None:
+    def show(self, playback: Playback) -> None:
         """Draw a run."""
-        self._film = film
+        self._playback = playback
         labels, values, title = self._curves()
         self._low, self._high = _range(values)
         lines = [
@@ -59,7 +69,7 @@ class Chart:
             "y": {"range": (self._low, self._high)},
         }
         self._plot.title = title
-        self._plot.data = (film.t[film.frames], *values.T, self._now())
+        self._plot.data = (playback.run.t[playback.frames], *values.T, self._now())
 
     def at(self, sample: int) -> None:
         """Move the line to a sample."""
@@ -68,30 +78,29 @@ class Chart:
 
     def _curves(self) -> tuple[list[str], Array, str]:
         """Labels, a column for each, and a title with unit and power of ten."""
-        film, quantity = self._film, self._quantity.value
-        if quantity in OF_JOINTS:
-            values, per = OF_JOINTS[quantity]
-            arm = film.run.arm
-            unit = ", ".join(f"{unit}{per}" for unit in sorted(set(joint_units(arm)), reverse=True))
-            return joint_labels(arm), values(film)[film.frames], f"{quantity} [{unit}]"
-        values, unit = OF_TIP[quantity]
-        column = values(film)[:, None]
-        largest = float(column.max())
+        name, arm = self._quantity.value, self._playback.run.arm
+        quantity = QUANTITIES[name]
+        values = quantity.values(self._playback)
+        if quantity.of_joints:
+            units = sorted(set(joint_units(arm)), reverse=True)
+            return joint_labels(arm), values, f"{name} [{', '.join(unit + quantity.unit for unit in units)}]"
+        largest = float(values.max())
         exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
-        power = f"10{str(exponent).translate(SUPERSCRIPTS)} " if exponent < -2 else ""
-        scale = f"{power}{unit}".strip()
-        return [quantity], column / 10.0**exponent if power else column, f"{quantity} [{scale}]" if scale else quantity
+        exponent = exponent if exponent < -2 else 0
+        power = f"10{str(exponent).translate(SUPERSCRIPTS)} " if exponent else ""
+        unit = f"{power}{quantity.unit}".strip()
+        return [name], values[:, None] / 10.0**exponent, f"{name} [{unit}]" if unit else name
 
     def _now(self) -> Array:
-        """A line from below to above, between two neighbours in time."""
-        line = np.full(len(self._film.frames), np.nan)
-        first = min(self._film.frame(self._sample), max(len(line) - 2, 0))
+        """A vertical line between two neighbouring frames."""
+        line = np.full(len(self._playback.frames), np.nan)
+        first = min(self._playback.frame(self._sample), max(len(line) - 2, 0))
         line[first : first + 2] = (self._low, self._high)[: len(line)]
         return line
 
 
 def _range(values: Array) -> tuple[float, float]:
-    """From below all values to above, with a little room."""
+    """A range with a little more than all values; it starts near 0 where the values do."""
     low, high = float(values.min()), float(values.max())
     low, high = (0.0, high) if 0.0 <= low < high / 2 else (low, high)
     room = 0.05 * (high - low) or 1.0

@@ -1,51 +1,61 @@
-"""Which scheme, with which gains: the page's inputs, and the scheme that they come to."""
+"""The page's inputs for the scheme: its kind, its parameters, and whether joint limits are kept."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from math import isfinite
 from typing import Any
 
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiSliderHandle
 
-from .._core import Scheme
-from .schemes import GAINS, KINDS, Family
+from ..parameter import Parameter, parameters
+from ..schemes import SCHEMES, Scheme
 
-# Label, range, step, and what it does.
-SLIDERS = {
-    "alpha": ("α", 1.0, 0.01, "Share of WMVN; MAN has the rest"),
-    "k": ("k", 50.0, 0.5, "Feedback on the tip's position [1/s]"),
-    "k1": ("k₁", 50.0, 0.5, "Feedback on the tip's velocity [1/s]"),
-    "k2": ("k₂", 200.0, 1.0, "Feedback on the tip's position [1/s²]"),
-    "null_damping": ("null damping", 10.0, 0.1, "Damping of the self-motion [1/s]"),
-}
+KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
 LEAST_WEIGHT, MOST_WEIGHT = 0.1, 10.0
 
 
-class Controls:
-    """A choice of schemes, a slider for each gain of the one that is chosen, and whether limits are kept.
+def own_numbers() -> dict[str, Parameter]:
+    """The numbers that some schemes have and others have not; a slider is made for each."""
+    return {
+        name: declared
+        for kind in KINDS.values()
+        for name, declared in parameters(kind).items()
+        if declared.type is float and name not in parameters(Scheme)
+    }
 
-    Calls `changed` when somebody at the page changes one.
+
+def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
+    """A scheme of a kind with these values, as far as it has them; its other parameters are those of the base.
+
+    Raises ValueError if a value is out of range.
+    """
+    kept = {name: getattr(base, name) for name in parameters(type(base))}
+    return kind(**{name: value for name, value in {**kept, **values}.items() if name in parameters(kind)})
+
+
+class Controls:
+    """A choice of schemes, a slider for each parameter of the chosen one, and a checkbox for joint limits.
+
+    Calls `on_change` when somebody on the page changes one.
     """
 
     def __init__(
-        self, gui: GuiApi, scheme: Scheme, names: list[str], limited: bool | None, changed: Callable[[], None]
+        self, gui: GuiApi, scheme: Scheme, joints: list[str], limited: bool | None, on_change: Callable[[], None]
     ) -> None:
-        self._changed = changed
+        self._on_change = on_change
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
-            self._sliders = {
-                name: gui.add_slider(label, min=0.0, max=most, step=step, initial_value=0.0, hint=hint)
-                for name, (label, most, step, hint) in SLIDERS.items()
-            }
+            self._sliders = {name: _add_slider(gui, declared) for name, declared in own_numbers().items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
                 self._weights = [
                     gui.add_slider(name, min=LEAST_WEIGHT, max=MOST_WEIGHT, step=0.1, initial_value=1.0)
-                    for name in names
+                    for name in joints
                 ]
             self._limited = gui.add_checkbox(
-                "keep joint limits", bool(limited), visible=limited is not None, hint="The arm's bounds of every joint"
+                "keep joint limits", bool(limited), visible=limited is not None, hint="The bounds of every joint"
             )
             again = gui.add_button("as it was given", color="gray")
         self.take(scheme)
@@ -55,47 +65,58 @@ class Controls:
 
     @property
     def limited(self) -> bool:
-        """Whether limits are to be kept."""
+        """Whether joint limits are to be kept."""
         return bool(self._limited.value)
 
     def scheme(self) -> Scheme:
-        """What is asked for. Raises ValueError where a gain is out of range."""
-        gains: dict[str, Any] = {name: slider.value for name, slider in self._sliders.items()}
-        weights = self._family.gains["weights"]
-        gains["weights"] = weights if weights.ndim == 2 else np.array([slider.value for slider in self._weights])
-        return self._family.scheme(self._kind.value, gains)
+        """The scheme asked for. Raises ValueError if a parameter is out of range."""
+        values: dict[str, Any] = {name: slider.value for name, slider in self._sliders.items()}
+        if not self._dense:
+            values["weights"] = np.array([slider.value for slider in self._weights])
+        return changed(self._base, KINDS[self._kind.value], values)
 
     def take(self, scheme: Scheme) -> None:
-        """Show a scheme; the next ones have its options."""
-        self._family = Family(scheme, len(self._weights))
-        gains = self._family.gains
-        self._kind.value = self._family.kind
+        """Show a scheme; the next ones keep its options."""
+        self._base = scheme
+        self._kind.value = type(scheme).__name__
         for name, slider in self._sliders.items():
-            _set(slider, float(gains[name]))
-        if gains["weights"].ndim == 1:
-            for slider, weight in zip(self._weights, gains["weights"]):
-                _set(slider, float(weight))
-        self._show_those_that_count()
+            _set(slider, getattr(scheme, name, slider.initial_value))
+        weights = getattr(scheme, "weights", np.ones(len(self._weights)))
+        self._dense = weights.ndim == 2  # No slider shows a dense matrix; it stays as it is.
+        if not self._dense:
+            for slider, weight in zip(self._weights, weights.tolist()):
+                _set(slider, weight)
+        self._show_sliders()
 
-    def _show_those_that_count(self) -> None:
-        taken = GAINS[self._kind.value]
+    def _show_sliders(self) -> None:
+        """Show the sliders of the chosen scheme alone."""
+        known = parameters(KINDS[self._kind.value])
         for name, slider in self._sliders.items():
-            slider.visible = name in taken
-        self._folder.visible = "weights" in taken and self._family.gains["weights"].ndim == 1
+            slider.visible = name in known
+        self._folder.visible = "weights" in known and not self._dense
 
     def _on_update(self, event: GuiEvent[Any]) -> None:
-        if event.client is None:  # Set from here.
+        if event.client is None:  # Set by the program, not on the page.
             return
         if event.target is self._kind:
-            self._show_those_that_count()
-        self._changed()
+            self._show_sliders()
+        self._on_change()
 
     def _give_back(self, scheme: Scheme) -> None:
         self.take(scheme)
-        self._changed()
+        self._on_change()
+
+
+def _add_slider(gui: GuiApi, declared: Parameter) -> GuiSliderHandle[float]:
+    """A slider from 0 to the parameter's bound or, without one, to ten times its usual value."""
+    usual = declared.usual if declared.required else declared.default
+    most = declared.high if isfinite(declared.high) else 10.0 * (declared.usual or 5.0)
+    name = declared.name.replace("alpha", "α").replace("_", " ").translate(str.maketrans("12", "₁₂"))
+    hint = f"{declared.help} [{declared.unit}]" if declared.unit else declared.help
+    return gui.add_slider(name, min=0.0, max=most, step=most / 100, initial_value=float(usual), hint=hint)
 
 
 def _set(slider: GuiSliderHandle[float], value: float) -> None:
-    """A slider's value, and room for it."""
+    """Set a slider's value, and extend its range if necessary."""
     slider.min, slider.max = min(slider.min, value), max(slider.max, value)
     slider.value = value

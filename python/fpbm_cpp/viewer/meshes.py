@@ -15,18 +15,17 @@ from viser import ViserServer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
-from .._core import Arm
 from .._types import Array
-from ..serial_arm import SerialArm
+from ..arms import Arm, SerialArm
 from ..skeleton import joint_points
 
-TOLERANCE = 2e-3  # [m], between a joint in the file and in the arm.
+TOLERANCE = 2e-3  # Between a joint of the file and of the arm [m].
 
 
 class Model:
-    """A URDF file that is that of an arm: its joints in their places, and its meshes as far as they are found.
+    """An arm's URDF file: its joints, and its meshes as far as they are found.
 
-    Raises ValueError where it is not that arm's, OSError where it cannot be read; one warning tells of missing meshes.
+    Raises ValueError if it is not that arm's file, OSError if it cannot be read. Warns once about missing meshes.
     """
 
     def __init__(self, urdf: str | os.PathLike[str], arm: Arm, q: Array) -> None:
@@ -36,7 +35,8 @@ class Model:
         self._arm = arm
         self.robot = self._read()
         self._require_joints()
-        self.placement = self._place()
+        # The file's root, seen from the arm's base, which may be another link.
+        self.placement: Array = arm.joints[0].placement @ np.linalg.inv(self._frames(np.zeros(arm.dof))[0])
         self._require_same(q)
         self.has_meshes = bool(self.robot.scene.geometry)
 
@@ -46,13 +46,13 @@ class Model:
         return np.array([own.get(name, 0.0) for name in self.robot.actuated_joint_names])
 
     def _read(self) -> Any:
-        with self.file.open("rb"):  # yourdfpy's own complaint does not say why it cannot.
+        with self.file.open("rb"):  # yourdfpy's own error does not say why it cannot be read.
             pass
         missing: list[str] = []
         log = logging.getLogger("yourdfpy")
         level = log.level
         try:
-            log.setLevel(logging.CRITICAL)  # It says the same of every mesh, in several lines.
+            log.setLevel(logging.CRITICAL)  # It logs several lines for every mesh.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 robot = yourdfpy.URDF.load(str(self.file), filename_handler=partial(self._find, missing=missing))
@@ -63,11 +63,11 @@ class Model:
         if missing:
             names = list(dict.fromkeys(missing))
             which = "1 mesh is not found:" if len(names) == 1 else f"{len(names)} meshes are not found, the first is"
-            warnings.warn(f"{self.file}: {which} {names[0]}", stacklevel=5)
+            warnings.warn(f"{self.file}: {which} {names[0]}", stacklevel=4)
         return robot
 
     def _find(self, fname: str, missing: list[str]) -> str:
-        """A mesh's file: package:// is any folder above the file's, or a folder in one of those."""
+        """The file of a mesh. A package is any folder above the URDF file, or a folder in one of those."""
         place = fname.partition("://")[2] or fname
         inside = place.partition("/")[2] if fname.startswith("package://") else place
         folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
@@ -86,26 +86,20 @@ class Model:
                     f"urdf = {str(self.file)!r}: has no joint {name!r}, which the arm has; its own: {', '.join(there)}"
                 )
 
-    def _origins(self, q: Array) -> Array:
+    def _frames(self, q: Array) -> Array:
         """Frames of the arm's joints in the file, seen from its root."""
         self.robot.update_cfg(self.configuration(q))
         links = (self.robot.joint_map[joint.name].child for joint in self._arm.joints)
         return np.array([self.robot.get_transform(link, self.robot.base_link) for link in links])
 
-    def _place(self) -> Array:
-        """The file's root seen from the arm's base, which may be another link."""
-        first = self._origins(np.zeros(self._arm.dof))[0]
-        placement: Array = np.asarray(self._arm.joints[0].placement, dtype=float) @ np.linalg.inv(first)
-        return placement
-
     def _require_same(self, q: Array) -> None:
-        there = (self.placement @ self._origins(q))[:, :3, 3]
-        off = np.linalg.norm(there - joint_points(self._arm, q)[1:-1], axis=1)
-        worst = int(off.argmax())
-        if off[worst] > TOLERANCE:
+        there = (self.placement @ self._frames(q))[:, :3, 3]
+        distances = np.linalg.norm(there - joint_points(self._arm, q)[1:-1], axis=1)
+        worst = int(distances.argmax())
+        if distances[worst] > TOLERANCE:
             raise ValueError(
                 f"urdf = {str(self.file)!r}: is another arm's: its joint {self._arm.joints[worst].name!r} is"
-                f" {off[worst]:.3g} m from where this arm has it"
+                f" {distances[worst]:.3g} m from where this arm has it"
             )
 
 
@@ -113,12 +107,12 @@ class Meshes:
     """The meshes of a model, in a scene."""
 
     def __init__(self, server: ViserServer, model: Model, q: Array) -> None:
-        turn = SO3.from_matrix(model.placement[:3, :3]).wxyz
-        server.scene.add_frame("/arm", show_axes=False, wxyz=turn, position=model.placement[:3, 3])
+        rotation = SO3.from_matrix(model.placement[:3, :3]).wxyz
+        server.scene.add_frame("/arm", show_axes=False, wxyz=rotation, position=model.placement[:3, 3])
         self._model = model
         self._shown = ViserUrdf(server, model.robot, root_node_name="/arm")
         self.pose(q)
 
     def pose(self, q: Array) -> None:
-        """Put the arm in a posture."""
+        """Move the arm to a posture."""
         self._shown.update_cfg(self._model.configuration(q))

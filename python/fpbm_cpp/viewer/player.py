@@ -1,4 +1,4 @@
-"""The time that is shown: a slider, and a clock that moves it."""
+"""The time shown: a slider, and a clock that moves it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 
 from viser import GuiApi, GuiEvent, Icon
 
-RATE = 30.0  # Pictures a second.
+RATE = 30.0  # Pictures per second.
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 
 
 class Player:
-    """Calls `moved` with the time to show, whenever somebody at the page or the clock changes it."""
+    """Calls `moved` with the time to show, whenever somebody on the page or the clock changes it."""
 
     def __init__(self, gui: GuiApi, duration: float, moved: Callable[[float], None]) -> None:
         self._moved = moved
@@ -29,15 +29,15 @@ class Player:
         self._slider.on_update(self._on_slider)
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
         self._time = 0.0
-        self._lock = threading.RLock()  # Taken before any that `moved` takes.
-        self._going = threading.Event()
+        self._lock = threading.RLock()  # Taken before any lock that `moved` takes.
+        self._running = threading.Event()
         self._closed = False
         self._clock = threading.Thread(target=self._tick, name="fpbm_cpp viewer", daemon=True)
         self._clock.start()
 
     @property
     def time(self) -> float:
-        """What is shown [s]."""
+        """The time shown [s]."""
         return self._time
 
     @time.setter
@@ -48,24 +48,24 @@ class Player:
 
     @property
     def playing(self) -> bool:
-        return self._going.is_set()
+        return self._running.is_set()
 
     def play(self) -> None:
-        """Go on, from the start where it is at the end."""
+        """Start the clock; at the end of the motion it starts from 0."""
         if self._time >= self.end:
             self.time = 0.0
-        self._going.set()
+        self._running.set()
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
-        """Stop the clock; once this returns, it moves time no more."""
+        """Stop the clock; it does not move time after this returns."""
         with self._lock:
-            self._going.clear()
+            self._running.clear()
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 
     def close(self) -> None:
         self._closed = True
-        self._going.set()
+        self._running.set()
         self._clock.join()
 
     def _on_slider(self, event: GuiEvent[Any]) -> None:
@@ -75,9 +75,9 @@ class Player:
 
     def _tick(self) -> None:
         while not self._closed:
-            self._going.wait()
+            self._running.wait()
             last = time.perf_counter()
-            while self._going.is_set() and not self._closed:
+            while self._running.is_set() and not self._closed:
                 time.sleep(1.0 / RATE)
                 now = time.perf_counter()
                 self._advance(SPEEDS[self._speed.value] * (now - last))

@@ -1,4 +1,4 @@
-"""Whether there is a port to serve at."""
+"""Check of the port to serve at."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import socket
 
 
 def require_free(host: str, port: int) -> None:
-    """Raise OSError where the port cannot be served at; the server itself would take another one."""
+    """Raise OSError if the port cannot be served at; viser would silently take another one."""
     if not 0 <= port <= 65535:
         raise ValueError(f"port = {port}: must be 0 to 65535")
     with socket.socket() as probe:
@@ -17,8 +17,7 @@ def require_free(host: str, port: int) -> None:
         except socket.gaierror as error:
             raise ValueError(f"host = {host!r}: {error.strerror}") from None
         except OSError as error:
-            if error.errno != errno.EADDRINUSE:
-                raise OSError(error.errno, f"cannot serve at {host}, port {port}: {error.strerror}") from None
-            raise OSError(
-                error.errno, f"port {port} is in use: choose another one, or 0 for one that is free"
-            ) from None
+            text = f"cannot serve at {host}, port {port}: {error.strerror}"
+            if error.errno == errno.EADDRINUSE:
+                text = f"port {port} is in use: choose another one, or 0 for one that is free"
+            raise OSError(error.errno, text) from None

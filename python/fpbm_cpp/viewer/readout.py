@@ -1,4 +1,4 @@
-"""A run in words and numbers: how it ended, and its figures, now and at worst."""
+"""A run in words and numbers: how it ended, and figures of the sample shown and of the whole motion."""
 
 from __future__ import annotations
 
@@ -8,51 +8,49 @@ from collections.abc import Iterable
 import numpy as np
 from viser import GuiApi
 
-from .._core import advice, message
+from .._core import message
 from .._types import Array
 from ..joint_text import joint_labels, joint_units
-from ..run import RunStatus
-from .film import Film
+from .playback import Playback
 
 GOOD, BAD = "#009E73", "#D55E00"
 CELL = "padding:0.15em 0.6em 0.15em 0"
 
 
 class Readout:
-    """A line on how the run ended, and a table of figures: each now, and the worst of the whole motion."""
+    """A line on how the run ended, and a table of figures: now, and the worst of the whole motion."""
 
     def __init__(self, gui: GuiApi) -> None:
         self._status = gui.add_html("")
         self._table = gui.add_html("")
 
-    def show(self, film: Film) -> None:
-        """Tell of a run."""
-        self._film = film
-        self._names, self._units = joint_labels(film.run.arm), joint_units(film.run.arm)
-        status = film.run.status
-        self._say(_ending(status), GOOD if status.ok else BAD)
+    def show(self, playback: Playback) -> None:
+        """Say how a run ended."""
+        self._playback, run = playback, playback.run
+        self._names, self._units = joint_labels(run.arm), joint_units(run.arm)
+        stopped = f"stopped after t = {run.status.time:g} s: {message(run.status.code)}. {run.status.advice}"
+        self._say(str(run.status) if run.status else stopped, GOOD if run.status else BAD)
 
     def refuse(self, reason: str) -> None:
-        """Say why what is asked for cannot be run."""
+        """Say why the motion asked for cannot be run."""
         self._say(f"not run: {reason}", BAD)
 
     def at(self, sample: int) -> None:
-        """Tell of a sample of the run."""
-        film = self._film
-        w = film.manipulability
+        """Show the figures of a sample."""
+        playback = self._playback
+        qd, w = playback.run.qd, playback.manipulability
         rows = [
-            ("tip error", f"{film.tip_error[sample]:.3g} m", f"{film.tip_error.max():.3g} m"),
-            ("fastest joint", self._fastest(film.qd[sample : sample + 1]), self._fastest(film.qd)),
-            ("manipulability", f"{w[film.frame(sample)]:.3g}", f"{w.min():.3g}"),
+            ("tip error", *_now_and_worst(playback.tip_error, sample, "m")),
+            ("fastest joint", self._fastest(qd[sample : sample + 1]), self._fastest(qd)),
+            ("manipulability", f"{w[playback.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
-        if film.run.task == "pose":
-            turn = film.orientation_error
-            rows.insert(1, ("turn error", f"{turn[sample]:.3g} rad", f"{turn.max():.3g} rad"))
+        if playback.run.task == "pose":
+            rows.insert(1, ("orientation error", *_now_and_worst(playback.orientation_error, sample, "rad")))
         self._table.content = _table(("", "now", "at worst"), rows)
 
     @property
     def text(self) -> str:
-        """What it says, as HTML."""
+        """The readout as HTML."""
         return f"{self._status.content}{self._table.content}"
 
     def _say(self, text: str, colour: str) -> None:
@@ -64,10 +62,8 @@ class Readout:
         return f"{np.abs(qd).max():.3g} {self._units[joint]}/s ({self._names[joint]})"
 
 
-def _ending(status: RunStatus) -> str:
-    if status.ok:
-        return str(status)
-    return f"stopped after t = {status.time:g} s: {message(status.code)}. {advice(status.code)}"
+def _now_and_worst(errors: Array, sample: int, unit: str) -> tuple[str, str]:
+    return f"{errors[sample]:.3g} {unit}", f"{errors.max():.3g} {unit}"
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:

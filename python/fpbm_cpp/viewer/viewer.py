@@ -1,39 +1,47 @@
-"""The viewer: a server, the page's parts, and what passes between them."""
+"""The viewer: a server, the parts of the page, and their connections."""
 
 from __future__ import annotations
 
+import atexit
 import os
 import threading
 import time
 import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
-import numpy as np
-import viser
-from numpy.typing import ArrayLike
+try:
+    import rich
+    import viser
+    import yourdfpy  # noqa: F401
+except ModuleNotFoundError as missing:
+    raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
 
-from .._core import Arm, Path, Scheme
 from ..joint_text import joint_labels
-from ..run import Run
+from ..motion.run import Run
+from ..schemes import Scheme
 from .chart import Chart
 from .controls import Controls
-from .film import Film
-from .job import Job
 from .meshes import Model
+from .playback import Playback
 from .player import Player
 from .port import require_free
 from .readout import Readout
+from .rerun import has_limits, rerun
 from .scene import Scene
 
 
 class Viewer:
-    """A page in the browser with an arm on its path, which is simulated anew whenever a gain is changed there.
+    """A page in the browser with a run, which is simulated again whenever a parameter is changed on the page.
 
     Serves from another thread until it is closed, or until the end of a with block.
 
     Parameters
     ----------
-    arm, path, scheme, q0, dt, hold, task, urdf, host, port
+    run : Run
+        What to show first; all later runs have its arm, path, start, task and limits.
+    urdf, host, port
         As for fpbm_cpp.view().
     open_browser : bool
         Open the page in the browser.
@@ -41,7 +49,7 @@ class Viewer:
     Attributes
     ----------
     url : str
-        Where the page is.
+        Address of the page.
 
     Raises
     ------
@@ -51,87 +59,62 @@ class Viewer:
 
     def __init__(
         self,
-        arm: Arm,
-        path: Path,
-        scheme: Scheme,
-        q0: ArrayLike,
-        *,
-        dt: float = 1e-3,
-        hold: float = 0.0,
-        task: str = "position",
-        urdf: str | os.PathLike[str] | None = None,
-        host: str = "127.0.0.1",
-        port: int = 8080,
-        open_browser: bool = False,
-    ) -> None:
-        job = Job(arm, path, np.array(q0, dtype=float).ravel(), task, {"dt": dt, "hold": hold})
-        self._open(job, job.run(scheme), urdf, host, port, open_browser)
-
-    @classmethod
-    def of(
-        cls,
         run: Run,
         *,
         urdf: str | os.PathLike[str] | None = None,
         host: str = "127.0.0.1",
         port: int = 8080,
         open_browser: bool = False,
-    ) -> Viewer:
-        """Viewer of a finished run, from which one can go on to other schemes and gains."""
-        viewer = cls.__new__(cls)
-        viewer._open(Job.of(run), run, urdf, host, port, open_browser)
-        return viewer
-
-    def _open(
-        self, job: Job, run: Run, urdf: str | os.PathLike[str] | None, host: str, port: int, open_browser: bool
     ) -> None:
-        film = Film(run)
-        model = None if urdf is None else Model(urdf, job.arm, film.q[0])
+        playback = Playback(run)
+        model = None if urdf is None else Model(urdf, run.arm, playback.run.q[0])
         require_free(host, port)
-        self._job = job
-        self._asked: tuple[str, bool] | None = None  # What is shown; None where it is not what is asked for.
+        self._first = run
+        self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
         self._lock = threading.RLock()
-        self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
+        with _quiet():
+            self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
+        atexit.register(self.close)  # Before viser's own exit, which prints.
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
-        with self._lock:  # Whoever is at the page already waits until it is there.
-            self._build(film, model)
+        with self._lock:  # The page's first events wait until all parts are there.
+            self._build(playback, model)
         if open_browser:
             webbrowser.open(self.url)
 
-    def _build(self, film: Film, model: Model | None) -> None:
-        job, gui = self._job, self._server.gui
-        # Its button to share would show the page to others, by way of somebody's server.
+    def _build(self, playback: Playback, model: Model | None) -> None:
+        run, gui = self._first, self._server.gui
+        # The share button would show the page to others, through somebody's server.
         gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
-        duration = job.path.duration + job.options.get("hold", 0.0)
-        limited = film.run.scale is not None if job.has_limits() else None
+        duration = run.path.duration + run.options.get("hold", 0.0)
+        limited = run.scale is not None if has_limits(run) else None
         self._readout = Readout(gui)
         self._player = Player(gui, duration, self._draw)
-        self._controls = Controls(gui, film.run.scheme, joint_labels(job.arm), limited, self._on_change)
-        self._chart = Chart(gui, film, duration)
-        self._scene = Scene(self._server, film, model)
-        self._show(film)
+        self._controls = Controls(gui, run.scheme, joint_labels(run.arm), limited, self._on_change)
+        self._chart = Chart(gui, playback, duration)
+        self._scene = Scene(self._server, playback, model)
+        self._show(run)
 
     @property
     def run(self) -> Run:
-        """The motion that is shown."""
-        return self._film.run
+        """The motion shown."""
+        return self._run
 
     @property
     def scheme(self) -> Scheme:
-        """The scheme that is shown. One that is assigned is simulated at once; ValueError where it cannot be."""
+        """The scheme shown. Assign another one to simulate it at once; ValueError if it does not suit the arm."""
         return self.run.scheme
 
     @scheme.setter
     def scheme(self, scheme: Scheme) -> None:
         with self._lock:
-            run = self._job.run(scheme, self._controls.limited)
+            run = rerun(self._first, scheme, self._controls.limited)
             self._controls.take(scheme)
-            self._show(Film(run))
+            self._show(run)
 
     @property
     def time(self) -> float:
-        """The time that is shown [s]; one that is assigned is shown at once."""
+        """The time shown [s]. Assign another one to show it."""
         return self._player.time
 
     @time.setter
@@ -139,11 +122,11 @@ class Viewer:
         self._player.time = seconds
 
     def play(self) -> None:
-        """Let time run."""
+        """Start the clock."""
         self._player.play()
 
     def pause(self) -> None:
-        """Stop time."""
+        """Stop the clock."""
         self._player.pause()
 
     def wait(self) -> None:
@@ -156,9 +139,11 @@ class Viewer:
                 pass
 
     def close(self) -> None:
-        """Stop serving; once more does no harm."""
+        """Stop serving. Closing twice does no harm."""
+        atexit.unregister(self.close)
         self._player.close()
-        self._server.stop()
+        with _quiet():
+            self._server.stop()
 
     def __enter__(self) -> Viewer:
         return self
@@ -170,28 +155,39 @@ class Viewer:
         return f'<iframe src="{self.url}" style="width:100%;height:640px;border:1px solid #ddd"></iframe>'
 
     def _on_change(self) -> None:
-        """Somebody at the page wants another scheme; where several do at once, the last word counts."""
+        """Simulate the scheme that the page asks for; of several requests at once, the last one counts."""
         with self._lock:
             try:
-                scheme = self._controls.scheme()
-                asked = (repr(scheme), self._controls.limited)
+                asked = self._controls.scheme(), self._controls.limited
                 if asked != self._asked:
-                    self._show(Film(self._job.run(scheme, self._controls.limited)))
+                    self._show(rerun(self._first, *asked))
             except ValueError as error:
                 self._asked = None
                 self._readout.refuse(str(error))
 
-    def _show(self, film: Film) -> None:
+    def _show(self, run: Run) -> None:
+        playback = Playback(run)
         with self._lock, self._server.atomic():
-            self._asked = (repr(film.run.scheme), self._controls.limited)
-            self._film = film
+            self._asked = run.scheme, self._controls.limited
+            self._run, self._playback = run, playback
             for part in (self._scene, self._readout, self._chart):
-                part.show(film)
-            self._player.end = float(film.t[-1])
+                part.show(playback)
+            self._player.end = float(playback.run.t[-1])
             self._draw(self._player.time)
 
     def _draw(self, seconds: float) -> None:
         with self._lock, self._server.atomic():
-            sample = self._film.at(seconds)
+            sample = self._playback.sample(seconds)
             for part in (self._scene, self._readout, self._chart):
                 part.at(sample)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep viser's messages off the terminal: it prints them with rich, whether it is to be verbose or not."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before

@@ -1,0 +1,178 @@
+"""The search for the parameters of a scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._types import Array
+from ..arms import Arm, JointLimits
+from ..errors import TuneInterrupted
+from ..motion.progress import Progress, reporting
+from ..motion.sweeping import sweep
+from ..paths import Path
+from ..schemes import FPBM
+from .objectives import Objective, measure
+from .result import Tuning
+from .search import Search, front, least, require_cmaes
+from .sensitivity import changes, neighbours, numbers
+from .space import Space, make_space, paper_choice
+from .trials import Trials, joined, trials_of
+
+
+def tune(
+    arm: Arm,
+    path: Path,
+    q0: ArrayLike,
+    objective: Objective = "peak_velocity",
+    *,
+    dt: float = 1e-3,
+    hold: float = 0.0,
+    task: str = "position",
+    limits: JointLimits | None = None,
+    search: Mapping[str, ArrayLike] | None = None,
+    baseline: FPBM | None = None,
+    tolerance: float = 1e-3,
+    trials: int = 1000,
+    seed: int = 0,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Progress = None,
+    **tracking: float,
+) -> Tuning:
+    """Find the parameters of FPBM that minimise an objective, for an arm on a path.
+
+    One half of the trials searches for the least objective, by CMA-ES, the other half for the Pareto front of peak
+    velocity and peak acceleration. Both run on sweep(), in batches; the result is the best of all trials, the first of
+    which is the baseline. The same seed gives the same result to the last bit, whoever runs the motions.
+
+    Parameters
+    ----------
+    arm, path, q0, dt, hold, task
+        The motion, as for simulate().
+    objective : str or callable
+        'peak_velocity' [rad/s], 'peak_acceleration' [rad/s^2], 'final_velocity' [rad/s], each of the fastest joint;
+        'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest share of its range that a joint uses,
+        0 in the middle and 1 on a bound; or a function of a Run that returns a number. The last three need whole
+        motions, and are slower.
+    limits : JointLimits, optional
+        Limits that every motion keeps, as track() does; without them none are kept.
+    search : mapping of str to (low, high), optional
+        The parameters to vary, of 'alpha', 'weights', 'k1', 'k2' and 'null_damping', and their ranges; the others stay
+        as in the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only ratios matter;
+        the others have one range, or n - 1. By default alpha in (0, 1), weights in (0.1, 10), null_damping in
+        (0.01, 10).
+    baseline : FPBM, optional
+        The scheme to start from and to compare with, W diagonal; all its other options are kept. By default the paper's
+        choice: alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1.
+    tolerance : float
+        Largest position error of the tip [m], and of its orientation [rad] under 'pose', of a feasible motion.
+    trials : int
+        Number of schemes to try.
+    seed : int
+        Seed of the random numbers, not negative.
+    executor, workers, progress
+        As for sweep().
+    **tracking : float
+        With limits, the other options of track(): max_error, integral_gain and so on.
+
+    Returns
+    -------
+    Tuning
+        The best scheme, the front, the sensitivity, and all that was tried.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, not finite, unknown, or of the wrong shape; nothing is run.
+    TypeError
+        If the baseline is no FPBM.
+    RuntimeError
+        If no trial is feasible.
+    TuneInterrupted
+        On Ctrl-C: a KeyboardInterrupt whose tuning holds what was found.
+    ImportError
+        If the extra 'tune' is missing, or with progress=True the extra 'progress'; nothing is run.
+    """
+    start = np.asarray(q0, float)
+    first = paper_choice(arm.dof) if baseline is None else baseline
+    _check(arm, start, first, tolerance, trials, seed)
+    space, objective_of = make_space(search, first, arm.dof), measure(objective, limits or arm.limits)
+    require_cmaes()
+    tried: list[Trials] = []
+    whole = objective_of.of_run is not None
+
+    def run(schemes: Sequence[FPBM]) -> Trials:
+        how: dict[str, Any] = {"hold": hold, "task": task, "limits": limits, **tracking}
+        done = sweep(arm, path, schemes, start, dt, executor=executor, workers=workers, motions=whole, **how)
+        return trials_of(done, objective_of, tolerance)
+
+    def tuning(sensitivity: dict[str, tuple[float, float]]) -> Tuning:
+        return Tuning(joined(tried), sensitivity, objective_of.name, objective_of.unit, arm, path, start, task)
+
+    size, count = len(space.names), int(trials)
+    halves = (
+        _half(least(size, int(seed)), Trials.scores, count - count // 2, space, run),
+        _half(front(size, int(seed)), Trials.peaks, count // 2, space, run),
+    )
+    total = 1 + count + 2 * len(numbers(first))
+    try:
+        with reporting(progress, total) as report:
+            tried.append(run([first]))
+            for batch in chain(*halves):
+                tried.append(batch)
+                report(sum(map(len, tried)))
+            if not any(batch.feasible.any() for batch in tried):
+                raise RuntimeError(_why_none(joined(tried), tolerance))
+            found = tuning({})
+            around = neighbours(found.scheme)
+            sensitivity = changes(found.scheme, found.value, around, run(list(around.values())))
+            report(total)
+    except KeyboardInterrupt:
+        feasible = any(batch.feasible.any() for batch in tried)
+        raise TuneInterrupted(tuning({}) if feasible else None, sum(map(len, tried))) from None
+    return tuning(sensitivity)
+
+
+def _check(arm: Arm, start: Array, first: object, tolerance: float, trials: int, seed: int) -> None:
+    """Raise for what no other part checks."""
+    if start.shape != (arm.dof,) or not np.all(np.isfinite(start)):
+        raise ValueError(f"q0 = {start.tolist()}: must be {arm.dof} finite numbers")
+    if not isinstance(first, FPBM):
+        raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
+    if not 0.0 < tolerance < np.inf:
+        raise ValueError(f"tolerance = {tolerance}: must be positive and finite")
+    for name, number, lowest in (("trials", trials, 1), ("seed", seed, 0)):
+        if number != int(number) or number < lowest:
+            raise ValueError(f"{name} = {number}: must be a whole number, at least {lowest}")
+
+
+def _half(
+    search: Search,
+    score: Callable[[Trials], Array],
+    count: int,
+    space: Space,
+    run: Callable[[Sequence[FPBM]], Trials],
+) -> Iterator[Trials]:
+    """So many trials of a search, in batches as large as it asks for; the last may be smaller."""
+    points = next(search)
+    while count > 0:
+        batch = run([space.scheme(point) for point in points[:count]])
+        yield batch
+        count -= len(batch)
+        if count > 0:
+            points = search.send(score(batch))
+
+
+def _why_none(tried: Trials, tolerance: float) -> str:
+    """Why no trial is feasible."""
+    complete = np.isfinite(tried.value)
+    text = f"none of {len(tried)} schemes is feasible: {np.sum(~complete)} stopped early or have no objective"
+    if not complete.any():
+        return f"{text}; simulate() says why for {tried.schemes[0]!r}"
+    return f"{text}, and the others err by at least {tried.error[complete].min():.2g}, where tolerance = {tolerance:g}"
