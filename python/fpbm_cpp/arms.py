@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Sized
 from dataclasses import replace
 from functools import cached_property
 from math import inf
@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._core import Arm as CoreArm
-from ._core import dh, preset
-from ._types import Array, ArrayField
-from .errors import ParameterError
-from .parameter import Data, Parameter, data, parameter
+from ._core import PRESETS, dh, preset
+from ._types import ArrayField
+from .errors import ParameterError, not_one_of
+from .parameter import POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
+BOUNDS: dict[str, Any] = {"kw_only": True, "shape": "(n,)", "infinite": True}
 
 
 @data
@@ -31,51 +32,36 @@ class JointLimits(Data):
     """
 
     kind: ClassVar[str] = "limits"
-    lower: ArrayField = parameter(kw_only=True, shape="(n,)", infinite=True, unit="rad", help="Lowest joint positions.")
-    upper: ArrayField = parameter(kw_only=True, shape="(n,)", infinite=True, unit="rad", help="Highest joint positions.")
-    velocity: ArrayField = parameter(
-        kw_only=True, shape="(n,)", infinite=True, unit="rad/s", help="Highest joint velocities, either way."
-    )
-    acceleration: ArrayField = parameter(
-        kw_only=True, shape="(n,)", infinite=True, unit="rad/s^2", help="Highest joint accelerations, either way."
-    )
+    lower: ArrayField = parameter("Lowest joint positions.", unit="rad", **BOUNDS)
+    upper: ArrayField = parameter("Highest joint positions.", unit="rad", **BOUNDS)
+    velocity: ArrayField = parameter("Highest joint velocities, either way.", unit="rad/s", **BOUNDS)
+    acceleration: ArrayField = parameter("Highest joint accelerations, either way.", unit="rad/s^2", **BOUNDS)
 
     def _finish(self) -> None:
         for name in ("upper", "velocity", "acceleration"):
-            size, given = len(self.lower), getattr(self, name)
-            if len(given) != size:
-                raise ParameterError(
-                    name, None, given, f"{name} has {len(given)} entries: must have {size}, one per joint"
-                )
+            require_length(name, getattr(self, name), len(self.lower))
 
 
 @data
 class Joint(Data):
     """One joint of a chain, prismatic joints with m for rad."""
 
-    type: str = parameter(
-        default="revolute", choices=("revolute", "continuous", "prismatic"), help="How the joint moves."
-    )
+    type: str = parameter("How it moves.", default="revolute", choices=("revolute", "continuous", "prismatic"))
     placement: ArrayField = parameter(
-        default=IDENTITY,
-        shape="(4, 4)",
-        unit="m",
-        help="The joint's frame, seen from the joint before, both at zero.",
+        "The joint's frame, seen from the joint before, both at zero.", default=IDENTITY, shape="(4, 4)", unit="m"
     )
     axis: ArrayField = parameter(
-        default=(0.0, 0.0, 1.0), shape="(3,)", help="In the joint's frame; its length does not matter."
+        "In the joint's frame; its length does not matter.", default=(0.0, 0.0, 1.0), shape="(3,)"
     )
-    lower: float = parameter(default=-inf, infinite=True, unit="rad", help="Lowest position.")
-    upper: float = parameter(default=inf, infinite=True, unit="rad", help="Highest position.")
-    velocity: float = parameter(default=inf, infinite=True, unit="rad/s", help="Highest velocity, either way.")
-    acceleration: float = parameter(
-        default=inf, infinite=True, unit="rad/s^2", help="Highest acceleration, either way."
-    )
-    name: str = parameter(default="", help="'joint_1' and so on where empty.")
+    lower: float = parameter("Lowest position.", default=-inf, infinite=True, unit="rad")
+    upper: float = parameter("Highest position.", default=inf, infinite=True, unit="rad")
+    velocity: float = parameter("Highest velocity, either way.", default=inf, infinite=True, unit="rad/s")
+    acceleration: float = parameter("Highest acceleration, either way.", default=inf, infinite=True, unit="rad/s^2")
+    name: str = parameter("'joint_1' and so on where empty.", default="")
     mimic: tuple[int, float, float] | None = parameter(
+        "Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is ratio "
+        "times the other's plus offset. The joint is no degree of freedom.",
         default=None,
-        help="Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is "
-        "ratio times the other's plus offset. The joint is no degree of freedom.",
     )
 
     def _finish(self) -> None:
@@ -110,16 +96,14 @@ class Arm(Data, CoreArm):
 class PlanarArm(Arm):
     """Planar arm of n revolute joints.
 
-    f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first from the
-    base frame's x axis. The pose of the tip is (x, y, th_n).
+    f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first from
+    the base frame's x axis. The pose of the tip is (x, y, th_n).
 
     Raises ParameterError where a length is out of range, or there are too few or too many.
     """
 
     kind: ClassVar[str] = "planar"
-    lengths: ArrayField = parameter(
-        shape="(n,)", unit="m", low=0.0, open_low=True, help="Link lengths, 2 to MAX_DOF of them."
-    )
+    lengths: ArrayField = parameter("Link lengths, 2 to MAX_DOF of them.", shape="(n,)", unit="m", **POSITIVE)
 
     def _finish(self) -> None:
         CoreArm.__init__(self, self.lengths)
@@ -139,9 +123,9 @@ class SerialArm(Arm):
     """
 
     kind: ClassVar[str] = "joints"
-    joints: Sequence[Joint] = parameter(help="From base to tip, 1 to MAX_DOF of them. Nameless ones are given names.")
+    joints: Sequence[Joint] = parameter("From base to tip, 1 to MAX_DOF of them. Nameless ones are given names.")
     tip: ArrayField = parameter(
-        default=IDENTITY, shape="(4, 4)", unit="m", help="The tip's frame, seen from the last joint."
+        "The tip's frame, seen from the last joint.", default=IDENTITY, shape="(4, 4)", unit="m"
     )
 
     def _finish(self) -> None:
@@ -198,16 +182,14 @@ class SerialArm(Arm):
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
-        columns = {
-            name: Parameter(name=name, default=None, shape="(n,)", infinite=True).check(values)
-            for name, values in (("lower", lower), ("upper", upper), ("velocity", velocity), ("acceleration", acceleration))
-        }
-        for name, values in {**columns, "names": names}.items():
-            if values is not None and len(values) != len(rows):
-                text = f"{name} has {len(values)} entries: must have {len(rows)}, one per joint"
-                raise ParameterError(name, None, values, text)
-            for joint, value in zip(joints, () if values is None else values):
-                joint["name" if name == "names" else name] = value
+        columns = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "names": names}
+        for name, values in columns.items():
+            if values is None:
+                continue
+            entries = values if name == "names" else Parameter(name=name, shape="(n,)", infinite=True).check(values)
+            require_length(name, entries, len(rows))
+            for joint, entry in zip(joints, entries):
+                joint["name" if name == "names" else name] = entry
         if base is not None and joints:
             joints[0]["placement"] = Parameter(name="base", shape="(4, 4)").check(base) @ joints[0]["placement"]
         return cls(_joints(joints), end if tip is None else end @ Parameter(name="tip", shape="(4, 4)").check(tip))
@@ -245,8 +227,17 @@ class SerialArm(Arm):
     @classmethod
     def preset(cls, name: str) -> SerialArm:
         """Arm of a data sheet, up to its flange: one of PRESETS, 'panda' say. Raises ParameterError."""
+        if name not in PRESETS:
+            raise not_one_of("name", name, PRESETS)
         joints, tip = preset(name)
         return cls(_joints(joints), tip)
+
+
+def require_length(name: str, values: Sized, dof: int) -> None:
+    """Raise ParameterError where there is not one value a joint."""
+    if len(values) != dof:
+        text = f"{name} has {len(values)} entries: must have {dof}, one per joint"
+        raise ParameterError(name, None, values, text)
 
 
 def _joints(fields: list[dict[str, Any]]) -> list[Joint]:

@@ -1,4 +1,4 @@
-"""Data classes whose parameters are declared once: checks, docstrings, options and sliders derive from the declaration."""
+"""Data classes whose parameters are declared once: checks, docstrings, options and sliders derive from that."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import textwrap
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
-from functools import lru_cache, partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -22,56 +22,29 @@ else:
         """Tell type checkers what `data` does."""
         return lambda decorator: decorator
 
+
 REQUIRED: Any = inspect.Parameter.empty
+POSITIVE: dict[str, Any] = {"low": 0.0, "open_low": True}
+NOT_NEGATIVE: dict[str, Any] = {"low": 0.0}
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """What there is to know about a parameter.
-
-    Attributes
-    ----------
-    name : str
-        As constructors, tables and options call it.
-    type : type
-        float, int, str, numpy.ndarray, or object for all else.
-    annotation : str
-        The same as the declaration has it.
-    default : object
-        What constructors take where it is not given; REQUIRED where it must be given.
-    usual : object
-        What jobs and the command line take where it is not given: the default, unless declared.
-    unit : str
-        Empty where there is none.
-    low, high : float
-        Bounds of the number, or of a vector's entries.
-    open_low : bool
-        Whether the lower bound itself is out of range.
-    infinite : bool
-        Whether infinity will do.
-    choices : tuple of str
-        The words to choose from.
-    shape : str
-        The shapes that an array may have, as in '(n,) or (n, n)'; () is a number.
-    whole : bool
-        Whether numbers must be whole.
-    help : str
-        A sentence or two.
-    """
+    """What there is to know about a parameter."""
 
     name: str = ""
-    type: type = object
-    annotation: str = ""
-    default: Any = REQUIRED
-    usual: Any = REQUIRED
+    type: type = object  # float, int, str, numpy.ndarray, or object for all else.
+    annotation: str = ""  # The same as the declaration has it.
+    default: Any = REQUIRED  # What constructors take where it is not given.
+    usual: Any = REQUIRED  # What jobs and the command line take where it is not given.
     unit: str = ""
-    low: float = -math.inf
+    low: float = -math.inf  # Bounds of a number, or of a vector's entries.
     high: float = math.inf
-    open_low: bool = False
-    infinite: bool = False
-    choices: tuple[str, ...] = ()
-    shape: str = ""
-    whole: bool = False
+    open_low: bool = False  # Whether the lower bound itself is out of range.
+    infinite: bool = False  # Whether infinity will do.
+    whole: bool = False  # Whether numbers must be whole.
+    choices: tuple[str, ...] = ()  # The words to choose from.
+    shape: str = ""  # The shapes that an array may have: '(n,) or (n, n)', '()' being a number.
     help: str = ""
 
     @property
@@ -175,16 +148,16 @@ def _fits(shape: tuple[int, ...], wanted: str) -> bool:
     return False
 
 
-def parameter(*, default: Any = REQUIRED, kw_only: bool = False, **known: Any) -> Any:
-    """Declare a parameter as a field of a data class: `radius: float = parameter(unit="m", low=0.0, help="Radius.")`.
+def parameter(help: str, *, default: Any = REQUIRED, kw_only: bool = False, **known: Any) -> Any:
+    """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", unit="m", **POSITIVE)`.
 
     Takes what Parameter has. Name and type are the field's; the usual value is the default, unless given.
     """
-    declared = Parameter(default=default, **{"usual": default, **known})
+    declared = Parameter(help=help, default=default, **{"usual": default, **known})
     return field(default=MISSING if default is REQUIRED else default, kw_only=kw_only, metadata={"parameter": declared})
 
 
-@lru_cache(maxsize=None)
+@cache
 def parameters(maker: Callable[..., Any]) -> dict[str, Parameter]:
     """The parameters of a data class, its own before those that it inherits; of a function, its arguments."""
     declared = {each.name: each.metadata["parameter"] for each in fields(maker)} if is_dataclass(maker) else {}

@@ -14,15 +14,14 @@ from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricu
 from ._core import Path as CorePath
 from ._types import ArrayField, OptionalArrayField
 from .errors import ParameterError
-from .parameter import Data, Parameter, data, parameter, parameters
+from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
-PLANES = ("xy", "xz", "yx", "yz", "zx", "zy")
-
 # What shapes have in common.
-DURATION: dict[str, Any] = {"usual": 10.0, "unit": "s", "low": 0.0, "open_low": True, "help": "T."}
-TIME_LAW: dict[str, Any] = {"choices": TIME_LAWS, "help": "How the fraction s of the way grows with time."}
+DURATION: dict[str, Any] = {"help": "T.", "usual": 10.0, "unit": "s", **POSITIVE}
+TIME_LAW: dict[str, Any] = {"help": "How the fraction s of the way grows with time.", "choices": TIME_LAWS}
+BOUND: dict[str, Any] = {"kw_only": True, **POSITIVE}
 
 
 class Path(Data, CorePath):
@@ -80,7 +79,7 @@ class Circle(Path):
     """
 
     kind = "circle"
-    radius: float = parameter(usual=0.1, unit="m", low=0.0, open_low=True, help="r.")
+    radius: float = parameter("r.", unit="m", usual=0.1, **POSITIVE)
     duration: float = parameter(**DURATION)
     time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
 
@@ -97,13 +96,13 @@ class Lissajous(Path):
 
     kind = "lissajous"
     amplitude: ArrayField = parameter(
-        usual=0.1, shape="() or (2,)", unit="m", low=0.0, open_low=True, help="a, one for both axes or one each."
+        "a, one for both axes or one each.", shape="() or (2,)", unit="m", usual=0.1, **POSITIVE
     )
     duration: float = parameter(**DURATION)
     frequencies: ArrayField = parameter(
-        default=(2, 1), kw_only=True, shape="(2,)", whole=True, low=1.0, help="f: whole, so that the figure closes."
+        "f: whole, so that the figure closes.", default=(2, 1), kw_only=True, shape="(2,)", whole=True, low=1.0
     )
-    phase: float = parameter(default=pi / 6, kw_only=True, unit="rad", help="delta.")
+    phase: float = parameter("delta.", default=pi / 6, kw_only=True, unit="rad")
     time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
 
     def _compiled(self) -> CorePath:
@@ -118,7 +117,7 @@ class Tricuspid(Path):
     """
 
     kind = "tricuspid"
-    size: float = parameter(usual=0.05, unit="m", low=0.0, open_low=True, help="a.")
+    size: float = parameter("a.", unit="m", usual=0.05, **POSITIVE)
     duration: float = parameter(**DURATION)
     time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
 
@@ -132,7 +131,7 @@ class Line(Path):
 
     kind = "line"
     displacement: ArrayField = parameter(
-        usual=(0.1, 0.0), shape="(2,) or (3,)", unit="m", help="From the start of the line to its end."
+        "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
     duration: float = parameter(**DURATION)
     time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
@@ -152,34 +151,26 @@ class Waypoints(Path):
     A quintic spline: of all curves through the points at those times, the one of least jerk. Acceleration is continuous
     everywhere, the ends included. Orientations are splines of quaternions, and turn by the shorter way.
 
-    Give one of: the duration, of which each piece gets a share by its length; the times; bounds of the tip's motion, for
-    the shortest duration that they allow, to 1 %, rounded up to 0.01 s.
+    Give one of: the duration, of which each piece gets a share by its length; the times; bounds of the tip's motion,
+    for the shortest duration that they allow, to 1 %, rounded up to 0.01 s.
     """
 
     kind = "waypoints"
     points: ArrayField = parameter(
+        "Positions or poses, two at least. Only differences from the first matter, since a path starts where the tip "
+        "is: coordinates in the base frame do as well as displacements.",
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
-        help="Positions or poses, two at least. Only differences from the first matter, since a path starts where the "
-        "tip is: coordinates in the base frame do as well as displacements.",
     )
-    duration: float | None = parameter(  # type: ignore[assignment]  # Always a number once constructed.
-        default=None, kw_only=True, unit="s", low=0.0, open_low=True, help="T."
-    )
+    duration: float | None = parameter("T.", default=None, unit="s", **BOUND)  # type: ignore[assignment]  # None in calls.
     times: OptionalArrayField = parameter(
-        default=None, kw_only=True, shape="(k,)", unit="s", help="When each point is passed, the first at 0."
+        "When each point is passed, the first at 0.", default=None, kw_only=True, shape="(k,)", unit="s"
     )
-    velocity: float | None = parameter(
-        default=None, kw_only=True, unit="m/s", low=0.0, open_low=True, help="Highest speed of the tip."
-    )
-    acceleration: float | None = parameter(
-        default=None, kw_only=True, unit="m/s^2", low=0.0, open_low=True, help="Its highest acceleration."
-    )
-    angular_velocity: float | None = parameter(
-        default=None, kw_only=True, unit="rad/s", low=0.0, open_low=True, help="Its highest angular velocity."
-    )
+    velocity: float | None = parameter("Highest speed of the tip.", default=None, unit="m/s", **BOUND)
+    acceleration: float | None = parameter("Its highest acceleration.", default=None, unit="m/s^2", **BOUND)
+    angular_velocity: float | None = parameter("Its highest angular velocity.", default=None, unit="rad/s", **BOUND)
     angular_acceleration: float | None = parameter(
-        default=None, kw_only=True, unit="rad/s^2", low=0.0, open_low=True, help="Its highest angular acceleration."
+        "Its highest angular acceleration.", default=None, unit="rad/s^2", **BOUND
     )
 
     def __post_init__(self) -> None:
@@ -206,29 +197,29 @@ class Waypoints(Path):
 class InPlane(Path):
     """A path of the plane, laid into a plane of space: path.in_plane(plane)."""
 
-    path: Path = parameter(help="A path of positions in the plane.")
+    path: Path = parameter("A path of positions in the plane.")
     plane: ArrayField = parameter(
-        choices=PLANES,
+        "The base frame's axes that the path's x and y run along, or two directions at right angles.",
+        choices=("xy", "xz", "yx", "yz", "zx", "zy"),
         shape="(2, 3)",
-        help="The base frame's axes that the path's x and y run along, or two directions at right angles.",
     )
 
     def _compiled(self) -> CorePath:
-        plane: Any = self.plane
-        return in_plane(self.path, np.eye(3)[["xyz".index(axis) for axis in plane]] if isinstance(plane, str) else plane)
+        axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
+        return in_plane(self.path, axes)
 
 
 @data
 class WithRotation(Path):
     """A path of positions, with the tip rotated on the way: path.with_rotation(rotation, time_law=...)."""
 
-    path: Path = parameter(help="A path of positions.")
+    path: Path = parameter("A path of positions.")
     rotation: ArrayField = parameter(
+        "Rotation vector along the base frame's axes, or an angle in the plane, from the orientation at the start.",
         shape="() or (3,)",
         unit="rad",
-        help="Rotation vector along the base frame's axes, or an angle in the plane, from the orientation at the start.",
     )
-    time_law: str = parameter(default="quintic", kw_only=True, choices=TIME_LAWS, help="How the rotation grows with time.")
+    time_law: str = parameter("How the rotation grows with time.", default="quintic", kw_only=True, choices=TIME_LAWS)
 
     def _compiled(self) -> CorePath:
         return with_rotation(self.path, self.rotation, self.time_law)
@@ -239,7 +230,7 @@ class Sequence(Path):
     """Paths one after another: path.then(next). Sequences among them are replaced by their paths."""
 
     kind = "sequence"
-    paths: tuple[Path, ...] = parameter(help="In their order, one at least.")
+    paths: tuple[Path, ...] = parameter("In their order, one at least.")
 
     def _compiled(self) -> CorePath:
         parts: list[Path] = []

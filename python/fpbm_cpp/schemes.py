@@ -10,28 +10,29 @@ from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
 from .arms import Arm
 from .errors import ParameterError
-from .parameter import Data, data, parameter, parameters
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter, parameters
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
 
-# What is declared alike in more than one class.
-ALPHA: dict[str, Any] = {"usual": 0.6, "low": 0.0, "high": 1.0, "help": "Share of WMVN; MAN has the rest."}
+OPTION: dict[str, Any] = {"kw_only": True, **NOT_NEGATIVE}
+
+# What more than one class declares.
+ALPHA: dict[str, Any] = {"help": "Share of WMVN; MAN has the rest.", "usual": 0.6, "low": 0.0, "high": 1.0}
 WEIGHTS: dict[str, Any] = {
-    "shape": "(n,) or (n, n)",
-    "low": 0.0,
-    "open_low": True,
     "help": "Diagonal of W, or W itself, symmetric positive definite. Only ratios matter.",
+    "shape": "(n,) or (n, n)",
+    **POSITIVE,
 }
-POSITION_GAIN: dict[str, Any] = {"low": 0.0, "unit": "1/s", "help": "Position feedback: xd + k (x - f(q)) in place of xd."}
+K: dict[str, Any] = {"help": "Position feedback: xd + k (x - f(q)) in place of xd.", "unit": "1/s", **OPTION}
 K1: dict[str, Any] = {
-    "low": 0.0,
-    "unit": "1/s",
     "help": "Feedback gain on velocity, which velocity-level schemes do without.",
+    "unit": "1/s",
+    **OPTION,
 }
 K2: dict[str, Any] = {
-    "low": 0.0,
-    "unit": "1/s^2, 1/s at velocity level",
     "help": "Feedback gain on position or direction.",
+    "unit": "1/s^2, 1/s at velocity level",
+    **OPTION,
 }
 
 
@@ -43,10 +44,10 @@ class SecondTask(Data):
     """
 
     kind: ClassVar[str] = "point"
-    arm: Arm = parameter(help="The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
-    x: ArrayField = parameter(shape="(2,) or (3,)", unit="m", help="Where its tip is to be, in the base frame.")
-    k1: float = parameter(default=10.0, kw_only=True, **K1)
-    k2: float = parameter(default=25.0, kw_only=True, **K2)
+    arm: Arm = parameter("The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
+    x: ArrayField = parameter("Where its tip is to be, in the base frame.", shape="(2,) or (3,)", unit="m")
+    k1: float = parameter(default=10.0, **K1)
+    k2: float = parameter(default=25.0, **K2)
 
     def _finish(self) -> None:
         if not isinstance(self.arm, Arm):
@@ -68,10 +69,10 @@ class Gaze(Data):
 
     kind: ClassVar[str] = "gaze"
     direction: ArrayField = parameter(
-        shape="(3,)", help="Where the axis is to point, in the base frame; its length does not matter."
+        "Where the axis is to point, in the base frame; its length does not matter.", shape="(3,)"
     )
-    k1: float = parameter(default=10.0, kw_only=True, **K1)
-    k2: float = parameter(default=25.0, kw_only=True, **K2)
+    k1: float = parameter(default=10.0, **K1)
+    k2: float = parameter(default=25.0, **K2)
 
     def _finish(self) -> None:
         if not np.any(self.direction):
@@ -93,50 +94,43 @@ class Scheme(Data, CoreScheme):
     fixed: ClassVar[dict[str, float]] = {}
 
     rest_posture: OptionalArrayField = parameter(
-        default=None, kw_only=True, shape="(n,)", unit="rad", help="Posture that the null space is drawn to."
+        "Posture that the null space is drawn to.", default=None, kw_only=True, shape="(n,)", unit="rad"
     )
     null_stiffness: float = parameter(
-        default=0.0, kw_only=True, low=0.0, unit="1/s^2, 1/s at velocity level", help="How strongly."
+        "How strongly it is drawn.", default=0.0, unit="1/s^2, 1/s at velocity level", **OPTION
     )
     c: OptionalArrayField = parameter(
+        "The free choice in the general solution (5), (3) at velocity level.",
         default=None,
         kw_only=True,
         shape="(n,)",
         unit="rad/s^2, rad/s at velocity level",
-        help="The free choice in the general solution (5), (3) at velocity level.",
     )
     joint_centring: float = parameter(
-        default=0.0,
-        kw_only=True,
-        low=0.0,
-        unit="rad^2/s^2, rad^2/s at velocity level",
-        help="Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
+        "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
         "limits bound both ways (Liegeois, 1977).",
+        default=0.0,
+        unit="rad^2/s^2, rad^2/s at velocity level",
+        **OPTION,
     )
     manipulability_gain: float = parameter(
-        default=0.0,
-        kw_only=True,
-        low=0.0,
-        unit="rad^2/s^2, rad^2/s at velocity level",
-        help="Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
+        "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
         "without which it swings for ever.",
+        default=0.0,
+        unit="rad^2/s^2, rad^2/s at velocity level",
+        **OPTION,
     )
     second_task: SecondTask | Gaze | None = parameter(
-        default=None,
-        kw_only=True,
-        help="What the null space does first of all: the other options have what it leaves.",
+        "What the null space does first of all: the other options have what it leaves.", default=None, kw_only=True
     )
     singular_radius: float = parameter(
-        default=0.0,
-        kw_only=True,
-        low=0.0,
-        high=1.0,
-        help="Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
+        "Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
         "postures; 0.02 is a good one.",
+        default=0.0,
+        high=1.0,
+        **OPTION,
     )
-    singular_brake: float = parameter(
-        default=10.0, kw_only=True, low=0.0, unit="1/s", help="Damping of the null space there."
-    )
+    singular_brake: float = parameter("Damping of the null space there.", default=10.0, unit="1/s", **OPTION)
 
     def _finish(self) -> None:
         values = {name: getattr(self, name) for name in parameters(type(self))}
@@ -160,12 +154,11 @@ class AccelerationScheme(Scheme):
 
     level = "acceleration"
     null_damping: float = parameter(
+        "Damping of the self-motion, which nothing in the paper's schemes damps.",
         default=0.0,
         usual=2.0,
-        kw_only=True,
-        low=0.0,
         unit="1/s",
-        help="Damping of the self-motion, which nothing in the paper's schemes damps.",
+        **OPTION,
     )
 
 
@@ -174,7 +167,7 @@ class MVN(VelocityScheme):
     """Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3)."""
 
     kind = "mvn"
-    k: float = parameter(default=0.0, kw_only=True, **POSITION_GAIN)
+    k: float = parameter(default=0.0, **K)
 
 
 @data
@@ -183,7 +176,7 @@ class WMVN(VelocityScheme):
 
     kind = "wmvn"
     weights: ArrayField = parameter(**WEIGHTS)
-    k: float = parameter(default=0.0, kw_only=True, **POSITION_GAIN)
+    k: float = parameter(default=0.0, **K)
 
 
 @data
@@ -219,15 +212,15 @@ class Balanced(AccelerationScheme):
 class FPBM(AccelerationScheme):
     """Feedback-added pseudoinverse-type balanced minimisation, (13).
 
-    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so that the tip error
-    e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.
+    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so that the tip
+    error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.
     """
 
     kind = "fpbm"
     alpha: float = parameter(**ALPHA)
     weights: ArrayField = parameter(**WEIGHTS)
-    k1: float = parameter(usual=10.0, low=0.0, unit="1/s", help="Feedback gain on velocity.")
-    k2: float = parameter(usual=25.0, low=0.0, unit="1/s^2", help="Feedback gain on position.")
+    k1: float = parameter("Feedback gain on velocity.", usual=10.0, unit="1/s", **NOT_NEGATIVE)
+    k2: float = parameter("Feedback gain on position.", usual=25.0, unit="1/s^2", **NOT_NEGATIVE)
 
 
 # By the kind that a table has.

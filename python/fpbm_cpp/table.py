@@ -9,15 +9,15 @@ in_plane, with_rotation, rotation_time_law. Several paths, one after another, ar
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from .arms import ARMS, Arm, Joint, JointLimits, SerialArm
 from .errors import ParameterError, not_one_of, suggestion
-from .parameter import Data, Parameter, parameters
-from .paths import PATH_OPTIONS, PATHS, InPlane, Path, WithRotation
+from .parameter import REQUIRED, Data, Parameter, parameters
+from .paths import PATH_OPTIONS, PATHS, Circle, InPlane, WithRotation
 from .paths import Sequence as PathSequence
 from .schemes import SCHEMES, SECOND_TASKS, SecondTask
 
@@ -30,7 +30,11 @@ WITHIN: dict[str, Makers] = {"arm": ARMS, "second_task": SECOND_TASKS}
 
 
 def to_table(thing: Any) -> Any:
-    """A thing of this package as a table, or a number, text or array as it stands in one. Raises TypeError for others."""
+    """A thing of this package as a table; numbers, text and arrays as they stand in one. TypeError for others.
+
+    Infinity is 'inf' in quotes, which JSON cannot say otherwise. What is None, or a bound that a joint has not, is left
+    out.
+    """
     if isinstance(thing, InPlane):
         return {**to_table(thing.path), "in_plane": to_table(thing.plane)}
     if isinstance(thing, WithRotation):
@@ -38,95 +42,117 @@ def to_table(thing: Any) -> Any:
         return {**to_table(thing.path), **rotation}
     if isinstance(thing, Data):
         kind = {"kind": thing.kind} if hasattr(thing, "kind") else {}
-        values = {name: value for name, value in thing._values().items() if not _is_absent(value)}
-        return {**kind, **{name: to_table(value) for name, value in values.items()}}
+        values = {name: to_table(value) for name, value in thing._values().items()}
+        return {**kind, **{name: value for name, value in values.items() if value not in (None, "inf", "-inf")}}
     if isinstance(thing, (np.ndarray, np.generic)):
-        return thing.tolist()
+        return to_table(thing.tolist())
     if isinstance(thing, (list, tuple)):
         return [to_table(item) for item in thing]
+    if isinstance(thing, float) and math.isinf(thing):
+        return str(thing)
     if thing is None or isinstance(thing, (bool, int, float, str)):
         return thing
     raise TypeError(f"{thing!r:.80}: must be a thing of this package, numbers or text")
 
 
 def from_table(
-    table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None, problems: list[ParameterError] | None = None
+    table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None, usual: bool = False
 ) -> Any:
     """The thing that a table stands for.
 
     Parameters
     ----------
     table
-        The table, or a list of those of paths.
+        The table, or a list of those of paths. What is no table but made already may stand in one.
     kinds : mapping
         What may stand there: ARMS, PATHS, SCHEMES or SECOND_TASKS, say; anything unless given.
     name : str
         What errors call the table.
     arm : Arm, optional
         Of which second tasks may say the first `joints`, in place of an arm of their own.
-    problems : list, optional
-        Takes all that is wrong; the result is None then.
+    usual : bool
+        Whether parameters that are left out take their usual values; weights are ones for the arm.
 
     Raises
     ------
     ParameterError
-        Where something is wrong, unless there is a list for it.
+        Of the first thing that is wrong.
     OSError
         Where a file that the table names cannot be read.
     """
-    found: list[ParameterError] = []
-    thing = _Reader(arm, found).read(table, kinds, name)
-    if problems is not None:
-        problems.extend(found)
-    elif found:
-        raise found[0]
-    return None if found else thing
+    reader = _Reader(arm, usual)
+    thing = reader.read(table, kinds, name)
+    for problem in reader.problems:
+        raise problem
+    return thing
+
+
+def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
+    """All that is wrong with the keys of a table and with each of its values, before anything is made of it.
+
+    As from_table() has it, for an arm that is yet to come.
+    """
+    reader = _Reader(None, usual, make=False)
+    reader.read(table, kinds, name)
+    return reader.problems
+
+
+def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parameter]:
+    """The keys of a maker's table, but for its kind.
+
+    joints: whether second tasks say the first joints of an arm that is known, in place of an arm of their own.
+    """
+    known = dict(parameters(maker))
+    if maker is SecondTask and joints:
+        del known["arm"]
+        return {"joints": Parameter("joints", int, help="How many of the arm's joints."), **known}
+    return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
 
 
 class _Reader:
-    """Makes things of tables, and notes what is wrong with them."""
+    """Makes things of tables, and notes what is wrong with them: what it makes is None then."""
 
-    def __init__(self, arm: Arm | None, problems: list[ParameterError]) -> None:
-        self.arm, self.problems = arm, problems
+    def __init__(self, arm: Arm | None, usual: bool, make: bool = True) -> None:
+        self.arm, self.usual, self.make = arm, usual, make
+        self.problems: list[ParameterError] = []
 
     def read(self, table: Any, kinds: Makers, name: str) -> Any:
+        """The thing of a table with a kind, or of a list of those."""
         if isinstance(table, Data):
             return table
-        if isinstance(table, (list, tuple)) and kinds.keys() >= PATHS.keys():
+        if isinstance(table, (list, tuple)) and Circle.kind in kinds:
             return self._paths(table, kinds, name)
         if not isinstance(table, Mapping):
-            return self.make(table, dict, name)
-        key, kind = f"{name}.kind".lstrip("."), table.get("kind")
+            return self._wrong(name, table, f" = {table!r:.60}: must be a table")
+        key, kind = _join(name, "kind"), table.get("kind")
         if kind is None:
             return self._wrong(key, None, f": is missing: must be one of {', '.join(kinds)}")
-        if kind not in kinds:
+        if kind not in tuple(kinds):
             return self.problems.append(not_one_of(key, kind, kinds))
-        return self.make(table, kinds[kind], name)
+        return self._thing(table, kinds[kind], name)
 
-    def make(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
-        """What a maker makes of a table's values; None where something is wrong with them."""
-        if isinstance(table, Data):
-            return table
-        if not isinstance(table, Mapping):
-            return self._wrong(name, table, f" = {table!r:.60}: must be a table")
-        wrong, known = len(self.problems), keys(maker, joints=self.arm is not None)
-        values = {}
+    def _thing(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
+        wrong, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
+        values = self._usual(known) if self.usual else {}
         for key, value in table.items():
-            where = f"{name}.{key}".lstrip(".")
             if key in known:
-                values[key] = self._value(value, known[key], maker, where)
+                values[key] = self._value(value, known[key], maker, _join(name, key))
             elif key != "kind":
                 what = f": {table.get('kind', name)} has no such key: must be one of {', '.join(known)}"
-                self._wrong(where, value, what + suggestion(key, known))
+                self._wrong(_join(name, key), value, what + suggestion(key, known))
         for key, parameter in known.items():
-            if parameter.required and key not in table:
-                self._wrong(f"{name}.{key}".lstrip("."), None, ": is missing")
-        if len(self.problems) > wrong:
+            if parameter.required and key not in values:
+                self._wrong(_join(name, key), None, ": is missing")
+        if len(self.problems) > wrong or not self.make:
             return None
         return self._checked(lambda: self._made(maker, values), name)
 
+    def _usual(self, known: Mapping[str, Parameter]) -> dict[str, Any]:
+        values = {key: each.usual for key, each in known.items() if each.usual not in (REQUIRED, None)}
+        return {**values, "weights": np.ones(self.arm.dof if self.arm else 1)} if "weights" in known else values
+
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
-        if maker is SecondTask and self.arm is not None:
+        if "joints" in values and maker is SecondTask and self.arm is not None:
             values["arm"] = self.arm.first(values.pop("joints"))
         plane, rotation, law = (values.pop(key, None) for key in PATH_OPTIONS)
         thing = maker(**values)
@@ -135,14 +161,20 @@ class _Reader:
         return thing if rotation is None else thing.with_rotation(rotation, time_law=law or "quintic")
 
     def _value(self, value: Any, parameter: Parameter, maker: Callable[..., Any], name: str) -> Any:
-        key = parameter.name
-        if key in WITHIN:
-            return self.read(value, WITHIN[key], name)
-        if maker is SerialArm and key == "joints":
-            return self._each(value, name, lambda table, where: self.make(table, Joint, where))
-        if maker is PathSequence and key == "paths":
+        if parameter.name in WITHIN:
+            return self.read(value, WITHIN[parameter.name], name)
+        if maker is SerialArm and parameter.name == "joints":
+            return self._each(value, name, lambda table, where: self._joint(table, where))
+        if maker is PathSequence and parameter.name == "paths":
             return self._each(value, name, lambda table, where: self.read(table, EVERY_PATH, where))
+        if parameter.infinite:
+            value = _with_infinities(value)
         return self._checked(lambda: parameter.check(value), name.rpartition(".")[0])
+
+    def _joint(self, table: Any, name: str) -> Any:
+        if isinstance(table, Mapping):
+            return self._thing(table, Joint, name)
+        return table if isinstance(table, Joint) else self._wrong(name, table, f" = {table!r:.60}: must be a table")
 
     def _each(self, tables: Any, name: str, read: Callable[[Any, str], Any]) -> Any:
         if not isinstance(tables, (list, tuple)):
@@ -154,9 +186,8 @@ class _Reader:
             return self._wrong(name, tables, " = []: must be one at least")
         if len(tables) == 1:
             return self.read(tables[0], kinds, name)
-        wrong = len(self.problems)
         paths = self._each(tables, name, lambda table, where: self.read(table, kinds, where))
-        return None if len(self.problems) > wrong else self._checked(lambda: PathSequence(paths), name)
+        return None if None in paths else self._checked(lambda: PathSequence(paths), name)
 
     def _checked(self, make: Callable[[], Any], name: str) -> Any:
         """What make() gives; where it refuses, a problem of the table of this name."""
@@ -164,7 +195,7 @@ class _Reader:
             return make()
         except ParameterError as error:
             self.problems.append(error.within(name) if name else error)
-        except ValueError as error:
+        except (TypeError, ValueError) as error:
             self._wrong(name, None, f": {error}")
         return None
 
@@ -172,18 +203,11 @@ class _Reader:
         self.problems.append(ParameterError(name, None, value, name + what))
 
 
-def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parameter]:
-    """The keys of a maker's table, but for its kind.
-
-    joints: whether second tasks name the first joints of an arm that is known, in place of an arm of their own.
-    """
-    known = dict(parameters(maker))
-    if maker is SecondTask and joints:
-        del known["arm"]
-        return {"joints": Parameter("joints", int, help="How many of the arm's joints."), **known}
-    return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
+def _join(table: str, key: str) -> str:
+    return f"{table}.{key}" if table else key
 
 
-def _is_absent(value: Any) -> bool:
-    """Whether a table does without it: nothing, or a bound that there is not."""
-    return value is None or (isinstance(value, float) and math.isinf(value))
+def _with_infinities(value: Any) -> Any:
+    if isinstance(value, (list, tuple)):
+        return [_with_infinities(item) for item in value]
+    return float(value) if value in ("inf", "-inf") else value
