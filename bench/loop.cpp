@@ -16,7 +16,6 @@ namespace {
 
 using fpbm::Pose;
 using Arm = fpbm::SerialArm<7>;
-using Scheme = fpbm::FPBM<7>;
 using Joints = fpbm::Vector<7>;
 
 struct Input {
@@ -28,11 +27,9 @@ Arm panda() {
   return Arm(fpbm::presets::panda());
 }
 
-Scheme scheme() {
-  Joints weights;
-  weights << 1, 2, 3, 4, 1, 1, 1;
-  return {0.6,  fpbm::DiagonalWeights<7>(weights),      10.0,
-          25.0, fpbm::NullSpace<7>{}.with_damping(2.0), fpbm::SingularDamping<>()};
+auto scheme() {
+  const fpbm::Vector<7> weights{1, 2, 3, 4, 1, 1, 1};
+  return fpbm::FPBM<7>(0.6, weights, 10.0, 25.0, fpbm::NullSpace<7>{}.with_damping(2.0), fpbm::SingularDamping<>());
 }
 
 /// States about a bent posture, and references so far [m, rad] away.
@@ -58,7 +55,7 @@ std::vector<Input> inputs(double far) {
 
 void step(benchmark::State& bench) {
   const Arm arm = panda();
-  const Scheme fpbm = scheme();
+  const auto fpbm = scheme();
   const auto ring = inputs(1e-3);
   std::size_t turn = 0;
   Joints qdd = Joints::Zero();
@@ -75,7 +72,7 @@ BENCHMARK(step);
 
 void step_limited(benchmark::State& bench) {
   const Arm arm = panda();
-  const Scheme fpbm = scheme();
+  const auto fpbm = scheme();
   const fpbm::Limiter<fpbm::Level::kAcceleration, 7> limiter({arm.limits(), 1e-3});
   const auto ring = inputs(bench.range(0) == 0 ? 1e-3 : 10.0);
   std::size_t turn = 0;

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// An arm under a scheme, as an ordinary differential equation in X = q (velocity level) or X = [q, qd].
+/// An arm under a scheme, as an ordinary differential equation in X: q at velocity level, [q, qd] at acceleration level.
 template <typename Arm, typename Scheme, typename Space>
 struct ClosedLoop {
   using Scalar = typename Arm::Scalar;
@@ -21,13 +21,14 @@ struct ClosedLoop {
   State<N, Scalar> state;
   Vector<N, Scalar> qdd;
 
-  /// dX/dt at X; keeps the kinematics, the state and the accelerations of this evaluation.
+  /// dX/dt at X. Afterwards kinematics, state and qdd are those of this evaluation; at velocity level state.qd is the
+  /// scheme's answer, and qdd is not used.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
     update(x);
     return resolve(reference, dx);
   }
 
-  /// The first half: state and kinematics at X.
+  /// First half of evaluate(): state and kinematics at X.
   void update(const X& x) noexcept {
     state.q = x.col(0);
     if constexpr (kSecondOrder) {
@@ -38,7 +39,7 @@ struct ClosedLoop {
     }
   }
 
-  /// The second: dX/dt there.
+  /// Second half of evaluate(): dX/dt where update() was called.
   [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx) noexcept {
     Status status;
     if constexpr (kSecondOrder) {
@@ -47,9 +48,11 @@ struct ClosedLoop {
       dx.col(0) = state.qd;
       dx.col(1) = qdd;
     } else {
-      status = scheme.resolve(kinematics, reference, state, state.qd);
+      Vector<N, Scalar> qd;  // Not state.qd itself, which the scheme may read.
+      status = scheme.resolve(kinematics, reference, state, qd);
       if (failed(status)) return status;
-      dx.col(0) = state.qd;
+      state.qd = qd;
+      dx.col(0) = qd;
     }
     return status;
   }
