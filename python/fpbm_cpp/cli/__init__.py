@@ -15,6 +15,8 @@ from .track import track
 from .tune import tune
 from .view import view
 
+__all__ = ["command"]
+
 
 class _InOrder(click.Group):
     """Lists its commands as they were added."""
@@ -25,7 +27,7 @@ class _InOrder(click.Group):
 
 @click.group(
     cls=_InOrder,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110, "show_default": True},
     epilog="""\b
 Examples:
   fpbm-cpp track panda
@@ -42,5 +44,3 @@ def command() -> None:
 
 for each in (track, compare, sweep, tune, view, bench, reproduce, export_header, completion):
     command.add_command(each)
-
-__all__ = ["command"]

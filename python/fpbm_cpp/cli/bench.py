@@ -11,16 +11,24 @@ from typing import NamedTuple
 import click
 import numpy as np
 
-import fpbm_cpp as fp
-
+from .._core import __version__
+from ..arms import Arm, PlanarArm, SerialArm
+from ..job.fill import filled
 from ..job.ready import READY
-from .plain import Plain
-from .table import WIDTH, columns
+from ..motion.lanes import LANES
+from ..motion.simulation import simulate
+from ..motion.sweeping import sweep
+from ..parameter import parameters
+from ..paths import Circle, Path
+from ..schemes import SCHEMES, Scheme
+from ..table import from_table
+from .figures import columns
+from .plain import WIDTH, Plain
 
 STEPS = 1000  # Of a motion: a circle in 1 s at 1 kHz.
 STAGES = 4  # RK4 evaluates a scheme so often in a step.
 PROCESSORS = os.cpu_count() or 1
-MOTIONS = 4 * PROCESSORS * fp.LANES  # Of a sweep.
+MOTIONS = 4 * PROCESSORS * LANES  # Of a sweep.
 HOW = (
     "Microseconds an evaluation of a scheme: the median time of fp.simulate() for a circle of 1 s at 1 kHz, by the "
     "4000 evaluations that RK4 makes there. An evaluation is kinematics, reference and scheme; integrating and "
@@ -33,30 +41,31 @@ class Case(NamedTuple):
     """An arm, its path, and what its tip keeps to."""
 
     name: str
-    arm: fp.Arm
-    path: fp.Path
+    arm: Arm
+    path: Path
     task: str
     q0: list[float]
 
 
 @click.command("bench", short_help="Time this machine.", cls=Plain, epilog="Example: fpbm-cpp bench --seconds 1")
-@click.option(
-    "--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, show_default=True, help="How long each is timed."
-)
+@click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="How long each is timed.")
 def bench(seconds: float) -> None:
     """Time this machine: what a scheme costs an evaluation, and how many motions a second a sweep runs.
 
     As called from Python, on whatever else the machine has to do. The source's bench folder times single steps in C++,
     and other libraries.
     """
-    panda, circle = fp.SerialArm.preset("panda"), fp.Circle(0.1, 1.0)
+    panda, circle = SerialArm.preset("panda"), Circle(0.1, 1.0)
     cases = [
-        Case("4 links, position", fp.PlanarArm([1, 1, 1, 1]), circle, "position", [0.4] * 4),
+        Case("4 links, position", PlanarArm([1, 1, 1, 1]), circle, "position", [0.4] * 4),
         Case("Panda, position", panda, circle.in_plane("yz"), "position", READY["panda"]),
         Case("Panda, pose", panda, circle.in_plane("yz"), "pose", READY["panda"]),
     ]
-    schemes = [_schemes(case.arm.dof) for case in cases]
-    click.echo(f"{_machine()}\n{click.wrap_text(HOW, WIDTH)}\n")
+    schemes = [[_scheme(kind, case.arm) for kind in SCHEMES] for case in cases]
+    lanes = f"{LANES} lanes" if LANES > 1 else "no lanes"
+    machine = f"{platform.system()} {platform.machine()}, {PROCESSORS} processors, {lanes}"
+    click.echo(f"fpbm_cpp {__version__}, Python {platform.python_version()}, NumPy {np.__version__}, {machine}")
+    click.echo(f"{click.wrap_text(HOW, WIDTH)}\n")
     rows = [
         [
             type(row[0]).__name__,
@@ -68,27 +77,22 @@ def bench(seconds: float) -> None:
     click.echo(columns(["", *(case.name for case in cases)], *rows, [""], rate))
 
 
-def _schemes(dof: int) -> list[fp.Scheme]:
-    weights = np.arange(1.0, dof + 1)
-    return [
-        fp.MVN(),
-        fp.WMVN(weights),
-        fp.MAN(),
-        fp.WMVNAcceleration(weights),
-        fp.Balanced(0.6, weights),
-        fp.FPBM(0.6, weights, 10, 25, null_damping=2),
-    ]
+def _scheme(kind: str, arm: Arm) -> Scheme:
+    """The scheme that jobs take, with weights that differ."""
+    weights = {"weights": range(1, arm.dof + 1)} if "weights" in parameters(SCHEMES[kind]) else {}
+    full = filled({"scheme": {"kind": kind, **weights}}, None)
+    return from_table(full["scheme"])  # type: ignore[no-any-return]
 
 
-def _evaluation(case: Case, scheme: fp.Scheme, seconds: float) -> float:
+def _evaluation(case: Case, scheme: Scheme, seconds: float) -> float:
     """Median time of one evaluation [s]."""
-    return _median(lambda: fp.simulate(*case[1:3], scheme, case.q0, task=case.task), seconds) / (STEPS * STAGES)
+    return _median(lambda: simulate(*case[1:3], scheme, case.q0, task=case.task), seconds) / (STEPS * STAGES)
 
 
-def _rate(case: Case, scheme: fp.Scheme, seconds: float) -> float:
+def _rate(case: Case, scheme: Scheme, seconds: float) -> float:
     """Motions a second."""
     q0s = case.q0 + np.random.default_rng(0).normal(0.0, 0.02, (MOTIONS, len(case.q0)))
-    return MOTIONS / _median(lambda: fp.sweep(*case[1:3], scheme, q0s, task=case.task), seconds)
+    return MOTIONS / _median(lambda: sweep(*case[1:3], scheme, q0s, task=case.task), seconds)
 
 
 def _median(run: Callable[[], object], seconds: float) -> float:
@@ -100,12 +104,3 @@ def _median(run: Callable[[], object], seconds: float) -> float:
         run()
         times.append(time.perf_counter() - begin)
     return float(np.median(times))
-
-
-def _machine() -> str:
-    """What is timed."""
-    lanes = f"{fp.LANES} lanes" if fp.LANES > 1 else "no lanes"
-    return (
-        f"fpbm_cpp {fp.__version__}, Python {platform.python_version()}, NumPy {np.__version__}, "
-        f"{platform.system()} {platform.machine()}, {PROCESSORS} processors, {lanes}"
-    )

@@ -2,48 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 
 from .._core import Status
+from ..errors import not_one_of
 from ..job import write_job
-from ..job.explain import one_of
-from ..run import Run
-from .common import WIDTH, motion_command, say_job
-from .out import Folder, out_option
-from .plain import Plain
-from .request import KINDS, make_request, save
-from .table import columns, number
+from ..motion.run import Run
+from ..schemes import SCHEMES
+from .figures import figure_table, number
+from .out import Folder, dark_option, out_option
+from .request import Request, motion_command
 
 
-@click.command(
-    "compare",
-    short_help="Several schemes on one path, side by side.",
-    cls=Plain,
-    epilog="""\b
-Examples:
-  fpbm-cpp compare panda --hold 5
-  fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --schemes mvn,man,fpbm --out circle
-  fpbm-cpp compare --job job.toml --null-damping 0""",
+@motion_command(
+    "Several schemes on one path, side by side.",
+    """
+    fpbm-cpp compare panda --hold 5
+    fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --schemes mvn,man,fpbm --out circle
+    fpbm-cpp compare --job job.toml --null-damping 0""",
+    kind=False,
 )
-@motion_command(kind=False)
-@click.option(
-    "--schemes", metavar="NAMES", help=f"Which, between commas; all unless given: {', '.join(KINDS['scheme'])}."
-)
-@out_option()
-def compare(
-    arm: str | None,
-    job: Path | None,
-    save_job: Path | None,
-    schemes: str | None,
-    out: Path | None,
-    dark: bool,
-    **options: Any,
-) -> None:
+@click.option("--schemes", metavar="NAMES", help=f"Which, between commas; all unless given: {', '.join(SCHEMES)}.")
+@out_option
+@dark_option
+def compare(request: Request, schemes: str | None, out: Path | None, dark: bool) -> None:
     """Move an arm along a path under several schemes, side by side.
 
     Each scheme takes those of the options that it has. ARM and the options are those of track.
@@ -52,17 +37,15 @@ def compare(
     accelerations, the least manipulability, and how it ended. With --out, the folder gets compare.png, a saved run for
     each scheme, and job.toml.
     """
-    kinds = [name.strip() for name in schemes.split(",")] if schemes else list(KINDS["scheme"])
+    kinds = [name.strip() for name in schemes.split(",")] if schemes else list(SCHEMES)
     for kind in kinds:
-        if kind not in KINDS["scheme"]:
-            raise click.ClickException("--schemes" + one_of(kind, list(KINDS["scheme"])))
-    request = make_request(arm, job, options)
+        if kind not in SCHEMES:
+            raise click.ClickException(str(not_one_of("--schemes", kind, SCHEMES)))
     motions = {kind: request.motion(kind) for kind in kinds}
     with request.plain():
         runs = {kind: motion.run() for kind, motion in motions.items()}
     chosen = motions.get(request.scheme, motions[kinds[-1]])  # Has every option that any of them has, as a rule.
-    save(chosen, save_job)
-    say_job(chosen, scheme=False)
+    request.say(chosen, scheme=False)
     click.echo(_table(runs))
     if out is not None:
         from ..plot import compare as figure
@@ -77,29 +60,15 @@ def compare(
         raise click.ClickException("no motion is complete")
 
 
-def _table(runs: Mapping[str, Run]) -> str:
+def _table(runs: dict[str, Run]) -> str:
     """A row for each run, and below what else there is to say of it."""
-    header = [
-        ("scheme", ""),
-        ("tip error", "m"),
-        *([("turn error", "rad")] if any(run.task == "pose" for run in runs.values()) else ()),
-        ("peak qd", "rad/s"),
-        ("final qd", "rad/s"),
-        ("peak qdd", "rad/s^2"),
-        ("final qdd", "rad/s^2"),
-        ("manip.", "least"),
-        ("complete", ""),
-    ]
-    rows = [_row(kind, run) for kind, run in runs.items()]
     remarks: dict[str, list[str]] = {}
     for kind, run in runs.items():
         if run.status.code is not Status.OK:
             remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
-    lines = [
-        click.wrap_text(f"{', '.join(kinds)}: {remark}", WIDTH, subsequent_indent="  ")
-        for remark, kinds in remarks.items()
-    ]
-    return "\n".join([columns(*zip(*header), *rows), *([""] if lines else []), *lines])
+    rows = [_row(kind, run) for kind, run in runs.items()]
+    task = next(iter(runs.values())).task
+    return figure_table(["scheme"], task, rows, "complete", [f"{', '.join(k)}: {text}" for text, k in remarks.items()])
 
 
 def _row(kind: str, run: Run) -> list[str]:

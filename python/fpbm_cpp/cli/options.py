@@ -1,28 +1,27 @@
-"""Options made from the sections of a job: one for each key, by its name."""
+"""Options made from the declarations of what a job may say: one for each key, by its name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, get_args
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
 import click
-from pydantic.fields import FieldInfo
+import numpy as np
 
-from ..job.arms import Urdf
-from ..job.model import Limits, RunOptions
-from ..job.paths import AnyPath
-from ..job.schemes import AnyScheme
-from ..job.section import Section
+from ..job.sections import FREE, SECTIONS, known
+from ..parameter import REQUIRED, Parameter
 
-PATHS: tuple[type[Section], ...] = get_args(get_args(AnyPath)[0])
-SCHEMES: tuple[type[Section], ...] = get_args(get_args(AnyScheme)[0])
-
+HEADINGS = {
+    "arm": "Arm and start",
+    "run": "Arm and start",
+    "path": "Path",
+    "scheme": "Scheme",
+    "limits": "Joint limits",
+}
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
-
-
-def kind_of(model: type[Section]) -> str:
-    """The kind that a section of this class has."""
-    return str(get_args(model.model_fields["kind"].annotation)[0])
+# What jobs take where nothing is given and the arm decides.
+TAKEN = {"base": "the root", "q0": "a ready posture", "in_plane": "yz in space", "weights": "ones"}
 
 
 class Value(click.ParamType):  # type: ignore[type-arg]
@@ -31,13 +30,17 @@ class Value(click.ParamType):  # type: ignore[type-arg]
     name = "value"
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        if not isinstance(value, str):
-            return value
         try:
             rows = [_row(row) for row in value.split(";")]
         except ValueError:
             return value
         return rows if len(rows) > 1 else rows[0]
+
+
+def _row(text: str) -> Any:
+    """Numbers between commas; one number where there is no comma."""
+    numbers = [float(part) for part in text.split(",") if part.strip() or "," not in text]
+    return numbers if "," in text else numbers[0]
 
 
 class Word(click.Choice):  # type: ignore[type-arg]
@@ -50,92 +53,41 @@ class Word(click.Choice):  # type: ignore[type-arg]
 class JobOption(click.Option):
     """An option for a key of a job, listed under what it is about."""
 
-    def __init__(self, section: str, key: str, flag: str, heading: str, **attributes: Any) -> None:
-        super().__init__([flag, f"{section}__{key}"], **attributes)
-        self.section, self.key, self.heading = section, key, heading
+    def __init__(self, section: str, key: str, flag: str, **attributes: Any) -> None:
+        super().__init__([flag, f"{section}__{key}"], default=None, **attributes)
+        self.section, self.key, self.heading = section, key, HEADINGS[section]
 
 
-def job_options(*, kind: bool = True) -> Callable[[Any], Any]:
-    """Give a command the options of a job: all, or without the kind of scheme."""
-
-    def add(function: Any) -> Any:
-        for option in reversed(list(_options(kind))):
-            function.__click_params__ = [*getattr(function, "__click_params__", ()), option]
-        return function
-
-    return add
-
-
-def _options(kind: bool) -> Iterator[click.Option]:
-    for key in ("tip", "base"):
-        yield _option("arm", key, Urdf.model_fields[key], "Arm and start")
-    for key, field in RunOptions.model_fields.items():
-        yield _option("run", key, field, "Arm and start")
-    yield JobOption(
-        "path",
-        "kind",
-        "--path",
-        "Path",
-        type=Word(list(map(kind_of, PATHS))),
-        help="Shape of the path; circle unless given.",
-    )
-    for key, field in _keys(*PATHS):
-        yield _option("path", key, field, "Path")
-    if kind:
-        words = Word(list(map(kind_of, SCHEMES)))
-        yield JobOption("scheme", "kind", "--scheme", "Scheme", type=words, help="fpbm unless given.")
-    for key, field in _keys(*reversed(SCHEMES)):
-        yield _option("scheme", key, field, "Scheme")
-    yield JobOption(
-        "limits",
-        "keep",
-        "--limits/--no-limits",
-        "Joint limits",
-        default=None,
-        help="Keep them; options below do so, too. URDF files have none of accelerations: give some.",
-    )
-    for key, field in Limits.model_fields.items():
-        yield _option("limits", key, field, "Joint limits", prefix="limit-")
+def job_options(*, kind: bool) -> Iterator[JobOption]:
+    """The options of a job: all, or without the kind of scheme."""
+    urdf = known("arm", "urdf")
+    yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
+    yield _option("arm", "base", replace(urdf["base"], help="Link of a URDF file that stays."))
+    for key, declared in known("run").items():
+        yield _option("run", key, declared)
+    for section, usual in FREE.items():
+        keys = {each: known(section, each) for each in (usual, *SECTIONS[section])}
+        if kind or section != "scheme":
+            words = Word(list(SECTIONS[section]))
+            yield JobOption(section, "kind", f"--{section}", type=words, help=f"Which; {usual} unless given.")
+        for key in dict.fromkeys(key for each in keys for key in keys[each] if key != "second_task"):
+            having = [each for each in keys if key in keys[each]]
+            yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
+    text = "Keep them: the arm's, but for those below. Where it has no accelerations, give some: 10 rad/s^2 is usual."
+    yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
+    for key, declared in known("limits").items():
+        yield _option("limits", key, declared, prefix="limit-")
 
 
-def _keys(*models: type[Section]) -> Iterator[tuple[str, FieldInfo]]:
-    """The keys of all kinds that an option can say."""
-    keys: dict[str, FieldInfo] = {}
-    for model in models:
-        for key in model.key_order():
-            keys.setdefault(key, model.model_fields[key])
-    yield from ((key, field) for key, field in keys.items() if key not in ("kind", "second_task"))
-
-
-def _option(section: str, key: str, field: FieldInfo, heading: str, prefix: str = "") -> JobOption:
-    text = field.description or ""
-    if field.default is not None and not field.is_required():
-        default = field.default if isinstance(field.default, list) else [field.default]
-        text += f"  [default: {','.join(f'{x:g}' if isinstance(x, float) else str(x) for x in default)}]"
-    words = [word for word in (*get_args(field.annotation), *_words(field.annotation)) if isinstance(word, str)]
-    kind: Any = Word(words) if words else str if _is_text(field.annotation) else Value()
-    plural = "" if {int, float} & {field.annotation, *get_args(field.annotation)} else "S"
-    metavar = None if words else METAVARS.get(key, f"NUMBER{plural}")
-    return JobOption(section, key, f"--{prefix}{key.replace('_', '-')}", heading, type=kind, metavar=metavar, help=text)
-
-
-def _words(annotation: Any) -> list[str]:
-    """The words of an optional Literal."""
-    return [word for part in get_args(annotation) for word in get_args(part) if isinstance(word, str)]
-
-
-def _is_text(annotation: Any) -> bool:
-    return annotation is str or str in get_args(annotation)
-
-
-def _row(text: str) -> Any:
-    """Numbers between commas; one number where there is no comma."""
-    numbers = [_number(part) for part in text.split(",") if part.strip() or "," not in text]
-    return numbers if "," in text else numbers[0]
-
-
-def _number(text: str) -> int | float:
-    try:
-        return int(text)
-    except ValueError:
-        return float(text)
+def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
+    """The option for a key, of a few kinds only where these are named."""
+    several = bool(declared.shape)
+    kind: Any = Value() if several or declared.type in (float, int) else str
+    kind = Word(declared.choices) if declared.choices and not several else kind
+    metavar = None if isinstance(kind, Word) else METAVARS.get(key, "NUMBERS" if several else "NUMBER")
+    usual = [] if declared.usual in (REQUIRED, None) else np.ravel(declared.usual).tolist()
+    taken = TAKEN.get(key) or ",".join(f"{x:g}" if isinstance(x, float) else str(x) for x in usual)
+    extra = "; ".join(filter(None, [declared.unit, f"default: {taken}" if taken else ""]))
+    text = f"{', '.join(of)}: {declared.help}" if of else declared.help
+    flag = f"--{prefix}{key.replace('_', '-')}"
+    return JobOption(section, key, flag, type=kind, metavar=metavar, help=f"{text}  [{extra}]" if extra else text)

@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .._files import write_whole
-from .plain import writing_to
+from ..io.write_whole import write_whole
+from .plain import file_errors, file_option
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+out_option = file_option(
+    "--out", metavar="DIR", help="Folder to write to, made where missing; other files in it are left alone."
+)
+dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
 
 
 class Folder:
@@ -25,17 +30,17 @@ class Folder:
 
     def made(self) -> Folder:
         """The folder, made at once, before work that would be lost."""
-        with writing_to(self.path):
+        with file_errors("write to", self.path):
             self.path.mkdir(parents=True, exist_ok=True)
         return self
 
     def write(self, name: str, write: Callable[[Path], Any]) -> None:
         """Whatever write(file) writes."""
-        with writing_to(self.path / name):
+        with file_errors("write to", self.path / name):
             self.path.mkdir(parents=True, exist_ok=True)
             try:
                 write(self.path / name)
-            except ValueError as error:  # A motion without a sample is no animation.
+            except ValueError as error:  # A motion without a sample has no animation.
                 raise click.ClickException(f"cannot write {name}: {error}") from None
         self.written.append(name)
 
@@ -45,26 +50,6 @@ class Folder:
         figure.savefig(picture, format="png")
         self.write(name, lambda file: write_whole(file.resolve(), picture.getvalue()))
 
-    def text(self, name: str, text: str) -> None:
-        """A text."""
-        self.write(name, lambda file: write_whole(file.resolve(), text.encode()))
-
     def say(self) -> None:
         """Print what was written."""
         click.echo(f"\nWritten to {self.path}: {', '.join(self.written)}")
-
-
-def out_option(*, dark: bool = True) -> Callable[[Any], Any]:
-    """Give a command --out and, where it draws, --dark."""
-
-    def add(function: Any) -> Any:
-        if dark:
-            function = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")(function)
-        return click.option(
-            "--out",
-            metavar="DIR",
-            type=click.Path(path_type=Path),
-            help="Folder to write to, made where missing; other files in it are left alone.",
-        )(function)
-
-    return add

@@ -4,33 +4,39 @@ from __future__ import annotations
 
 import importlib
 import signal
+import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import click
 
+WIDTH = 100
+
 
 class Plain(click.Command):
-    """A command whose options are listed by what they are about; Ctrl-C ends it with 130, a missing extra with 1.
+    """A command that lists its options by what they are about. Warnings and errors are one line each.
 
-    Warnings are one line, too.
+    Ctrl-C ends it with exit status 130, a library that is not installed with 1.
     """
 
     def invoke(self, context: click.Context) -> Any:
         try:
             with warnings.catch_warnings():
-                warnings.showwarning = _say_warning
+                warnings.showwarning = lambda message, *_, **__: click.echo(f"Warning: {message}", err=True)
                 return super().invoke(context)
         except KeyboardInterrupt as interrupted:
             click.echo(str(interrupted) or "interrupted; nothing was written", err=True)
             context.exit(130)
         except ImportError as error:
-            if "pip install" not in str(error):
-                raise
-            raise click.ClickException(str(error)) from None
+            text = str(error)
+            if "pip install" not in text:
+                if not error.name or error.name.startswith("fpbm_cpp"):
+                    raise
+                text = f'{self.name} needs {error.name}: pip install "fpbm_cpp[cli]"'
+            raise click.ClickException(text) from None
 
     def format_options(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         groups: dict[str, list[tuple[str, str]]] = {}
@@ -43,21 +49,44 @@ class Plain(click.Command):
                 formatter.write_dl(records)
 
 
-def _say_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: Any = None,
-    line: str | None = None,
-) -> None:
-    click.echo(f"Warning: {message}", err=True)
+def file_option(*flags: str, metavar: str = "FILE", **attributes: Any) -> Callable[[Any], Any]:
+    """Give a command an option that names a file or a folder."""
+    return click.option(*flags, metavar=metavar, type=click.Path(path_type=Path), **attributes)
+
+
+@contextmanager
+def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
+    """Say plainly that a place, the error's own unless given, cannot be read or written to."""
+    try:
+        yield
+    except OSError as error:
+        if error.strerror is None:
+            raise click.ClickException(str(error)) from None
+        reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
+        where = place or error.filename2 or error.filename
+        raise click.ClickException(f"cannot {doing} {where}: {reason}") from None
+
+
+@contextmanager
+def progress(label: str) -> Iterator[Callable[[int, int], object]]:
+    """A function to call with (done, total): prints them on one line of the screen, unless errors go elsewhere."""
+    watched = sys.stderr.isatty()
+
+    def report(done: int, total: int) -> None:
+        if watched:
+            click.echo(f"\r{label}: {done} of {total}", nl=False, err=True)
+
+    try:
+        yield report
+    finally:
+        if watched:
+            click.echo("\r\033[K", nl=False, err=True)
 
 
 def import_undisturbed(*names: str) -> None:
-    """Import libraries where they are there, and hold Ctrl-C back meanwhile.
+    """Import the libraries that are installed, and hold Ctrl-C back meanwhile.
 
-    Both URDF and viewer come with trimesh, which takes one on the way for a part that is not installed, and goes on.
+    The viewer imports trimesh, which takes an interrupt for an optional part that is missing, and goes on.
     """
     held: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
@@ -69,32 +98,3 @@ def import_undisturbed(*names: str) -> None:
         signal.signal(signal.SIGINT, before)
     if held:
         raise KeyboardInterrupt
-
-
-class Complaints(click.ClickException):
-    """Several things that are wrong, one line each."""
-
-    def __init__(self, lines: list[str]) -> None:
-        super().__init__("\n".join(lines))
-        self.lines = lines
-
-    def show(self, file: Any = None) -> None:
-        for line in self.lines:
-            click.echo(f"Error: {line}", file=file, err=file is None)
-
-
-def cannot_write(place: object, error: OSError) -> click.ClickException:
-    """That a place cannot be written to, and why."""
-    if error.strerror is None:
-        return click.ClickException(str(error))
-    reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
-    return click.ClickException(f"cannot write to {place}: {reason}")
-
-
-@contextmanager
-def writing_to(place: Path) -> Iterator[None]:
-    """Say plainly that a place cannot be written to."""
-    try:
-        yield
-    except OSError as error:
-        raise cannot_write(place, error) from None

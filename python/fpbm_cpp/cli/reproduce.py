@@ -8,22 +8,22 @@ from pathlib import Path
 
 import click
 
-from .plain import cannot_write
+from .plain import WIDTH, Plain, file_errors, file_option
 
 
 @click.command(
-    "reproduce", short_help="Reproduce the FPBM paper.", epilog="Example: fpbm-cpp reproduce --out reproduction"
+    "reproduce",
+    short_help="Reproduce the FPBM paper.",
+    cls=Plain,
+    epilog="Example: fpbm-cpp reproduce --out reproduction",
 )
-@click.option(
+@file_option(
     "--out",
     metavar="DIR",
-    type=click.Path(path_type=Path),
-    default=Path("reproduction"),
-    show_default=True,
+    default="reproduction",
     help="Directory to write to, made where missing; other files in it are left alone.",
 )
-@click.pass_context
-def reproduce(context: click.Context, out: Path) -> None:
+def reproduce(out: Path) -> None:
     """Reproduce the FPBM paper: figures, tables, errata and claims.
 
     Runs the paper's 18 motions, compares them with the printed numbers and with an independent solution, and writes
@@ -34,23 +34,17 @@ def reproduce(context: click.Context, out: Path) -> None:
     try:
         from .. import reproduce as paper
 
-        done = paper.reproduce(out, say=lambda step: click.echo(f"{step} ...", err=True))
-    except ImportError as error:
-        if "matplotlib" not in str(error):
-            raise
-        raise click.ClickException('reproduce needs matplotlib: pip install "fpbm_cpp[cli]"') from None
-    except OSError as error:
-        raise cannot_write(error.filename2 or error.filename or out, error) from None
+        with file_errors("write to"):
+            done = paper.reproduce(out, say=lambda step: click.echo(f"{step} ...", err=True))
     except KeyboardInterrupt:
-        click.echo("interrupted; every file written so far is whole", err=True)
-        context.exit(130)
+        raise KeyboardInterrupt("interrupted; every file written so far is whole") from None
     for table in done.tables:
         click.echo(f"\n{table.text()}")
     click.echo("\nClaims, with the numbers in report.md")
     for i, claim in enumerate(done.claims, 1):
         click.echo(f"{i}. {claim.statement}: {claim.verdict}")
     for line in done.summary:
-        click.echo("\n" + click.wrap_text(line, width=100))
+        click.echo("\n" + click.wrap_text(line, width=WIDTH))
     click.echo(f"\n{len(done.files)} files in {out}{os.sep}, {time.perf_counter() - start:.0f} s")
     if not done.agrees:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")

@@ -1,54 +1,68 @@
-"""What a command line asks for: a job's file, with the options over it."""
+"""What the command line asks for: a job's file, with the options over it."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+import functools
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import click
 
-from ..job import Complaint, Job, JobError, Motion, prepare, read_table, write_job
-from ..job.explain import one_of
-from .options import PATHS, SCHEMES, JobOption, kind_of
-from .plain import Complaints, import_undisturbed, writing_to
+from .._core import PRESETS
+from ..errors import not_one_of
+from ..job import JobError, Motion, prepare, read_job, write_job
+from ..job.sections import FREE, SECTIONS, Table, known
+from .options import JobOption, job_options
+from .plain import WIDTH, Plain, file_errors, file_option
 
-PRESETS = ("panda", "iiwa14", "gen3")
-KINDS = {"path": {kind_of(each): each for each in PATHS}, "scheme": {kind_of(each): each for each in SCHEMES}}
-FREE = {"path": "circle", "scheme": "fpbm"}  # What is taken where there is none.
+workers_option = click.option(
+    "--workers", type=click.IntRange(1), help="Threads; as many as there are processors unless given."
+)
 
 
-@dataclass(frozen=True)
-class Request:
-    """A job's table, and where its keys come from.
+def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Callable[[Callable[..., None]], Plain]:
+    """A command with ARM, --job, --save-job and the options of a job, all or without the kind of scheme.
 
-    Attributes
-    ----------
-    table : dict
-        What the file says, with the options over it.
-    file : Path or None
-        The file.
-    flags : dict of str to str
-        What the command line calls keys that the file does not say: 'path.radius' is '--radius'.
+    The function gets the request in place of these, and its name is the command's.
     """
 
-    table: dict[str, Any]
-    file: Path | None
-    flags: Mapping[str, str]
+    def make(function: Callable[..., None]) -> Plain:
+        ours = list(job_options(kind=kind))
 
-    def motion(self, kind: str | None = None) -> Motion:
-        """The motion; where a kind of scheme is named, under that one, with what options it has."""
-        arm = self.table.get("arm")
-        if isinstance(arm, dict) and arm.get("kind") == "urdf":
-            import_undisturbed("yourdfpy")
-        with self.plain():
-            try:
-                return prepare(Job.of(self.table if kind is None else {**self.table, "scheme": self._scheme(kind)}))
-            except OSError as error:
-                raise click.ClickException(f"cannot read {error.filename}: {error.strerror}") from None
+        @click.argument("arm", required=False, metavar="ARM")
+        @file_option("--job", help="TOML file with what options do not say.")
+        @file_option("--save-job", help="Write the job to a TOML file, with all that was taken by default.")
+        @functools.wraps(function)
+        def call(arm: str | None, job: Path | None, save_job: Path | None, **options: Any) -> None:
+            values = {option: options.pop(str(option.name)) for option in ours}
+            function(Request(arm, job, save_job, values), **options)
+
+        epilog = "\b\nExamples:" + examples.replace("\n    ", "\n  ")
+        command = click.command(function.__name__, short_help=short_help, cls=Plain, epilog=epilog)(call)
+        command.params += ours
+        return command
+
+    return make
+
+
+class Request:
+    """A job's table, and what the command line calls its keys: what the file says, with the options over it."""
+
+    def __init__(self, arm: str | None, file: Path | None, copy: Path | None, values: dict[JobOption, Any]) -> None:
+        if arm is None and file is None:
+            raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
+        self.file, self.copy = file, copy
+        self.table = _read(file) if file else {}
+        said = {f"{section}.{key}" for section, keys in self.table.items() if isinstance(keys, dict) for key in keys}
+        if arm is not None:
+            self.table["arm"] = _arm(arm)
+        given = {option: value for option, value in values.items() if value is not None}
+        for option in sorted(given, key=lambda each: each.key != "kind"):  # What something is, then what it has.
+            self._put(option, given[option])
+        names = {f"{option.section}.{option.key}": option for option in values}
+        self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
 
     @property
     def scheme(self) -> str:
@@ -56,102 +70,88 @@ class Request:
         given = self.table.get("scheme")
         return str(given.get("kind")) if isinstance(given, dict) else FREE["scheme"]
 
+    def motion(self, kind: str | None = None, *, at_rest: bool = False) -> Motion:
+        """The motion; where a kind of scheme is named, under that one, with what options it has.
+
+        at_rest: whether the command can only begin at rest.
+        """
+        table = self.table
+        if kind is not None:
+            given = table.get("scheme", {})
+            scheme = _without_foreign("scheme", given, kind) if isinstance(given, dict) else {}
+            table = {**table, "scheme": {**scheme, "kind": kind}}
+        with self.plain(), file_errors("read"):
+            motion = prepare(table)
+        if at_rest and motion.options.qd0 is not None:
+            command = click.get_current_context().info_name
+            raise click.ClickException(f"{command} begins at rest: leave qd0 out, or use track")
+        return motion
+
+    def say(self, motion: Motion, *, scheme: bool = True) -> None:
+        """Write the job where it is asked for; print what is run, and what was taken where nothing was said."""
+        if self.copy is not None:
+            with file_errors("write to", self.copy):
+                write_job(motion.job, self.copy)
+        click.echo(f"{motion.label}, {motion.scheme.kind}" if scheme else motion.label)
+        if motion.taken:
+            click.echo(click.wrap_text(f"by default: {', '.join(motion.taken)}", WIDTH, subsequent_indent="  "))
+        click.echo()
+
     @contextmanager
     def plain(self) -> Iterator[None]:
-        """Say what is wrong with the job as the command line calls it."""
+        """Say what is wrong with the job as the command line calls it, a line each."""
         try:
             yield
         except JobError as error:
-            raise Complaints([self._line(complaint) for complaint in error.complaints]) from None
+            where = f"{self.file}: " if self.file else ""
+            lines = [self.flags.get(each.name, where + each.name) + each.problem for each in error.errors]
+            raise click.ClickException("\nError: ".join(lines)) from None
 
-    def _line(self, complaint: Complaint) -> str:
-        where, what = complaint.where, complaint.what
-        if where in self.flags:
-            return self.flags[where] + what
-        return f"{self.file}: {where}{what}" if self.file else where + what
-
-    def _scheme(self, kind: str) -> dict[str, Any]:
-        """The scheme's table for another kind: without the keys that only others have."""
-        given = self.table.get("scheme", {})
-        if not isinstance(given, dict):
-            return {"kind": kind}
-        foreign = {key for each in SCHEMES for key in each.model_fields} - set(KINDS["scheme"][kind].model_fields)
-        return {**{key: value for key, value in given.items() if key not in foreign}, "kind": kind}
-
-
-def make_request(arm: str | None, file: Path | None, options: Mapping[str, Any]) -> Request:
-    """The request of a command's arguments: options by the names that they have in the command, as in path__radius."""
-    names = {
-        (option.section, option.key): option.opts[0]
-        for option in click.get_current_context().command.params
-        if isinstance(option, JobOption)
-    }
-    given = {key: options["__".join(key)] for key in names if options["__".join(key)] is not None}
-    table = _read(file) if file else {}
-    if arm is not None:
-        table["arm"] = _arm(arm)
-    elif file is None:
-        raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
-    for key in sorted(given, key=lambda key: key[1] != "kind"):  # What something is comes before what it has.
-        _put(table, *key, given[key], names[key])
-    flags = {f"{section}.{key}": flag for (section, key), flag in names.items() if not file or (section, key) in given}
-    return Request(table, file, flags)
+    def _put(self, option: JobOption, value: Any) -> None:
+        """Set one key of the table."""
+        section, key = option.section, option.key
+        if key == "keep":
+            if value:
+                self.table.setdefault("limits", {})
+            else:
+                self.table.pop("limits", None)
+            return
+        there = self.table.get(section)
+        if isinstance(there, list) and key != "kind":
+            many = f"there are {len(there)} {section}s in the file: change them there, or say --{section}"
+            raise click.ClickException(f"{option.opts[0]}: {many}")
+        if not isinstance(there, dict):
+            there = {"kind": FREE[section]} if section in FREE else {}
+        if key == "kind" and value in SECTIONS[section]:
+            there = _without_foreign(section, there, value)
+        self.table[section] = {**there, key: value}
 
 
-def save(motion: Motion, file: Path | None) -> None:
-    """Write a motion's job, with every blank filled, where a file is given."""
-    if file is None:
-        return
-    with writing_to(file):
-        write_job(motion.job, file)
-
-
-def _read(file: Path) -> dict[str, Any]:
+def _read(file: Path) -> Table:
     try:
-        return read_table(file)
-    except OSError as error:
-        raise click.ClickException(f"cannot read {file}: {error.strerror}") from None
+        with file_errors("read", file):
+            return read_job(file)
     except JobError as error:
         raise click.ClickException(f"{file}: {error}") from None
 
 
-def _arm(text: str) -> dict[str, Any]:
+def _arm(text: str) -> Table:
     """The table of an arm that is named in one word."""
     if text in PRESETS:
         return {"kind": "preset", "name": text}
-    kind, colon, lengths = text.partition(":")
-    if kind == "planar" and colon:
-        numbers = re.split(r",(?!$)", lengths.rstrip(","))
+    if text.startswith("planar:"):
         try:
-            return {"kind": "planar", "lengths": [float(number) for number in numbers]}
+            lengths = [float(length) for length in text[len("planar:") :].rstrip(",").split(",")]
         except ValueError:
-            raise click.ClickException(
-                f"ARM = {text}: must be planar: and lengths of links, as planar:1,1,1,1"
-            ) from None
+            must = "must be planar: and lengths of links, as planar:1,1,1,1"
+            raise click.ClickException(f"ARM = {text}: {must}") from None
+        return {"kind": "planar", "lengths": lengths}
     if Path(text).suffix or Path(text).exists():
         return {"kind": "urdf", "file": text}
-    raise click.ClickException("ARM" + one_of(text, [*PRESETS, "planar:1,1,1,1", "a URDF file"]))
+    raise click.ClickException(str(not_one_of("ARM", text, [*PRESETS, "planar:1,1,1,1", "a URDF file"])))
 
 
-def _put(table: dict[str, Any], section: str, key: str, value: Any, flag: str) -> None:
-    """Set one key of the table."""
-    if section == "limits" and key == "keep":
-        if value:
-            table.setdefault("limits", {})
-        else:
-            table.pop("limits", None)
-        return
-    there = table.get(section)
-    if section in FREE:
-        if isinstance(there, list) and key != "kind":
-            raise click.ClickException(
-                f"{flag}: there are {len(there)} paths in the file: change them there, or say --path"
-            )
-        if not isinstance(there, dict):
-            there = {"kind": FREE[section]}
-        if key == "kind":
-            known = KINDS[section].get(value)
-            there = {name: there[name] for name in there if known is None or name in known.model_fields}
-    elif not isinstance(there, dict):
-        there = {}
-    table[section] = {**there, key: value}
+def _without_foreign(section: str, table: Table, kind: str) -> Table:
+    """A table without the keys that only other kinds have."""
+    foreign = {key for each in SECTIONS[section] for key in known(section, each)} - set(known(section, kind))
+    return {key: value for key, value in table.items() if key not in foreign}

@@ -3,46 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from ..job import Motion, write_job
-from ..run import Run
-from .common import motion_command, say_job
-from .out import Folder, out_option
-from .plain import Plain
-from .request import make_request, save
-from .table import summary
+from ..motion.run import Run
+from .figures import summary
+from .out import Folder, dark_option, out_option
+from .request import Request, motion_command
 
 EXTRAS = ("csv", "rosbag", "gif", "mp4")
 
 
-@click.command(
-    "track",
-    short_help="Move an arm along a path.",
-    cls=Plain,
-    epilog="""\b
-Examples:
-  fpbm-cpp track panda
-  fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
-  fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
-  fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
+@motion_command(
+    "Move an arm along a path.",
+    """
+    fpbm-cpp track panda
+    fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
+    fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
+    fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
 )
-@motion_command()
-@out_option()
+@out_option
+@dark_option
 @click.option(
     "--also", multiple=True, type=click.Choice(EXTRAS), help="Write this to the folder, too; may be said again."
 )
-def track(
-    arm: str | None,
-    job: Path | None,
-    save_job: Path | None,
-    out: Path | None,
-    dark: bool,
-    also: tuple[str, ...],
-    **options: Any,
-) -> None:
+def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
     """Move an arm along a path, and say how it went.
 
     ARM is panda, iiwa14 or gen3, planar: and lengths of links as in planar:1,1,1,1, or a URDF file with --tip.
@@ -53,12 +39,10 @@ def track(
     """
     if also and out is None:
         raise click.UsageError("--also needs --out DIR.")
-    request = make_request(arm, job, options)
     motion = request.motion()
     with request.plain():
         run = motion.run()
-    save(motion, save_job)
-    say_job(motion)
+    request.say(motion)
     click.echo(summary(run))
     if out is not None:
         _write(Folder(out), motion, run, also, dark)

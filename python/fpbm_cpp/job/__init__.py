@@ -2,11 +2,12 @@
 
 from fpbm_cpp.job import prepare, read_job
 run = prepare(read_job("job.toml")).run()
+
+A job is a table of plain data, as TOML has it: arm, path, scheme, run, limits.
 """
 
-from .complaint import Complaint, JobError
-from .file import read_job, read_table, write_job
-from .model import Job
+from .errors import JobError
+from .file import read_job, write_job
 from .motion import Motion, prepare
 
-__all__ = ["Complaint", "Job", "JobError", "Motion", "prepare", "read_job", "read_table", "write_job"]
+__all__ = ["JobError", "Motion", "prepare", "read_job", "write_job"]

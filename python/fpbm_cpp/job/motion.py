@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from .. import _core
-from .._core import Arm, JointLimits, Path, PlanarArm, Scheme
+from .._core import check_sweep
 from .._types import Array
-from ..run import Run
-from .complaint import within
-from .model import Job
-from .paths import AnyPath
-from .ready import ready
-from .section import Section
+from ..arms import Arm, JointLimits
+from ..errors import ParameterError, suggestion
+from ..motion.run import Run
+from ..motion.simulation import simulate
+from ..motion.tracking import track
+from ..parameter import parameters
+from ..paths import Path
+from ..schemes import Scheme
+from ..table import from_table
+from .errors import JobError, within
+from .fill import filled, taken
+from .sections import SECTIONS, RunOptions, Table, tidy
 
 
 @dataclass(frozen=True)
@@ -26,105 +30,122 @@ class Motion:
 
     Attributes
     ----------
-    job : Job
+    job : dict
         What was asked for, with every blank filled.
     taken : list of str
         What was filled in, as in 'k1 = 10'.
     arm, path, scheme, limits
         What moves, along what, how, and within what; limits is None where they are not kept.
+    options : RunOptions
+        From where, and how it is run.
     """
 
-    job: Job
+    job: Table
     taken: list[str]
     arm: Arm
     path: Path
     scheme: Scheme
+    options: RunOptions
     limits: JointLimits | None
 
     @property
     def q0(self) -> Array:
         """Joint positions at the start [rad]."""
-        return np.array(self.job.run.q0, dtype=float)
+        assert self.options.q0 is not None
+        return self.options.q0
 
-    def scheme_with(self, options: dict[str, Any]) -> Scheme:
-        """Its scheme with other options."""
-        job = self.job.with_scheme(options)
-        with within(job.sections(), "scheme"):
-            return job.scheme.build(self.arm)
+    @property
+    def label(self) -> str:
+        """What to call the arm and the path."""
+        said, path = self.job["arm"], self.job["path"]
+        arm = {
+            "preset": said.get("name"),
+            "planar": f"planar arm of {self.arm.dof} links",
+            "urdf": f"{said.get('file')} to {said.get('tip')}",
+        }.get(said["kind"], f"arm of {self.arm.dof} joints")
+        return f"{arm}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
+
+    @property
+    def keywords(self) -> dict[str, Any]:
+        """The keyword arguments of sweep() and tune() that say how it is run."""
+        options = self.options
+        return {"dt": options.dt, "hold": options.hold, "task": options.task, "limits": self.limits}
+
+    def scheme_with(self, options: Mapping[str, Any]) -> Scheme:
+        """Its scheme with other options. Raises JobError."""
+        problems: list[ParameterError] = []
+        scheme = _made("scheme", {**self.job["scheme"], **options}, problems, self.arm)
+        if problems:
+            raise JobError(*problems)
+        return scheme  # type: ignore[no-any-return]
 
     def run(self) -> Run:
         """The motion: simulate()'s or, where limits are kept, track()'s; as far as it goes where it must stop early."""
-        run = self.job.run
-        options: dict[str, Any] = {"dt": run.dt, "hold": run.hold, "qd0": run.qd0, "task": run.task}
-        with within(self.job.sections(), "run"):
-            if self.limits is None:
-                from ..simulate import simulate
-
-                return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **options)
-            from ..track import track
-
-            return track(self.arm, self.path, self.scheme, self.q0, limits=self.limits, **options)
+        keywords = {**self.keywords, "qd0": self.options.qd0}
+        with within(self.job, "run"):
+            if self.limits is not None:
+                return track(self.arm, self.path, self.scheme, self.q0, **keywords)
+            del keywords["limits"]
+            return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
 
 
-def prepare(job: Job) -> Motion:
-    """Build what a job asks for. Raises JobError where the library refuses it, OSError where a file cannot be read."""
-    sections = job.sections()
-    with within(sections, "arm"):
-        arm = job.arm.build()
-    full = _filled(job, arm)
-    pieces = []
-    for name, piece in zip((name for name in sections if name.startswith("path")), full.path):
-        with within(sections, name):
-            pieces.append(piece.build())
-    with within(sections, "scheme"):
-        scheme = full.scheme.build(arm)
-    with within(sections, "limits"):
-        limits = None if full.limits is None else full.limits.build(arm)
-    path, run = functools.reduce(Path.then, pieces), full.run
-    with within(sections, "run"):
-        _core.check_sweep(arm, path, [scheme], np.array(run.q0), run.dt, run.hold, run.task)
-    return Motion(full, list(_taken(job, full)), arm, path, scheme, limits)
+def prepare(job: Table) -> Motion:
+    """Build what a job asks for.
+
+    Raises JobError with everything that is wrong with it, OSError where a file that it names cannot be read.
+    """
+    problems: list[ParameterError] = []
+    for key in job:
+        if key not in SECTIONS:
+            text = f"{key}: a job has no such key: must be one of {', '.join(SECTIONS)}{suggestion(key, SECTIONS)}"
+            problems.append(ParameterError(key, None, job[key], text))
+    if "arm" not in job:
+        problems.append(ParameterError("arm", None, None, "arm: is missing"))
+    arm = _made("arm", _with_tip(job["arm"]), problems) if "arm" in job else None
+    full = filled(job, arm)
+    path = _made("path", full["path"], problems)
+    scheme = _made("scheme", full["scheme"], problems, arm)
+    options = _made("run", full["run"], problems)
+    limits = _limits(job["limits"], arm, problems) if "limits" in job else None
+    if problems:
+        raise JobError(*problems)
+    with within(full, "run"):
+        check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
+    tidied = {section: tidy(section, full[section]) for section in SECTIONS if section in full}
+    return Motion(tidied, list(taken(job, tidied)), arm, path, scheme, options, limits)
 
 
-def _filled(job: Job, arm: Arm) -> Job:
-    """The job with what depends on the arm filled in."""
-    with within(job.sections(), "run"):
-        posture = ready(job.arm, arm, job.run.task) if job.run.q0 is None else job.run.q0
-    scheme = job.scheme
-    if getattr(scheme, "weights", ()) is None:
-        scheme = scheme.model_copy(update={"weights": [1.0] * arm.dof})
-    return job.model_copy(
-        update={
-            "path": [_laid(piece, arm) for piece in job.path],
-            "scheme": scheme,
-            "run": job.run.model_copy(update={"q0": posture}),
-        }
-    )
+def _made(section: str, said: Any, problems: list[ParameterError], arm: Arm | None = None) -> Any:
+    """What a section stands for; None where it has problems."""
+    kinds = SECTIONS[section]
+    if section in kinds and isinstance(said, dict):  # Of one kind, which is not said.
+        said = {"kind": section, **said}
+    found: list[ParameterError] = []
+    thing = from_table(said, kinds, section, arm=arm, problems=found)
+    problems.extend(found)
+    return thing
 
 
-def _laid(piece: AnyPath, arm: Arm) -> AnyPath:
-    """A path of the plane laid before an arm in space."""
-    if isinstance(arm, PlanarArm) or not piece.flat or piece.in_plane is not None:
-        return piece
-    return piece.model_copy(update={"in_plane": "yz"})
+def _with_tip(arm: Any) -> Any:
+    """An arm's table; a URDF file without a tip says what links there are."""
+    return {"tip": "", **arm} if isinstance(arm, dict) and arm.get("kind") == "urdf" else arm
 
 
-def _taken(job: Job, full: Job) -> Iterator[str]:
-    """What the full job has and the job did not say, but for what is off."""
-    sections: list[tuple[Section, Section]] = [
-        *zip(job.path, full.path),
-        (job.scheme, full.scheme),
-        (job.run, full.run),
-    ]
-    for said, filled in sections:
-        for key, value in filled.given().items():
-            if key not in said.model_fields_set and value:
-                yield f"{key} = {_text(value)}"
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, list):
-        if len(value) > 1 and all(entry == value[0] for entry in value):
-            return f"{_text(value[0])} for each"
-        return f"[{', '.join(map(_text, value))}]"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+def _limits(said: Any, arm: Arm | None, problems: list[ParameterError]) -> JointLimits | None:
+    """The arm's own limits but for what is said, of each joint or of all."""
+    if not isinstance(said, dict):
+        return _made("limits", said, problems)  # type: ignore[no-any-return]
+    if arm is None:
+        return None
+    own = arm.limits
+    whole = {name: getattr(own, name) for name in parameters(JointLimits)}
+    for key, value in said.items():
+        whole[key] = (
+            np.full(arm.dof, value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+        )
+    limits: JointLimits | None = _made("limits", whole, problems)
+    bounded = limits is not None and np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
+    if "acceleration" not in said and np.any(bounded & np.isinf(own.acceleration)):
+        text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+        problems.append(ParameterError("limits.acceleration", None, None, text))
+    return limits

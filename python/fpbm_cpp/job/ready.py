@@ -6,9 +6,8 @@ from itertools import islice, product
 
 import numpy as np
 
-from .._core import Arm, PlanarArm
 from .._types import Array
-from .arms import AnyArm, Preset
+from ..arms import Arm, PlanarArm
 
 # The hand points down, from the makers' ready postures: Franka's, 30° -90° 60° of the iiwa 14, Kinova's home [rad].
 READY = {
@@ -23,14 +22,12 @@ MOST = 3**7  # Postures that are looked at.
 GOOD = 0.8  # Of what the best has, as far as singular postures are.
 
 
-def ready(section: AnyArm, arm: Arm, task: str) -> list[float]:
+def ready(arm: Arm, task: str) -> list[float]:
     """Joint positions that are not singular [rad].
 
-    A preset's own; in the plane, a quarter of a turn from the first link to the last, in even bends; else the middle of
-    the limits, or zero where there are none, with as few joints bent as keep it far from singular postures.
+    In the plane, a quarter of a turn from the first link to the last, in even bends; else the middle of the limits, or
+    zero where there are none, with as few joints bent as keep it far from singular postures.
     """
-    if isinstance(section, Preset):
-        return READY[section.name]
     posture = np.full(arm.dof, np.pi / 2 / (arm.dof - 1)) if isinstance(arm, PlanarArm) else _bent(arm, task)
     return [round(float(position), 4) for position in posture]
 
@@ -47,5 +44,6 @@ def _bent(arm: Arm, task: str) -> Array:
     bends = bends[np.argsort(np.abs(bends).sum(axis=1), kind="stable")]
     jacobians = np.array([arm.jacobian(middle + bend * room, task=task) for bend in bends])
     sigma = np.linalg.svd(jacobians, compute_uv=False)
-    calmness = sigma[:, -1] / np.maximum(sigma[:, 0], np.finfo(float).tiny)
-    return np.asarray(middle + bends[np.argmax(calmness >= GOOD * calmness.max())] * room)
+    inverse_condition = sigma[:, -1] / np.maximum(sigma[:, 0], np.finfo(float).tiny)
+    good = inverse_condition >= GOOD * inverse_condition.max()
+    return np.asarray(middle + bends[np.argmax(good)] * room)

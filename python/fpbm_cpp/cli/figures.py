@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import click
 import numpy as np
@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..joint_text import joint_labels, joint_units
-from ..run import Run
-
-WIDTH = 100
+from ..motion.run import Run
+from .plain import WIDTH
 
 
 def columns(*rows: Sequence[str]) -> str:
@@ -22,6 +21,27 @@ def columns(*rows: Sequence[str]) -> str:
     return "\n".join(
         "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in whole
     )
+
+
+def figure_table(first: Sequence[str], task: str, rows: Iterable[Sequence[str]], last: str, remarks: list[str]) -> str:
+    """A row of figures for each scheme, with remarks below; the columns are first, the figures, and last.
+
+    The figures are the largest errors of the tip, peak and final joint velocities and accelerations, and the least
+    manipulability; without a name for the last column, there is none.
+    """
+    header = [
+        *((name, "") for name in first),
+        ("tip error", "m"),
+        *([("tip error", "rad")] if task == "pose" else []),
+        ("peak qd", "rad/s"),
+        ("final qd", "rad/s"),
+        ("peak qdd", "rad/s^2"),
+        ("final qdd", "rad/s^2"),
+        ("manip.", "least"),
+        *([(last, "")] if last else []),
+    ]
+    lines = [click.wrap_text(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
+    return "\n".join([columns(*zip(*header), *rows), *([""] if lines else []), *lines])
 
 
 def number(value: float) -> str:
@@ -34,27 +54,31 @@ def summary(run: Run) -> str:
     rows = list(_figures(run)) if len(run.t) else []
     name_width, value_width, unit_width = (max((len(row[i]) for row in rows), default=6) for i in range(3))
     lines = [f"{n:{name_width}}  {v:>{value_width}} {u:{unit_width}}  {w}".rstrip() for n, v, u, w in rows]
-    indent = " " * (name_width + 2)
     text = f"{'status':{name_width}}  {' '.join(str(run.status).split())}"
-    return "\n".join([*lines, click.wrap_text(text, WIDTH, subsequent_indent=indent)])
+    return "\n".join([*lines, click.wrap_text(text, WIDTH, subsequent_indent=" " * (name_width + 2))])
 
 
 def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     """Name, value, unit and remark."""
-    m = run.positions.shape[1]
-    yield _worst(run, "largest tip error", np.linalg.norm(run.error[:, :m], axis=1), "m")
+
+    def at(k: np.intp, name: str, values: Array, unit: str = "") -> tuple[str, str, str, str]:
+        return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
+
+    position, orientation = (np.linalg.norm(error, axis=1) for error in (run.position_error, run.orientation_error))
+    yield at(position.argmax(), "largest tip error", position, "m")
     if run.task == "pose":
-        yield _worst(run, "largest turn error", np.linalg.norm(run.error[:, m:], axis=1), "rad")
+        yield at(orientation.argmax(), "largest orientation error", orientation, "rad")
+    names, units = joint_labels(run.arm), joint_units(run.arm)
     for name, values, per in (("velocity", run.qd, "/s"), ("acceleration", run.qdd, "/s^2")):
         size = np.abs(values)
         k, i = np.unravel_index(size.argmax(), size.shape)
-        names, units = joint_labels(run.arm), joint_units(run.arm)
         yield f"peak joint {name}", number(size[k, i]), units[i] + per, f"{names[i]} at {run.t[k]:.3g} s"
         i = size[-1].argmax()
         yield f"final joint {name}", number(size[-1, i]), units[i] + per, names[i]
-    yield _worst(run, "least manipulability", run.manipulability(), "", least=True)
+    manipulability = run.manipulability()
+    yield at(manipulability.argmin(), "least manipulability", manipulability)
     if run.scale is not None:
-        yield _worst(run, "least task scale", run.scale, "", least=True)
+        yield at(run.scale.argmin(), "least task scale", run.scale)
     if run.saturated is not None:
         held = _named(run, run.saturated)
         yield "joints on a bound", str(len(held)), "", ", ".join(held)
@@ -76,8 +100,3 @@ def _beyond(run: Run) -> NDArray[np.bool_]:
 def _named(run: Run, flags: NDArray[np.bool_]) -> list[str]:
     """The joints that are flagged at any sample."""
     return [name for name, flag in zip(joint_labels(run.arm), np.any(flags, axis=0).tolist()) if flag]
-
-
-def _worst(run: Run, name: str, values: Array, unit: str, least: bool = False) -> tuple[str, str, str, str]:
-    k = values.argmin() if least else values.argmax()
-    return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
