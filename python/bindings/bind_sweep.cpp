@@ -5,39 +5,40 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "lanes.hpp"
 #include "motion_arrays.hpp"
-#include "py_arm.hpp"
+#include "path.hpp"
 #include "sweep.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
-/// A word to all who run motions, from any thread.
+/// Ends all motions of a sweep, from any thread.
 struct Stop {
   std::atomic<bool> flag{false};
 };
 
-using Schemes = std::vector<const PyScheme*>;
-using Motions = py::typing::List<Arrays>;
+using Schemes = std::vector<const Scheme*>;
+using Motions = py::typing::List<py::tuple>;
 using Chunk = py::typing::Tuple<py::array, Motions>;
+
+const LaneCode* lane_code = nullptr;
 
 /// Starts as rows, from one or from many.
 Array starts(const ArrayLike& q0s, int dof) {
   const auto any = py::array::ensure(q0s);
   PyErr_Clear();
   if (any && any.ndim() > 2) {
-    throw std::invalid_argument("q0s: must have shape (n,) or (K, n), got shape " +
-                                py::cast<std::string>(py::str(any.attr("shape"))));
+    validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " +
+                                  py::cast<std::string>(py::str(any.attr("shape"))));
   }
   if (!any || any.ndim() < 2) {
-    const Joints q0 = joint_vector(q0s, "q0s", dof);
+    const JointVector q0 = joint_vector(q0s, "q0s", dof);
     Array row({py::ssize_t{1}, py::ssize_t{dof}});
     std::copy_n(q0.data(), dof, row.mutable_data());
     return row;
   }
   const auto rows = real_array(q0s, "q0s", 2);
-  if (rows.shape(0) == 0) throw std::invalid_argument("q0s: must have one row at least");
+  if (rows.shape(0) == 0) validation::reject("q0s", ": must have one row at least");
   validation::require_size("a row of q0s", rows.shape(1), dof);
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     for (py::ssize_t j = 0; j < dof; ++j) validation::require_finite(validation::element("q0s", i, j), rows.at(i, j));
@@ -45,20 +46,37 @@ Array starts(const ArrayLike& q0s, int dof) {
   return rows;
 }
 
+JointVector row(const Array& rows, py::ssize_t i) {
+  return Eigen::Map<const Eigen::VectorXd>(rows.data(i, 0), rows.shape(1));
+}
+
+std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
+  if (!given) return std::nullopt;
+  return limited_of(*given, arm);
+}
+
 /// Checks all that a sweep is made of, and returns its starts as rows and the samples of each motion.
-py::typing::Tuple<Array, int> check_sweep(const PyArm& arm, const PyPath& path, const Schemes& schemes,
-                                          const ArrayLike& q0s, double dt, double hold, const std::string& task) {
+py::typing::Tuple<Array, int> check_sweep(const Arm& arm, const Path& path, const Schemes& schemes,
+                                          const ArrayLike& q0s, double dt, double hold, const std::string& task,
+                                          const std::optional<LimitedOptions>& options) {
   const Array rows = starts(q0s, arm.dof());
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  arm.visit(task, [&](const auto& model) {
-    using Space = typename std::decay_t<decltype(model)>::Space;
-    require_redundant(Space::kRows, arm.dof());
-    (void)path.as<Space>();
+  const std::optional<Limited> limited = limited_of(options, arm);
+  arm.visit(task, [&](const auto& any, auto space) {
+    using Space = decltype(space);
+    require_enough_joints<Space>(arm.dof());
+    const AnyPath<Space> same = path.as<Space>();
+    const JointVector rest = JointVector::Zero(arm.dof());
     for (std::size_t i = 0; i < schemes.size(); ++i) {
-      try {
-        model.require(*schemes[i]);
-      } catch (const std::invalid_argument& wrong) {
-        throw std::invalid_argument("schemes[" + std::to_string(i) + "]: " + wrong.what());
+      // Whether a start is within limits depends on the row, all else on the scheme alone.
+      const py::ssize_t checked = limited ? rows.shape(0) : 1;
+      for (py::ssize_t k = 0; k < checked; ++k) {
+        try {
+          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid}.require(limited ? &*limited : nullptr);
+        } catch (const std::invalid_argument& wrong) {
+          const std::string which = limited ? ", q0s[" + std::to_string(k) + "]" : "";
+          throw std::invalid_argument("schemes[" + std::to_string(i) + "]" + which + ": " + wrong.what());
+        }
       }
     }
   });
@@ -73,40 +91,37 @@ py::array not_run(py::ssize_t count) {
 }
 
 /// Runs schemes[which[i]] from q0s[i] for every i, without the interpreter's lock.
-template <typename Space>
-Chunk sweep_task(const TaskModel<Space>& model, const AnyPath<Space>& path, const Schemes& schemes,
-                 const std::vector<std::size_t>& which, const Array& q0s, const TimeGrid<double>& grid, bool motions,
-                 const Stop& stop) {
-  const py::ssize_t n = q0s.shape(1);
-  std::vector<Job<Space>> jobs;
-  std::vector<MotionArrays<Space>> arrays;
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    const auto row = static_cast<py::ssize_t>(i);
-    jobs.push_back({schemes.at(which[i]), Eigen::Map<const Eigen::VectorXd>(q0s.data(row, 0), n)});
-    if (motions) jobs.back().buffers = arrays.emplace_back(grid.samples(), n).buffers();
-  }
-  py::array_t<Outcome> outcomes(static_cast<py::ssize_t>(jobs.size()));
-  Outcome* const into = outcomes.mutable_data();
-  {
-    const py::gil_scoped_release others_may_run;
-    sweep(model, path, grid, jobs, stop.flag, into);
-  }
-  Motions whole;
-  for (const MotionArrays<Space>& each : arrays) whole.append(each.arrays());
-  return py::make_tuple(outcomes, whole);
-}
-
-Chunk sweep_chunk(const PyArm& arm, const PyPath& path, const Schemes& schemes, const std::vector<std::size_t>& which,
+Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, const std::vector<std::size_t>& which,
                   const ArrayLike& q0s, double dt, double hold, const std::string& task, bool motions,
-                  const Stop& stop) {
+                  const std::optional<LimitedOptions>& options, const Stop& stop) {
   const Array rows = starts(q0s, arm.dof());
   if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
     throw std::invalid_argument("which and q0s: must be of one length");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  return arm.visit(task, [&](const auto& model) {
-    using Space = typename std::decay_t<decltype(model)>::Space;
-    return sweep_task<Space>(model, path.as<Space>(), schemes, which, rows, grid, motions, stop);
+  const std::optional<Limited> limited = limited_of(options, arm);
+  py::array_t<Outcome> outcomes(rows.shape(0));
+  Outcome* const into = outcomes.mutable_data();
+  return arm.visit(task, [&](const auto&, auto space) -> Chunk {
+    using Space = decltype(space);
+    const AnyPath<Space> same = path.as<Space>();
+    std::vector<Job<Space>> jobs;
+    std::vector<MotionArrays<Space>> whole;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
+      if (motions) {
+        jobs.back().output = whole.emplace_back(grid.samples(), arm.dof(), limited.has_value()).output();
+      }
+    }
+    {
+      const py::gil_scoped_release others_may_run;
+      sweep(arm, same, grid, jobs, limited ? &*limited : nullptr, lane_code, stop.flag, into);
+    }
+    Motions arrays;
+    for (const MotionArrays<Space>& each : whole) {
+      arrays.append(limited ? py::tuple(each.arrays() + py::make_tuple(each.scale, each.saturated)) : each.arrays());
+    }
+    return py::make_tuple(outcomes, arrays);
   });
 }
 
@@ -123,29 +138,30 @@ std::vector<std::string> processor_kinds() {
   return kinds;
 }
 
+/// Lets sweeps run in the lanes of this code, or of None, and returns how many motions go side by side.
+int use_lanes(const py::object& code) {
+  lane_code = code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer());
+  return lane_code == nullptr ? 1 : lane_code->lanes;
+}
+
 }  // namespace
 
 void bind_sweep(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,
                        peak_acceleration, final_acceleration, manipulability);
   PYBIND11_NUMPY_DTYPE(Outcome, status, samples, time, summary);
-  py::class_<Stop>(m, "Stop", "A word to all motions of a sweep in this process: set() ends them within a sample.")
+  py::class_<Stop>(m, "Stop", "Ends all motions of a sweep in this process, within a sample.")
       .def(py::init<>())
       .def(
           "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "From any thread.");
   m.def("processor_kinds", &processor_kinds);
-  m.def(
-      "use_lanes",
-      [](const py::object& code) {
-        use_lane_code(code.is_none() ? nullptr : static_cast<const LaneCode*>(py::capsule(code).get_pointer()));
-        return lane_code() == nullptr ? 1 : lane_code()->lanes;
-      },
-      py::arg("code"));
+  m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
-        py::arg("hold"), py::arg("task"));
+        py::arg("hold"), py::arg("task"), py::arg("limited") = py::none());
   m.def("not_run", &not_run, py::arg("count"));
   m.def("sweep_chunk", &sweep_chunk, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("which"),
-        py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("stop"));
+        py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("limited"),
+        py::arg("stop"));
 }
 
 }  // namespace fpbm::bindings

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <type_traits>
 #include <vector>
 
 #include "fpbm/core/lanes.hpp"
@@ -13,48 +11,76 @@ namespace fpbm::bindings {
 inline constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
 using InLanes = fpbm::Lanes<kLanes>;
 
-/// Every scheme of acceleration is an FPBM: MAN (8) has no share of WMVN and no feedback.
-template <int N>
-[[nodiscard]] FPBM<N> as_fpbm(const MAN<N>& man) {
-  return {0.0, DiagonalWeights<N>(Vector<N>::Ones()), 0.0, 0.0, man.null_space, man.singular};
-}
-template <int N>
-[[nodiscard]] FPBM<N> as_fpbm(const FPBM<N>& scheme) {
-  return scheme;
-}
-
 /// A Scalar of what get(scheme) is of each.
-template <typename Scheme, typename Get>
-[[nodiscard]] InLanes each(const std::vector<Scheme>& schemes, const Get& get) {
-  return InLanes([&](auto lane) { return get(schemes[lane]); });
+template <typename Law, typename Get>
+[[nodiscard]] InLanes each(const std::vector<Law>& laws, const Get& get) {
+  return InLanes([&](auto lane) { return get(laws[lane]); });
 }
 
-template <typename Scheme>
-[[nodiscard]] SingularDamping<InLanes> singular_of(const std::vector<Scheme>& schemes) {
-  return SingularDamping<InLanes>(each(schemes, [](const Scheme& scheme) { return scheme.singular.radius(); }),
-                                  each(schemes, [](const Scheme& scheme) { return scheme.singular.brake(); }));
-}
-
-template <int N>
-[[nodiscard]] FPBM<N, InLanes> side_by_side(const std::vector<FPBM<N>>& schemes) {
-  using Scheme = FPBM<N>;
-  return {each(schemes, [](const Scheme& scheme) { return scheme.alpha; }),
-          DiagonalWeights<N, InLanes>::side_by_side([&](auto lane) -> auto& { return schemes[lane].weights; }),
-          each(schemes, [](const Scheme& scheme) { return scheme.k1; }),
-          each(schemes, [](const Scheme& scheme) { return scheme.k2; }),
-          NullSpace<N, InLanes>::side_by_side([&](auto lane) -> auto& { return schemes[lane].null_space; }),
-          singular_of(schemes)};
+template <typename Law>
+[[nodiscard]] SingularDamping<InLanes> singular_of(const std::vector<Law>& laws) {
+  return SingularDamping<InLanes>(each(laws, [](const Law& law) { return law.singular.radius(); }),
+                                  each(laws, [](const Law& law) { return law.singular.brake(); }));
 }
 
 template <int N>
-[[nodiscard]] WMVN<N, InLanes> side_by_side(const std::vector<WMVN<N>>& schemes) {
-  using Scheme = WMVN<N>;
-  return WMVN<N, InLanes>(
-      DiagonalWeights<N, InLanes>::side_by_side([&](auto lane) -> auto& { return schemes[lane].weights; }),
-      each(schemes, [](const Scheme& scheme) { return scheme.k; }),
-      NullSpace<N, InLanes>::side_by_side([&](auto lane) -> auto& { return schemes[lane].null_space; }),
-      singular_of(schemes));
+[[nodiscard]] VelocityScheme<N, InLanes> side_by_side(const std::vector<VelocityScheme<N>>& laws) {
+  using Law = VelocityScheme<N>;
+  return VelocityScheme<N, InLanes>(
+      DiagonalWeights<N, InLanes>::side_by_side([&](auto lane) -> auto& { return laws[lane].weights; }),
+      each(laws, [](const Law& law) { return law.k; }),
+      NullSpace<N, InLanes>::side_by_side([&](auto lane) -> auto& { return laws[lane].null_space; }),
+      singular_of(laws));
 }
+
+template <int N>
+[[nodiscard]] AccelerationScheme<N, InLanes> side_by_side(const std::vector<AccelerationScheme<N>>& laws) {
+  using Law = AccelerationScheme<N>;
+  return {each(laws, [](const Law& law) { return law.alpha; }),
+          DiagonalWeights<N, InLanes>::side_by_side([&](auto lane) -> auto& { return laws[lane].weights; }),
+          each(laws, [](const Law& law) { return law.k1; }),
+          each(laws, [](const Law& law) { return law.k2; }),
+          NullSpace<N, InLanes>::side_by_side([&](auto lane) -> auto& { return laws[lane].null_space; }),
+          singular_of(laws)};
+}
+
+/// An arm whose kinematics are compiled once, and not into each stage of a step, which would be slow to build.
+template <typename Arm>
+struct ArmOnce {
+  using Scalar = typename Arm::Scalar;
+  static constexpr int kDof = Arm::kDof;
+
+  Arm arm;
+
+  [[nodiscard]] int dof() const noexcept { return arm.dof(); }
+
+  template <typename Space>
+  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd,
+                                    Kinematics<Space, kDof, Scalar>& out) const noexcept {
+    arm.kinematics(q, qd, out);
+  }
+  template <typename Space>
+  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q, Kinematics<Space, kDof, Scalar>& out) const noexcept {
+    arm.kinematics(q, out);
+  }
+};
+
+/// The same for a scheme.
+template <typename Law>
+struct SchemeOnce {
+  static constexpr Level kLevel = Law::kLevel;
+
+  Law law;
+
+  void require_dof(Eigen::Index dof) const { law.require_dof(dof); }
+
+  template <typename Space, int N, typename Scalar>
+  [[nodiscard, gnu::noinline]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
+                                              const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
+                                              Vector<N, Scalar>& u) const noexcept {
+    return law.resolve(kinematics, reference, state, u);
+  }
+};
 
 /// Sums up, and ends the motions once it is told to.
 template <typename Space, int N>
@@ -62,7 +88,7 @@ struct LaneRecorder {
   Summary<Space, N, InLanes> summary;
   const std::atomic<bool>& stop;
 
-  bool operator()(const Sample<Space, N, InLanes>& sample) noexcept {
+  [[gnu::noinline]] bool operator()(const Sample<Space, N, InLanes>& sample) noexcept {
     summary(sample);
     return !stop.load(std::memory_order_relaxed);
   }
@@ -74,15 +100,25 @@ struct LaneRecorder {
           all.peak_acceleration[at], all.final_acceleration[at], all.manipulability[at]};
 }
 
-template <typename Arm, typename Space, typename Scheme>
-void run_side_by_side(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                      const std::vector<Scheme>& schemes, const Vector<Eigen::Dynamic>* starts,
-                      const std::atomic<bool>& stop, Outcome* outcomes) {
-  constexpr int N = Arm::kDof;
+/// RunInLanes for the schemes of one level.
+template <Level kLevel, typename FixedArm, typename Space>
+void run_level(const FixedArm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+               const Scheme* const* schemes, const JointVector* starts, const std::atomic<bool>& stop,
+               Outcome* outcomes) {
+  constexpr int N = FixedArm::kDof;
+  const auto law = [&](int lane) {
+    return schemes[lane]->law<kLevel, N>(schemes[lane]->diagonal_weights<N>(N), arm.limits());
+  };
+  std::vector<decltype(law(0))> laws;
+  for (int lane = 0; lane < kLanes; ++lane) laws.push_back(law(lane));
+  const auto scheme = side_by_side(laws);
   State<N, InLanes> start{Vector<N, InLanes>::Zero(), Vector<N, InLanes>::Zero()};
   for (int i = 0; i < N; ++i) start.q(i) = InLanes([&](auto lane) { return starts[lane](i); });
-  LaneRecorder<Space, N> record{Summary<Space, N, InLanes>(Scheme::kLevel), stop};
-  const auto result = rollout(arm.template cast<InLanes>(), path, side_by_side(schemes), start, grid, record);
+
+  const auto in_lanes = arm.template cast<InLanes>();
+  LaneRecorder<Space, N> record{Summary<Space, N, InLanes>(kLevel), stop};
+  const auto result = rollout(ArmOnce<std::decay_t<decltype(in_lanes)>>{in_lanes}, path,
+                              SchemeOnce<std::decay_t<decltype(scheme)>>{scheme}, start, grid, record);
   const MotionSummary<InLanes> summary = record.summary.result();
   const auto regular = isfinite(result.last.q.sum()) && isfinite(result.last.qd.sum());
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -92,26 +128,16 @@ void run_side_by_side(const Arm& arm, const AnyPath<Space>& path, const TimeGrid
   }
 }
 
-template <typename Arm, typename Space>
+template <typename Space>
 void run_in_lanes(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                  const PyScheme* const* schemes, const Vector<Eigen::Dynamic>* starts, const std::atomic<bool>& stop,
+                  const Scheme* const* schemes, const JointVector* starts, const std::atomic<bool>& stop,
                   Outcome* outcomes) {
-  constexpr int N = Arm::kDof;
-  std::vector<FPBM<N>> accelerations;
-  std::vector<WMVN<N>> velocities;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    schemes[lane]->visit_core<N>(arm.limits(), [&](const auto& scheme) {
-      using Scheme = std::decay_t<decltype(scheme)>;
-      if constexpr (std::is_same_v<Scheme, WMVN<N>>) velocities.push_back(scheme);
-      if constexpr (std::is_same_v<Scheme, FPBM<N>> || std::is_same_v<Scheme, MAN<N>>) {
-        accelerations.push_back(as_fpbm<N>(scheme));
-      }
-    });
-  }
-  if (velocities.empty()) {
-    run_side_by_side(arm, path, grid, accelerations, starts, stop, outcomes);
+  using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
+  const ArmInLanes<Space> fixed(std::get<Source>(arm.source));
+  if (schemes[0]->level == Level::kVelocity) {
+    run_level<Level::kVelocity>(fixed, path, grid, schemes, starts, stop, outcomes);
   } else {
-    run_side_by_side(arm, path, grid, velocities, starts, stop, outcomes);
+    run_level<Level::kAcceleration>(fixed, path, grid, schemes, starts, stop, outcomes);
   }
 }
 

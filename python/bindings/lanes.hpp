@@ -4,54 +4,44 @@
 #include <tuple>
 #include <type_traits>
 
+#include "arm.hpp"
+#include "fpbm/any/any_path.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/sim/time_grid.hpp"
 #include "outcome.hpp"
-#include "path.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {
 
-/// As many motions of an arm along a path as there are lanes, side by side: schemes[i] from starts[i] at rest, all
-/// schemes of one level and with what runs_in_lanes() asks. Writes an outcome for each; kNotRun for one that was
-/// stopped, or was not regular all the way and is to be run by itself.
-template <typename Arm, typename Space>
+/// Moves one arm as many times as there are lanes, side by side: under schemes[i] from starts[i] at rest. The schemes
+/// are of one level and such as runs_in_lanes() accepts. Writes an outcome for each motion; kNotRun for one that was
+/// stopped, or that was not regular all the way and must be run by itself.
+template <typename Space>
 using RunInLanes = void (*)(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                            const PyScheme* const* schemes, const Vector<Eigen::Dynamic>* starts,
-                            const std::atomic<bool>& stop, Outcome* outcomes);
+                            const Scheme* const* schemes, const JointVector* starts, const std::atomic<bool>& stop,
+                            Outcome* outcomes);
 
 /// The code in lanes for one kind of processor. Each kind's is a module of its own, so that nothing compiled for a
 /// newer processor is ever linked into what runs on every one.
 struct LaneCode {
   int lanes;
-  std::tuple<RunInLanes<PlanarArm<4>, Position<2>>, RunInLanes<SerialArm<7>, Position<3>>,
-             RunInLanes<SerialArm<7>, Pose>>
-      run;
+  std::tuple<RunInLanes<Position<2>>, RunInLanes<Position<3>>, RunInLanes<Pose>> run;
 };
 
-/// The code for this processor; null where there is none.
-[[nodiscard]] const LaneCode* lane_code() noexcept;
-void use_lane_code(const LaneCode* code) noexcept;
+/// The arms that there is code in lanes for.
+template <typename Space>
+using ArmInLanes = std::conditional_t<std::is_same_v<Space, Position<2>>, PlanarArm<4>, SerialArm<7>>;
 
-template <typename T, typename Tuple>
-inline constexpr bool kIsIn = false;
-template <typename T, typename... Types>
-inline constexpr bool kIsIn<T, std::tuple<Types...>> = (std::is_same_v<T, Types> || ...);
-
-/// The code for an arm and a task, or null.
-template <typename Arm, typename Space>
-[[nodiscard]] RunInLanes<Arm, Space> run_in_lanes() noexcept {
-  using Run = RunInLanes<Arm, Space>;
-  if constexpr (kIsIn<Run, decltype(LaneCode::run)>) {
-    return lane_code() == nullptr ? nullptr : std::get<Run>(lane_code()->run);
-  } else {
-    return nullptr;
+[[nodiscard]] inline bool runs_in_lanes(const Arm& arm) noexcept {
+  if (const auto* chain = std::get_if<Chain<>>(&arm.source)) {
+    return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
   }
+  return arm.dof() == 4;
 }
 
-[[nodiscard]] inline bool runs_in_lanes(const PyScheme& scheme) noexcept {
-  return !scheme.has_wrappers() && !std::holds_alternative<PyScheme::Dense>(scheme.weights);
+[[nodiscard]] inline bool runs_in_lanes(const Scheme& scheme) noexcept {
+  return scheme.is_plain() && !std::holds_alternative<Scheme::Dense>(scheme.weights);
 }
 
 }  // namespace fpbm::bindings

@@ -2,10 +2,11 @@
 
 #include <pybind11/typing.h>
 
+#include <tuple>
 #include <type_traits>
 
 #include "arrays.hpp"
-#include "fpbm/sim/motion.hpp"
+#include "motion.hpp"
 
 namespace fpbm::bindings {
 
@@ -13,23 +14,38 @@ using Array = py::array_t<double>;
 /// t, q, qd, qdd, x, x_ref, error of a motion, one row a sample.
 using Arrays = py::typing::Tuple<Array, Array, Array, Array, Array, Array, Array>;
 
-/// Arrays for a motion of that many samples of n joints, and the buffers in them.
+/// Arrays for a motion of that many samples of n joints.
 template <typename Space>
 struct MotionArrays {
-  MotionArrays(py::ssize_t samples, py::ssize_t n)
+  /// limited: whether the motion has a scale and saturated joints as well.
+  MotionArrays(py::ssize_t samples, py::ssize_t n, bool limited)
       : t(samples),
         q({samples, n}),
         qd({samples, n}),
         qdd({samples, n}),
         x(points(samples)),
         x_ref(points(samples)),
-        error({samples, py::ssize_t{Space::kRows}}) {}
+        error({samples, py::ssize_t{Space::kRows}}),
+        scale(limited ? samples : 0),
+        saturated({limited ? samples : 0, n}) {}
 
-  [[nodiscard]] MotionBuffers<Space, Eigen::Dynamic> buffers() {
-    return {t.mutable_data(), q.mutable_data(),     qd.mutable_data(),   qdd.mutable_data(),
-            x.mutable_data(), x_ref.mutable_data(), error.mutable_data()};
+  [[nodiscard]] Output<Space> output() {
+    return {{t.mutable_data(), q.mutable_data(), qd.mutable_data(), qdd.mutable_data(), x.mutable_data(),
+             x_ref.mutable_data(), error.mutable_data()},
+            scale.size() > 0 ? scale.mutable_data() : nullptr,
+            saturated.size() > 0 ? saturated.mutable_data() : nullptr};
   }
   [[nodiscard]] Arrays arrays() const { return py::make_tuple(t, q, qd, qdd, x, x_ref, error); }
+
+  Array t;
+  Array q;
+  Array qd;
+  Array qdd;
+  Array x;
+  Array x_ref;
+  Array error;
+  Array scale;
+  py::array_t<bool> saturated;
 
  private:
   static Array points(py::ssize_t samples) {
@@ -39,14 +55,14 @@ struct MotionArrays {
       return Array({samples, py::ssize_t{Space::kSize}});
     }
   }
-
-  Array t;
-  Array q;
-  Array qd;
-  Array qdd;
-  Array x;
-  Array x_ref;
-  Array error;
 };
+
+/// limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake of a motion that keeps limits.
+using LimitedOptions = std::tuple<py::object, double, double, double, double, double>;
+
+inline Limited limited_of(const LimitedOptions& given, const Arm& arm) {
+  const auto& [limits, max_error, gain, bound, radius, brake] = given;
+  return {limits_of(limits, arm), {1e-3, max_error, gain, bound, SingularDamping<>(radius, brake)}};
+}
 
 }  // namespace fpbm::bindings

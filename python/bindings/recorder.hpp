@@ -2,48 +2,53 @@
 
 #include <atomic>
 
+#include "arm.hpp"
+#include "fpbm/realtime/tick.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/summary.hpp"
 
 namespace fpbm::bindings {
 
-/// What is wanted of a motion, and what ends it before its time; null is left out.
+/// Where a motion is written to, and what ends it early; null is left out.
 template <typename Space>
-struct Wanted {
-  MotionBuffers<Space, Eigen::Dynamic> buffers = {};
+struct Output {
+  MotionBuffers<Space, kDynamic> buffers = {};
+  double* scale = nullptr;    ///< Of each tick, of a motion that keeps limits,
+  bool* saturated = nullptr;  ///< and a row of joints.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The recorder of every motion: one type, so that a rollout is compiled once for each scheme, whatever is wanted.
-template <typename Space, int N>
+/// The recorder of every motion: one type, so that a rollout is compiled once, whatever is wanted of it.
+template <typename Space>
 class Recorder {
  public:
-  Recorder(const Wanted<Space>& wanted, Level level)
-      : wanted_(wanted),
-        buffers_{wanted.buffers.t, wanted.buffers.q,     wanted.buffers.qd,   wanted.buffers.qdd,
-                 wanted.buffers.x, wanted.buffers.x_ref, wanted.buffers.error},
-        summary_(level) {}
+  /// level: whether the samples have accelerations of their own.
+  Recorder(const Output<Space>& output, Level level) : output_(output), summary_(level) {}
 
-#if defined(__GNUC__)  // Once, and not in every rollout.
-  [[gnu::noinline]]
-#endif
-  bool
-  operator()(const Sample<Space, N>& sample) noexcept {
-    buffers_(sample);
-    if (wanted_.summary != nullptr) summary_(sample);
-    return wanted_.stop == nullptr || !wanted_.stop->load(std::memory_order_relaxed);
+  bool operator()(const Sample<Space, kDynamic>& sample) noexcept {
+    output_.buffers(sample);
+    if (output_.summary != nullptr) summary_(sample);
+    return output_.stop == nullptr || !output_.stop->load(std::memory_order_relaxed);
+  }
+
+  bool operator()(const Sample<Space, kDynamic>& sample, const Tick<Space, kDynamic>& tick) noexcept {
+    if (output_.scale != nullptr) output_.scale[sample.index] = tick.scale;
+    if (output_.saturated != nullptr) {
+      const Eigen::Index n = sample.q.size();
+      for (Eigen::Index i = 0; i < n; ++i) output_.saturated[sample.index * n + i] = ((tick.saturated >> i) & 1U) != 0;
+    }
+    return (*this)(sample);
   }
 
   /// Hands the summary over.
   void finish() const noexcept {
-    if (wanted_.summary != nullptr) *wanted_.summary = summary_.result();
+    if (output_.summary != nullptr) *output_.summary = summary_.result();
   }
 
  private:
-  Wanted<Space> wanted_;
-  MotionBuffers<Space, N> buffers_;
-  Summary<Space, N> summary_;
+  Output<Space> output_;
+  Summary<Space, kDynamic> summary_;
 };
 
 }  // namespace fpbm::bindings

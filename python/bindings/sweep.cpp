@@ -2,74 +2,103 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
-
-#include "lanes.hpp"
+#include <tuple>
 
 namespace fpbm::bindings {
 namespace {
 
-/// One motion by itself.
 template <typename Space>
-Outcome run(const TaskModel<Space>& model, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-            const Job<Space>& job, const std::atomic<bool>& stop) {
-  const Outcome nothing = Outcome::of_nothing();
-  MotionSummary<> summary = nothing.summary;
-  const State<kDynamic> start{job.q0, Joints::Zero(job.q0.size())};
-  const RolloutResult<kDynamic> result = model.simulate(*job.scheme, path, start, grid, {job.buffers, &summary, &stop});
-  const bool stopped = !failed(result.status) && result.samples < grid.samples();
-  if (stopped) return nothing;
-  return {static_cast<int>(result.status), result.samples, result.time, result.samples > 0 ? summary : nothing.summary};
-}
+class Runner {
+ public:
+  Runner(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::atomic<bool>& stop)
+      : arm_(arm), any_(std::get<AnyArmFor<Space>>(arm.any)), path_(path), grid_(grid), stop_(stop) {}
 
-/// All jobs of one level that can go side by side, in groups of as many as there are lanes; the last group is filled
-/// up.
+  [[nodiscard]] bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
+
+  /// One motion by itself.
+  [[nodiscard]] Outcome alone(const Job<Space>& job, const Limited* limited) const {
+    const Outcome nothing = Outcome::of_nothing();
+    MotionSummary<> summary = nothing.summary;
+    Output<Space> output = job.output;
+    output.summary = &summary;
+    output.stop = &stop_;
+    const State<kDynamic> start{job.q0, JointVector::Zero(job.q0.size())};
+    const Motion<Space> motion{any_, path_, *job.scheme, start, grid_};
+    const auto result = limited == nullptr ? motion.simulate(output) : motion.track(*limited, output);
+    if (!failed(result.status) && result.samples < grid_.samples()) return nothing;
+    if (result.samples == 0) summary = nothing.summary;
+    return {static_cast<int>(result.status), result.samples, result.time, summary};
+  }
+
+  /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
+  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, std::size_t lanes,
+                RunInLanes<Space> run, Outcome* outcomes) const {
+    std::vector<const Scheme*> schemes(lanes);
+    std::vector<JointVector> starts(lanes);
+    std::vector<Outcome> results(lanes, Outcome::of_nothing());
+    for (std::size_t first = 0; first < members.size() && !stopped(); first += lanes) {
+      const std::size_t last = std::min(first + lanes, members.size());
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
+        schemes[lane] = job.scheme;
+        starts[lane] = job.q0;
+      }
+      run(arm_, path_, grid_, schemes.data(), starts.data(), stop_, results.data());
+      for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
+    }
+  }
+
+ private:
+  const Arm& arm_;
+  const AnyArmFor<Space>& any_;
+  const AnyPath<Space>& path_;
+  const TimeGrid<double>& grid_;
+  const std::atomic<bool>& stop_;
+};
+
+/// The jobs of a level that can go side by side.
 template <typename Space>
-void run_in_lanes(const TaskModel<Space>& model, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                  const std::vector<Job<Space>>& jobs, Level level, const std::atomic<bool>& stop, Outcome* outcomes) {
-  const auto lanes = static_cast<std::size_t>(model.lanes());
+[[nodiscard]] std::vector<std::size_t> side_by_side(const std::vector<Job<Space>>& jobs, Level level) {
   std::vector<std::size_t> members;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const Job<Space>& job = jobs[i];
-    if (job.scheme->level() == level && runs_in_lanes(*job.scheme) && job.buffers.t == nullptr) members.push_back(i);
-  }
-  std::vector<const PyScheme*> schemes(lanes);
-  std::vector<Joints> starts(lanes);
-  std::vector<Outcome> results(lanes, Outcome::of_nothing());
-  for (std::size_t first = 0; first < members.size() && !stop.load(std::memory_order_relaxed); first += lanes) {
-    const std::size_t last = std::min(first + lanes, members.size());
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
-      schemes[lane] = job.scheme;
-      starts[lane] = job.q0;
+    if (job.scheme->level == level && runs_in_lanes(*job.scheme) && job.output.buffers.t == nullptr) {
+      members.push_back(i);
     }
-    model.run_in_lanes(path, grid, schemes.data(), starts.data(), stop, results.data());
-    for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
   }
+  return members;
 }
 
 }  // namespace
 
 template <typename Space>
-void sweep(const TaskModel<Space>& model, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-           const std::vector<Job<Space>>& jobs, const std::atomic<bool>& stop, Outcome* outcomes) {
+void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::vector<Job<Space>>& jobs,
+           const Limited* limited, const LaneCode* code, const std::atomic<bool>& stop, Outcome* outcomes) {
+  const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
-  if (model.lanes() > 1) {
-    run_in_lanes(model, path, grid, jobs, Level::kVelocity, stop, outcomes);
-    run_in_lanes(model, path, grid, jobs, Level::kAcceleration, stop, outcomes);
+  if constexpr (!std::is_same_v<Space, PlanarPose>) {
+    if (code != nullptr && limited == nullptr && runs_in_lanes(arm)) {
+      for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
+        runner.in_lanes(jobs, side_by_side(jobs, level), static_cast<std::size_t>(code->lanes),
+                        std::get<RunInLanes<Space>>(code->run), outcomes);
+      }
+    }
   }
-  for (std::size_t i = 0; i < jobs.size() && !stop.load(std::memory_order_relaxed); ++i) {
-    if (outcomes[i].status == Outcome::kNotRun) outcomes[i] = run(model, path, grid, jobs[i], stop);
+  for (std::size_t i = 0; i < jobs.size() && !runner.stopped(); ++i) {
+    if (outcomes[i].status == Outcome::kNotRun) outcomes[i] = runner.alone(jobs[i], limited);
   }
 }
 
-template void sweep(const TaskModel<Position<2>>&, const AnyPath<Position<2>>&, const TimeGrid<double>&,
-                    const std::vector<Job<Position<2>>>&, const std::atomic<bool>&, Outcome*);
-template void sweep(const TaskModel<PlanarPose>&, const AnyPath<PlanarPose>&, const TimeGrid<double>&,
-                    const std::vector<Job<PlanarPose>>&, const std::atomic<bool>&, Outcome*);
-template void sweep(const TaskModel<Position<3>>&, const AnyPath<Position<3>>&, const TimeGrid<double>&,
-                    const std::vector<Job<Position<3>>>&, const std::atomic<bool>&, Outcome*);
-template void sweep(const TaskModel<Pose>&, const AnyPath<Pose>&, const TimeGrid<double>&,
-                    const std::vector<Job<Pose>>&, const std::atomic<bool>&, Outcome*);
+template void sweep(const Arm&, const AnyPath<Position<2>>&, const TimeGrid<double>&,
+                    const std::vector<Job<Position<2>>>&, const Limited*, const LaneCode*, const std::atomic<bool>&,
+                    Outcome*);
+template void sweep(const Arm&, const AnyPath<PlanarPose>&, const TimeGrid<double>&,
+                    const std::vector<Job<PlanarPose>>&, const Limited*, const LaneCode*, const std::atomic<bool>&,
+                    Outcome*);
+template void sweep(const Arm&, const AnyPath<Position<3>>&, const TimeGrid<double>&,
+                    const std::vector<Job<Position<3>>>&, const Limited*, const LaneCode*, const std::atomic<bool>&,
+                    Outcome*);
+template void sweep(const Arm&, const AnyPath<Pose>&, const TimeGrid<double>&, const std::vector<Job<Pose>>&,
+                    const Limited*, const LaneCode*, const std::atomic<bool>&, Outcome*);
 
 }  // namespace fpbm::bindings

@@ -51,6 +51,11 @@ void AnyTracker<Space>::resume() noexcept {
 }
 
 template <typename Space>
+auto AnyTracker<Space>::arm() const noexcept -> const Arm& {
+  return std::visit([](const auto& tracker) -> const Arm& { return tracker.arm(); }, tracker_);
+}
+
+template <typename Space>
 const State<kDynamic>& AnyTracker<Space>::state() const noexcept {
   return std::visit([](const auto& tracker) -> const State<kDynamic>& { return tracker.state(); }, tracker_);
 }

@@ -32,6 +32,7 @@ class AnyTracker {
   Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference);
   void stop() noexcept;
   void resume() noexcept;
+  [[nodiscard]] const Arm& arm() const noexcept;
   [[nodiscard]] const State<kDynamic>& state() const noexcept;
   [[nodiscard]] typename Space::template Point<double> tip() const noexcept;
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "fpbm/any/any_path.hpp"
+#include "fpbm/realtime/tick.hpp"
+#include "fpbm/sim/rollout.hpp"
+#include "recorder.hpp"
+#include "scheme.hpp"
+
+namespace fpbm::bindings {
+
+/// How a motion keeps limits; the length of its tick is the grid's.
+struct Limited {
+  JointLimits<kDynamic> limits;
+  TrackerOptions<> options;
+};
+
+/// One motion of an arm along a path.
+template <typename Space>
+struct Motion {
+  const AnyArmFor<Space>& arm;
+  const AnyPath<Space>& path;
+  const Scheme& scheme;
+  State<kDynamic> start;
+  TimeGrid<double> grid;
+
+  /// rollout() of it. Throws std::invalid_argument where scheme or start do not fit the arm.
+  RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
+
+  /// fpbm::track() of it. Throws std::invalid_argument where scheme, start, limits or options do not fit.
+  RolloutResult<kDynamic> track(const Limited& limited, const Output<Space>& output) const;
+
+  /// Throws as simulate() does, or as track() where there are limits.
+  void require(const Limited* limited) const;
+};
+
+extern template struct Motion<Position<2>>;
+extern template struct Motion<PlanarPose>;
+extern template struct Motion<Position<3>>;
+extern template struct Motion<Pose>;
+
+}  // namespace fpbm::bindings
