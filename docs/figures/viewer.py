@@ -35,7 +35,7 @@ def a_viewer() -> Viewer:
     path = fp.Circle(0.15, duration=10.0).in_plane("yz")
     scheme = fp.FPBM(0.6, weights=np.ones(7), k1=10.0, k2=25.0, null_damping=2.0)
     q0 = [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
-    return Viewer(arm, path, scheme, q0, task="pose", hold=2.0, urdf=urdf, port=0)
+    return Viewer(fp.simulate(arm, path, scheme, q0, task="pose", hold=2.0), urdf=urdf, port=0)
 
 
 def photograph(viewer: Viewer, target: Path) -> None:
