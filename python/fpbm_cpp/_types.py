@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
-    # How type checkers see the array fields of data classes: they take array_like and read as arrays.
+    # How type checkers see fields of data classes that are not read as they are given.
 
     class ArrayField:
         def __get__(self, thing: object, owner: Any = None) -> Array: ...
@@ -20,5 +20,9 @@ if TYPE_CHECKING:
         def __get__(self, thing: object, owner: Any = None) -> Array | None: ...
         def __set__(self, thing: object, value: ArrayLike | None) -> None: ...
 
+    class DerivedField:
+        def __get__(self, thing: object, owner: Any = None) -> float: ...
+        def __set__(self, thing: object, value: float | None) -> None: ...
+
 else:
-    ArrayField = OptionalArrayField = Array
+    ArrayField = OptionalArrayField = DerivedField = Any

@@ -12,8 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._core import Arm as CoreArm
 from ._core import PRESETS, dh, preset
+from ._core import Arm as CoreArm
 from ._types import ArrayField
 from .errors import ParameterError, not_one_of
 from .parameter import POSITIVE, Data, Parameter, data, parameter
@@ -21,7 +21,7 @@ from .parameter import POSITIVE, Data, Parameter, data, parameter
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
-BOUNDS: dict[str, Any] = {"kw_only": True, "shape": "(n,)", "infinite": True}
+BOUND = Parameter(shape="(n,)", infinite=True)
 
 
 @data
@@ -32,10 +32,12 @@ class JointLimits(Data):
     """
 
     kind: ClassVar[str] = "limits"
-    lower: ArrayField = parameter("Lowest joint positions.", unit="rad", **BOUNDS)
-    upper: ArrayField = parameter("Highest joint positions.", unit="rad", **BOUNDS)
-    velocity: ArrayField = parameter("Highest joint velocities, either way.", unit="rad/s", **BOUNDS)
-    acceleration: ArrayField = parameter("Highest joint accelerations, either way.", unit="rad/s^2", **BOUNDS)
+    lower: ArrayField = parameter("Lowest positions.", BOUND, kw_only=True, unit="rad")
+    upper: ArrayField = parameter("Highest positions.", BOUND, kw_only=True, unit="rad")
+    velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, kw_only=True, unit="rad/s")
+    acceleration: ArrayField = parameter(
+        "Highest accelerations, either way.", BOUND, kw_only=True, unit="rad/s^2"
+    )
 
     def _finish(self) -> None:
         for name in ("upper", "velocity", "acceleration"):
@@ -103,7 +105,7 @@ class PlanarArm(Arm):
     """
 
     kind: ClassVar[str] = "planar"
-    lengths: ArrayField = parameter("Link lengths, 2 to MAX_DOF of them.", shape="(n,)", unit="m", **POSITIVE)
+    lengths: ArrayField = parameter("Link lengths, 2 to MAX_DOF of them.", POSITIVE, shape="(n,)", unit="m")
 
     def _finish(self) -> None:
         CoreArm.__init__(self, self.lengths)
@@ -186,7 +188,7 @@ class SerialArm(Arm):
         for name, values in columns.items():
             if values is None:
                 continue
-            entries = values if name == "names" else Parameter(name=name, shape="(n,)", infinite=True).check(values)
+            entries: Any = values if name == "names" else replace(BOUND, name=name).check(values)
             require_length(name, entries, len(rows))
             for joint, entry in zip(joints, entries):
                 joint["name" if name == "names" else name] = entry

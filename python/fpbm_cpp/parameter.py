@@ -24,8 +24,6 @@ else:
 
 
 REQUIRED: Any = inspect.Parameter.empty
-POSITIVE: dict[str, Any] = {"low": 0.0, "open_low": True}
-NOT_NEGATIVE: dict[str, Any] = {"low": 0.0}
 
 
 @dataclass(frozen=True)
@@ -148,24 +146,37 @@ def _fits(shape: tuple[int, ...], wanted: str) -> bool:
     return False
 
 
-def parameter(help: str, *, default: Any = REQUIRED, kw_only: bool = False, **known: Any) -> Any:
-    """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", unit="m", **POSITIVE)`.
+POSITIVE = Parameter(low=0.0, open_low=True)
+NOT_NEGATIVE = Parameter(low=0.0)
 
-    Takes what Parameter has. Name and type are the field's; the usual value is the default, unless given.
+
+def parameter(
+    help: str = "", like: Parameter = Parameter(), *, default: Any = REQUIRED, kw_only: bool = False, **known: Any
+) -> Any:
+    """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
+
+    Takes what Parameter has; what is not given is as in `like`. Name and type are the field's; the usual value is the
+    default, unless given.
     """
-    declared = Parameter(help=help, default=default, **{"usual": default, **known})
+    usual = default if like.usual is REQUIRED else like.usual
+    declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})
     return field(default=MISSING if default is REQUIRED else default, kw_only=kw_only, metadata={"parameter": declared})
 
 
-@cache
 def parameters(maker: Callable[..., Any]) -> dict[str, Parameter]:
     """The parameters of a data class, its own before those that it inherits; of a function, its arguments."""
+    hashable: Any = maker
+    return _parameters(hashable)
+
+
+@cache
+def _parameters(maker: Any) -> dict[str, Parameter]:
     declared = {each.name: each.metadata["parameter"] for each in fields(maker)} if is_dataclass(maker) else {}
     found = {}
     for name, argument in inspect.signature(maker).parameters.items():
         known = declared.get(name, Parameter(default=argument.default, usual=argument.default))
         annotation = str(argument.annotation)
-        kind = {"float": float, "int": int, "str": str}.get(annotation.split(" | ")[0], object)
+        kind = {"float": float, "int": int, "str": str}.get(annotation.split(" | ")[0], known.type)
         found[name] = replace(known, name=name, type=np.ndarray if known.shape else kind, annotation=annotation)
     own_first = [name for each in inspect.getmro(maker) for name in inspect.get_annotations(each)] if declared else ()
     return {name: found[name] for name in dict.fromkeys((*own_first, *found)) if name in found}
@@ -219,7 +230,8 @@ def data(cls: type[D]) -> type[D]:
 
 def _entry(known: Parameter) -> str:
     """A parameter as docstrings have it."""
-    kind = f"array_like, shape {known.shape}" if known.shape else known.annotation.replace(" | ", " or ")
+    kind = known.annotation.replace(" | ", " or ") if known.type is object else known.type.__name__
+    kind = f"array_like, shape {known.shape}" if known.shape else kind
     words = [kind, known.range, "" if known.required else f"default {_text(known.default)}"]
     unit = f" [{known.unit}]" if known.unit else ""
     choices = f" One of {', '.join(map(repr, known.choices))}." if known.choices else ""

@@ -12,16 +12,15 @@ from numpy.typing import ArrayLike
 
 from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
 from ._core import Path as CorePath
-from ._types import ArrayField, OptionalArrayField
+from ._types import ArrayField, DerivedField, OptionalArrayField
 from .errors import ParameterError
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
 # What shapes have in common.
-DURATION: dict[str, Any] = {"help": "T.", "usual": 10.0, "unit": "s", **POSITIVE}
-TIME_LAW: dict[str, Any] = {"help": "How the fraction s of the way grows with time.", "choices": TIME_LAWS}
-BOUND: dict[str, Any] = {"kw_only": True, **POSITIVE}
+DURATION = replace(POSITIVE, help="T.", usual=10.0, unit="s")
+TIME_LAW = Parameter(help="How the fraction s of the way grows with time.", choices=TIME_LAWS)
 
 
 class Path(Data, CorePath):
@@ -79,9 +78,9 @@ class Circle(Path):
     """
 
     kind = "circle"
-    radius: float = parameter("r.", unit="m", usual=0.1, **POSITIVE)
-    duration: float = parameter(**DURATION)
-    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+    radius: float = parameter("r.", POSITIVE, unit="m", usual=0.1)
+    duration: float = parameter(like=DURATION)
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
     def _compiled(self) -> CorePath:
         return circle(self.radius, self.duration, self.time_law)
@@ -96,14 +95,14 @@ class Lissajous(Path):
 
     kind = "lissajous"
     amplitude: ArrayField = parameter(
-        "a, one for both axes or one each.", shape="() or (2,)", unit="m", usual=0.1, **POSITIVE
+        "a, one for both axes or one each.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
     )
-    duration: float = parameter(**DURATION)
+    duration: float = parameter(like=DURATION)
     frequencies: ArrayField = parameter(
         "f: whole, so that the figure closes.", default=(2, 1), kw_only=True, shape="(2,)", whole=True, low=1.0
     )
     phase: float = parameter("delta.", default=pi / 6, kw_only=True, unit="rad")
-    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
     def _compiled(self) -> CorePath:
         return lissajous(self.amplitude, self.duration, self.frequencies, self.phase, self.time_law)
@@ -117,9 +116,9 @@ class Tricuspid(Path):
     """
 
     kind = "tricuspid"
-    size: float = parameter("a.", unit="m", usual=0.05, **POSITIVE)
-    duration: float = parameter(**DURATION)
-    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+    size: float = parameter("a.", POSITIVE, unit="m", usual=0.05)
+    duration: float = parameter(like=DURATION)
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
     def _compiled(self) -> CorePath:
         return tricuspid(self.size, self.duration, self.time_law)
@@ -133,8 +132,8 @@ class Line(Path):
     displacement: ArrayField = parameter(
         "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
-    duration: float = parameter(**DURATION)
-    time_law: str = parameter(default="sin_squared", kw_only=True, **TIME_LAW)
+    duration: float = parameter(like=DURATION)
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
     def _compiled(self) -> CorePath:
         return line(self.displacement, self.duration, self.time_law)
@@ -162,15 +161,19 @@ class Waypoints(Path):
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
-    duration: float | None = parameter("T.", default=None, unit="s", **BOUND)  # type: ignore[assignment]  # None in calls.
+    duration: DerivedField = parameter("T.", POSITIVE, type=float, default=None, kw_only=True, unit="s")
     times: OptionalArrayField = parameter(
         "When each point is passed, the first at 0.", default=None, kw_only=True, shape="(k,)", unit="s"
     )
-    velocity: float | None = parameter("Highest speed of the tip.", default=None, unit="m/s", **BOUND)
-    acceleration: float | None = parameter("Its highest acceleration.", default=None, unit="m/s^2", **BOUND)
-    angular_velocity: float | None = parameter("Its highest angular velocity.", default=None, unit="rad/s", **BOUND)
+    velocity: float | None = parameter("Highest speed of the tip.", POSITIVE, default=None, kw_only=True, unit="m/s")
+    acceleration: float | None = parameter(
+        "Its highest acceleration.", POSITIVE, default=None, kw_only=True, unit="m/s^2"
+    )
+    angular_velocity: float | None = parameter(
+        "Its highest angular velocity.", POSITIVE, default=None, kw_only=True, unit="rad/s"
+    )
     angular_acceleration: float | None = parameter(
-        "Its highest angular acceleration.", default=None, unit="rad/s^2", **BOUND
+        "Its highest angular acceleration.", POSITIVE, default=None, kw_only=True, unit="rad/s^2"
     )
 
     def __post_init__(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -10,30 +11,21 @@ from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
 from .arms import Arm
 from .errors import ParameterError
-from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter, parameters
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
 
-OPTION: dict[str, Any] = {"kw_only": True, **NOT_NEGATIVE}
-
 # What more than one class declares.
-ALPHA: dict[str, Any] = {"help": "Share of WMVN; MAN has the rest.", "usual": 0.6, "low": 0.0, "high": 1.0}
-WEIGHTS: dict[str, Any] = {
-    "help": "Diagonal of W, or W itself, symmetric positive definite. Only ratios matter.",
-    "shape": "(n,) or (n, n)",
-    **POSITIVE,
-}
-K: dict[str, Any] = {"help": "Position feedback: xd + k (x - f(q)) in place of xd.", "unit": "1/s", **OPTION}
-K1: dict[str, Any] = {
-    "help": "Feedback gain on velocity, which velocity-level schemes do without.",
-    "unit": "1/s",
-    **OPTION,
-}
-K2: dict[str, Any] = {
-    "help": "Feedback gain on position or direction.",
-    "unit": "1/s^2, 1/s at velocity level",
-    **OPTION,
-}
+ALPHA = Parameter(help="Share of WMVN; MAN has the rest.", usual=0.6, low=0.0, high=1.0)
+WEIGHTS = replace(
+    POSITIVE,
+    help="Diagonal of W, or W itself, symmetric positive definite. Only ratios matter.",
+    shape="(n,) or (n, n)",
+)
+K = replace(NOT_NEGATIVE, help="Position feedback: xd + k (x - f(q)) in place of xd.", unit="1/s")
+K1 = replace(NOT_NEGATIVE, help="Feedback gain on velocity, which velocity-level schemes do without.", unit="1/s")
+K2 = replace(NOT_NEGATIVE, help="Feedback gain on position or direction.", unit="1/s^2, 1/s at velocity level")
+SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
 
 
 @data
@@ -46,8 +38,8 @@ class SecondTask(Data):
     kind: ClassVar[str] = "point"
     arm: Arm = parameter("The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
     x: ArrayField = parameter("Where its tip is to be, in the base frame.", shape="(2,) or (3,)", unit="m")
-    k1: float = parameter(default=10.0, **K1)
-    k2: float = parameter(default=25.0, **K2)
+    k1: float = parameter(like=K1, default=10.0, kw_only=True)
+    k2: float = parameter(like=K2, default=25.0, kw_only=True)
 
     def _finish(self) -> None:
         if not isinstance(self.arm, Arm):
@@ -71,8 +63,8 @@ class Gaze(Data):
     direction: ArrayField = parameter(
         "Where the axis is to point, in the base frame; its length does not matter.", shape="(3,)"
     )
-    k1: float = parameter(default=10.0, **K1)
-    k2: float = parameter(default=25.0, **K2)
+    k1: float = parameter(like=K1, default=10.0, kw_only=True)
+    k2: float = parameter(like=K2, default=25.0, kw_only=True)
 
     def _finish(self) -> None:
         if not np.any(self.direction):
@@ -97,7 +89,7 @@ class Scheme(Data, CoreScheme):
         "Posture that the null space is drawn to.", default=None, kw_only=True, shape="(n,)", unit="rad"
     )
     null_stiffness: float = parameter(
-        "How strongly it is drawn.", default=0.0, unit="1/s^2, 1/s at velocity level", **OPTION
+        "How strongly it is drawn.", NOT_NEGATIVE, default=0.0, kw_only=True, unit="1/s^2, 1/s at velocity level"
     )
     c: OptionalArrayField = parameter(
         "The free choice in the general solution (5), (3) at velocity level.",
@@ -109,16 +101,16 @@ class Scheme(Data, CoreScheme):
     joint_centring: float = parameter(
         "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
         "limits bound both ways (Liegeois, 1977).",
+        SQUARED,
         default=0.0,
-        unit="rad^2/s^2, rad^2/s at velocity level",
-        **OPTION,
+        kw_only=True,
     )
     manipulability_gain: float = parameter(
         "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
         "without which it swings for ever.",
+        SQUARED,
         default=0.0,
-        unit="rad^2/s^2, rad^2/s at velocity level",
-        **OPTION,
+        kw_only=True,
     )
     second_task: SecondTask | Gaze | None = parameter(
         "What the null space does first of all: the other options have what it leaves.", default=None, kw_only=True
@@ -127,10 +119,13 @@ class Scheme(Data, CoreScheme):
         "Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
         "postures; 0.02 is a good one.",
         default=0.0,
+        kw_only=True,
+        low=0.0,
         high=1.0,
-        **OPTION,
     )
-    singular_brake: float = parameter("Damping of the null space there.", default=10.0, unit="1/s", **OPTION)
+    singular_brake: float = parameter(
+        "Damping of the null space there.", NOT_NEGATIVE, default=10.0, kw_only=True, unit="1/s"
+    )
 
     def _finish(self) -> None:
         values = {name: getattr(self, name) for name in parameters(type(self))}
@@ -155,10 +150,11 @@ class AccelerationScheme(Scheme):
     level = "acceleration"
     null_damping: float = parameter(
         "Damping of the self-motion, which nothing in the paper's schemes damps.",
+        NOT_NEGATIVE,
         default=0.0,
+        kw_only=True,
         usual=2.0,
         unit="1/s",
-        **OPTION,
     )
 
 
@@ -167,7 +163,7 @@ class MVN(VelocityScheme):
     """Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3)."""
 
     kind = "mvn"
-    k: float = parameter(default=0.0, **K)
+    k: float = parameter(like=K, default=0.0, kw_only=True)
 
 
 @data
@@ -175,8 +171,8 @@ class WMVN(VelocityScheme):
     """Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd."""
 
     kind = "wmvn"
-    weights: ArrayField = parameter(**WEIGHTS)
-    k: float = parameter(default=0.0, **K)
+    weights: ArrayField = parameter(like=WEIGHTS)
+    k: float = parameter(like=K, default=0.0, kw_only=True)
 
 
 @data
@@ -196,7 +192,7 @@ class WMVNAcceleration(AccelerationScheme):
 
     kind = "wmvn_acceleration"
     fixed: ClassVar[dict[str, float]] = {"alpha": 1.0}
-    weights: ArrayField = parameter(**WEIGHTS)
+    weights: ArrayField = parameter(like=WEIGHTS)
 
 
 @data
@@ -204,8 +200,8 @@ class Balanced(AccelerationScheme):
     """Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9)."""
 
     kind = "balanced"
-    alpha: float = parameter(**ALPHA)
-    weights: ArrayField = parameter(**WEIGHTS)
+    alpha: float = parameter(like=ALPHA)
+    weights: ArrayField = parameter(like=WEIGHTS)
 
 
 @data
@@ -217,10 +213,10 @@ class FPBM(AccelerationScheme):
     """
 
     kind = "fpbm"
-    alpha: float = parameter(**ALPHA)
-    weights: ArrayField = parameter(**WEIGHTS)
-    k1: float = parameter("Feedback gain on velocity.", usual=10.0, unit="1/s", **NOT_NEGATIVE)
-    k2: float = parameter("Feedback gain on position.", usual=25.0, unit="1/s^2", **NOT_NEGATIVE)
+    alpha: float = parameter(like=ALPHA)
+    weights: ArrayField = parameter(like=WEIGHTS)
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
 
 
 # By the kind that a table has.
