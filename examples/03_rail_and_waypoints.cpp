@@ -1,4 +1,4 @@
-// An iiwa 14 on a rail works along a bench longer than its reach: weights say how much of the way the rail goes.
+// An iiwa 14 on a rail works along a bench that is longer than its reach: the weights set how far the rail moves.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 using Joints = fpbm::Vector<8>;
 
-/// The preset on a prismatic joint along y.
+/// The preset arm, carried by a prismatic joint along y.
 fpbm::Chain<> iiwa_on_rail() {
   fpbm::Joint<> rail;
   rail.type = fpbm::JointType::kPrismatic;
@@ -21,36 +21,37 @@ fpbm::Chain<> iiwa_on_rail() {
   return chain;
 }
 
-/// Moves the arm along the whole bench, where 1 m/s of the rail counts as much as √weight rad/s of a joint, and prints
-/// how far the rail went; false where the motion must stop early.
+/// Moves the arm along the whole bench and prints how far the rail went; false where the motion must stop early. 1 m/s
+/// of the rail costs as much as √weight rad/s of a joint.
 bool run(const char* name, double weight) {
   const fpbm::SerialArm<8> arm(iiwa_on_rail());
   constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints start{-0.8, -0.3, 0.6, 0.0, -1.5, 0.0, kPi - 2.1, 0.0};  // [m], [rad]: the hand points down
 
-  // Poses displaced from the first [m] and turned about the vertical [rad].
+  // Poses moved from the first by x, y, z [m] and rotated about the vertical by an angle [rad].
   fpbm::Kinematics<fpbm::Pose, 8> first;
   arm.kinematics(start, first);
-  const auto hand = [&](double x, double y, double z, double turn) {
-    return fpbm::Pose::displace(first.tip, fpbm::Vector<6>{x, y, z, 0.0, 0.0, turn});
+  const auto hand = [&](double x, double y, double z, double angle) {
+    return fpbm::Pose::displace(first.tip, fpbm::Vector<6>{x, y, z, 0.0, 0.0, angle});
   };
   fpbm::TipBounds<> bounds;
-  bounds.speed = 0.5;         // [m/s]
-  bounds.acceleration = 1.0;  // [m/s²]
-  bounds.angular_velocity = 1.0;     // [rad/s]
+  bounds.velocity = 0.5;          // [m/s]
+  bounds.acceleration = 1.0;      // [m/s²]
+  bounds.angular_velocity = 1.0;  // [rad/s]
   const auto path =
       fpbm::Waypoints<fpbm::Pose>::within({hand(0, 0, 0, 0), hand(0.05, 0.45, -0.15, 0.3), hand(0, 0.9, 0, 0),
                                            hand(0.05, 1.35, -0.15, -0.3), hand(0, 1.8, 0, 0)},
                                           bounds);
 
-  const fpbm::DiagonalWeights<8> weights({weight, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
-  const fpbm::FPBM<8> scheme(0.6, weights, 20.0, 100.0, fpbm::NullSpace<8>().with_damping(2.0));  // alpha, W, k1, k2, z
+  const Joints weights{weight, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  const auto damping = fpbm::NullSpace<8>().with_damping(2.0);
+  const auto scheme = fpbm::FPBM<8>(0.6, weights, 20.0, 100.0, damping);  // alpha, W, k1, k2, z
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 1.0);
 
-  double sliding = 0.0, turning = 0.0, error = 0.0, orientation_error = 0.0;
+  double rail_speed = 0.0, joint_speed = 0.0, error = 0.0, orientation_error = 0.0;
   const auto result = fpbm::rollout(arm, path, scheme, {start, Joints::Zero()}, grid, [&](const auto& sample) noexcept {
-    sliding = std::max(sliding, std::abs(sample.qd(0)));
-    turning = std::max(turning, sample.qd.template tail<7>().cwiseAbs().maxCoeff());
+    rail_speed = std::max(rail_speed, std::abs(sample.qd(0)));
+    joint_speed = std::max(joint_speed, sample.qd.template tail<7>().cwiseAbs().maxCoeff());
     error = std::max(error, sample.error.template head<3>().norm());
     orientation_error = std::max(orientation_error, sample.error.template tail<3>().norm());
   });
@@ -59,11 +60,11 @@ bool run(const char* name, double weight) {
     return false;
   }
   std::printf("%s: rail from %.2f to %.2f m, at most %.2f m/s and %.2f rad/s, tip errors %.0e m and %.0e rad\n", name,
-              start(0), result.last.q(0), sliding, turning, error, orientation_error);
+              start(0), result.last.q(0), rail_speed, joint_speed, error, orientation_error);
   return true;
 }
 
 int main() {
-  // A light rail goes along with the hand; a heavy one leaves to the arm what it can reach.
+  // A light rail follows the hand; a heavy rail moves only as far as the arm cannot reach.
   return run("light rail", 0.1) && run("heavy rail", 10.0) ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// A 7-joint arm from a URDF file, without a parser in the program: its tool draws a line under FPBM. The header was
+// A 7-joint arm from a URDF file, in a program without a parser: its tool draws a line under FPBM. The header was
 // written by
 //   fpbm-cpp export-header examples/04_exported_arm.urdf --tip tool -o examples/04_exported_arm.hpp
 
@@ -17,8 +17,8 @@ int main() {
   arm.kinematics(start.q, kinematics);
   std::printf("tool at [m]: %.3f %.3f %.3f\n", kinematics.tip(0), kinematics.tip(1), kinematics.tip(2));
 
-  const fpbm::Path path(fpbm::Line<3>({0.1, 0.0, 0.05}), 2.0);  // displacement [m], duration [s]
-  const fpbm::FPBM<kDof> scheme(0.6, fpbm::DiagonalWeights<kDof>(fpbm::Vector<kDof>::Ones()), 20.0, 100.0);
+  const fpbm::Path path(fpbm::Line<3>({0.1, 0.0, 0.05}), 2.0);                  // displacement [m], duration [s]
+  const auto scheme = fpbm::FPBM<kDof>(0.6, fpbm::UnitWeights{}, 20.0, 100.0);  // alpha, W, k1, k2
   const fpbm::TimeGrid grid(path.duration(), 1e-3);
 
   double max_error = 0.0;

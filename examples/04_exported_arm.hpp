@@ -1,4 +1,4 @@
-// Written by fpbm-cpp export-header from 04_exported_arm.urdf, tip tool. Regenerate rather than edit.
+// Written by fpbm-cpp export-header from 04_exported_arm.urdf, tip tool. Do not edit: write it again.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
     "wrist_roll",      // q(6)
 };
 
-/// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower and upper [rad] or [m], velocity, acceleration; those left out are none.
+/// The joints from base to tip; placements are as seen from the joint before [m].
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
 inline fpbm::Chain<> chain() {
   constexpr double kNone = fpbm::JointBounds<>::kNone;
   fpbm::Chain<> chain;
@@ -69,8 +69,8 @@ inline fpbm::Chain<> chain() {
 
   chain.tip.p = {0.0, 0.0, 0.14};
   chain.tip.R = fpbm::Matrix<3, 3>{
-      {0.7071067811865476, -0.7071067811865475, 0.0},
-      {0.7071067811865475, 0.7071067811865476, 0.0},
+      {0.7071067811865475, -0.7071067811865476, 0.0},
+      {0.7071067811865476, 0.7071067811865475, 0.0},
       {0.0, 0.0, 1.0},
   };
 

@@ -1,4 +1,4 @@
-// A Kinova Gen3 draws a Lissajous figure with its tip, free in its orientation, and ends at rest where it began.
+// A Kinova Gen3 draws a Lissajous figure with its tip, whose orientation is free, and comes to rest where it began.
 
 #include <algorithm>
 #include <cstdio>
@@ -6,13 +6,13 @@
 
 using Joints = fpbm::Vector<7>;
 
-/// Draws the figure under FPBM with this secondary motion and prints the key figures; false where it must stop early.
+/// Draws the figure under FPBM with a secondary motion and prints the key figures; false where it must stop early.
 bool run(const char* name, const Joints& home, const fpbm::NullSpace<7>& secondary) {
   const fpbm::SerialArm<7> arm(fpbm::presets::gen3());
   const fpbm::Lissajous<double> figure({0.15, 0.1}, {1, 2}, 0.0);  // amplitudes [m], frequencies, phase [rad]
   const fpbm::InPlane path(fpbm::Path(figure, 8.0, fpbm::Quintic{}), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 4.0);
-  const fpbm::FPBM<7, double, fpbm::UnitWeights> scheme(0.6, {}, 20.0, 100.0, secondary);  // alpha, W, k1, k2, z
+  const auto scheme = fpbm::FPBM<7>(0.6, fpbm::UnitWeights{}, 20.0, 100.0, secondary);  // alpha, W, k1, k2, z
 
   double error = 0.0, speed = 0.0;
   const auto result = fpbm::rollout(arm, path, scheme, {home, Joints::Zero()}, grid, [&](const auto& sample) noexcept {
@@ -34,6 +34,7 @@ int main() {
   const fpbm::NullSpace<7> nothing;
   const auto homeward = nothing.with_damping(4.0).with_rest_posture(home, 4.0);
 
-  // Three task rows leave four of seven joints free. Left alone, they end elsewhere and move on while the tip rests.
+  // The task takes three of the seven degrees of freedom. Left alone, the other four end elsewhere, and still move when
+  // the tip rests.
   return run("left alone", home, nothing) && run("drawn home", home, homeward) ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Bring your own kinematics: tip, J and Jd written by hand, the joint accelerations from FPBM, in a control loop.
+// Your own kinematics: tip, J and Jd are written by hand, FPBM gives the joint accelerations, in a control loop.
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 using Plane = fpbm::Position<2>;
 
-/// A slide along x [m] that carries two links of 0.5 m and 0.4 m. Any library may take this place; for an arm of N
-/// joints in space, Kinematics<Position<3>, N>, Pinocchio fills out by
+/// A slide along x [m] that carries two links of 0.5 m and 0.4 m. Any library can fill `out`. For an arm of N joints in
+/// space, Kinematics<Position<3>, N>, Pinocchio does so by
 ///   computeJointJacobiansTimeVariation(model, data, q, qd), updateFramePlacements(model, data);
 ///   getFrameJacobian(model, data, tip, LOCAL_WORLD_ALIGNED, J);
 ///   getFrameJacobianTimeVariation(model, data, tip, LOCAL_WORLD_ALIGNED, Jd);
@@ -29,10 +29,11 @@ void kinematics(const fpbm::State<3>& state, fpbm::Kinematics<Plane, 3>& out) {
 }
 
 int main() {
-  const fpbm::FPBM<3> scheme(0.6, fpbm::DiagonalWeights<3>({2.0, 1.0, 1.0}), 40.0, 400.0,  // alpha, W, k1, k2
-                             fpbm::NullSpace<3>().with_damping(4.0));
-  const fpbm::Path path(fpbm::Circle(0.1), 1.0, fpbm::Quintic{});  // radius [m], duration [s]
-  constexpr double kStep = 1e-3;                                   // [s]
+  const fpbm::Vector<3> weights{2.0, 1.0, 1.0};
+  const auto damping = fpbm::NullSpace<3>().with_damping(4.0);
+  const auto scheme = fpbm::FPBM<3>(0.6, weights, 40.0, 400.0, damping);  // alpha, W, k1, k2, z
+  const fpbm::Path path(fpbm::Circle(0.1), 1.0, fpbm::Quintic{});         // radius [m], duration [s]
+  constexpr double kStep = 1e-3;                                          // [s]
 
   fpbm::State<3> state{{0.0, 0.6, 0.9}, {0.0, 0.0, 0.0}};
   fpbm::Kinematics<Plane, 3> here;
@@ -53,7 +54,7 @@ int main() {
       std::printf("stopped at %g s: %s. %s\n", step * kStep, message(status), advice(status));
       return 1;
     }
-    state.q += kStep * state.qd + kStep * kStep / 2.0 * qdd;  // What the drives do until the next tick.
+    state.q += kStep * state.qd + kStep * kStep / 2.0 * qdd;  // The drives, until the next tick.
     state.qd += kStep * qdd;
   }
   std::printf("tip error [m]: %.1e at most, %.1e at the end\n", max_error, error);

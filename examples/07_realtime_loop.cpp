@@ -1,6 +1,7 @@
-// A Panda's control loop at 1 kHz on POSIX: circles, a target out of reach and back, a stop; then how punctual it was.
+// A control loop at 1 kHz on POSIX: a Panda draws circles, reaches for a target that is too far, comes back and stops.
+// Then the program prints how punctual it was.
 //   example_07_realtime_loop [seconds to run, 10] [ticks a second, 1000]      Ctrl-C brings the arm to rest and ends.
-// There is no Python twin: a loop that must never wait is no place for an interpreter.
+// There is no Python twin: an interpreter may pause at any time, and this loop must not.
 
 #include <pthread.h>
 #include <sched.h>
@@ -25,7 +26,7 @@ constexpr Nanoseconds kSecond = 1000000000;
 
 volatile std::sig_atomic_t interrupted = 0;
 
-/// How often each duration was met, in a fixed array: 48 bins a decade, from 0.1 µs to 1 s.
+/// Counts durations in a fixed array: 48 bins a decade, from 0.1 µs to 1 s.
 class Histogram {
  public:
   void add(Nanoseconds duration) noexcept {
@@ -79,14 +80,14 @@ Nanoseconds now() noexcept {
   return kSecond * time.tv_sec + time.tv_nsec;
 }
 
-/// Until a point in time, not for a duration: what one tick is late does not add to the next.
+/// Sleeps until a point in time, not for a duration: if one tick is late, the next is not.
 void sleep_until(Nanoseconds when) noexcept {
   const timespec time{when / kSecond, when % kSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) == EINTR) {
   }
 }
 
-/// Priority over everything that is not real-time, and no page left to be fetched during a tick.
+/// Gets priority over everything that is not real-time, and keeps all memory at hand: no page is fetched during a tick.
 void become_realtime() {
   sched_param priority{};
   priority.sched_priority = 80;
@@ -100,9 +101,9 @@ void become_realtime() {
   for (std::size_t i = 0; i < sizeof stack; i += 1024) stack[i] = 0;
 }
 
-/// A number from the command line, or what it is where there is none.
-double argument(int count, char** values, int index, double otherwise, double most) {
-  if (index >= count) return otherwise;
+/// A number from the command line, or its default.
+double argument(int count, char** values, int index, double standard, double most) {
+  if (index >= count) return standard;
   char* end = nullptr;
   const double value = std::strtod(values[index], &end);
   if (*end == '\0' && value > 0.0 && value <= most) return value;
@@ -118,7 +119,7 @@ int main(int argc, char** argv) {
   const Joints ready{0.0, -kPi / 4, 0.0, -3 * kPi / 4, 0.0, kPi / 2, kPi / 4};  // [rad], the hand points down
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const auto homeward = fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(ready, 4.0);
-  const fpbm::FPBM<7> scheme(0.6, fpbm::DiagonalWeights<7>({8, 8, 4, 4, 2, 1, 1}), 20.0, 100.0, homeward);
+  const auto scheme = fpbm::FPBM<7>(0.6, Joints{8, 8, 4, 4, 2, 1, 1}, 20.0, 100.0, homeward);  // alpha, W, k1, k2, z
   fpbm::TrackerOptions<> options;
   options.dt = 1.0 / rate;
   fpbm::Tracker tracker(arm, fpbm::Pose{}, scheme, ready, options);
@@ -128,7 +129,7 @@ int main(int argc, char** argv) {
                              {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
   const fpbm::WithRotation path(circle);  // The hand is held level.
   const fpbm::PathFollower lap(path, start);
-  auto course = lap;
+  auto follower = lap;
   const auto back = fpbm::Reference<fpbm::Pose>::hold(start);
   auto beyond = back;
   beyond.x.p(0) += 1.0;  // [m], out of reach
@@ -150,15 +151,15 @@ int main(int argc, char** argv) {
     const Nanoseconds awake = now();
     lateness.add(awake - deadline);
 
-    // 60 % of the time circles, 20 % toward what is out of reach, 20 % back; then to rest.
+    // Circles for 60 % of the time, 20 % toward the target that is too far, 20 % back; then the stop.
     const double share = static_cast<double>(deadline - begin) * 1e-9 / seconds;
     if (!stopping && (interrupted || share >= 1.0)) {
       stopping = true;
       tracker.stop();
     }
-    if (course.done()) course = lap;
+    if (follower.done()) follower = lap;
     const bool circling = share < 0.6;
-    const auto tick = circling ? tracker.tick(course) : tracker.tick(share < 0.8 ? beyond : back);
+    const auto tick = circling ? tracker.tick(follower) : tracker.tick(share < 0.8 ? beyond : back);
     // Here tick.q, or tick.qd, goes to the drives.
 
     ++seen[static_cast<std::size_t>(tick.status)];
@@ -169,7 +170,7 @@ int main(int argc, char** argv) {
     speed = tick.qd.cwiseAbs().maxCoeff();
     at_rest = stopping && speed < 1e-9;
 
-    // A deadline that has passed by now is skipped, not made up for: the arm is late by a tick, but takes no leap.
+    // A deadline that has passed by now is skipped, not made up for: the arm is late by a tick, but does not jump.
     const Nanoseconds done = now();
     compute.add(done - awake);
     for (deadline += period; deadline <= done; deadline += period) ++missed;
@@ -180,7 +181,8 @@ int main(int argc, char** argv) {
   std::printf("%ld ticks at %g Hz, %ld deadlines missed\n", ticks, rate, missed);
   lateness.print("late to wake up");
   compute.print("time to compute a tick");
-  std::printf("\non the circle at most %.1e m and %.1e rad off; at the end %.0e rad/s\n", error, orientation_error, speed);
+  std::printf("\non the circle at most %.1e m and %.1e rad off; at the end %.0e rad/s\n", error, orientation_error,
+              speed);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i] > 0) std::printf("%8ld ticks: %s\n", seen[i], fpbm::message(static_cast<fpbm::Status>(i)));
   }

@@ -6,18 +6,17 @@
 
 int main() {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
-  const fpbm::InPlane circle(fpbm::Path(fpbm::Circle<double>(0.15), 4.0), {0.0, 1.0, 0.0},
-                             {0.0, 0.0, 1.0});  // [m], [s]
+  const fpbm::InPlane circle(fpbm::Path(fpbm::Circle(0.15), 4.0), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});  // [m], [s]
   const fpbm::WithRotation path(circle);
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 1.0);
   fpbm::State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, fpbm::Vector<7>::Zero()};  // [rad]
 
-  // Twelve schemes from eleven starts: a motion of each is summed up as it goes, and no sample is stored.
+  // Twelve schemes from eleven starts. Each motion is summed up while it runs; no sample is stored.
   std::printf("damping  alpha  complete  error [m]  peak qd [rad/s]  final qd [rad/s]  manipulability\n");
   for (const double damping : {0.0, 2.0}) {
     for (const double alpha : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
-      const auto self_motion = fpbm::NullSpace<7>{}.with_damping(damping);
-      const fpbm::FPBM<7> scheme(alpha, fpbm::DiagonalWeights<7>(fpbm::Vector<7>::Ones()), 10.0, 25.0, self_motion);
+      const auto damped = fpbm::NullSpace<7>().with_damping(damping);
+      const auto scheme = fpbm::FPBM<7>(alpha, fpbm::Vector<7>::Ones(), 10.0, 25.0, damped);
       int complete = 0;
       double error = 0.0, peak = 0.0, final = 0.0, least = 1.0;
       for (int i = 0; i < 11; ++i) {

@@ -8,7 +8,7 @@
 #include <fpbm/fpbm.hpp>
 #include <fpbm/realtime/tracker.hpp>
 
-/// What both programs here know of a Franka Research 3.
+/// What both programs here need to know of a Franka Research 3.
 namespace fr3 {
 
 using Joints = fpbm::Vector<7>;
@@ -30,10 +30,10 @@ inline constexpr std::array<Joint, 7> kJoints = {{{-2.7437, 2.7437, 2.62, -2.750
                                                   {0.5445, 4.5169, 4.18, 0.54092, 4.5205, 0.35, 11.0},
                                                   {-3.0159, 3.0159, 5.26, -3.0196, 3.0196, 0.35, 34.0}}};
 inline constexpr double kAcceleration = 10.0;  // [rad/s²], of every joint
-inline constexpr double kMargin = 1e-3;        // How far libfranka's own limiter keeps off every bound.
+inline constexpr double kMargin = 1e-3;        // The distance that libfranka's own limiter keeps from every bound.
 
-/// Franka's envelope as far as the joint can follow it: those of joints 5 and 7 ask for 17 rad/s² of joints that have
-/// 10. The envelope that is zero at the same place with the same slope lies below Franka's everywhere.
+/// Franka's envelope, as far as the joint can brake along it: those of joints 5 and 7 ask for 17 rad/s² of joints that
+/// have 10. An envelope that is zero at the same place with the same slope lies below Franka's everywhere.
 inline fpbm::VelocityEnvelope<> followed(double end, double range, double offset, double root) {
   const double deceleration = std::min(root / 2.0, kAcceleration - kMargin);
   const double rest = std::min(end - (offset + kMargin) * (offset + kMargin) / root, range - kMargin);
@@ -41,7 +41,7 @@ inline fpbm::VelocityEnvelope<> followed(double end, double range, double offset
   return {rest + slower * slower / (2.0 * deceleration), slower, deceleration};
 }
 
-/// All that the robot checks of a motion, except for its jerk.
+/// Everything that the robot checks in a motion, except its jerk.
 inline Limits limits(double tick) {
   fpbm::JointLimits<7> bounds;
   for (std::size_t i = 0; i < 7; ++i) {
@@ -67,12 +67,12 @@ inline fpbm::SerialArm<7> arm() {
 }
 
 /// FPBM that holds the elbow near a posture.
-inline fpbm::FPBM<7> scheme(const Joints& posture) {
-  return {0.6, fpbm::DiagonalWeights<7>({8, 8, 4, 4, 2, 1, 1}), 20.0, 100.0,
-          fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(posture, 4.0)};
+inline auto scheme(const Joints& posture) {
+  return fpbm::FPBM<7>(0.6, Joints{8, 8, 4, 4, 2, 1, 1}, 20.0, 100.0,
+                       fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(posture, 4.0));
 }
 
-/// A circle across the table, the hand held as it is; smooth at both ends, as the robot wants it.
+/// A horizontal circle with the hand's orientation held; smooth at both ends, as the robot requires.
 inline auto circle(double radius, double duration) {
   return fpbm::WithRotation(
       fpbm::InPlane(fpbm::Path(fpbm::Circle(radius), duration, fpbm::Quintic{}), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
@@ -90,8 +90,8 @@ inline std::array<double, 7> array(const Joints& values) {
 
 inline volatile std::sig_atomic_t interrupted = 0;
 
-/// From now on Ctrl-C asks for a stop in place of ending the program.
-inline void heed_interrupt() {
+/// From now on Ctrl-C asks for a stop and does not end the program.
+inline void catch_interrupt() {
   std::signal(SIGINT, [](int) { interrupted = 1; });
 }
 

@@ -1,7 +1,8 @@
-// A Franka Research 3 draws a circle with its hand held level, led by joint positions: Tracker::tick() in libfranka's
-// callback.
+// A Franka Research 3 draws a circle with its hand held level, commanded by joint positions: Tracker::tick() in
+// libfranka's callback.
 //   joint_positions ROBOT_ADDRESS                                     Ctrl-C brings the arm to rest and ends.
-// Compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, the stop button at hand.
+// This has been compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, with the stop
+// button at hand.
 
 #include <franka/exception.h>
 #include <franka/robot.h>
@@ -21,19 +22,19 @@ int main(int argc, char** argv) {
     const fpbm::TrackerOptions<> options;  // A tick of 1 ms, which is the robot's.
     const fpbm::State<7> at_rest{start, fr3::Joints::Zero()};
     fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options, fr3::limits(options.dt));
-    fpbm::PathFollower course(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
-    fpbm::Status gravest = fpbm::Status::kOk;
+    fpbm::PathFollower follower(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
+    fpbm::Status worst = fpbm::Status::kOk;
     bool stopping = false;
-    fr3::heed_interrupt();
+    fr3::catch_interrupt();
 
     const auto callback = [&](const franka::RobotState&, franka::Duration period) -> franka::JointPositions {
-      // The state that comes in is left alone: the tracker goes on from its own command, which the robot follows.
-      // No tick on the first call; several where packets were lost, since the robot has gone on meanwhile.
+      // The measured state is not used: the tracker goes on from its own command, which the robot follows. The first
+      // call makes no tick. After lost packets there are several, since the robot has moved on meanwhile.
       for (auto milliseconds = period.toMSec(); milliseconds > 0; --milliseconds) {
-        gravest = worse(gravest, tracker.tick(course).status);
+        worst = worse(worst, tracker.tick(follower).status);
       }
       const double speed = tracker.state().qd.cwiseAbs().maxCoeff();
-      if (fr3::interrupted || failed(gravest) || (course.done() && speed < 1e-3)) {
+      if (fr3::interrupted || failed(worst) || (follower.done() && speed < 1e-3)) {
         tracker.stop();
         stopping = true;
       }
@@ -41,13 +42,13 @@ int main(int argc, char** argv) {
       return stopping && speed < 1e-9 ? franka::MotionFinished(command) : command;
     };
 
-    // The tracker bounds accelerations, not their jumps, which the robot refuses above 5000 rad/s³: stop() and a joint
-    // that meets a bound make such. libfranka's limiter of rates takes them off.
+    // The tracker bounds accelerations, not jerks, and the robot refuses jerks above 5000 rad/s³. stop() makes such
+    // jerks, and so does a joint that reaches a bound; libfranka's rate limiter removes them.
     constexpr bool kLimitRate = true;
     robot.control(callback, franka::ControllerMode::kJointImpedance, kLimitRate);
-    std::printf("at worst: %s\n", message(gravest));
-    return failed(gravest) ? 1 : 0;
-  } catch (const std::exception& error) {  // Of libfranka, or a start posture outside the limits.
+    std::printf("at worst: %s\n", message(worst));
+    return failed(worst) ? 1 : 0;
+  } catch (const std::exception& error) {  // From libfranka, or where the start posture is outside the limits.
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }

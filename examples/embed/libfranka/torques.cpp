@@ -1,7 +1,8 @@
-// A Franka Research 3 draws a circle with its hand held level, led by torques: Tracker::resolve_measured() gives the
-// acceleration for the state just measured, and the robot's own model the torques for it.
+// A Franka Research 3 draws a circle with its hand held level, commanded by torques: Tracker::resolve_measured() gives
+// the acceleration for the state just measured, and the robot's own model gives the torques for it.
 //   torques ROBOT_ADDRESS                                             Ctrl-C brings the arm to rest and ends.
-// Compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, the stop button at hand.
+// This has been compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, with the stop
+// button at hand.
 
 #include <franka/exception.h>
 #include <franka/model.h>
@@ -23,24 +24,24 @@ int main(int argc, char** argv) {
     const fpbm::TrackerOptions<> options;
     const fpbm::State<7> at_rest{start, fr3::Joints::Zero()};
     fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options, fr3::limits(options.dt));
-    fpbm::PathFollower course(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
-    fpbm::Status gravest = fpbm::Status::kOk;
+    fpbm::PathFollower follower(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
+    fpbm::Status worst = fpbm::Status::kOk;
     bool stopping = false;
-    fr3::heed_interrupt();
+    fr3::catch_interrupt();
 
     const auto callback = [&](const franka::RobotState& state, franka::Duration period) -> franka::Torques {
       const fr3::Joints qd = fr3::joints(state.dq);
-      if (!stopping) course.advance(period.toSec());
-      const auto tick = tracker.resolve_measured(fr3::joints(state.q), qd, course.ahead(0.0));
-      gravest = worse(gravest, tick.status);
+      if (!stopping) follower.advance(period.toSec());
+      const auto tick = tracker.resolve_measured(fr3::joints(state.q), qd, follower.ahead(0.0));
+      worst = worse(worst, tick.status);
 
-      // M(q) qdd + c(q, qd): the robot adds what gravity and friction take.
-      const std::array<double, 49> mass = model.mass(state);  // Column by column.
+      // M(q) qdd + c(q, qd); the robot itself adds gravity and friction.
+      const std::array<double, 49> mass = model.mass(state);  // Stored column by column.
       const Eigen::Map<const Eigen::Matrix<double, 7, 7>> M(mass.data());
       const fr3::Joints torque = M * tick.qdd + fr3::joints(model.coriolis(state));
 
       const double speed = qd.cwiseAbs().maxCoeff();
-      if (fr3::interrupted || failed(gravest) || (course.done() && speed < 0.02)) {
+      if (fr3::interrupted || failed(worst) || (follower.done() && speed < 0.02)) {
         tracker.stop();
         stopping = true;
       }
@@ -50,9 +51,9 @@ int main(int argc, char** argv) {
 
     constexpr bool kLimitRate = true;  // Torques that jump by more than 1 Nm in a tick are refused.
     robot.control(callback, kLimitRate);
-    std::printf("at worst: %s\n", message(gravest));
-    return failed(gravest) ? 1 : 0;
-  } catch (const std::exception& error) {  // Of libfranka, or a start posture outside the limits.
+    std::printf("at worst: %s\n", message(worst));
+    return failed(worst) ? 1 : 0;
+  } catch (const std::exception& error) {  // From libfranka, or where the start posture is outside the limits.
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }

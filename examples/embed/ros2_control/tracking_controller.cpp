@@ -1,6 +1,6 @@
 // A Panda draws a circle under ros2_control: Tracker::tick() in a controller's update(), which commands joint positions
 // and can be paused and resumed by messages on ~/run.
-// Compiled and run against a stand-in of ros2_control (its interfaces since 4.27) only, never on a robot.
+// This has been compiled and run against a stand-in of ros2_control (its interfaces since 4.27) only, never on a robot.
 
 #include <atomic>
 #include <controller_interface/controller_interface.hpp>
@@ -29,14 +29,14 @@ class TrackingController : public controller_interface::ControllerInterface {
                                                       "panda_joint5", "panda_joint6", "panda_joint7"});
     auto_declare<double>("radius", 0.1);            // [m]
     auto_declare<double>("duration", 5.0);          // [s]
-    auto_declare<double>("following_error", 0.05);  // [rad], from which on the arm is brought to rest
+    auto_declare<double>("following_error", 0.05);  // [rad], above which the arm is brought to rest
     return CallbackReturn::SUCCESS;
   }
 
   InterfaceConfiguration command_interface_configuration() const override { return positions_of_joints(); }
   InterfaceConfiguration state_interface_configuration() const override { return positions_of_joints(); }
 
-  /// Builds all that may throw or allocate.
+  /// Builds everything whose construction may throw or allocate.
   CallbackReturn on_configure(const rclcpp_lifecycle::State&) override {
     const auto node = get_node();
     try {
@@ -47,7 +47,7 @@ class TrackingController : public controller_interface::ControllerInterface {
       limits_.emplace(arm_.limits(), options_.dt);
       const fpbm::Path circle(fpbm::Circle(node->get_parameter("radius").as_double()),
                               node->get_parameter("duration").as_double(), fpbm::Quintic{});
-      path_.emplace(fpbm::InPlane(circle, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));  // The hand held as it is.
+      path_.emplace(fpbm::InPlane(circle, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));  // Its orientation is held.
     } catch (const std::exception& error) {
       RCLCPP_ERROR(node->get_logger(), "%s", error.what());
       return CallbackReturn::FAILURE;
@@ -57,36 +57,35 @@ class TrackingController : public controller_interface::ControllerInterface {
     return CallbackReturn::SUCCESS;
   }
 
-  /// Begins where the arm stands. What is put in place here has a fixed size and lies within the controller.
+  /// Begins where the arm stands. All that is built here has a fixed size and lies within the controller.
   CallbackReturn on_activate(const rclcpp_lifecycle::State&) override {
     const std::optional<Joints> start = measured();
     if (!start) return CallbackReturn::FAILURE;
     try {
-      const Scheme scheme(0.6, fpbm::DiagonalWeights<kDof>({8, 8, 4, 4, 2, 1, 1}), 20.0, 100.0,
-                          fpbm::NullSpace<kDof>().with_damping(4.0).with_rest_posture(*start, 4.0));
+      const auto homeward = fpbm::NullSpace<kDof>().with_damping(4.0).with_rest_posture(*start, 4.0);
+      const Scheme scheme = fpbm::FPBM<kDof>(0.6, Joints{8, 8, 4, 4, 2, 1, 1}, 20.0, 100.0, homeward);
       tracker_.emplace(arm_, fpbm::Pose{}, scheme, fpbm::State<kDof>{*start, Joints::Zero()}, options_, *limits_);
     } catch (const std::exception& error) {  // A joint outside its limits, say.
       RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
       return CallbackReturn::FAILURE;
     }
-    course_.emplace(*path_, tracker_->tip());
+    follower_.emplace(*path_, tracker_->tip());
     run_ = running_ = true;
     return CallbackReturn::SUCCESS;
   }
 
-  /// One tick a call, of the length that the limits are for, however long the period was: a late call makes the arm
-  /// late, but never fast.
+  /// One tick a call, always of the length that the limits were made for: a late call makes the arm late, never fast.
   return_type update(const rclcpp::Time&, const rclcpp::Duration&) override {
     const std::optional<Joints> q = measured();
     if (!q) return return_type::ERROR;
-    // The measured state is compared with the tracker's own, and never fed to it.
+    // The measured state is compared with the tracker's own, never fed to it.
     if (!((*q - tracker_->state().q).cwiseAbs().maxCoeff() < following_error_)) tracker_->stop();
 
     if (const bool run = run_; run != running_) {
       running_ = run;
-      run ? course_->resume() : course_->pause();
+      run ? follower_->resume() : follower_->pause();
     }
-    const auto tick = tracker_->tick(*course_);
+    const auto tick = tracker_->tick(*follower_);
     bool written = true;
     for (std::size_t i = 0; i < kDof; ++i) {
       written = command_interfaces_[i].set_value(tick.q(static_cast<Eigen::Index>(i))) && written;
@@ -98,7 +97,7 @@ class TrackingController : public controller_interface::ControllerInterface {
   static constexpr int kDof = 7;
   using Joints = fpbm::Vector<kDof>;
   using Arm = fpbm::SerialArm<kDof>;
-  using Scheme = fpbm::FPBM<kDof>;
+  using Scheme = fpbm::AccelerationScheme<kDof>;
   using Path = fpbm::WithRotation<fpbm::InPlane<fpbm::Path<fpbm::Circle<>, fpbm::Quintic>>>;
 
   [[nodiscard]] InterfaceConfiguration positions_of_joints() const {
@@ -109,7 +108,7 @@ class TrackingController : public controller_interface::ControllerInterface {
     return configuration;
   }
 
-  /// Joint positions, in the order in which they were asked for; nothing where one cannot be read.
+  /// Joint positions in the order of the interfaces; nothing where one cannot be read.
   [[nodiscard]] std::optional<Joints> measured() const {
     Joints q;
     for (std::size_t i = 0; i < kDof; ++i) {
@@ -127,10 +126,10 @@ class TrackingController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Limits<Scheme::kLevel, kDof>> limits_;
   std::optional<Path> path_;
   std::optional<fpbm::Tracker<Arm, fpbm::Pose, Scheme>> tracker_;
-  std::optional<fpbm::PathFollower<Path>> course_;
+  std::optional<fpbm::PathFollower<Path>> follower_;
   std::shared_ptr<rclcpp::Subscription<std_msgs::msg::Bool>> run_subscription_;
-  std::atomic<bool> run_{true};  ///< As the last message wants it.
-  bool running_ = true;          ///< As the course has it.
+  std::atomic<bool> run_{true};  ///< What the last message asked for.
+  bool running_ = true;          ///< What the follower does.
 };
 
 }  // namespace fpbm_controllers

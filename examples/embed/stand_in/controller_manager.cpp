@@ -1,5 +1,5 @@
-// Stands in for ros2_control's controller manager: takes the controller through its states on an arm that does what it
-// is told, and fails where the arm does not move and come to rest again.
+// Stands in for ros2_control's controller manager: takes the controller through its states on an arm that follows its
+// commands exactly, and fails where the arm does not move and come to rest again.
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <franka/robot_state.h>
 
-// Stands in for libfranka's header of this name: every joint moves by itself, with an inertia of 1 kg m².
+// Stands in for libfranka's header of this name: no joint acts on another, and each has an inertia of 1 kg m².
 namespace franka {
 
 class Model {

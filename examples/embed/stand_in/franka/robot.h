@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-// Stands in for libfranka's headers of this name and control_types.h: a robot that does what it is told.
+// Stands in for libfranka's headers of this name and control_types.h: a robot that follows its commands exactly.
 namespace franka {
 
 enum class ControllerMode { kJointImpedance, kCartesianImpedance };

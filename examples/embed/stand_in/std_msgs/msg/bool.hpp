@@ -1,6 +1,6 @@
 #pragma once
 
-// Stands in for the header that ROS makes of std_msgs/Bool.
+// Stands in for the header that ROS generates from std_msgs/Bool.
 namespace std_msgs::msg {
 
 struct Bool {
