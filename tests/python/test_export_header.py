@@ -18,16 +18,15 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from fpbm_cpp.export_header import export_header, namespace_of
-from fpbm_cpp.joint import Joint
+from fpbm_cpp.arms import Joint
+from fpbm_cpp.io.header import export_header, namespace_of
 
 pytest.importorskip("click")
-pytest.importorskip("yourdfpy")
 
 from click.testing import CliRunner, Result
 
 from fpbm_cpp.cli import command
-from fpbm_cpp.urdf import read_urdf
+from fpbm_cpp.io.urdf import read_urdf
 
 ROOT = Path(__file__).parents[2]
 EIGEN = Path("/usr/include/eigen3")
@@ -63,8 +62,8 @@ def coupling(joints: Sequence[Joint]) -> tuple[np.ndarray, np.ndarray]:
     A, b = np.eye(len(joints))[:, drives], np.zeros(len(joints))
     for i, joint in enumerate(joints):
         if joint.mimic is not None:
-            master, ratio, b[i] = joint.mimic
-            A[i] = ratio * A[master]
+            leader, ratio, b[i] = joint.mimic
+            A[i] = ratio * A[leader]
     return A, b
 
 
@@ -234,7 +233,7 @@ def test_name_that_no_namespace_can_have(name: str) -> None:
 def test_source_stays_in_its_comment() -> None:
     text = export_header([Joint()], np.eye(4), name="n", source="a\nb\r\u2028\u202ec\\ é")
     assert text.startswith(
-        "// Written by fpbm-cpp export-header from a?b???c\\ é. Regenerate rather than edit.\n#pragma"
+        "// Written by fpbm-cpp export-header from a?b???c\\ é. Do not edit: write it again.\n#pragma"
     )
 
 
@@ -325,8 +324,6 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
     with monkeypatch.context() as patch:
         patch.setattr(os, "replace", full)
         assert_refused(call(arm, *to_out), f"cannot write to {out}: No space left on device")
-    monkeypatch.setitem(sys.modules, "yourdfpy", None)
-    assert_refused(call(arm, *to_out), 'reading URDF needs yourdfpy: pip install "fpbm_cpp[urdf]"')
     assert out.read_text() == "mine"
     assert sorted(os.listdir(tmp_path)) == before
 

@@ -1,4 +1,4 @@
-"""Arms as C++ headers, for programs that read no files."""
+"""Arms written as C++ headers, for programs that read no files."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .joint import Joint
+from ..arms import Joint
+from ..errors import ParameterError
 
 TYPES = {"revolute": "kRevolute", "continuous": "kContinuous", "prismatic": "kPrismatic"}
 
-# No names for a namespace: C++'s keywords, and whose namespaces these are.
+# Names that a namespace cannot have: C++'s keywords, and namespaces of others.
 TAKEN = """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
 co_await co_return co_yield compl concept const consteval constexpr constinit const_cast continue decltype default
 delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable
@@ -23,33 +24,33 @@ typedef typeid typename union unsigned using virtual void volatile wchar_t while
 
 
 def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source: str = "") -> str:
-    """Write a C++ header that constructs an arm, with neither parser nor file when the program runs.
+    """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
 
-    The numbers are these to the last bit. The header needs this library's headers alone.
+    Numbers keep all their digits. The header includes this library's headers alone.
 
     Parameters
     ----------
     joints
-        The joints from base to tip. Where one mimics another the arm is an fpbm::CoupledArm, else an fpbm::SerialArm.
+        The joints from base to tip. The arm is an fpbm::CoupledArm where one mimics another, else an fpbm::SerialArm.
     tip : array_like, shape (4, 4)
         The tip's frame, seen from the last joint [m].
     name : str
         The namespace, 'my_arm' or 'my::arm'.
     source : str
-        What the arm was read from, for a comment.
+        Where the arm comes from, for a comment.
 
     Returns
     -------
     str
-        The header: kDof, kJointNames, chain() and arm() in the namespace.
+        The header, with kDof, kJointNames, chain() and arm() in the namespace.
 
     Raises
     ------
-    ValueError
+    ParameterError
         Where a namespace cannot have that name.
     """
     if not all(_is_identifier(part) for part in name.split("::")):
-        raise ValueError(f"name = {name!r}: must be a C++ identifier that is not taken")
+        raise ParameterError("name", None, name, f"name = {name!r}: must be a C++ identifier that is not taken")
     drives = [joint.name or f"joint_{i}" for i, joint in enumerate(joints, 1) if joint.mimic is None]
     kind = "SerialArm" if len(drives) == len(joints) else "CoupledArm"
     parts = [_joint_lines(i, joint) for i, joint in enumerate(joints)] + [_transform_lines("  chain.tip", tip)]
@@ -57,7 +58,7 @@ def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source:
     none = "  constexpr double kNone = fpbm::JointBounds<>::kNone;\n" if "kNone" in chain else ""
     origin = f" from {_printable(source)}" if source else ""
     return f"""\
-// Written by fpbm-cpp export-header{origin}. Regenerate rather than edit.
+// Written by fpbm-cpp export-header{origin}. Do not edit: write it again.
 #pragma once
 
 #include <array>
@@ -71,8 +72,8 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 {_names(drives)}
 }};
 
-/// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower and upper [rad] or [m], velocity, acceleration; those left out are none.
+/// The joints from base to tip; placements are as seen from the joint before [m].
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
 inline fpbm::Chain<> chain() {{
 {none}  fpbm::Chain<> chain;
   chain.joints.resize({len(joints)});
@@ -91,7 +92,7 @@ inline fpbm::{kind}<kDof> arm() {{
 
 
 def namespace_of(stem: str) -> str:
-    """A namespace after a file's name without suffix: '04-my arm' gives 'my_arm'."""
+    """A namespace named after a file, whose name has no suffix here: '04-my arm' gives 'my_arm'."""
     name = re.sub(r"[^A-Za-z0-9]+", "_", stem).lstrip("_0123456789").rstrip("_") or "arm"
     return f"{name}_arm" if name in TAKEN.split() else name
 
@@ -103,31 +104,31 @@ def _names(drives: Sequence[str]) -> str:
 
 
 def _is_identifier(name: str) -> bool:
-    # Names with two underscores in a row, or one ahead, are the compiler's.
+    # Two underscores in a row, or one at the beginning, are reserved for the compiler.
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
 
 
 def _joint_lines(i: int, joint: Joint) -> list[str]:
-    it = f"  chain.joints[{i}]"
+    member = f"  chain.joints[{i}]"
     lines = [
-        f"{it}.name = {_literal(joint.name)};",
-        f"{it}.type = fpbm::JointType::{TYPES[joint.type]};",
-        *_transform_lines(f"{it}.placement", joint.placement),
-        f"{it}.axis = {_braced(joint.axis)};",
+        f"{member}.name = {_literal(joint.name)};",
+        f"{member}.type = fpbm::JointType::{TYPES[joint.type]};",
+        *_transform_lines(f"{member}.placement", joint.placement),
+        f"{member}.axis = {_braced(joint.axis)};",
     ]
     bounds = [joint.lower, joint.upper, joint.velocity, joint.acceleration]
     if bounds != [-inf, inf, inf, inf]:
         while bounds[-1] == inf:
             bounds.pop()
-        lines.append(f"{it}.bounds = {_braced(bounds)};")
+        lines.append(f"{member}.bounds = {_braced(bounds)};")
     if joint.mimic is not None:
-        master, ratio, offset = joint.mimic
-        lines.append(f"{it}.mimic = {{{master}, {_number(ratio)}, {_number(offset)}}};  // joint, ratio, offset")
+        leader, ratio, offset = joint.mimic
+        lines.append(f"{member}.mimic = {{{leader}, {_number(ratio)}, {_number(offset)}}};  // joint, ratio, offset")
     return lines
 
 
 def _transform_lines(name: str, transform: ArrayLike) -> list[str]:
-    """Assignments to what of a Transform is not as it is by default."""
+    """Assignments to the parts of a Transform that differ from its default."""
     T = np.asarray(transform, dtype=float)
     lines = []
     if np.any(T[:3, 3]):
@@ -147,12 +148,12 @@ def _number(value: float) -> str:
 
 
 def _literal(text: str) -> str:
-    """A C++ string literal of the text in UTF-8, in ASCII: in octal what is not."""
+    """A C++ string literal of the text in UTF-8; bytes beyond ASCII are written in octal."""
 
     def escaped(byte: int) -> str:
         if not 32 <= byte < 127:
             return f"\\{byte:03o}"
-        return f"\\{byte:c}" if byte in b'\\"?' else f"{byte:c}"  # ?, since ??/ was once a backslash.
+        return f"\\{byte:c}" if byte in b'\\"?' else f"{byte:c}"  # Of ?, since ??/ was once a backslash.
 
     return '"' + "".join(map(escaped, text.encode())) + '"'
 
