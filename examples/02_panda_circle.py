@@ -23,16 +23,17 @@ runs = {
     for name, scheme in schemes.items()
 }
 
-# Six of seven freedoms are the task's, so all peaks are alike; what differs is where the elbow goes. MVN and WMVN
-# end in another posture after every circle. MAN's elbow moves on though the hand stands still, and its error grows.
-# FPBM's error dies out, and it comes to rest in the posture that it started from.
+# The task takes six of the seven degrees of freedom, so all peaks are alike; what differs is where the elbow goes. MVN
+# and WMVN end each circle in another posture. MAN's elbow still moves when the hand stands still, and its tip error
+# grows. FPBM's tip error dies out, and the arm comes to rest in the posture that it started from.
 print("        peak    peak     final   tip error      least    from first")
 print("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad")
 for name, run in runs.items():
     speed, acceleration, distance = (np.linalg.norm(rows, axis=1) for rows in (run.qd, run.qdd, run.q - ready))
+    least = run.manipulability().min()
     print(
         f"{name:6} {speed.max():6.3f} {acceleration.max():8.3f} {speed[-1]:8.4f}"
-        f"   {run.max_error():.0e}  {run.max_orientation_error():.0e} {run.manipulability().min():8.4f} {distance[-1]:8.4f}"
+        f"   {run.max_error():.0e}  {run.max_orientation_error():.0e} {least:8.4f} {distance[-1]:8.4f}"
     )
 
 figure = compare(runs, "A Panda draws a horizontal circle twice in 6 s with its hand held level, then stands still")

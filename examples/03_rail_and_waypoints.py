@@ -1,4 +1,4 @@
-"""An iiwa 14 on a rail works along a bench longer than its reach: weights say how much of the way the rail goes."""
+"""An iiwa 14 on a rail works along a bench that is longer than its reach: the weights set how far the rail moves."""
 
 from math import pi
 
@@ -16,25 +16,25 @@ start = np.array([-0.8, -0.3, 0.6, 0, -1.5, 0, pi - 2.1, 0])  # [m], [rad]: the 
 first = arm.forward(start)
 
 
-def hand(x: float, y: float, z: float, turn: float) -> np.ndarray:
-    """A pose displaced from the first [m] and turned about the vertical [rad]."""
+def hand(x: float, y: float, z: float, angle: float) -> np.ndarray:
+    """The first pose, moved by x, y, z [m] and rotated about the vertical by an angle [rad]."""
     pose = first.copy()
     pose[:3, 3] += x, y, z
-    pose[:3, :3] = fp.rotation([0, 0, turn]) @ first[:3, :3]
+    pose[:3, :3] = fp.rotation([0, 0, angle]) @ first[:3, :3]
     return pose
 
 
 stations = [(0, 0, 0, 0), (0.05, 0.45, -0.15, 0.3), (0, 0.9, 0, 0), (0.05, 1.35, -0.15, -0.3), (0, 1.8, 0, 0)]
-path = fp.Waypoints([hand(*station) for station in stations], speed=0.5, acceleration=1.0, angular_velocity=1.0)
+path = fp.Waypoints([hand(*station) for station in stations], velocity=0.5, acceleration=1.0, angular_velocity=1.0)
 
 
 def run(weight: float) -> fp.Run:
-    """The whole bench, where 1 m/s of the rail counts as much as sqrt(weight) rad/s of a joint."""
+    """Along the whole bench, where 1 m/s of the rail costs as much as sqrt(weight) rad/s of a joint."""
     scheme = fp.FPBM(0.6, [weight, 1, 1, 1, 1, 1, 1, 1], k1=20, k2=100, null_damping=2)
     return fp.simulate(arm, path, scheme, start, hold=1.0, task="pose")
 
 
-# A light rail goes along with the hand; a heavy one leaves to the arm what it can reach.
+# A light rail follows the hand; a heavy rail moves only as far as the arm cannot reach.
 runs = {"light rail, W = diag(0.1, 1, …, 1)": run(0.1), "heavy rail, W = diag(10, 1, …, 1)": run(10)}
 for name, done in runs.items():
     print(
@@ -53,7 +53,7 @@ for column, (name, done) in enumerate(runs.items()):
     below = figure.add_subplot(cells[1, column])
     below.plot(done.t, done.positions[:, 1], "#000000", label="hand, along the bench")
     below.plot(done.t, done.q[:, 0], "#0072B2", label="rail")
-    below.plot(done.t, done.positions[:, 1] - done.q[:, 0], "#D55E00", label="hand ahead of the rail: the arm's part")
+    below.plot(done.t, done.positions[:, 1] - done.q[:, 0], "#D55E00", label="hand from the rail: the arm's part")
     below.set(xlabel="time [s]", ylabel="y [m]", ylim=(-1.1, 1.3))
     below.grid(color="0.9")
     below.legend(loc="upper left", frameon=False)

@@ -1,17 +1,18 @@
-"""A Kinova Gen3 draws a Lissajous figure with its tip, free in its orientation, and ends at rest where it began."""
+"""A Kinova Gen3 draws a Lissajous figure with its tip, whose orientation is free, and comes to rest where it began."""
 
 from math import pi
 
 import numpy as np
 
 import fpbm_cpp as fp
-from fpbm_cpp.plot import compose
+from fpbm_cpp.plot import plot_run
 
 arm = fp.SerialArm.preset("gen3")
 home = np.array([0, 0.26, pi, -2.27, 0, 0.96, pi / 2])  # [rad]
 path = fp.Lissajous((0.15, 0.1), 8.0, frequencies=(1, 2), phase=0.0, time_law="quintic").in_plane("yz")  # [m], [s]
 
-# Three task rows leave four of seven joints free. Left alone, they end elsewhere and move on while the tip rests.
+# The task takes three of the seven degrees of freedom. Left alone, the other four end elsewhere, and still move when
+# the tip rests.
 schemes = {
     "left alone": fp.FPBM(0.6, np.ones(7), k1=20, k2=100),
     "drawn home": fp.FPBM(0.6, np.ones(7), k1=20, k2=100, null_damping=4, rest_posture=home, null_stiffness=4),
@@ -23,4 +24,4 @@ for name, scheme in schemes.items():
         f" at the end {abs(run.qd[-1]).max():.0e} rad/s and {abs(run.q[-1] - home).max():.0e} rad from home"
     )
 
-compose(run, "A Kinova Gen3 draws a Lissajous figure, its joints drawn home").savefig("gen3_lissajous.png")
+plot_run(run, "A Kinova Gen3 draws a Lissajous figure, its joints drawn home").savefig("gen3_lissajous.png")

@@ -1,4 +1,4 @@
-"""Bring your own kinematics: tip, J and Jd from Pinocchio, the joint accelerations from FPBM, in a control loop."""
+"""Your own kinematics: Pinocchio gives tip, J and Jd, FPBM gives the joint accelerations, in a control loop."""
 
 import numpy as np
 
@@ -36,6 +36,6 @@ for step in range(1001):
     x, xd, xdd = path.sample(step * h)
     errors.append(np.linalg.norm(start + x - here.tip))
     qdd = scheme.resolve(here, q, qd, start + x, xd, xdd)
-    q, qd = q + h * qd + h * h / 2 * qdd, qd + h * qdd  # what the drives do until the next tick
+    q, qd = q + h * qd + h * h / 2 * qdd, qd + h * qdd  # the drives, until the next tick
 
 print(f"tip error [m]: {max(errors):.1e} at most, {errors[-1]:.1e} at the end")

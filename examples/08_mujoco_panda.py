@@ -1,8 +1,8 @@
-"""A Panda in MuJoCo, led by torques: it draws a circle, is pushed, reaches for what is too far and too near, goes home.
+"""A Panda in MuJoCo, commanded by torques: it draws a circle, is pushed, reaches too far and too near, and goes home.
 
-Each millisecond Tracker.resolve_measured() turns the measured joints into an acceleration within their limits, and
-computed torque, tau = M(q) qdd + h(q, qd), is to realise it. The controller believes every mass and inertia to be 2 %
-greater than it is, and knows nothing of friction.
+Every millisecond Tracker.resolve_measured() answers the measured joints with an acceleration within their limits. The
+torques tau = M(q) qdd + h(q, qd) would give exactly that (computed torque), but the controller takes every mass and
+inertia for 2 % greater than it is, and knows nothing of friction.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ PHASES = {"circle": 0.0, "hold": 4.0, "push": 6.0, "too far": 9.0, "too near": 1
 END = 21.0  # [s]
 CIRCLE = fp.Circle(0.12, 4.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
 START = ARM.forward(HOME)
-AWAY = {"too far": (0.5, 0.0, 0.0), "too near": (-0.35, 0.0, -0.35)}  # Leaps of the target from START [m].
+AWAY = {"too far": (0.5, 0.0, 0.0), "too near": (-0.35, 0.0, -0.35)}  # Jumps of the target from START [m].
 PUSH = (0.0, 30.0, 0.0)  # Force on link 4, at the elbow [N],
 PUSH_LASTS = 0.3  # and for how long [s].
 
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
 SCHEME = {"k1": 60, "k2": 900, "null_damping": 10, "rest_posture": HOME, "null_stiffness": 25}
-# A quarter of the gain k1 k2 at which it would be unstable. The bound is in rad/s² as well: in Coulomb's friction over
-# inertia the wrist has some 6 of it.
+# A quarter of the gain k1 k2 at which the loop would be unstable. The bound holds for rad/s², too: the wrist's friction
+# torque over its inertia is about 6 rad/s².
 INTEGRAL = {"integral_gain": 0.25 * 60 * 900, "integral_bound": 10.0}
 
 
 def margins() -> fp.JointLimits:
-    """A little less than the arm's limits: its acceleration is not quite the one it is told."""
+    """A little less than the arm's limits, since its acceleration is not quite the commanded one."""
     real = ARM.limits
     return fp.JointLimits(
         lower=real.lower + 0.005,  # [rad]
@@ -67,10 +67,10 @@ def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @dataclass
 class Motion:
-    """Tip errors [m], [rad] and torques [Nm], a row a tick; joints [rad], [rad/s], a row a step of the simulation."""
+    """Tip errors [m], [rad] and torques [Nm] at each tick; joints [rad], [rad/s] at each step of the simulation."""
 
     tip: list[float] = field(default_factory=list)
-    turn: list[float] = field(default_factory=list)
+    orientation: list[float] = field(default_factory=list)
     torque: list[np.ndarray] = field(default_factory=list)
     q: list[np.ndarray] = field(default_factory=list)
     qd: list[np.ndarray] = field(default_factory=list)
@@ -83,12 +83,12 @@ class Motion:
         return np.array(getattr(self, rows)[round(begins[i] * per_second) : round(begins[i + 1] * per_second)])
 
     def clearance(self) -> tuple[np.ndarray, np.ndarray]:
-        """How far each joint stayed from its bounds, at any step, on position [rad] and on velocity [rad/s]."""
+        """The least distance of each joint from its bounds on position [rad] and on velocity [rad/s]."""
         q, qd, real = np.array(self.q), np.array(self.qd), ARM.limits
         return np.minimum(q - real.lower, real.upper - q).min(axis=0), (real.velocity - abs(qd)).min(axis=0)
 
     def settled(self) -> float:
-        """Seconds from the push on until every joint stays below 0.01 rad/s and the tip within 1 mm."""
+        """Seconds from the push until every joint stays below 0.01 rad/s and the tip error below 1 mm."""
         busy = (abs(self.during("push", "qd")[::STEPS]).max(axis=1) > 0.01) | (self.during("push", "tip") > 1e-3)
         return float(DT * (np.flatnonzero(busy).max(initial=-1) + 1))
 
@@ -119,7 +119,7 @@ def simulate(
         believed.qpos[:], believed.qvel[:] = q, qd
         mujoco.mj_forward(belief, believed)
         mujoco.mj_mulM(belief, believed, torque, tick.qdd)
-        world.ctrl[:] = torque + believed.qfrc_bias  # The motors give no more than they can.
+        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo bounds the torques.
 
         pushed = PHASES["push"] <= t < PHASES["push"] + PUSH_LASTS
         world.body("link4").xfrc_applied[:3] = PUSH if pushed else (0, 0, 0)
@@ -129,16 +129,16 @@ def simulate(
             motion.qd.append(world.qvel.copy())
         motion.torque.append(world.actuator_force.copy())
         motion.tip.append(float(np.linalg.norm(tick.error[:3])))
-        motion.turn.append(float(np.linalg.norm(tick.error[3:])))
+        motion.orientation.append(float(np.linalg.norm(tick.error[3:])))
     return motion
 
 
 def report(motion: Motion) -> None:
-    print("            tip error, mm            turn error, mrad         fastest joint, rad/s")
+    print("            tip error, mm     orientation error, mrad         fastest joint, rad/s")
     print("              rms      max   at end      rms      max   at end      max   at end")
     for name in PHASES:
         cells = []
-        for error in (1e3 * motion.during(name, "tip"), 1e3 * motion.during(name, "turn")):
+        for error in (1e3 * motion.during(name, "tip"), 1e3 * motion.during(name, "orientation")):
             cells += [np.sqrt(np.mean(error**2)), error.max(), error[-1]]
         speed = abs(motion.during(name, "qd")).max(axis=1)
         print(f"{name:9}", *(f"{cell:8.3f}" for cell in [*cells, speed.max(), speed[-1]]))
@@ -167,7 +167,7 @@ def draw(motion: Motion) -> Any:
     figure = Figure(figsize=(8.0, 9.0), dpi=150, layout="constrained")
     axes = figure.subplots(4, 1, sharex=True)
     axes[0].semilogy(t, 1e3 * np.array(motion.tip), color="#D55E00", lw=1.2, label="position [mm]")
-    axes[0].semilogy(t, 1e3 * np.array(motion.turn), color="#0072B2", lw=1.0, label="orientation [mrad]")
+    axes[0].semilogy(t, 1e3 * np.array(motion.orientation), color="#0072B2", lw=1.0, label="orientation [mrad]")
     axes[0].axhline(1.0, color="0.5", lw=0.8, ls="--")
     axes[0].set(ylabel="tip error", ylim=(1e-3, 3e3))
     axes[0].legend(loc="lower center", bbox_to_anchor=(0.62, 0.02), frameon=False)

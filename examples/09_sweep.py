@@ -11,7 +11,7 @@ schemes = [fp.FPBM(alpha, np.ones(7), k1=10, k2=25, null_damping=damping) for da
 starts = np.tile([0, -0.3, 0, -2.2, 0, 2.0, 0.785], (11, 1))  # [rad]
 starts[:, 2] = np.linspace(-0.5, 0.5, 11)
 
-# Twelve schemes from eleven starts, on all cores. Of each scheme, the worst of its starts.
+# Twelve schemes from eleven starts, on all cores. Each row shows the worst of a scheme's starts.
 sweep = fp.sweep(arm, path, schemes, starts, hold=1.0, task="pose")
 print("damping  alpha  complete  error [m]  peak qd [rad/s]  final qd [rad/s]  manipulability")
 for i, (damping, alpha) in enumerate(cases):

@@ -3,9 +3,9 @@
 Kinematics: the preset's own joints, so that MuJoCo's arm is the library's. Masses, centres of mass and inertias: Gaz,
 Cognetti, Oliva, Robuffo Giordano, De Luca, "Dynamic Identification of the Franka Emika Panda Robot With Retrieval of
 Feasible Parameters Using Penalty-Based Optimization", IEEE RA-L 4(4), 2019, as franka_ros has them
-(franka_description/robots/common/inertial.yaml). Coulomb friction: the same paper's supplement, whose sigmoids go from
-one direction to the other by FI_1; here that is the friction each way, twice as much, since theirs was identified
-behind the robot's own torque sensors. Viscous friction and armature: mujoco_menagerie, franka_emika_panda. Bounds on
+(franka_description/robots/common/inertial.yaml). Coulomb friction: the same paper's supplement, where friction changes
+by FI_1 from one direction to the other; here it is FI_1 each way, twice as much, since theirs was identified behind the
+robot's own torque sensors. Viscous friction and armature: mujoco_menagerie, franka_emika_panda. Bounds on
 torque: Franka Control Interface documentation, "Limits for Panda".
 """
 
@@ -36,19 +36,19 @@ TORQUE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # [Nm]
 def panda_mjcf(*, inertia_error: float = 0.0, friction: float = 1.0, timestep: float = 2.5e-4) -> str:
     """MJCF of the Panda with a torque motor on each joint and a site "tip" at its flange.
 
-    inertia_error: by how much of itself every mass and inertia is too large; friction: times that of the paper. The
-    joints have no stops and the links do not collide: a joint that leaves its range is seen to, not held.
+    inertia_error: relative error of every mass and inertia. friction: factor on all friction. The joints have no stops
+    and the links do not collide, so that a joint which leaves its range is seen.
     """
     arm = fp.SerialArm.preset("panda")
     heavier = 1 + inertia_error
     root = ElementTree.Element("mujoco", model="panda")
     _add(root, "compiler", angle="radian")
     _add(root, "option", timestep=timestep, integrator="implicitfast")
-    look = _add(root, "default")
-    _add(look, "geom", contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
-    # As near to dry friction as the time step allows, where MuJoCo's own setting lets a joint creep.
+    defaults = _add(root, "default")
+    _add(defaults, "geom", contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
+    # As close to dry friction as the time step allows: MuJoCo's own setting lets a joint creep.
     dry = {"solreffriction": (2 * timestep, 1), "solimpfriction": (0.99, 0.999, 1e-3)}
-    _add(look, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, armature=heavier * ARMATURE, **dry)
+    _add(defaults, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, armature=heavier * ARMATURE, **dry)
 
     world = _add(root, "worldbody")
     _add(world, "light", pos=(0.5, -1, 2), dir=(-0.3, 0.5, -1))
@@ -71,7 +71,7 @@ def panda_mjcf(*, inertia_error: float = 0.0, friction: float = 1.0, timestep: f
 
 
 def _link(body: ElementTree.Element, end: np.ndarray) -> None:
-    """What is seen of a link, from its joint to the next."""
+    """The visible part of a link, from its joint to the next."""
     if np.linalg.norm(end) > 0.01:
         _add(body, "geom", type="capsule", fromto=(0, 0, 0, *end))
 
@@ -81,7 +81,7 @@ def _frame(placement: np.ndarray) -> dict[str, object]:
 
 
 def _add(parent: ElementTree.Element, tag: str, **attributes: object) -> ElementTree.Element:
-    """A child; numbers keep all their digits."""
+    """Add a child element; numbers keep all their digits."""
     texts = {
         key: value if isinstance(value, str) else " ".join(map(repr, np.ravel(value).tolist()))
         for key, value in attributes.items()
