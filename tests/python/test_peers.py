@@ -25,7 +25,7 @@ class Link(NamedTuple):
 
     placement: Array
     axis: Array
-    slides: bool
+    prismatic: bool
 
 
 class Robot(NamedTuple):
@@ -109,7 +109,7 @@ def pinocchio(robot: Robot) -> Kinematics:
         model = pin.Model()
         joint = 0
         for i, link in enumerate(robot.links):
-            kind = pin.JointModelPrismaticUnaligned if link.slides else pin.JointModelRevoluteUnaligned
+            kind = pin.JointModelPrismaticUnaligned if link.prismatic else pin.JointModelRevoluteUnaligned
             joint = model.addJoint(joint, kind(link.axis), pin.SE3(link.placement), f"joint_{i}")
         end = model.addFrame(pin.Frame("tip", joint, 0, pin.SE3(robot.tip), pin.FrameType.OP_FRAME))
     assert model.nv == robot.arm.dof
@@ -155,7 +155,7 @@ def kdl(robot: Robot) -> Kinematics:
 
     chain = orocos.Chain()
     for link in robot.links:
-        kind = orocos.Joint.TransAxis if link.slides else orocos.Joint.RotAxis
+        kind = orocos.Joint.TransAxis if link.prismatic else orocos.Joint.RotAxis
         chain.addSegment(fixed(link.placement))
         chain.addSegment(orocos.Segment(orocos.Joint("", orocos.Vector(0, 0, 0), orocos.Vector(*link.axis), kind)))
     chain.addSegment(fixed(robot.tip))
@@ -185,8 +185,8 @@ def kdl(robot: Robot) -> Kinematics:
     return kinematics
 
 
-# From example-robot-data. The torso of TIAGo and PR2 slides, some joints of PR2 turn without end, and the fixed joints
-# at TIAGo's wrist and at both ends of Baxter's arm do not commute.
+# From example-robot-data. The torso of TIAGo and PR2 is prismatic, some joints of PR2 are continuous, and the fixed
+# joints at TIAGo's wrist and at both ends of Baxter's arm do not commute.
 URDFS = {
     "Panda": ("panda_description/urdf/panda.urdf", "panda_hand"),
     "UR5": ("ur_description/urdf/ur5_robot.urdf", "tool0"),
@@ -214,8 +214,8 @@ def robot(name: str) -> Robot:
 
 def random_robot(rng: np.random.Generator) -> Robot:
     def transform() -> Array:
-        turn = rng.normal(size=3)
-        return frame(rotation(turn / np.linalg.norm(turn), rng.uniform(0, np.pi)), rng.uniform(-0.5, 0.5, 3))
+        axis = rng.normal(size=3)
+        return frame(rotation(axis / np.linalg.norm(axis), rng.uniform(0, np.pi)), rng.uniform(-0.5, 0.5, 3))
 
     kinds = rng.choice(["revolute", "continuous", "prismatic"], size=rng.integers(2, 11))
     joints = tuple(fp.Joint(str(kind), transform(), rng.normal(size=3)) for kind in kinds)
@@ -225,7 +225,7 @@ def random_robot(rng: np.random.Generator) -> Robot:
 
 def states(links: list[Link], count: int, seed: int = 1) -> Iterator[tuple[Array, Array]]:
     rng = np.random.default_rng(seed)
-    reach = np.where([link.slides for link in links], 1.0, np.pi)
+    reach = np.where([link.prismatic for link in links], 1.0, np.pi)
     for _ in range(count):
         yield rng.uniform(-reach, reach), rng.uniform(-2.0, 2.0, len(links))
 
@@ -254,7 +254,7 @@ def test_arms_are_the_peers(peer, tolerance, name):
 def test_chains_of_mixed_joints_are_the_peers(peer, tolerance):
     rng = np.random.default_rng(2)
     chains = [random_robot(rng) for _ in range(25)]
-    assert {link.slides for chain in chains for link in chain.links} == {False, True}
+    assert {link.prismatic for chain in chains for link in chain.links} == {False, True}
     for chain in chains:
         assert deviation(chain, peer(chain), STATES // len(chains)) <= tolerance
 
@@ -297,7 +297,7 @@ def test_presets_are_the_others(name):
     links, end = read_urdf(str(path), tip)
     preset = fp.SerialArm.preset(name)
     other = fp.SerialArm.from_joints(
-        [fp.Joint("prismatic" if link.slides else "revolute", link.placement, link.axis) for link in links], end
+        [fp.Joint("prismatic" if link.prismatic else "revolute", link.placement, link.axis) for link in links], end
     )
     for q, _ in states(links, STATES):
         np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)

@@ -113,7 +113,7 @@ class Run(Conveniences):
         J = np.array([self.arm.jacobian(q, task=self.task) for q in self.q])
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
 
-    def arrays(self) -> dict[str, NDArray[Any]]:
+    def arrays(self) -> dict[str, Any]:
         """All arrays by name; scale and saturated only where the limits were kept."""
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}

@@ -89,6 +89,8 @@ def track(
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
-    *ended, arrays, scale, saturated = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, *limited)
-    options |= limited._asdict()
-    return make_run(*ended, (*arrays, scale, saturated), q0, arm, path, scheme, task, options)
+    code, time, samples, arrays, scale, saturated = rollout(
+        arm, path, scheme, q0, options["qd0"], dt, hold, task, *limited
+    )
+    made_of = q0, arm, path, scheme, task, {**options, **limited._asdict()}
+    return make_run(code, time, samples, (*arrays, scale, saturated), *made_of)
