@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <experimental/simd>
 
-/// K numbers in the lanes of vector registers, as many as it takes, for whatever is written for a Scalar: K arms, or K
-/// motions of an arm, at once. See core/truth.hpp for what becomes of branches.
+/// K numbers side by side in vector registers. With Scalar = Lanes<K> the same code computes K arms, or K motions of an
+/// arm, at once. core/mask.hpp says what takes the place of branches.
 namespace fpbm {
 
 template <int K, typename T = double>

@@ -8,18 +8,18 @@
 
 namespace fpbm {
 
-/// Where a frame is and how it is turned, seen from another.
+/// Pose of a frame b in a frame a: x_a = p + R x_b.
 template <typename Scalar = double>
 struct Transform {
-  Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin [m].
-  Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the frame's axes.
+  Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin of b in a [m].
+  Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the axes of b in a.
 
   template <typename Other>
   [[nodiscard]] Transform<Other> cast() const noexcept {
     return {p.template cast<Other>(), R.template cast<Other>()};
   }
 
-  /// Where b is, seen from where a is seen from.
+  /// Composition: T_ac = T_ab T_bc.
   [[nodiscard]] friend Transform operator*(const Transform& a, const Transform& b) noexcept {
     return {a.p + a.R.lazyProduct(b.p), a.R.lazyProduct(b.R)};
   }
@@ -34,7 +34,7 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Vector<3, Scalar>& r) noexcept {
   using std::sqrt;
-  // With half angles neither factor loses digits near |r| = 0: sin(a)/a there is 1 to round-off.
+  // With half angles both factors are accurate near |r| = 0, where sin(a)/a is 1 to round-off.
   const Scalar half = sqrt(r.squaredNorm()) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
@@ -46,8 +46,8 @@ template <typename Scalar>
 
 /// Unit quaternion (w, v) of a rotation matrix, w ≥ 0.
 ///
-/// Its largest entry is taken from the diagonal (S. W. Shepperd, Quaternion from rotation matrix, 1978), which loses no
-/// digits near a turn of 0 and none near π.
+/// Computes the largest entry from the diagonal first (S. W. Shepperd, Quaternion from rotation matrix, 1978), which is
+/// accurate at every angle, 0 and π included.
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::sqrt;
@@ -71,7 +71,7 @@ template <typename Scalar>
   return q(0) < Scalar(0) ? Vector<4, Scalar>(-q) : q;
 }
 
-/// Vector part of a b*, a quaternion times the conjugate of another: of q̇ q* it is half the angular velocity.
+/// Vector part of a b*, where b* is the conjugate of b. For q̇ q* it is half the angular velocity.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> vector_of_quotient(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
   const Vector<3, Scalar> v = a.template tail<3>();
@@ -105,10 +105,10 @@ template <typename Scalar>
 /// Rotation vector of a rotation matrix, |r| ≤ π [rad]; the inverse of rotation().
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
-  // A small turn, as errors are: sin|r| r/|r| times the series of arcsine, with neither root nor division.
+  // Small angles, as errors have: sin|r| r/|r| times the arcsine series, without root or division.
   const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const Scalar z = s.squaredNorm() / Scalar(4);
-  // Even and odd powers apart: two short chains of operations that wait for one another, not a long one.
+  // Even and odd powers apart: two short dependency chains in place of a long one.
   constexpr double kEven[] = {6435.0 / 557056.0, 231.0 / 13312.0, 35.0 / 1152.0, 3.0 / 40.0, 1.0};
   constexpr double kOdd[] = {143.0 / 10240.0, 63.0 / 2816.0, 5.0 / 112.0, 1.0 / 6.0};
   const Scalar square = z * z;

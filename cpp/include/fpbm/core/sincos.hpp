@@ -10,8 +10,7 @@
 
 namespace fpbm {
 
-/// sin and cos of one angle |x| ≤ kReach [rad], to 2e-16, with no branch, so that a loop over it
-/// becomes vector code.
+/// sin and cos of one angle |x| ≤ kReach [rad], to 2e-16, without a branch, so that a loop over it vectorises.
 ///
 /// Cody-Waite reduction by multiples of π/2 in three parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative
 /// error below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
@@ -32,7 +31,7 @@ struct ReducedSinCos {
     cosine = real(((cos_r & ~swap) | (sin_r & swap)) ^ (((quadrant + 1U) & 2U) << 62));
   }
 
-  /// In lanes, of which those beyond kReach give NaN.
+  /// The same in lanes. A lane beyond kReach becomes NaN.
   template <typename Scalar>
   static void evaluate(const Scalar& x, Scalar& sine, Scalar& cosine) noexcept {
     const Scalar k = round(x * Scalar(kPerQuadrant));
@@ -59,7 +58,7 @@ struct ReducedSinCos {
     Scalar cosine;
   };
 
-  /// Of r = x − k π/2.
+  /// sin and cos of r = x − k π/2.
   template <typename Scalar>
   static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
     Scalar r = x - k * Scalar(1.57079632673412561e+00);

@@ -9,13 +9,12 @@ namespace fpbm {
 
 inline constexpr double kTwoPi = 6.28318530717958647692;
 
-/// A task space tells resolvers and paths what a point of it is, how many rows its velocities have (kRows), what x ⊖ y
-/// means, and what it means that one displacement follows another:
+/// A task space defines a Point, the number of rows of its velocities (kRows), and
 ///
-///   difference(x, y)   x ⊖ y: the displacement that leads from y to x, along the base frame's axes;
-///   displace(y, d)     y ⊕ d: the point that d leads to from y;
-///   compose(y, x)      where x leads that was seen from the origin and now starts at y;
-///   store(x, out)      the point as kSize plain numbers.
+///   difference(x, y)   x ⊖ y: the displacement from y to x, along the base frame's axes
+///   displace(y, d)     y ⊕ d: applies displacement d to point y
+///   compose(y, x)      applies displacement x, given as a point seen from the origin, to point y
+///   store(x, out)      writes a point as kSize plain numbers
 
 /// Task space of tip positions: M = 2 in the plane, M = 3 in space [m].
 template <int M>
@@ -54,7 +53,7 @@ struct Position {
 
 /// Task space of tip poses in the plane: x, y [m] and the angle from the base frame's x axis to the tip's [rad].
 struct PlanarPose : Position<3> {
-  /// x ⊖ y, the angle by the shorter way round.
+  /// x ⊖ y, the angle by the shorter way.
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::round;
@@ -81,18 +80,18 @@ struct Pose {
   /// x ⊖ y: from y's origin to x's [m], then the rotation vector of R_x R_yᵀ [rad].
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
-    const Matrix<3, 3, Scalar> turn = x.R.lazyProduct(y.R.transpose());
+    const Matrix<3, 3, Scalar> rotated = x.R.lazyProduct(y.R.transpose());
     Vector<6, Scalar> result;
     result.template head<3>() = x.p - y.p;
-    result.template tail<3>() = rotation_vector(turn);
+    result.template tail<3>() = rotation_vector(rotated);
     return result;
   }
 
   /// y ⊕ d: y moved by d's first three rows and turned by the rotation vector in its last three.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
-    const Vector<3, Scalar> turn = d.template tail<3>();
-    return {y.p + d.template head<3>(), rotation(turn).lazyProduct(y.R)};
+    const Vector<3, Scalar> rotated = d.template tail<3>();
+    return {y.p + d.template head<3>(), rotation(rotated).lazyProduct(y.R)};
   }
 
   /// y moved by x.p and turned by x.R, both along the base frame's axes.
@@ -113,7 +112,7 @@ struct Pose {
   }
 };
 
-/// The space of poses over a space of positions.
+/// The pose space that belongs to a space of positions.
 template <typename Space>
 struct PoseOver;
 template <>

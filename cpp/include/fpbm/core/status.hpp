@@ -3,13 +3,13 @@
 namespace fpbm {
 
 /// What became of one evaluation, step, tick or rollout. The loop returns it and never throws.
-/// Up to kSlowed the result is good; from kSingular on there is none.
+/// Up to kSlowed there is a result; from kSingular on there is none.
 enum class Status : unsigned char {
   kOk = 0,
   kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
   kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
   kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
-  kTaskLost,   ///< In one step the tip left the course that the scheme prescribes.
+  kTaskLost,   ///< The tip left the motion that the scheme prescribes within one step.
   kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
 };
 
@@ -18,7 +18,7 @@ enum class Status : unsigned char {
   return status >= Status::kSingular;
 }
 
-/// The graver of two.
+/// The worse of two.
 [[nodiscard]] constexpr Status worse(Status a, Status b) noexcept {
   return a > b ? a : b;
 }

@@ -4,16 +4,16 @@
 
 namespace fpbm {
 
-/// Most joints that a run-time sized (N = Eigen::Dynamic) arm can have.
+/// Largest number of joints of an arm whose size is known at run time (N = Eigen::Dynamic).
 inline constexpr int kMaxDof = 32;
 
-/// Rows or columns for which memory is set aside: N itself, or kMaxDof where N is chosen at run time.
+/// Rows or columns that memory is reserved for: N, or kMaxDof where N is known at run time.
 template <int N>
 inline constexpr int kCapacity = (N == Eigen::Dynamic) ? kMaxDof : N;
 
 /// Matrix that never touches the heap, whatever its size.
-/// Unaligned, so that objects holding one may be embedded, copied and passed between translation units
-/// built with different vector flags; the processors of today load unaligned memory at full speed.
+/// Unaligned, so that objects that hold one may be embedded, copied and passed between translation units built with
+/// different vector flags. Today's processors load unaligned memory at full speed.
 template <int Rows, int Cols, typename Scalar = double>
 using Matrix = Eigen::Matrix<Scalar, Rows, Cols, Eigen::ColMajor | Eigen::DontAlign, kCapacity<Rows>, kCapacity<Cols>>;
 

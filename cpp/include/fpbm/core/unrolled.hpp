@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// An index that the compiler knows.
+/// An index known at compile time.
 template <Eigen::Index I>
 struct Constant {
   constexpr operator Eigen::Index() const noexcept { return I; }
@@ -18,7 +18,7 @@ template <Eigen::Index I>
   return i + 1;
 }
 
-/// A size, of which N says at compile time what it is or that it is not known: a Constant where it is small and known.
+/// Size known at compile time if N is small, else at run time.
 template <int N>
 [[nodiscard]] constexpr auto extent([[maybe_unused]] Eigen::Index size) noexcept {
   constexpr int kUnrolled = 8;
@@ -35,7 +35,7 @@ void each(Eigen::Index first, Eigen::Index last, const F& f) noexcept {
   for (Eigen::Index i = first; i < last; ++i) f(i);
 }
 
-/// Likewise, with each call written out and its i a Constant: no loop is left where f's own loops are of this kind.
+/// The same with each call written out and i a Constant: nothing is left of the loop.
 template <Eigen::Index First, Eigen::Index Last, typename F>
 [[gnu::always_inline]] inline void each(Constant<First>, Constant<Last>, const F& f) noexcept {
   if constexpr (First < Last) {

@@ -7,13 +7,13 @@
 
 namespace fpbm {
 
-/// The joint motion within a box that comes near J u = v where it cannot be had in any part,
+/// The joint motion within a box that comes nearest to J u = v where the box does not admit it:
 ///
 ///   min ‖J u − v‖² + μ ‖u − rest‖²,
 ///
-/// from the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), cut to the box, by moving one joint after another to
-/// where it is best within its bounds (Gauss and Seidel), n rounds of n steps each. A continuous function of all that
-/// goes in, unlike a guess at which joints are on their bounds: it does not chatter.
+/// from the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), clipped to the box, then by Gauss-Seidel: n
+/// rounds, each of which moves every joint in turn to its best place within its bounds. A continuous function of all
+/// inputs, unlike an active set, so that it does not chatter.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                                   const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {

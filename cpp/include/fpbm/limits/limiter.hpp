@@ -6,12 +6,12 @@
 
 namespace fpbm {
 
-/// Makes any scheme keep the limits of the joints: takes what the scheme wants and gives what the joints can do.
+/// Makes any scheme keep the joint limits: takes the scheme's answer, returns a motion within the limits.
 ///
-/// What lies within the box of Limits passes unchanged. Otherwise it is saturated in the null space, so that other
-/// joints take over, and where they cannot, scaled along its direction. Of the direction next to nothing may be left,
-/// and the arm would stand still for good, at the edge of its reach, say; so the less there is left, the more it yields
-/// to what still brings the tip nearer.
+/// A motion within the box of Limits passes unchanged. Otherwise it is saturated in the null space, so that other
+/// joints take over; where they cannot, the task is scaled down along its direction. Where the scale comes near zero
+/// (at the edge of the reach, say) the arm would stand still for good; so the smaller the scale, the more the motion
+/// yields to the one that still brings the tip nearer.
 template <Level kLevel, int N, typename Scalar = double>
 class Limiter {
  public:
@@ -26,7 +26,7 @@ class Limiter {
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// The motion nearest to what is desired: qdd, or qd at velocity level, where the state's qd is the last command.
+  /// The motion within the limits for a desired qdd, or qd at velocity level, where the state's qd is the last command.
   template <int M>
   [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
                                             const JointVector& desired) const noexcept {
@@ -39,14 +39,15 @@ class Limiter {
     return found;
   }
 
-  /// The way to rest.
+  /// The motion that brings the arm to rest.
   [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state) const noexcept {
     return {limits_.brake(state, limits_.box(state)), Scalar(0), 0, 0};
   }
 
  private:
-  /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), s being the scale and s₀ the
-  /// little one below which the arm yields. At velocity level s is what is left of the task's velocity.
+  /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), where s is the scale and s₀ =
+  /// kLittle the scale below which the arm yields. At velocity level s is the share of the task's velocity that is
+  /// left.
   template <int M>
   void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box,
              const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
@@ -64,11 +65,11 @@ class Limiter {
   }
 
   static constexpr Scalar kLittle = Scalar(0.1);  ///< s₀, the scale below which the arm yields.
-  static constexpr Scalar kRadius = Scalar(0.1);  ///< Damping then, as a share of ‖J‖_F,
-  static constexpr Scalar kDamping = Scalar(10);  ///< and of what that leaves free [1/s].
+  static constexpr Scalar kRadius = Scalar(0.1);  ///< Damping of the least squares, as a share of ‖J‖_F.
+  static constexpr Scalar kDamping = Scalar(10);  ///< Damping of what the least squares leave free [1/s].
 
   Limits<kLevel, N, Scalar> limits_;
-  JointVector unit_;  ///< What counts as one unit of each joint's motion in the null space.
+  JointVector unit_;  ///< Unit of each joint's motion in the null space.
 };
 
 }  // namespace fpbm

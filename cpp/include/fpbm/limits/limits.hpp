@@ -16,9 +16,9 @@ namespace fpbm {
 /// A state is viable where every joint's velocity is within its bound and within the envelopes of both ends of its
 /// range. From a viable state there is always an acceleration within its bound, held for one tick of length h, that
 /// leads to a viable state, and every joint can come to rest (viability: Del Prete 2018, here in discrete time). The
-/// envelope of a bound A on accelerations has offset A h/2, which is what one tick's delay costs. box() is the set of
-/// those accelerations (or, at velocity level, of velocities): whoever stays inside never violates a bound at any tick,
-/// nor between ticks.
+/// envelope of a bound A on accelerations has offset A h/2, the cost of one tick's delay. box() is the set of those
+/// accelerations (at velocity level: velocities): a motion that stays inside never violates a bound, at a tick or
+/// between ticks.
 template <Level kLevel, int N, typename Scalar = double>
 class Limits {
  public:
@@ -52,7 +52,7 @@ class Limits {
     lower_.set(i, mirrored, rest_within(i, mirrored, -bounds_.lower(i)));
   }
 
-  /// The bounds, accelerations filled in.
+  /// The bounds, with accelerations filled in.
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
 
@@ -69,7 +69,7 @@ class Limits {
     }
   }
 
-  /// Whether one may go from a state to another in a tick, if the other's velocity is reached evenly.
+  /// Whether an arm may go from one state to another in a tick, at constant acceleration.
   [[nodiscard]] bool admits(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
     bool good = true;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
@@ -80,8 +80,8 @@ class Limits {
     return good;
   }
 
-  /// What each joint may do in the next tick. From a state that is not viable, as one measured may be, what leads back
-  /// within the bounds on acceleration first and on velocity next.
+  /// What each joint may do in the next tick. From a state that is not viable (a measured one may be so) the box leads
+  /// back; it keeps the bound on acceleration first and the bound on velocity next.
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {
@@ -104,8 +104,8 @@ class Limits {
     return box;
   }
 
-  /// The way to rest: all joints slow down in proportion, as fast as their accelerations allow, and where a joint must
-  /// brake harder it does.
+  /// The motion to rest: all joints slow down in proportion, as fast as their accelerations allow; a joint that must
+  /// brake harder does.
   [[nodiscard]] JointVector brake(const State<N, Scalar>& state, const Box<N, Scalar>& box) const noexcept {
     Scalar rate = Scalar(1) / tick_;
     for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
@@ -136,7 +136,7 @@ class Limits {
     }
   }
 
-  /// Joint i's bound on acceleration, or what stands for it.
+  /// Bound on acceleration of joint i; a substitute where velocity level allows none to be given.
   [[nodiscard]] Scalar acceleration(Eigen::Index i) const {
     const Scalar given = bounds_.acceleration(i);
     const Scalar range = bounds_.upper(i) - bounds_.lower(i);
@@ -152,7 +152,7 @@ class Limits {
     return std::isfinite(speed) ? Scalar(2) * speed / tick_ : given;
   }
 
-  /// Where an envelope stops the joint, within its bound.
+  /// Position where an envelope stops the joint. Throws unless it lies within the bound.
   [[nodiscard]] Scalar rest_within(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar bound) const {
     const auto name = [i](const char* field) { return validation::element("envelope", i) + "." + field; };
     validation::require_positive(name("deceleration"), static_cast<double>(envelope.deceleration));
@@ -173,7 +173,7 @@ class Limits {
   Scalar tick_;
   JointLimits<N, Scalar> bounds_;
   Envelopes upper_;
-  Envelopes lower_;  ///< Of −q.
+  Envelopes lower_;  ///< For −q.
 };
 
 }  // namespace fpbm

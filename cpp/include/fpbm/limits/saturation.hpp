@@ -8,44 +8,43 @@
 
 namespace fpbm {
 
-/// A joint motion that keeps its box.
+/// A joint motion within a box.
 template <int N, typename Scalar = double>
 struct Saturated {
   Vector<N, Scalar> u;
-  Scalar scale;          ///< s: how much of the task is left, 1 when all of it is.
+  Scalar scale;          ///< s: share of the task that is left, 1 for all of it.
   std::uint32_t joints;  ///< Bit i is set where joint i is on its bound.
-  int passes;            ///< How many were taken; 0 where nothing had to give way.
+  int passes;            ///< Number of passes; 0 where the desired motion lies in the box.
 };
 
 /// Saturation in the null space (after Flacco, De Luca and Khatib 2012, 2015): the joint motion u within a box that
-/// does as much as it can of what was desired,
+/// does as much as possible of the desired one,
 ///
 ///   J u = J rest + s J (desired − rest),   s ≤ 1 as large as can be,
 ///
-/// rest being a motion within the box that slows the arm down. Starts from u = rest, s = 0 and raises s. A joint that
-/// meets its bound stays there while the others take over, by the null-space motion of least norm relative to each
-/// joint's scale; where they cannot, a joint that stands in the way of the task is let go again (a step of the simplex
-/// method); where there is none, s is the largest possible. One pass for each joint met, n at most; if they do not
-/// suffice, u keeps its box all the same.
+/// where rest is a motion within the box that slows the arm down. Starts from u = rest, s = 0 and raises s. A joint
+/// that meets its bound stays there while the others take over, by the null-space motion of least norm in each joint's
+/// unit. Where they cannot, a joint that blocks the task is released again (a step of the simplex method); where none
+/// does, s is the largest possible. One pass per bound met, n at most. u lies in the box after any number of passes.
 template <int M, int N, typename Scalar>
 class NullSpaceSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
   static constexpr int kFree = kNullity<M, N>;
 
-  /// scale: what counts as one unit of each joint's motion, its bound on acceleration, say.
-  NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& scale) noexcept
-      : Z_(null_basis<M, N, Scalar>(J * scale.asDiagonal())),
-        scale_(scale),
+  /// unit: one unit of each joint's motion, such as its bound on acceleration.
+  NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& unit) noexcept
+      : Z_(null_basis<M, N, Scalar>(J * unit.asDiagonal())),
+        unit_(unit),
         Q_(Z_.cols(), Z_.cols()),
         R_(Z_.cols(), Z_.cols()) {}
 
   [[nodiscard]] Saturated<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                                 const JointVector& desired) noexcept {
     const Eigen::Index n = desired.size();
-    const JointVector goal = (desired - rest).cwiseQuotient(scale_);
-    const JointVector upper = (box.upper - rest).cwiseQuotient(scale_);
-    const JointVector lower = (box.lower - rest).cwiseQuotient(scale_);
+    const JointVector goal = (desired - rest).cwiseQuotient(unit_);
+    const JointVector upper = (box.upper - rest).cwiseQuotient(unit_);
+    const JointVector lower = (box.lower - rest).cwiseQuotient(unit_);
     Saturated<N, Scalar> result{JointVector::Zero(n), Scalar(0), 0, 0};
     JointVector& u = result.u;
     count_ = 0;
@@ -74,7 +73,7 @@ class NullSpaceSaturation {
       }
     }
     for (int i = 0; i < count(); ++i) result.joints |= bit(held_[i]);
-    u = box.nearest(rest + scale_.cwiseProduct(u));
+    u = box.nearest(rest + unit_.cwiseProduct(u));
     for (int i = 0; i < count(); ++i) u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
     return result;
   }
@@ -83,12 +82,12 @@ class NullSpaceSaturation {
   using Free = Vector<kFree, Scalar>;
   using Square = Matrix<kFree, kFree, Scalar>;
   static constexpr int kMost = kFree == Eigen::Dynamic ? kMaxDof : (kFree > 0 ? kFree : 1);
-  /// Least square of the part of a joint's row of Z that lies outside the held joints' rows, for it to be held too.
+  /// A joint can be held too where the part of its row of Z outside the held joints' rows has at least this square.
   static constexpr Scalar kIndependent = Scalar(1e-4);
 
   [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
 
-  /// How many joints are held. Never more than kMost, which the compiler is told.
+  /// Number of joints held, never more than kMost (which the compiler cannot know).
   [[nodiscard]] int count() const noexcept { return count_ < kMost ? count_ : kMost; }
 
   [[nodiscard]] bool active(Eigen::Index joint) const noexcept {
@@ -112,8 +111,7 @@ class NullSpaceSaturation {
     }
   }
 
-  /// How u moves per unit of s: as the goal, changed by the least null-space motion that leaves the held joints at
-  /// rest.
+  /// du/ds: the goal plus the least null-space motion that keeps the held joints at rest.
   [[nodiscard]] JointVector direction(const JointVector& goal) const noexcept {
     JointVector rate = goal;
     if (count_ == 0) return rate;
@@ -130,7 +128,7 @@ class NullSpaceSaturation {
     return rate;
   }
 
-  /// Holds one more joint on its bound, or in place of one that may leave its own. False where there is none.
+  /// Holds one more joint on its bound, or holds it in place of one that may leave its own. False where neither works.
   [[nodiscard]] bool hold(Eigen::Index joint, bool above) noexcept {
     Free rest = Z_.row(joint).transpose();
     Free share(Z_.cols());  // Becomes c in Z_joint = Σ c_i Z_held(i) + rest.
@@ -163,12 +161,12 @@ class NullSpaceSaturation {
     return true;
   }
 
-  Matrix<N, kFree, Scalar> Z_;  ///< Basis of the null space, in units of each joint's scale.
-  const JointVector& scale_;
+  Matrix<N, kFree, Scalar> Z_;  ///< Basis of the null space, in each joint's unit.
+  const JointVector& unit_;
   int count_ = 0;
   Eigen::Index held_[kMost];
   bool above_[kMost];
-  Square Q_;  ///< Z_heldᵀ = QR, in as many columns as joints are held.
+  Square Q_;  ///< Z_heldᵀ = QR, one column per held joint.
   Square R_;
 };
 

@@ -7,10 +7,10 @@
 
 namespace fpbm {
 
-/// How fast a joint may go toward one end of its range: −offset + √(2 deceleration |end − q|).
+/// Bound on a joint's velocity toward one end of its range: −offset + √(2 deceleration |end − q|).
 ///
-/// With a small offset it is the speed from which the joint can still brake before the end; with one of the maker's it
-/// is a bound on velocity that depends on position (for Franka's "−0.30 + √(12 (2.75010 − q))": {2.75010, 0.30, 6}).
+/// With a small offset it is the speed from which the joint can still stop before the end. With a maker's numbers it is
+/// a bound on velocity that depends on position (for Franka's "−0.30 + √(12 (2.75010 − q))": {2.75010, 0.30, 6}).
 template <typename Scalar = double>
 struct VelocityEnvelope {
   Scalar end;           ///< [rad] or [m]
@@ -18,7 +18,7 @@ struct VelocityEnvelope {
   Scalar deceleration;  ///< [rad/s²] or [m/s²]
 };
 
-/// Every joint's envelope toward one end of its range, in coordinates that grow toward it.
+/// Envelopes of all joints toward one end of their ranges, in coordinates that grow toward it.
 template <Level kLevel, int N, typename Scalar>
 class VelocityEnvelopes {
  public:
@@ -26,7 +26,7 @@ class VelocityEnvelopes {
     for (JointVector* row : {&end_, &offset_, &deceleration_, &rest_}) row->resize(n);
   }
 
-  /// rest: where the envelope is zero; no farther.
+  /// rest: position where the envelope is zero; the joint goes no farther.
   void set(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar rest) noexcept {
     end_(i) = envelope.end;
     offset_(i) = envelope.offset;

@@ -11,16 +11,16 @@ namespace fpbm {
 
 /// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
 ///
-/// Written out without a loop where M is fixed and small; no square root and M divisions in all.
+/// Unrolled where M is fixed and small. Takes M divisions and no square root.
 /// Value = Pair<Scalar> factorises two matrices at once.
 template <int M, typename Value = double>
 class Cholesky {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
-  /// Factorises A, of which only the lower triangle is read.
-  /// Returns kSingular where a pivot is lost in round-off, that is, where A is singular or indefinite, and kNotFinite
-  /// where A is not finite. In lanes it returns kOk, and where there is no factor all solutions are NaN.
+  /// Factorises A. Reads only the lower triangle.
+  /// Returns kSingular where a pivot is lost in round-off (A is singular or indefinite), kNotFinite where A is not
+  /// finite. In lanes it returns kOk, and the solutions of a lane without a factor are NaN.
   [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
     size_ = A.rows();
     const auto m = extent<M>(size_);
@@ -50,10 +50,10 @@ class Cholesky {
     }
   }
 
-  /// Spoils all solutions in the lanes where truth does not hold.
+  /// Sets all solutions of a lane to NaN where its mask is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept { fpbm::set_nan_unless(truth, reciprocal_[0]); }
 
-  /// Row in which factor() lost its pivot, the leading rows before it being positive definite.
+  /// Row where factor() lost its pivot. The rows before it are positive definite.
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.
@@ -63,15 +63,15 @@ class Cholesky {
     each(kFirst, m, [&](auto i) { each(kFirst, i, [&](auto j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
     for (Eigen::Index i = m - 1; i >= 0; --i) {
       x(i) *= reciprocal_[i];
-      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // What is known last comes last.
+      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
     }
     return x;
   }
 
-  /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, and by M times at most too low.
+  /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, tight within a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept {
     const auto m = extent<M>(size_);
-    Value inverse[kCapacity<M>][kCapacity<M>];  // Of L, its sign changed, below the diagonal.
+    Value inverse[kCapacity<M>][kCapacity<M>];  // −L⁻¹ below the diagonal.
     Value trace = reciprocal_[0];
     each(next(kFirst), m, [&](auto i) {
       Value row = reciprocal_[i];

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// PlainPair of a kind that know the four operations.
+/// Two Scalars with the four operations, entry by entry.
 template <typename Scalar>
 struct PlainPair {
   Scalar a;
@@ -22,20 +22,20 @@ struct PlainPair {
   friend PlainPair operator/(const PlainPair& x, const PlainPair& y) noexcept { return {x.a / y.a, x.b / y.b}; }
 };
 
-/// What holds two Scalars: one vector register, where the compiler has such a type and the Scalar goes into it.
+/// How a Pair stores its Scalars: in one vector register where the compiler has such a type, else as a PlainPair.
 template <typename Scalar, typename = void>
 struct PairStorage {
   using type = PlainPair<Scalar>;
 };
-#if defined(__GNUC__)  // And all who say they are.
+#if defined(__GNUC__)  // And compilers that claim to be GNU's.
 template <typename Scalar>
 struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar>>> {
   using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
 };
 #endif
 
-/// PlainPair Scalars side by side, calculated with as one: a small algorithm written for a Value solves two problems at
-/// once with Value = Pair<Scalar>. A comparison holds where it holds for both.
+/// Two Scalars side by side: a small algorithm written for a Value solves two problems at once with
+/// Value = Pair<Scalar>. A comparison is true where it is true for both.
 template <typename Scalar>
 class Pair {
  public:
@@ -73,7 +73,7 @@ class Pair {
   Both both_;
 };
 
-/// What a Value is a pair of, or else the Value itself.
+/// Scalar of a Pair<Scalar>, or the Value itself.
 template <typename Value>
 struct ScalarOf {
   using type = Value;
@@ -97,7 +97,7 @@ template <typename Scalar>
   return std::isfinite(a);
 }
 
-/// What fails in some lanes fails there for both.
+/// Sets both of a lane to NaN where its mask is false.
 template <typename Masks, typename Scalar>
 void set_nan_unless(const Masks& truth, Pair<Scalar>& value) noexcept {
   Scalar a = value.first();
@@ -107,7 +107,7 @@ void set_nan_unless(const Masks& truth, Pair<Scalar>& value) noexcept {
   value = {a, b};
 }
 
-/// Entry by entry.
+/// Matrix of pairs (a, b), entry by entry.
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Pair<Scalar>> side_by_side(const Matrix<Rows, Cols, Scalar>& a,
                                                             const Matrix<Rows, Cols, Scalar>& b) noexcept {
@@ -129,7 +129,7 @@ template <int Rows, int Cols, typename Scalar>
 
 }  // namespace fpbm
 
-/// So that matrices may hold pairs.
+/// Lets Eigen's matrices hold pairs.
 template <typename Scalar>
 struct Eigen::NumTraits<fpbm::Pair<Scalar>> : Eigen::GenericNumTraits<fpbm::Pair<Scalar>> {
   enum { RequireInitialization = 0 };  // NOLINT(readability-identifier-naming): Eigen's name.

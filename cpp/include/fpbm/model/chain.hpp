@@ -12,11 +12,11 @@
 
 namespace fpbm {
 
-/// Joints from base to tip: what an arm is built from.
+/// Joints from base to tip: an arm is built from it.
 template <typename Scalar = double>
 struct Chain {
   std::vector<Joint<Scalar>> joints;
-  Transform<Scalar> tip = {};  ///< The tip's frame, seen from the last joint.
+  Transform<Scalar> tip = {};  ///< The tip's frame in that of the last joint.
 };
 
 namespace chain_check {
@@ -53,9 +53,9 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
 
 }  // namespace chain_check
 
-/// The number of joints of a chain that an arm of n joints (Eigen::Dynamic: any number) can be built from.
+/// Number of joints of a chain, checked for an arm of n joints (Eigen::Dynamic: any number).
 ///
-/// Throws std::invalid_argument, with the joint's name where it has one, where that number is not n or beyond kMaxDof,
+/// Throws std::invalid_argument, with the joint's name where it has one, where that number is not n or exceeds kMaxDof,
 /// an axis is zero, a number is not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
 template <typename Scalar>
 Eigen::Index require_chain(const Chain<Scalar>& chain, int n = Eigen::Dynamic) {

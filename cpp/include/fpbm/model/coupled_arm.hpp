@@ -9,8 +9,8 @@
 
 namespace fpbm {
 
-/// A serial chain in which some joints move with others (gears, belts, URDF's mimic): N joints that have a drive of
-/// their own, and any number that follow. Immutable.
+/// A serial chain in which some joints follow others (gears, belts, URDF's mimic): N joints have drives of their own,
+/// any number follow. Immutable.
 ///
 /// Chain positions are A q + b with a constant A, so that J = J_chain A and Jd = Jd_chain A.
 template <int N, typename Scalar_ = double>
@@ -19,9 +19,9 @@ class CoupledArm {
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// Joints whose mimic names another joint follow that one, which must have a drive of its own; a follower's bounds
+  /// A joint whose mimic names another joint follows that one, which must have a drive of its own. A follower's bounds
   /// are not read.
-  /// Throws std::invalid_argument where a chain is wrong for a SerialArm, a mimic is out of range, or the number of
+  /// Throws std::invalid_argument where the chain does not suit a SerialArm, a mimic is out of range, or the number of
   /// joints with a drive is not N.
   explicit CoupledArm(const Chain<Scalar>& chain) : chain_(without_mimics(chain)) {
     const auto length = static_cast<Eigen::Index>(chain.joints.size());
@@ -67,7 +67,7 @@ class CoupledArm {
     out.Jd = all.Jd.lazyProduct(A_);
   }
 
-  /// Tip and J at q; leaves Jd alone.
+  /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     Kinematics<Space, Eigen::Dynamic, Scalar> all;

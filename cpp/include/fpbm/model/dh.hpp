@@ -27,7 +27,7 @@ template <typename Scalar>
   return {{row.a, Scalar(0), Scalar(0)}, rotation(Vector<3, Scalar>(row.alpha, Scalar(0), Scalar(0)))};
 }
 
-/// Tz(d) Rz(theta): the two commute, and they with the joint.
+/// Tz(d) Rz(theta): the two commute with each other and with the joint.
 template <typename Scalar>
 [[nodiscard]] Transform<Scalar> along_z(const DHRow<Scalar>& row) noexcept {
   return {{Scalar(0), Scalar(0), row.d}, rotation(Vector<3, Scalar>(Scalar(0), Scalar(0), row.theta))};
@@ -35,9 +35,10 @@ template <typename Scalar>
 
 }  // namespace dh
 
-/// The chain of a table of classic Denavit-Hartenberg parameters, from base to tip, where frame i is
+/// The chain of a table of classic Denavit-Hartenberg parameters, from base to tip, where the pose of frame i in frame
+/// i − 1 is
 ///   Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i)
-/// seen from frame i − 1 (J. Denavit, R. S. Hartenberg, 1955). The tip is the last frame.
+/// (J. Denavit, R. S. Hartenberg, 1955). The tip is the last frame.
 template <typename Scalar>
 [[nodiscard]] Chain<Scalar> classic_dh(const std::vector<DHRow<Scalar>>& table) {
   Chain<Scalar> chain;
@@ -48,10 +49,11 @@ template <typename Scalar>
   return chain;
 }
 
-/// The chain of a table of modified Denavit-Hartenberg parameters, from base to tip, where frame i is
-///   Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i)
-/// seen from frame i − 1, a and alpha being those of the link before joint i, which others number i − 1
-/// (J. J. Craig, Introduction to Robotics). The tip is the last joint's frame.
+/// The chain of a table of modified Denavit-Hartenberg parameters, from base to tip, where the pose of frame i in frame
+/// i − 1 is
+///   Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i);
+/// a and alpha are those of the link before joint i, which some tables number i − 1 (J. J. Craig, Introduction to
+/// Robotics). The tip is the last joint's frame.
 template <typename Scalar>
 [[nodiscard]] Chain<Scalar> modified_dh(const std::vector<DHRow<Scalar>>& table) {
   Chain<Scalar> chain;

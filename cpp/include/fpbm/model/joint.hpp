@@ -10,11 +10,11 @@ namespace fpbm {
 
 enum class JointType : unsigned char {
   kRevolute,    ///< Turns, within bounds [rad].
-  kContinuous,  ///< Turns without end.
+  kContinuous,  ///< Turns, unbounded.
   kPrismatic,   ///< Slides [m].
 };
 
-/// How far and how fast one joint may go; infinite where there is no bound.
+/// Bounds on the motion of one joint; infinite where there is none.
 template <typename Scalar = double>
 struct JointBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
@@ -25,10 +25,10 @@ struct JointBounds {
   Scalar acceleration = kNone;  ///< Either way [rad/s²] or [m/s²].
 };
 
-/// A joint that is moved by another: its position is ratio times the other's, plus offset.
+/// Coupling of a joint to another, its leader: position = ratio · leader's position + offset.
 template <typename Scalar = double>
 struct Mimic {
-  int joint = -1;  ///< The other's index in the chain, or -1: a joint with a drive of its own.
+  int joint = -1;  ///< The leader's index in the chain, or −1: a joint with a drive of its own.
   Scalar ratio = 1;
   Scalar offset = 0;  ///< [rad] or [m]
 };
@@ -37,14 +37,14 @@ struct Mimic {
 template <typename Scalar = double>
 struct Joint {
   JointType type = JointType::kRevolute;
-  Transform<Scalar> placement = {};  ///< The joint's frame, seen from the joint before, both at zero.
+  Transform<Scalar> placement = {};  ///< The joint's frame in that of the joint before, both at zero.
   Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the joint's frame; its length does not matter.
   JointBounds<Scalar> bounds = {};
   std::string name = {};
   Mimic<Scalar> mimic = {};
 };
 
-/// The bounds of all joints of an arm; infinite where there is none.
+/// Bounds on the motion of all joints of an arm; infinite where there is none.
 template <int N, typename Scalar = double>
 struct JointLimits {
   Vector<N, Scalar> lower;         ///< [rad] or [m]
@@ -64,7 +64,7 @@ struct JointLimits {
             acceleration.template cast<Other>()};
   }
 
-  /// Sets joint i's.
+  /// Sets the bounds of joint i.
   void set(Eigen::Index i, const JointBounds<Scalar>& bounds) noexcept {
     lower(i) = bounds.lower;
     upper(i) = bounds.upper;

@@ -4,9 +4,9 @@
 
 namespace fpbm {
 
-/// Kinematics of an arm in one state: all that a resolver knows of the robot.
+/// Kinematics of an arm in one state: all that a scheme knows about the robot.
 ///
-/// Any source may fill it: an arm of model/, or a library that already computes these three.
+/// Filled by an arm of model/, or by any other library that computes these three.
 template <typename Space, int N, typename Scalar = double>
 struct Kinematics {
   static constexpr int kRows = Space::kRows;

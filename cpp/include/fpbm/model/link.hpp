@@ -8,11 +8,11 @@
 
 namespace fpbm {
 
-/// From one joint's frame to the next one's, both with the joint's axis as z: a step [m], and a tilt about x.
+/// From one joint's frame to the next, both with the joint's axis as z: a step [m], then a rotation about x (tilt).
 template <typename Scalar>
 struct Link {
   Vector<3, Scalar> step;
-  Scalar cosine;  ///< Of the tilt.
+  Scalar cosine;  ///< Cosine of the tilt.
   Scalar sine;
 
   template <typename Other>
@@ -21,7 +21,8 @@ struct Link {
   }
 };
 
-/// A link between two turns about z, which go into the joints on either side: p and R = Rz(before) Rx(tilt) Rz(after).
+/// Decomposition of a link's rotation: R = Rz(before) Rx(tilt) Rz(after). The joints on either side take up before and
+/// after.
 template <typename Scalar>
 struct DecomposedLink {
   Scalar before;  ///< [rad]

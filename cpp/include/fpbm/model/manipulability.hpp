@@ -12,9 +12,9 @@
 namespace fpbm {
 
 /// Manipulability w = √det(JJᵀ) of a task Jacobian (Yoshikawa 1985): the volume that its rows span, 0 at a singular
-/// posture. In the units of J's rows, multiplied.
+/// posture. Unit: the product of the units of J's rows.
 ///
-/// As base times height, row by row, which keeps its digits near singular postures.
+/// Computed as base times height, row by row, which is accurate near singular postures.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar manipulability(const Matrix<M, N, Scalar>& J) noexcept {
   using std::max;
@@ -25,7 +25,7 @@ template <int M, int N, typename Scalar>
   for (Eigen::Index i = 0; i < M; ++i) {
     const Scalar square = rows.row(i).squaredNorm();
     volume *= sqrt(square);
-    const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A row of zeros takes nothing from the others.
+    const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A row of zeros leaves the others as they are.
     for (Eigen::Index j = i + 1; j < M; ++j) {
       const Scalar along = rows.row(j).dot(rows.row(i)) * reciprocal;
       rows.row(j) -= along * rows.row(i);

@@ -39,7 +39,7 @@ class PlanarArm {
   /// Unbounded.
   [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
 
-  /// Tip and J at q, for the task spaces Position<2> and PlanarPose; leaves Jd alone.
+  /// Tip and J at q, for the task spaces Position<2> and PlanarPose; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     forward_pass<false>(q, q, out);
@@ -53,9 +53,9 @@ class PlanarArm {
   }
 
  private:
-  /// One pass out along the arm for the links, one pass back for the sums over all links beyond a joint:
+  /// A pass to the tip for the links, a pass back for the sums over all links beyond a joint:
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
-  /// The tip's angle is θₙ, to which every joint adds its own.
+  /// The tip's angle is θₙ.
   template <bool kWithRate, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                                      Kinematics<Space, N, Scalar>& out) const noexcept {

@@ -7,9 +7,9 @@
 #include "fpbm/model/dh.hpp"
 #include "fpbm/model/joint.hpp"
 
-/// Arms as their makers specify them, from the frame of the base to that of the flange.
+/// Arms as their makers specify them, from the base frame to the flange frame.
 ///
-/// Each is a chain, to build a SerialArm<7> from, or to change first: a tool is chain.tip = chain.tip * tool.
+/// Each is a chain. Build a SerialArm<7> from it, or change it first: chain.tip = chain.tip * tool adds a tool.
 namespace fpbm::presets {
 
 namespace arms {
@@ -28,7 +28,7 @@ struct Degrees {
   }
 };
 
-/// The chain with its joints bounded, and numbered after the name.
+/// The chain with bounds, and with joints named name1, name2, …
 template <typename Bounds>
 [[nodiscard]] Chain<> driven(Chain<> chain, const std::string& name, const std::vector<Bounds>& bounds) {
   for (std::size_t i = 0; i < bounds.size(); ++i) {
@@ -40,10 +40,10 @@ template <typename Bounds>
 
 }  // namespace arms
 
-/// Franka Emika Panda, 7 joints, to its flange, which ROS calls link 8.
+/// Franka Emika Panda, 7 joints, to its flange (link 8 in ROS).
 ///
 /// Franka Control Interface documentation of August 2025, "Robot and interface specifications": "Limits for Panda", and
-/// "Denavit–Hartenberg parameters", by Craig's convention, which the Panda shares with its successor.
+/// "Denavit–Hartenberg parameters", by Craig's convention; its successor has the same ones.
 [[nodiscard]] inline Chain<> panda() {
   using arms::kRight;
   Chain<> chain = modified_dh<double>({

@@ -8,14 +8,14 @@
 
 namespace fpbm {
 
-/// Where the joints of a chain have their axes, and how these move: what J and Jd are made of.
+/// The axes of a chain's joints and their rates, from which J and Jd follow.
 ///
-/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a joint that turns about zᵢ through pᵢ, the tip being at p, and column i of
-/// Jd its rate.
+/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a joint that turns about the axis zᵢ through pᵢ, with the tip at p. Column
+/// i of Jd is its time derivative.
 template <int N, typename Scalar>
 struct Screws {
   using Vector3 = Vector<3, Scalar>;
-  /// One row a joint, so that several joints are done at once. Eigen wants a single row to be stored as one.
+  /// One row per joint, so that vector code computes several joints at once. Eigen demands row-major for a single row.
   using JointVectors3 =
       Eigen::Matrix<Scalar, N, 3, (N == 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign, kCapacity<N>, 3>;
 
@@ -26,7 +26,8 @@ struct Screws {
 
   explicit Screws(Eigen::Index dof) : axes(dof, 3), points(dof, 3), axis_rates(dof, 3), point_rates(dof, 3) {}
 
-  /// Sees every joint from the tip at p, which moves by v: what columns() and column_rates() ask for first.
+  /// Makes points and their rates relative to the tip at p with velocity v. Call it before columns() and
+  /// column_rates().
   template <bool kWithRate>
   void relative_to_tip(const Vector3& p, [[maybe_unused]] const Vector3& v) noexcept {
     for (int i = 0; i < 3; ++i) {
@@ -35,7 +36,7 @@ struct Screws {
     }
   }
 
-  /// The columns of J: its linear rows and, where there are six, its angular ones.
+  /// The columns of J: linear rows and, where there are six rows, angular ones.
   template <int M>
   void columns(Matrix<M, N, Scalar>& J) const noexcept {
     fill(
@@ -43,7 +44,7 @@ struct Screws {
         [this](Eigen::Index j) { return cross_joint(axes, points, j); });
   }
 
-  /// Their rates.
+  /// The columns of Jd.
   template <int M>
   void column_rates(Matrix<M, N, Scalar>& Jd) const noexcept {
     fill(
@@ -55,20 +56,19 @@ struct Screws {
   }
 
  private:
-  /// Entry i of all joints' a × b.
+  /// Entry i of a × b of all joints.
   [[nodiscard]] static auto cross_entry(const JointVectors3& a, const JointVectors3& b, int i) noexcept {
     const int j = (i + 1) % 3;
     const int k = (i + 2) % 3;
     return a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
   }
 
-  /// Joint j's a × b.
+  /// a × b of joint j.
   [[nodiscard]] static Vector3 cross_joint(const JointVectors3& a, const JointVectors3& b, Eigen::Index j) noexcept {
     return cross<Scalar>(a.row(j), b.row(j));
   }
 
-  /// Linear rows over angular ones. Entry by entry, all joints at once, where that makes vector code of it; joint by
-  /// joint where each number is many already.
+  /// Linear rows above angular ones. Entry by entry for all joints at once, which vectorises; joint by joint in lanes.
   template <int M, typename Entry, typename Joint>
   static void fill(Matrix<M, N, Scalar>& result, const JointVectors3& angular, [[maybe_unused]] const Entry& entry,
                    [[maybe_unused]] const Joint& joint) noexcept {

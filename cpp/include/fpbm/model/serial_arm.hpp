@@ -17,7 +17,7 @@ namespace fpbm {
 
 /// Any chain of N revolute, continuous and prismatic joints, in space. Immutable.
 ///
-/// Joint positions in radians or metres; the base frame is the one that the first placement is seen from.
+/// Joint positions in radians or metres; the first joint's placement is given in the base frame.
 /// N = Eigen::Dynamic takes the number of joints from the chain, up to kMaxDof.
 template <int N, typename Scalar_ = double>
 class SerialArm {
@@ -25,8 +25,8 @@ class SerialArm {
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// Throws std::invalid_argument where the number of joints is not N or beyond kMaxDof, an axis is zero, a number is
-  /// not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
+  /// Throws std::invalid_argument where the number of joints is not N or exceeds kMaxDof, an axis is zero, a number is
+  /// not finite, a placement's R is no rotation, or a joint's lower bound is not below its upper.
   explicit SerialArm(const Chain<Scalar>& chain)
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
     turns_.setOnes(dof_);
@@ -72,7 +72,7 @@ class SerialArm {
     forward_pass<true>(q, qd, out);
   }
 
-  /// Tip and J at q; leaves Jd alone.
+  /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     forward_pass<false>(q, q, out);
@@ -98,8 +98,8 @@ class SerialArm {
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
-  /// Out along the chain for the joints' axes, and from these J and Jd; the column of a prismatic joint is [zᵢ; 0], and
-  /// its rate.
+  /// A pass along the chain finds the joints' axes; J and Jd follow from these. The column of a prismatic joint is
+  /// [zᵢ; 0].
   template <bool kWithRate, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                                      Kinematics<Space, N, Scalar>& out) const noexcept {
@@ -116,8 +116,8 @@ class SerialArm {
     Vector3 x = base_.R.col(0);
     Vector3 y = base_.R.col(1);
     Vector3 z = base_.R.col(2);
-    Vector3 v = Vector3::Zero();  // Of p,
-    Vector3 w = Vector3::Zero();  // and the frame's angular velocity.
+    Vector3 v = Vector3::Zero();  // Velocity of p.
+    Vector3 w = Vector3::Zero();  // Angular velocity of the frame.
     const auto advance = [&](const Vector3& step) {
       p += step;
       if constexpr (kWithRate) v += cross(w, step);
@@ -174,11 +174,11 @@ class SerialArm {
 
   Eigen::Index dof_;
   Transform<Scalar> base_;                        ///< The first joint's frame at zero.
-  std::array<Link<Scalar>, kCapacity<N>> links_;  ///< Out of each joint's frame.
-  Vector<N, Scalar> turns_;                       ///< 0 for a prismatic joint: a frame is turned by turns q + offset.
+  std::array<Link<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
+  Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: a frame's angle is turns q + offset.
   Vector<N, Scalar> offsets_;
   std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
-  Matrix<3, 3, Scalar> tip_;  ///< The tip, seen from the last link's end.
+  Matrix<3, 3, Scalar> tip_;  ///< The tip's orientation in the frame of the last link's end.
   JointLimits<N, Scalar> limits_;
 };
 

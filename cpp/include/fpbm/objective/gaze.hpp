@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// Where an arm's tip looks, as a task of two rows: an arm whose "tip" is the direction a of its tip's z axis, in the
-/// plane chart about a wanted direction d,
+/// Direction of an arm's tip as a task of two rows: an arm whose "tip" is the direction a of the tip's z axis, in a
+/// planar chart about a desired direction d,
 ///
 ///   s = 2 Bᵀa / (1 + dᵀa),   B two unit vectors across d,
 ///
@@ -27,7 +27,7 @@ class Gaze {
   Gaze(const Arm& arm, const Vector<3, Scalar>& direction) : arm_(arm) {
     using std::sqrt;
     validation::require_finite("direction", direction);
-    // Scaled first, so that no square is lost to overflow or underflow.
+    // Scaled first, so that no square overflows or underflows.
     const Scalar largest = direction.cwiseAbs().maxCoeff();
     if (!(largest > Scalar(0))) validation::fail("direction", 0.0, "longer: it must point somewhere");
     const Vector<3, Scalar> scaled = direction / largest;
@@ -44,7 +44,7 @@ class Gaze {
   [[nodiscard]] int dof() const noexcept { return arm_.dof(); }
   [[nodiscard]] const Vector<3, Scalar>& direction() const noexcept { return direction_; }
 
-  /// s and its J at q; leaves Jd alone.
+  /// s and its J at q; does not touch Jd.
   void kinematics(const Vector<kDof, Scalar>& q, Kinematics<Position<2>, kDof, Scalar>& out) const noexcept {
     Kinematics<Pose, kDof, Scalar> pose;
     arm_.kinematics(q, pose);

@@ -9,11 +9,11 @@
 
 namespace fpbm {
 
-/// A scheme whose null space climbs to postures of higher manipulability w = √det(JJᵀ), away from singular ones
-/// (Yoshikawa 1985): u + gain ZZᵀ∇w, where u is the scheme's answer and Z an orthonormal basis of the null space of J.
+/// A scheme whose null space ascends the manipulability w = √det(JJᵀ), away from singular postures (Yoshikawa 1985):
+/// u + gain ZZᵀ∇w, where u is the scheme's answer and Z an orthonormal basis of the null space of J.
 ///
-/// Is a scheme itself, and may be wrapped in turn. At acceleration level ∇w acts as a force does: a scheme without
-/// null-space damping swings about the best posture for ever, one with NullSpace::with_damping comes to rest there.
+/// Is a scheme itself, and may be wrapped again. At acceleration level ∇w acts like a force: with
+/// NullSpace::with_damping the arm comes to rest at the best posture, without it swings about it for ever.
 template <typename Scheme, typename Arm>
 struct ManipulabilityAscent {
   using Scalar = typename Arm::Scalar;

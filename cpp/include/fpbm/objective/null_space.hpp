@@ -8,17 +8,17 @@
 
 namespace fpbm {
 
-/// Secondary motion z, which the schemes project on the null space of the task. Zero by default.
+/// Secondary motion z, which the schemes project onto the null space of the task. Zero by default.
 ///
 ///   acceleration level: z = c − kₙ qd + kₚ (q_rest − q) − k_c ∇H    velocity level: the same without kₙ qd
 ///
-/// Damping kₙ [1/s] brings the self-motion to rest, the rest posture draws the arm to q_rest [rad] with stiffness kₚ
-/// ([1/s²], or [1/s] at velocity level), centring keeps the joints off their bounds, and c ([rad/s²], or [rad/s]) is
-/// the free choice in the general solutions (3) and (5). The with_… functions return a changed copy, in which their
-/// part is added to what was there, and throw std::invalid_argument on a bad value.
+/// Damping kₙ [1/s] brings the self-motion to rest. The rest posture draws the arm to q_rest [rad] with stiffness kₚ
+/// ([1/s²], or [1/s] at velocity level). Centring keeps the joints off their bounds. c ([rad/s²], or [rad/s]) is the
+/// free choice in the general solutions (3) and (5). Each with_… function returns a copy with its part added, and
+/// throws std::invalid_argument on a bad value.
 ///
-/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), by which a closed path leaves no drift in the
-/// joints, is the rest posture at the start: with stiffness λ at velocity level; with damping 2λ and stiffness λ²,
+/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), which removes the joints' drift on closed
+/// paths, is the rest posture at the start: with stiffness λ at velocity level; with damping 2λ and stiffness λ²,
 /// which is critical damping, at acceleration level.
 template <int N, typename Scalar = double>
 class NullSpace {
@@ -64,7 +64,7 @@ class NullSpace {
     return with_constant(c);
   }
 
-  /// In lanes: get(lane) is each one's.
+  /// In lanes: get(lane) is the null space of one lane.
   template <typename Get>
   [[nodiscard]] static NullSpace side_by_side(const Get& get) {
     NullSpace result;
@@ -86,7 +86,7 @@ class NullSpace {
     if (has_constant_) validation::require_size("rest_posture, limits or c", constant_.size(), dof);
   }
 
-  /// False where z is zero whatever the state.
+  /// False where z is zero in every state.
   template <Level kLevel>
   [[nodiscard]] bool active() const noexcept {
     return has_constant_ || (kLevel == Level::kAcceleration && has_damping_);
@@ -105,7 +105,7 @@ class NullSpace {
   template <int, typename>
   friend class NullSpace;
 
-  /// With stiffness ∘ (middle − q) more.
+  /// Adds stiffness ∘ (middle − q).
   [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
     NullSpace changed = with_constant(stiffness.cwiseProduct(middle));
     changed.stiffness_ += stiffness;
@@ -129,7 +129,7 @@ class NullSpace {
   Scalar damping_{0};
   bool has_damping_ = false;
   bool has_constant_ = false;
-  Vector<N, Scalar> stiffness_ = Vector<N, Scalar>::Zero(kSize);  ///< Of each joint.
+  Vector<N, Scalar> stiffness_ = Vector<N, Scalar>::Zero(kSize);  ///< Per joint.
   Vector<N, Scalar> constant_ = Vector<N, Scalar>::Zero(kSize);   ///< c + kₚ q_rest + what centring adds.
 };
 

@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// The y of least norm among those that bring A y nearest to r, damped where A is nearly singular:
+/// The y of least norm that minimises ‖A y − r‖, damped where A is nearly singular:
 ///
 ///   y = Aᵀ(AAᵀ + Δ)⁻¹r
 ///
@@ -29,28 +29,28 @@ template <int M, int K, typename Scalar>
 }
 
 /// A scheme with a second task in the null space of the first: the answer u of the scheme becomes u + Z y, where Z is
-/// an orthonormal basis of the null space of J, and y brings J₂(u + Z y) nearest to what the second task asks for
-/// (strict priority: Nakamura, Hanafusa and Yoshikawa 1987; Siciliano and Slotine 1991),
+/// an orthonormal basis of the null space of J, and y brings J₂(u + Z y) as near as possible to the second task's
+/// command (strict priority: Nakamura, Hanafusa and Yoshikawa 1987; Siciliano and Slotine 1991),
 ///
 ///   acceleration level: b₂ = xdd₂ − Jd₂qd + k₁(xd₂ − J₂qd) + k₂(x₂ ⊖ f₂(q))
 ///   velocity level:     v₂ = xd₂ + k₂(x₂ ⊖ f₂(q)).
 ///
-/// The first task does not notice, and the second is met where the arm has the joints for both. Where it has not, or
-/// the two tasks begin to conflict (an algorithmic singularity), y is damped and stays bounded.
+/// The first task is not affected. The second is met where the arm has enough joints for both; where it has not, or
+/// where the tasks conflict (an algorithmic singularity), y is damped and stays bounded.
 ///
-/// The second task is the tip of an arm of its own: of the first joints of the chain, whose tip is the elbow, say, or a
-/// Gaze. Is a scheme itself, and may be wrapped in turn. What it wraps comes after it: the scheme's secondary motion
-/// goes on where neither task asks for anything. At acceleration level give the scheme NullSpace::with_damping, which
-/// is all that brakes motion there.
+/// The second task is the tip of another arm: one made of the first joints of the chain, whose tip is the elbow, say,
+/// or a Gaze. SecondTask is a scheme itself, and may be wrapped again. The wrapped scheme's secondary motion z acts
+/// where neither task does. At acceleration level give that scheme NullSpace::with_damping: nothing else brakes motion
+/// there.
 template <typename Scheme, typename Arm, typename Space>
 struct SecondTask {
   using Scalar = typename Arm::Scalar;
   static constexpr Level kLevel = Scheme::kLevel;
 
   Scheme scheme;
-  Arm arm;                             ///< Its joints are the first arm's first ones.
-  Reference<Space, Scalar> reference;  ///< Of the second task, to be replaced at will from call to call.
-  Scalar k1;                           ///< Velocity feedback gain [1/s], which velocity level has no use for.
+  Arm arm;                             ///< Its joints are the first joints of the first arm.
+  Reference<Space, Scalar> reference;  ///< Of the second task. May change from call to call.
+  Scalar k1;                           ///< Velocity feedback gain [1/s]; not used at velocity level.
   Scalar k2;                           ///< Position feedback gain [1/s²], or [1/s] at velocity level.
   Scalar radius;                       ///< ε as a share of ‖J₂‖_F, in (0, 1].
 

@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// What a loop changes in its reference before a scheme sees it: a target far away is brought nearer, so that it pulls
-/// no harder than one at a distance of options.max_error (Buss 2004), and the integral of the error is added.
+/// Corrects a loop's reference before the scheme sees it: a target beyond options.max_error is brought to that distance
+/// (Buss 2004), and the integral of the error is added.
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
@@ -22,11 +22,11 @@ class Correction {
     validation::require_positive("integral_bound", static_cast<double>(bound_));
   }
 
-  /// At the start of a tick, with its error.
+  /// Call at the start of a tick, with its error.
   void begin(const Twist& error) noexcept {
     error_ = error;
     const Scalar length = error.norm();
-    far_ = !(length <= max_error_);  // What is no number is not integrated either.
+    far_ = !(length <= max_error_);  // NaN is not integrated either.
     if (far_) excess_ = (Scalar(1) - max_error_ / length) * error;
   }
 
@@ -36,7 +36,7 @@ class Correction {
     return reference;
   }
 
-  /// At its end, if the whole task was done.
+  /// Call at the end of a tick that did the whole task.
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
     integral_ += dt_ * error_;

@@ -6,7 +6,7 @@
 
 namespace fpbm {
 
-/// A path laid out from a tip, with a clock of its own that can pause and resume: the tip stays on its path, and its
+/// Follows a path from a tip by a clock of its own, which can pause and resume: the tip stays on the path, and its
 /// velocity and acceleration do not jump.
 ///
 /// The clock's rate r goes between 0 and 1 by a cubic in time; the reference is x(p), x′(p) r, x″(p) r² + x′(p) ṙ at
@@ -19,7 +19,7 @@ class PathFollower {
   using Space = typename Path::Space;
   using Point = typename Space::template Point<Scalar>;
 
-  /// start: where the path's origin is laid, in the base frame. ramp: how long a pause or a resumption takes [s].
+  /// start: the path's origin in the base frame. ramp: duration of a pause or a resumption [s].
   /// Throws std::invalid_argument unless ramp is positive.
   PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
       : path_(path), start_(start), ramp_(ramp), elapsed_(ramp) {
@@ -30,11 +30,11 @@ class PathFollower {
   void pause() noexcept { go_to(Scalar(0)); }
   void resume() noexcept { go_to(Scalar(1)); }
 
-  /// Path time [s], and whether it has come to the path's end.
+  /// Path time [s], and whether it has reached the path's end.
   [[nodiscard]] Scalar time() const noexcept { return time_; }
   [[nodiscard]] bool done() const noexcept { return time_ >= path_.duration(); }
 
-  /// Reference so many seconds from now.
+  /// Reference some seconds from now.
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     const Scalar p = steady() ? time_ + to_ * seconds : time_ + way(elapsed_ + seconds) - way(elapsed_);
     if (time_ >= path_.duration() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
@@ -46,10 +46,10 @@ class PathFollower {
     return reference;
   }
 
-  /// Lets the clock go on.
+  /// Advances the clock.
   void advance(Scalar seconds) noexcept {
     if (steady()) {
-      // Ticks are counted, since a sum of their lengths would wander off by a round-off each.
+      // Counts equal ticks, since a sum of their lengths would gather round-off.
       if (ticks_ == Scalar(0) || seconds != tick_) {
         since_ = time_;
         tick_ = seconds;
@@ -74,7 +74,7 @@ class PathFollower {
     Scalar rd;
   };
 
-  /// From the rate and slope of now to that rate at rest, along a cubic.
+  /// Takes the rate to target, from its present value and slope, along a cubic.
   void go_to(Scalar target) noexcept {
     const auto [r, rd] = rate(elapsed_);
     from_ = r;
@@ -84,7 +84,7 @@ class PathFollower {
     elapsed_ = Scalar(0);
   }
 
-  /// Whether the rate stays as it is.
+  /// Whether the rate is constant.
   [[nodiscard]] bool steady() const noexcept { return elapsed_ >= ramp_; }
 
   [[nodiscard]] Scalar cubic() const noexcept { return to_ - from_ - slope_ - curvature_; }
@@ -110,9 +110,9 @@ class PathFollower {
   Point end_;
   Scalar ramp_;
   Scalar time_{0};
-  Scalar since_{0};  ///< Path time when the equal ticks began that are being counted,
-  Scalar tick_{0};   ///< the length of one [s],
-  Scalar ticks_{0};  ///< and how many they are.
+  Scalar since_{0};  ///< Path time at the first of the equal ticks.
+  Scalar tick_{0};   ///< Length of an equal tick [s].
+  Scalar ticks_{0};  ///< Number of equal ticks.
   Scalar elapsed_;   ///< Since the cubic began [s].
   Scalar from_{1};
   Scalar to_{1};

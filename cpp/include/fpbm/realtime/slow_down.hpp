@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// What is left of the motion desired at velocity level where the field of velocities asks for greater accelerations
-/// than the joints have, which would make them swing: the field slowed until it does not. The field is the one at q.
+/// Motion desired at velocity level, slowed where following the velocity field would take greater accelerations than
+/// the joints have and make them swing. field: the scheme's velocities at q.
 template <typename Loop, typename Target, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> slow_down(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits,
                                           const Target& reference, const Vector<N, Scalar>& q,

@@ -8,31 +8,31 @@
 
 namespace fpbm {
 
-/// What one tick of a control loop did.
+/// Result of one tick of a control loop.
 template <typename Space, int N, typename Scalar = double>
 struct Tick {
   Vector<N, Scalar> q;                 ///< Command for the tick's end [rad], or [m] for a prismatic joint.
   Vector<N, Scalar> qd;                ///< Its velocity [rad/s].
   Vector<N, Scalar> qdd;               ///< Mean acceleration over the tick [rad/s²].
   Status status;                       ///< Where it failed, why the arm brakes.
-  Scalar scale;                        ///< How much of the task the limits left: 1 all of it, 0 the arm brakes.
+  Scalar scale;                        ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
   std::uint32_t saturated;             ///< Bit i is set where joint i is on a bound.
-  Scalar sigma;                        ///< Lower bound on σ_min(J), at most √M times too low, at the tick's start.
+  Scalar sigma;                        ///< Lower bound on σ_min(J) at the tick's start, tight within a factor √M.
   Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
 };
 
 template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
-  /// How far away the target may seem at most [m, rad]: a farther one, out of reach perhaps, pulls no harder.
+  /// Largest error that the feedback sees [m, rad]: a farther target, out of reach perhaps, pulls no harder.
   Scalar max_error = Scalar(0.1);
-  /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and takes away
-  /// the error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
+  /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and removes the
+  /// error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
   /// the task is slowed or damped, or its target farther than max_error, and adds integral_bound at most [m/s², or
   /// m/s].
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
-  SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Stands in where the scheme has none.
+  SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Used where the scheme has none.
 };
 
 }  // namespace fpbm

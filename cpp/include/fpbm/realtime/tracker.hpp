@@ -11,18 +11,17 @@
 
 /// One tick of a control loop.
 ///
-/// After construction nothing here allocates, throws, locks, does I/O or loops without a bound, whatever the numbers
-/// that are passed in, and the same inputs give the same bits. Where no motion can be found, the arm brakes.
+/// After construction nothing here allocates, throws, locks, does I/O or loops without a bound, whatever numbers are
+/// passed in, and the same inputs give the same bits. Where no motion can be found, the arm brakes.
 namespace fpbm {
 
-/// Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
+/// Moves an arm tick by tick under a scheme, within its joint limits, through singular postures, to rest.
 ///
-/// tick() integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities and
-/// follows them closely. resolve_measured() answers for a state measured just now: the acceleration that a torque
-/// controller is to realise. Never feed a measured state to tick(): the feedback would act twice, and noise would enter
-/// the command.
+/// tick() integrates the tracker's own state by RK4: commands for an arm that takes positions or velocities and follows
+/// them closely. resolve_measured() answers for a measured state: the acceleration for a torque controller to realise.
+/// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
-/// Where RK4's step keeps every bound it is taken as it is; otherwise the tick's mean motion is limited (Limiter).
+/// A step of RK4 that keeps every bound is taken as it is; otherwise the tick's mean motion is limited (Limiter).
 template <typename Arm, typename Space, typename Scheme>
 class Tracker {
  public:
@@ -36,8 +35,8 @@ class Tracker {
   using Options = TrackerOptions<Scalar>;
   using JointLimiter = Limiter<kLevel, N, Scalar>;
 
-  /// Starts from a state, or at rest, within the arm's limits or others. Throws std::invalid_argument where an option
-  /// is out of range, the scheme does not fit the arm, a limit is missing (Limits), or the state breaks one.
+  /// Starts from a state, or at rest, within the arm's own limits or given ones. Throws std::invalid_argument where an
+  /// option is out of range, the scheme does not fit the arm, a limit is missing (Limits), or the state breaks one.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : arm_(arm), scheme_(scheme), dt_(options.dt), correction_(options), limiter_(limits), state_(start) {
@@ -49,7 +48,7 @@ class Tracker {
     validation::require_joint_vector("q0", start.q, arm.dof());
     validation::require_joint_vector("qd0", start.qd, arm.dof());
     limits.require_viable(start);
-    damp(scheme_, options.singular);
+    set_damping(scheme_, options.singular);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -58,20 +57,20 @@ class Tracker {
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointVector& q0, const Options& options = {})
       : Tracker(arm, space, scheme, JointState{q0, JointVector::Zero(q0.size())}, options) {}
 
-  /// One tick toward a reference, which goes on at constant acceleration until the tick's end.
+  /// One tick toward a reference, which continues at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
     return advance([&reference](Scalar seconds) noexcept { return ahead(reference, seconds); });
   }
 
-  /// One tick along a course, whose clock goes on with it.
+  /// One tick behind a path follower, whose clock advances.
   template <typename Path>
-  Result tick(PathFollower<Path>& course) noexcept {
-    const Result result = advance([&course](Scalar seconds) noexcept { return course.ahead(seconds); });
-    if (!stopping_) course.advance(dt_);
+  Result tick(PathFollower<Path>& follower) noexcept {
+    const Result result = advance([&follower](Scalar seconds) noexcept { return follower.ahead(seconds); });
+    if (!stopping_) follower.advance(dt_);
     return result;
   }
 
-  /// The acceleration within the limits for a state measured now; the tracker's own state stays as it is.
+  /// The acceleration within the limits for a measured state; the tracker's own state does not change.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
@@ -91,14 +90,14 @@ class Tracker {
     return result;
   }
 
-  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume().
+  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called.
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept { stopping_ = false; }
 
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
 
-  /// Where the tip is, f(q) of the tracker's own state: where a PathFollower starts as a rule.
+  /// Tip f(q) of the tracker's own state, where a PathFollower usually starts.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(state_.q, kinematics);
@@ -122,12 +121,12 @@ class Tracker {
     return {state.q, state.qd, JointVector::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
   }
 
-  /// Whether a state is finite, and so far from overflow that one can still brake from it.
+  /// Whether a state is finite and far enough from overflow to brake from.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
     return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
   }
 
-  /// `reference(seconds)` is the reference so far into the tick.
+  /// reference(seconds) is the reference that many seconds into the tick.
   template <typename References>
   Result advance(References&& reference) noexcept {
     Result result = idle(state_);
@@ -158,7 +157,7 @@ class Tracker {
       } else if (!failed(result.status)) {
         desired = slow_down(loop, limiter_.limits(), correction_(now), state_.q, field, desired);
       }
-      // The Jacobian of the tick's middle: joints that take over then do so without a trace in the tip.
+      // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
       const JointVector middle = (state_.q + next.q) / Scalar(2);
       arm_.kinematics(middle, loop.kinematics);
       const JointVector u = limited(loop.kinematics.J, state_, desired, result);
@@ -178,7 +177,7 @@ class Tracker {
     return result;
   }
 
-  /// What is desired, within the limits; where the scheme failed, or on request, the way to rest.
+  /// The desired motion within the limits; the motion to rest where the scheme failed or stop() was called.
   [[nodiscard, gnu::noinline]] JointVector limited(const Matrix<Space::kRows, N, Scalar>& J, const JointState& state,
                                                    const JointVector& desired, Result& result) const noexcept {
     const bool braking = stopping_ || failed(result.status);

@@ -6,7 +6,7 @@
 
 namespace fpbm {
 
-/// Whether a scheme is wrapped round another, which it calls `scheme`.
+/// Whether a scheme wraps another, its member `scheme`.
 template <typename Scheme, typename = void>
 inline constexpr bool kIsWrapper = false;
 template <typename Scheme>
@@ -18,11 +18,11 @@ inline constexpr bool kTakesDamping = false;
 template <typename Scheme>
 inline constexpr bool kTakesDamping<Scheme, std::void_t<decltype(Scheme::singular)>> = true;
 
-/// Gives a scheme its damping, whatever it is wrapped in, unless it has its own.
+/// Sets the damping of a scheme, through its wrappers, unless the scheme has its own.
 template <typename Scheme, typename Scalar>
-void damp(Scheme& scheme, const SingularDamping<Scalar>& damping) noexcept {
+void set_damping(Scheme& scheme, const SingularDamping<Scalar>& damping) noexcept {
   if constexpr (kIsWrapper<Scheme>) {
-    damp(scheme.scheme, damping);
+    set_damping(scheme.scheme, damping);
   } else if constexpr (kTakesDamping<Scheme>) {
     if (scheme.singular.radius() == Scalar(0)) scheme.singular = damping;
   }

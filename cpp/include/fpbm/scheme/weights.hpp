@@ -52,7 +52,7 @@ class DiagonalWeights {
     inverse_ = weights.minCoeff() * weights.cwiseInverse();
   }
 
-  /// In lanes: get(lane) is each one's.
+  /// In lanes: get(lane) is the weights of one lane.
   template <typename Get>
   [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
     DiagonalWeights result;

@@ -5,11 +5,11 @@
 
 namespace fpbm {
 
-/// A path laid out from where the tip starts, in two segments: the motion, then a hold at rest on its end.
+/// A path in the base frame, from where the tip starts, in two segments: the motion, then a hold at rest on its end.
 ///
-/// A reference may jump where they meet (the paper's xdd does), so each step of an integrator asks its own segment.
-/// Remembers the last sample, since RK4 asks for each mid-point twice and for each end again as the next start.
-/// In lanes, many arms follow one path, each from where its own tip starts.
+/// The reference may jump between them (the paper's xdd does), so each step of an integrator asks its own segment.
+/// Remembers the last sample, since RK4 asks for each mid-point twice, and for each end again as the next start.
+/// In lanes, many arms follow one path, each from its own tip.
 template <typename Path, typename Scalar = typename Path::Scalar>
 class AnchoredPath {
  public:
@@ -22,8 +22,8 @@ class AnchoredPath {
     end_ = from_anchor(path.duration(), path.duration()).x;
   }
 
-  /// Reference at t [s] of the motion, in an integrator's step that starts at since; the motion's last instant is T
-  /// however t is rounded.
+  /// Reference at t [s] of the motion, in an integrator's step that starts at since; t is clipped to T, which round-off
+  /// may exceed.
   [[nodiscard]] const Reference<Space, Scalar>& motion(Time t, [[maybe_unused]] Time since) noexcept {
     bool known = t == time_;
     if constexpr (kHasPieces<Path>) known = known && since == since_;

@@ -7,7 +7,8 @@
 
 namespace fpbm {
 
-/// An arm under a scheme, as an ordinary differential equation in X: q at velocity level, [q, qd] at acceleration level.
+/// An arm under a scheme, as an ordinary differential equation in X: q at velocity level, [q, qd] at acceleration
+/// level.
 template <typename Arm, typename Scheme, typename Space>
 struct ClosedLoop {
   using Scalar = typename Arm::Scalar;

@@ -6,11 +6,10 @@ namespace fpbm {
 
 /// The classic fourth-order Runge-Kutta method for dx/dt = f(t, x).
 ///
-/// The derivative is `Status f(t, x, dx) noexcept`; a stage that fails ends the step, and x stays as it was. Otherwise
-/// the step's status is the worst of its stages'.
-/// X is any type with vector arithmetic, an Eigen matrix of fixed capacity as a rule.
+/// The derivative is `Status f(t, x, dx) noexcept`. A stage that fails ends the step and leaves x unchanged; otherwise
+/// the step's status is the worst of its stages. X is any type with vector arithmetic, usually an Eigen matrix.
 struct RK4 {
-  /// One step of length h from (t, x), of which dx = f(t, x) is already known.
+  /// One step of length h from (t, x), with k1 = f(t, x) already known.
   template <typename Derivative, typename Scalar, typename X>
   [[nodiscard]] static Status step(Derivative&& f, Scalar t, Scalar h, const X& k1, X& x) noexcept {
     const Scalar half = h / Scalar(2);

@@ -17,16 +17,16 @@
 
 namespace fpbm {
 
-/// How a rollout ended. Where it stopped early, the samples before are good.
+/// How a rollout ended. Where it stopped early, the samples before are valid.
 template <int N, typename Scalar = double>
 struct RolloutResult {
-  Status status;          ///< kOk or kDamped when the whole motion is done; otherwise why it stopped,
-  Number<Scalar> time;    ///< when [s],
-  State<N, Scalar> last;  ///< and where: the last good state.
-  int samples;            ///< Samples recorded.
+  Status status;          ///< kOk or kDamped when the whole motion is done; otherwise why it stopped.
+  Number<Scalar> time;    ///< When it ended [s].
+  State<N, Scalar> last;  ///< The last valid state.
+  int samples;            ///< Number of samples recorded.
 };
 
-/// Shows a recorder a sample; false where it wants no more.
+/// Passes a sample to a recorder; false where the recorder ends the motion.
 template <typename Recorder, typename Sample>
 [[nodiscard]] bool show(Recorder& record, const Sample& sample) {
   if constexpr (std::is_same_v<decltype(record(sample)), bool>) {
@@ -40,14 +40,14 @@ template <typename Recorder, typename Sample>
 /// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
 ///
 /// The path is a displacement from where the tip starts. Where damping at a singular posture makes the tip miss its
-/// path, the motion stops with kTaskLost; a loop that must go on is the Tracker's. Velocity-level schemes integrate q
+/// path, the motion stops with kTaskLost; a Tracker goes on. Velocity-level schemes integrate q
 /// (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
 /// noexcept; where it returns a bool, false ends the motion there, its status still good. Throws std::invalid_argument
 /// where the scheme or start does not fit the arm, the grid does not fit the path, or start is not finite, before
-/// anything is recorded; from then on nothing throws or allocates, and what goes wrong is in the result.
+/// anything is recorded; after that nothing throws or allocates, and a failure is in the result.
 ///
-/// In lanes, many motions go on side by side. One that is not regular all the way, because its scheme fails or is
-/// damped or its tip leaves its path, ends with a last q of NaN: to learn why and when, run it by itself.
+/// In lanes, many motions run side by side. A motion whose scheme fails or is damped, or whose tip leaves its path,
+/// ends with a last q of NaN: run it by itself to learn why and when.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
@@ -93,15 +93,15 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
     result.status = worse(result.status, status);
     if (failed(status)) break;
     const Reference<Space, Scalar> reference = moving ? references.motion(t, t) : references.hold();
-    const Mask<Scalar> on_course = watch.template on_course<Scheme::kLevel>(
+    const Mask<Scalar> followed = watch.template follows_reference<Scheme::kLevel>(
         loop.kinematics, arrived, reference, loop.state, loop.qdd, grid.dt(), status == Status::kDamped);
-    if (none_of(on_course)) {
+    if (none_of(followed)) {
       result.status = Status::kTaskLost;
       break;
     }
     for (Eigen::Index j = 0; j < loop.state.q.size(); ++j) {
-      set_nan_unless(on_course, x(j, 0));
-      set_nan_unless(on_course, loop.state.q(j));
+      set_nan_unless(followed, x(j, 0));
+      set_nan_unless(followed, loop.state.q(j));
     }
 
     result.time = t;

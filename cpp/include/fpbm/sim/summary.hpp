@@ -14,7 +14,7 @@
 
 namespace fpbm {
 
-/// What a motion comes to. Of joint vectors it is the largest entry by size, ‖·‖∞; largest and peak are over time.
+/// Key figures of a motion. For joint vectors, the largest absolute entry ‖·‖∞; max and peak are over time.
 template <typename Scalar = double>
 struct MotionSummary {
   Scalar max_error;              ///< Distance of the tip from its reference [m].
@@ -23,13 +23,13 @@ struct MotionSummary {
   Scalar final_velocity;
   Scalar peak_acceleration;  ///< [rad/s²]
   Scalar final_acceleration;
-  Scalar manipulability;  ///< The least √det(JJᵀ) (Yoshikawa 1985).
+  Scalar manipulability;  ///< Least √det(JJᵀ) over time (Yoshikawa 1985).
 };
 
-/// A recorder that sums a motion up, sample by sample, and stores none.
+/// A recorder that summarises a motion, sample by sample, without storing it.
 ///
-/// At velocity level, where no scheme gives them, accelerations are differences of the velocities: central ones, and
-/// one-sided at both ends. No branch depends on a number of the motion, so that a Scalar may be many side by side.
+/// At velocity level accelerations are finite differences of the velocities, central ones, one-sided at both ends. No
+/// branch depends on the numbers, so that it works in lanes.
 template <typename Space, int N, typename Scalar = double>
 class Summary {
  public:
@@ -37,10 +37,10 @@ class Summary {
 
   void operator()(const Sample<Space, N, Scalar>& sample) noexcept {
     using std::max;
-    constexpr int kTurns = Space::kRows - kLinear;
+    constexpr int kAngular = Space::kRows - kLinear;
     square_ = max(square_, Scalar(sample.error.template head<kLinear>().squaredNorm()));
-    if constexpr (kTurns > 0) {
-      turn_square_ = max(turn_square_, Scalar(sample.error.template tail<kTurns>().squaredNorm()));
+    if constexpr (kAngular > 0) {
+      angular_square_ = max(angular_square_, Scalar(sample.error.template tail<kAngular>().squaredNorm()));
     }
     velocity_ = size(sample.qd);
     peak_velocity_ = max(peak_velocity_, velocity_);
@@ -53,12 +53,12 @@ class Summary {
     least_ = max(least_, Scalar(-manipulability(sample.J)));
   }
 
-  /// Of the samples so far; of none, zeros and a manipulability of infinity.
+  /// Figures of the samples so far; without samples, zeros and a manipulability of infinity.
   [[nodiscard]] MotionSummary<Scalar> result() const noexcept {
     using std::max;
     using std::sqrt;
     return {sqrt(square_),
-            sqrt(turn_square_),
+            sqrt(angular_square_),
             peak_velocity_,
             velocity_,
             max(peak_acceleration_, acceleration_),
@@ -78,7 +78,7 @@ class Summary {
     return result;
   }
 
-  /// The slope across the last two steps is of the sample between, the one across the last of the end so far.
+  /// The slope over the last two steps belongs to the sample between them, the slope over the last step to its end.
   void differentiate(const Sample<Space, N, Scalar>& sample) noexcept {
     using std::max;
     if (sample.index > 0) {
@@ -94,7 +94,7 @@ class Summary {
 
   Level level_;
   Scalar square_{0};
-  Scalar turn_square_{0};
+  Scalar angular_square_{0};
   Scalar velocity_{0};
   Scalar peak_velocity_{0};
   Scalar acceleration_{0};

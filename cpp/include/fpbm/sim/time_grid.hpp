@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// The sample times of a rollout: t_i = i dt over the motion, then over a hold at rest on its end.
+/// Sample times of a rollout: t_i = i dt over the motion, then over a hold at rest on its end.
 template <typename Scalar = double>
 class TimeGrid {
  public:

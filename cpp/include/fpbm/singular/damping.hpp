@@ -9,15 +9,15 @@
 
 namespace fpbm {
 
-/// Damping near singular postures, so that every scheme stays bounded at and through them.
+/// Damping near singular postures: keeps every scheme bounded at and through them.
 ///
 /// In place of JW⁻¹Jᵀ the schemes invert JW⁻¹Jᵀ + Δ (damped least squares: Nakamura and Hanafusa 1986, Wampler 1986),
-/// with the Δ of LostDirections, which acts only in what the tip is about to lose, and ε = radius ‖J‖_F. Δ is smooth in
-/// q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a largest diagonal
-/// entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
+/// with the Δ of LostDirections, which acts only in the directions that the tip is about to lose, and ε = radius ‖J‖_F.
+/// Δ is smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a
+/// largest diagonal entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
-/// What is lost to the task belongs to the null space; at acceleration level z there gains −brake (tr Δ/ε²) qd, so
-/// that an arm that is drawn to a target out of reach comes to rest at the edge.
+/// A lost direction joins the null space. At acceleration level z gains −brake (tr Δ/ε²) qd, so that an arm drawn to a
+/// target out of reach comes to rest at the edge.
 template <typename Scalar = double>
 class SingularDamping {
  public:
@@ -28,7 +28,7 @@ class SingularDamping {
     validation::require_non_negative("singular_brake", brake);
   }
 
-  /// None: the schemes' own law to the end, which refuses a singular posture. What every scheme starts with.
+  /// No damping: the scheme's own law, which fails at a singular posture. The default of every scheme.
   [[nodiscard]] static SingularDamping off() noexcept { return SingularDamping(Scalar(0), Scalar(0)); }
 
   [[nodiscard]] Scalar radius() const noexcept { return radius_; }
@@ -39,8 +39,8 @@ class SingularDamping {
   Scalar brake_;
 };
 
-/// Lower bound on the least singular value of J, at most √M times too low: 1/√tr((JJᵀ)⁻¹). At a singular posture it is
-/// 0 or what round-off in JJᵀ leaves, of the order of √epsilon ‖J‖_F.
+/// Lower bound on σ_min(J), tight within a factor √M: 1/√tr((JJᵀ)⁻¹). At a singular posture it is 0 or round-off, of
+/// the order of √epsilon ‖J‖_F.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
   using std::sqrt;
@@ -50,8 +50,8 @@ template <int M, int N, typename Scalar>
   return Scalar(1) / sqrt(cholesky.inverse_trace());
 }
 
-/// The factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular; of several with different W, side by side,
-/// where Value is Pair<Scalar>.
+/// Factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular. With Value = Pair<Scalar>, of two with different
+/// W side by side.
 template <int M, int N, typename Value>
 class DampedGram {
  public:
@@ -78,7 +78,7 @@ class DampedGram {
     const Status status = cholesky_.factor(gram);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
-    // Most postures are far from singular, which the factor at hand tells: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
+    // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
     const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
     const Scalar bound = threshold * inverse_bound;
     const Mask<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
@@ -92,7 +92,7 @@ class DampedGram {
 
   [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept { return cholesky_.solve(b); }
 
-  /// Damping that the null space gains [1/s].
+  /// Additional damping of the null space [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:

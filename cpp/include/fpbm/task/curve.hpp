@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// Displacement from where a shape starts, and its first two derivatives with respect to the fraction s done.
+/// Displacement from the start of a shape, and its first two derivatives with respect to the fraction s of it.
 template <typename Space, typename Scalar>
 struct Curve {
   typename Space::template Point<Scalar> d;

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// v = xd + k (x ⊖ f(q)): what J qd is to be.
+/// Commanded tip velocity: J qd = v = xd + k (x ⊖ f(q)).
 template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_velocity(
     Scalar k, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference) noexcept {
@@ -16,7 +16,7 @@ template <typename Space, int N, typename Scalar>
   return v;
 }
 
-/// b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)): what J qdd is to be.
+/// Commanded acceleration: J qdd = b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
 template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,

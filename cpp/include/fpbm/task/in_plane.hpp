@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// A path of the plane, laid into a plane of space: (x, y) becomes x u + y v.
+/// A planar path in a plane of space: (x, y) becomes x u + y v.
 template <typename Path>
 class InPlane {
  public:
@@ -21,7 +21,7 @@ class InPlane {
     validation::require_finite("u", u);
     validation::require_finite("v", v);
     if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) {
-      throw std::invalid_argument("u and v: must both point somewhere");
+      throw std::invalid_argument("u and v: must both be nonzero");
     }
     axes_.col(0) = u.normalized();
     axes_.col(1) = v.normalized();

@@ -10,11 +10,11 @@
 
 namespace fpbm {
 
-/// A path has a Scalar, a Space, a duration() [s], and a sample(t) that may be asked for any t, in any order: x, xd,
-/// xdd as displacements from where the tip starts, at rest on the path's ends before 0 and after its duration.
+/// A path has a Scalar, a Space, a duration() [s], and a sample(t) for any t in any order: x, xd, xdd as displacements
+/// from the tip's start, at rest on the path's ends before 0 and after its duration.
 ///
-/// One whose acceleration steps on the way has a sample(t, since) besides: at t of that piece of it which is in force
-/// just after since, so that an integrator's step stays within a piece.
+/// A path whose acceleration is discontinuous within also has sample(t, since): the sample at t of the piece that holds
+/// just after since, so that a step of an integrator stays within one piece.
 template <typename Path, typename = void>
 inline constexpr bool kHasPieces = false;
 template <typename Path>
@@ -22,7 +22,7 @@ inline constexpr bool kHasPieces<
     Path, std::void_t<decltype(std::declval<const Path&>().sample(typename Path::Scalar(), typename Path::Scalar()))>> =
     true;
 
-/// Any path's sample at t, within the piece in force just after since.
+/// Sample of any path at t, from the piece that holds just after since.
 template <typename Path>
 [[nodiscard]] Reference<typename Path::Space, typename Path::Scalar> sample_within(
     const Path& path, typename Path::Scalar t, [[maybe_unused]] typename Path::Scalar since) noexcept {
@@ -33,11 +33,11 @@ template <typename Path>
   }
 }
 
-/// A shape run through under a time law in T seconds, then held.
+/// Follows a shape under a time law in T seconds, then holds its end.
 ///
 /// With s(τ), τ = t/T, from the time law and d(s) from the shape:
 ///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,
-/// all as displacements from where the tip starts.
+/// all as displacements from the tip's start.
 template <typename Shape, typename TimeLaw = SinSquared>
 class Path {
  public:
@@ -52,7 +52,7 @@ class Path {
 
   [[nodiscard]] Scalar duration() const noexcept { return duration_; }
 
-  /// Reference at t [s]: on the path for 0 ≤ t ≤ T, both ends included, and at rest on its ends outside.
+  /// Reference at t [s]: on the path for 0 ≤ t ≤ T, at rest on its ends outside.
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept {
     if (t < Scalar(0)) return Reference<Space, Scalar>::hold(shape_.at(Scalar(0)).d);
     if (t > duration_) return Reference<Space, Scalar>::hold(shape_.at(Scalar(1)).d);

@@ -4,14 +4,14 @@
 
 namespace fpbm {
 
-/// What the tip is to do at one instant.
+/// Desired motion of the tip at one instant.
 template <typename Space, typename Scalar = double>
 struct Reference {
-  typename Space::template Point<Scalar> x;  ///< Where the tip is to be, in the base frame [m, rad].
-  Vector<Space::kRows, Scalar> xd;           ///< Its velocity, linear rows first, then angular [m/s, rad/s].
-  Vector<Space::kRows, Scalar> xdd;          ///< Its acceleration [m/s², rad/s²].
+  typename Space::template Point<Scalar> x;  ///< Desired point, in the base frame [m, rad].
+  Vector<Space::kRows, Scalar> xd;           ///< Desired velocity, linear rows first, then angular [m/s, rad/s].
+  Vector<Space::kRows, Scalar> xdd;          ///< Desired acceleration [m/s², rad/s²].
 
-  /// At rest on x.
+  /// At rest at x.
   [[nodiscard]] static Reference hold(const typename Space::template Point<Scalar>& x) noexcept {
     return {x, Vector<Space::kRows, Scalar>::Zero(), Vector<Space::kRows, Scalar>::Zero()};
   }
@@ -22,7 +22,7 @@ struct Reference {
   }
 };
 
-/// Where a reference has gone so many seconds later at constant acceleration.
+/// A reference some seconds later, at constant acceleration.
 template <typename Space, typename Scalar>
 [[nodiscard]] Reference<Space, Scalar> ahead(const Reference<Space, Scalar>& reference, Scalar seconds) noexcept {
   Reference<Space, Scalar> later = reference;

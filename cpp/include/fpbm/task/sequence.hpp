@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// One path after another: the second starts where the first ends. For more than two, a sequence of sequences.
+/// One path after another: the second starts where the first ends. For more than two, nest sequences.
 template <typename First, typename Second>
 class Sequence {
  public:
@@ -25,7 +25,7 @@ class Sequence {
 
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t, Scalar since) const noexcept {
     const Scalar T = first_.duration();
-    // The ends of an integrator's steps are multiples of its step, and by their rounding just before T or after it.
+    // An integrator's step ends at a multiple of its length, which round-off puts just before or after T.
     if (since < T * (Scalar(1) - kRounding)) return sample_within(first_, t < T ? t : T, since);
     const Scalar begun = t > T ? t - T : Scalar(0);
     Reference<Space, Scalar> reference = sample_within(second_, begun, since > T ? since - T : Scalar(0));

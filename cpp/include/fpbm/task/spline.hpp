@@ -9,9 +9,9 @@
 namespace fpbm {
 
 /// Quintic spline through points at given times, at rest (velocity and acceleration zero) at both ends, with four
-/// continuous derivatives: of all curves through them the one of least ∫|jerk|² dt.
+/// continuous derivatives: the curve of least ∫|jerk|² dt through the points.
 ///
-/// Memory is taken at construction and by copies, never by at().
+/// Allocates at construction and when copied, never in at().
 template <int M, typename Scalar = double>
 class Spline {
  public:
@@ -32,7 +32,7 @@ class Spline {
 
   [[nodiscard]] const std::vector<Scalar>& times() const noexcept { return times_; }
 
-  /// At t [s]: on an end outside of the times.
+  /// Sample at t [s]; the nearest end outside the times.
   [[nodiscard]] Sample at(Scalar t) const noexcept {
     const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
     const auto i = static_cast<std::size_t>(after - times_.begin()) - 1;
@@ -40,7 +40,7 @@ class Spline {
     const Knot& b = knots_[i + 1];
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
-    // From a's Taylor polynomial, what is missing at b.
+    // Differences at b from the Taylor polynomial at a.
     const Point x = b.x - (a.x + h * (a.xd + h / 2 * a.xdd));
     const Point xd = h * (b.xd - (a.xd + h * a.xdd));
     const Point xdd = h * h * (b.xdd - a.xdd);
@@ -93,7 +93,7 @@ class Spline {
     }
   }
 
-  /// What a knot's own rates do to −snap and jerk at the end of a piece of h seconds, and at its begin.
+  /// Contribution of a knot's own rates to −snap and jerk at the end, and at the start, of a piece of h seconds.
   static Block ends(Scalar h) {
     Block block;
     block << 192 / (h * h * h), -36 / (h * h), -36 / (h * h), 9 / h;
@@ -104,7 +104,7 @@ class Spline {
     block << 192 / (h * h * h), 36 / (h * h), 36 / (h * h), 9 / h;
     return block;
   }
-  /// What the next knot's do.
+  /// Contribution of the next knot's rates.
   static Block across(Scalar h) {
     Block block;
     block << 168 / (h * h * h), -24 / (h * h), 24 / (h * h), -3 / h;

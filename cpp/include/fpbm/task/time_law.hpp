@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// Fraction s of a path that is done, and its first two derivatives with respect to time.
+/// Fraction s of a path, and its first two derivatives with respect to τ.
 template <typename Scalar>
 struct Phase {
   Scalar s;
@@ -32,7 +32,7 @@ struct Quintic {
   }
 };
 
-/// s(τ) = τ: constant parameter speed, so the tip starts and stops with a jump in velocity.
+/// s(τ) = τ: constant speed of the parameter; velocity jumps at both ends.
 struct ConstantSpeed {
   template <typename Scalar>
   [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {

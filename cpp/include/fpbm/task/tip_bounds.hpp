@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// How fast a tip may go; infinite where there is no bound.
+/// Bounds on the tip's motion; infinite where there is none.
 template <typename Scalar = double>
 struct TipBounds {
   Scalar velocity = std::numeric_limits<Scalar>::infinity();              ///< [m/s]

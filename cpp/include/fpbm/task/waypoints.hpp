@@ -19,9 +19,9 @@ namespace fpbm {
 
 /// A smooth path through points of a task space, from rest to rest, with continuous acceleration everywhere.
 ///
-/// Positions lie on a quintic spline; so do orientations, as quaternions on a spline in their four numbers, scaled to
-/// unit length, of which the angular velocity and its derivative are exact. Only differences from the first point
-/// matter: a path is a displacement from where the tip starts. Between two orientations it turns by the shorter way.
+/// Positions lie on a quintic spline. Orientations lie on a quintic spline of quaternions, scaled to unit length; the
+/// angular velocity and its derivative are exact. Only differences from the first point matter, since a path is a
+/// displacement from the tip's start. Between two orientations it rotates by the shorter way.
 template <typename Space_, typename Scalar_ = double>
 class Waypoints {
  public:
@@ -29,15 +29,15 @@ class Waypoints {
   using Space = Space_;
   using Point = typename Space::template Point<Scalar>;
 
-  /// Through points[i] at times[i] [s], the first of them 0.
+  /// Passes points[i] at times[i] [s]; times[0] is 0.
   /// Throws std::invalid_argument unless there are as many times as points, at least two, strictly increasing, and all
   /// are finite.
   Waypoints(const std::vector<Point>& points, const std::vector<Scalar>& times)
       : spline_(rows(points), required(times, points.size())) {}
 
-  /// In duration [s], of which each piece gets its share by its length, straight and in angle alike.
+  /// Takes duration [s], shared among the pieces by their lengths and angles.
   /// Throws std::invalid_argument where duration is not positive and finite, there are fewer than two points, or two
-  /// that follow each other are one.
+  /// successive points are equal.
   [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
     validation::require_positive("duration", static_cast<double>(duration));
     std::vector<Scalar> times = shares(points);
@@ -46,8 +46,8 @@ class Waypoints {
     return Waypoints(points, times);
   }
 
-  /// As fast as the bounds allow (to 1 %, and to whole hundredths of a second, so that the usual steps fit), each piece
-  /// with its share of the time as above. Throws std::invalid_argument where no bound holds the tip back, too.
+  /// As fast as the bounds allow (within 1 %, rounded up to 0.01 s, so that usual steps divide it), shared among the
+  /// pieces as in lasting(). Also throws std::invalid_argument where no bound limits the tip.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
     require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);
@@ -58,7 +58,7 @@ class Waypoints {
         std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
                  std::max(std::sqrt(peak.acceleration / bounds.acceleration),
                           std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
-    if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must hold the tip back");
+    if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must limit the tip");
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
 
@@ -74,7 +74,7 @@ class Waypoints {
       const Quaternion Q = at.x.template tail<4>();
       const Quaternion Qd = at.xd.template tail<4>();
       const Quaternion Qdd = at.xdd.template tail<4>();
-      // With q = Q/|Q|, ω = 2 q̇q*, of which only the part of Q̇ across Q is left in the vector part.
+      // With q = Q/|Q|, ω = 2 q̇q*; the part of Q̇ along Q does not show in the vector part.
       const Scalar square = Q.squaredNorm();
       const Vector<3, Scalar> w = Scalar(2) / square * vector_of_quotient(Qd, Q);
       Reference<Space, Scalar> result;
@@ -91,14 +91,14 @@ class Waypoints {
   static constexpr int kCoordinates = kTurns ? 7 : Space::kRows;
   using Coordinates = Vector<kCoordinates, Scalar>;
 
-  /// What the spline goes through: displacements from the first point, orientations by the shorter way.
+  /// Points of the spline: displacements from the first point, orientations by the shorter way.
   static std::vector<Coordinates> rows(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Coordinates> result(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       if constexpr (kTurns) {
-        const Matrix<3, 3, Scalar> turn = points[i].R * points[0].R.transpose();
-        Vector<4, Scalar> q = quaternion(turn);
+        const Matrix<3, 3, Scalar> rotated = points[i].R * points[0].R.transpose();
+        Vector<4, Scalar> q = quaternion(rotated);
         if (i > 0 && q.dot(result[i - 1].template tail<4>()) < Scalar(0)) q = -q;
         result[i] << points[i].p - points[0].p, q;
       } else if (i == 0) {
@@ -144,7 +144,7 @@ class Waypoints {
     if (!(bound > Scalar(0))) validation::fail(name, static_cast<double>(bound), "positive");
   }
 
-  /// When each point's turn comes, of a whole of 1.
+  /// Time of each point as a fraction of the whole.
   static std::vector<Scalar> shares(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Scalar> lengths(points.size(), Scalar(0));

@@ -7,11 +7,11 @@
 
 namespace fpbm {
 
-/// A path of positions with the tip's orientation held, or turned from rest to rest over the path's whole duration.
+/// A path of positions with the tip's orientation held, or rotated from rest to rest over the path's whole duration.
 ///
-/// The turn is a rotation vector r along the base frame's axes [rad] (in the plane: an angle), taken from where the tip
-/// starts: R(t) = rotation(s r) R(0), so that the angular velocity is ṡ r and its derivative s̈ r, exactly. To turn to
-/// an orientation R, r = rotation_vector(R R(0)ᵀ).
+/// The rotation is a rotation vector r along the base frame's axes [rad] (in the plane: an angle), relative to the
+/// tip's start: R(t) = rotation(s r) R(0), so that the angular velocity is ṡ r and its derivative s̈ r, exactly. To end
+/// in an orientation R, r = rotation_vector(R R(0)ᵀ).
 template <typename Path, typename TimeLaw = Quintic>
 class WithRotation {
   using Positions = typename Path::Space;
@@ -19,15 +19,15 @@ class WithRotation {
  public:
   using Scalar = typename Path::Scalar;
   using Space = typename PoseOver<Positions>::type;
-  using Turn = Vector<Space::kRows - Positions::kRows, Scalar>;
+  using Rotation = Vector<Space::kRows - Positions::kRows, Scalar>;
 
   /// Orientation held.
-  explicit WithRotation(const Path& path) : WithRotation(path, Turn::Zero()) {}
+  explicit WithRotation(const Path& path) : WithRotation(path, Rotation::Zero()) {}
 
-  /// Throws std::invalid_argument unless turn is finite.
-  WithRotation(const Path& path, const Turn& turn, const TimeLaw& time_law = {})
-      : path_(path), turn_(turn), time_law_(time_law) {
-    validation::require_finite("turn", turn);
+  /// Throws std::invalid_argument unless rotation is finite.
+  WithRotation(const Path& path, const Rotation& rotation, const TimeLaw& time_law = {})
+      : path_(path), rotation_(rotation), time_law_(time_law) {
+    validation::require_finite("rotation", rotation);
   }
 
   [[nodiscard]] Scalar duration() const noexcept { return path_.duration(); }
@@ -39,21 +39,21 @@ class WithRotation {
     const Scalar T = path_.duration();
     Phase<Scalar> phase = time_law_.at(t < Scalar(0) ? Scalar(0) : t > T ? Scalar(1) : t / T);
     if (t < Scalar(0) || t > T) phase.sd = phase.sdd = Scalar(0);
-    return {Space::displace(Space::template origin<Scalar>(), join(position.x, turn_ * phase.s)),
-            join(position.xd, turn_ * (phase.sd / T)), join(position.xdd, turn_ * (phase.sdd / (T * T)))};
+    return {Space::displace(Space::template origin<Scalar>(), join(position.x, rotation_ * phase.s)),
+            join(position.xd, rotation_ * (phase.sd / T)), join(position.xdd, rotation_ * (phase.sdd / (T * T)))};
   }
 
  private:
   [[nodiscard]] static Vector<Space::kRows, Scalar> join(const Vector<Positions::kRows, Scalar>& linear,
-                                                         const Turn& angular) noexcept {
+                                                         const Rotation& angular) noexcept {
     Vector<Space::kRows, Scalar> result;
     result.template head<Positions::kRows>() = linear;
-    result.template tail<Turn::RowsAtCompileTime>() = angular;
+    result.template tail<Rotation::RowsAtCompileTime>() = angular;
     return result;
   }
 
   Path path_;
-  Turn turn_;
+  Rotation rotation_;
   TimeLaw time_law_;
 };
 
