@@ -35,9 +35,7 @@ class JointLimits(Data):
     lower: ArrayField = parameter("Lowest positions.", BOUND, kw_only=True, unit="rad")
     upper: ArrayField = parameter("Highest positions.", BOUND, kw_only=True, unit="rad")
     velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, kw_only=True, unit="rad/s")
-    acceleration: ArrayField = parameter(
-        "Highest accelerations, either way.", BOUND, kw_only=True, unit="rad/s^2"
-    )
+    acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, kw_only=True, unit="rad/s^2")
 
     def _finish(self) -> None:
         for name in ("upper", "velocity", "acceleration"):
@@ -131,6 +129,9 @@ class SerialArm(Arm):
     )
 
     def _finish(self) -> None:
+        for i, joint in enumerate(self.joints):
+            if not isinstance(joint, Joint):
+                raise ParameterError("joints", i, joint, f"joints[{i}] = {joint!r:.80}: must be a Joint")
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(self.joints, 1))
         object.__setattr__(self, "joints", named)
         CoreArm.__init__(self, list(named), self.tip)

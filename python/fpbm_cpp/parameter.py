@@ -89,9 +89,9 @@ class Parameter:
         return self._number(value) if self.type in (float, int) else value
 
     def _number(self, value: Any) -> float | int:
-        if isinstance(value, (str, bytes, bool, np.bool_)):
-            raise self._error(value, "a number")
         try:
+            if isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0:
+                raise TypeError
             number = float(value)
         except (TypeError, ValueError, OverflowError):
             raise self._error(value, "a number") from None
@@ -177,7 +177,9 @@ def _parameters(maker: Any) -> dict[str, Parameter]:
         known = declared.get(name, Parameter(default=argument.default, usual=argument.default))
         annotation = str(argument.annotation)
         kind = {"float": float, "int": int, "str": str}.get(annotation.split(" | ")[0], known.type)
-        found[name] = replace(known, name=name, type=np.ndarray if known.shape else kind, annotation=annotation)
+        kind = np.ndarray if known.shape else kind
+        whole = known.whole or kind is int
+        found[name] = replace(known, name=name, type=kind, whole=whole, annotation=annotation)
     own_first = [name for each in inspect.getmro(maker) for name in inspect.get_annotations(each)] if declared else ()
     return {name: found[name] for name in dict.fromkeys((*own_first, *found)) if name in found}
 

@@ -19,7 +19,7 @@ from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
 # What shapes have in common.
-DURATION = replace(POSITIVE, help="T.", usual=10.0, unit="s")
+DURATION = replace(POSITIVE, help="How long the path takes, T.", usual=10.0, unit="s")
 TIME_LAW = Parameter(help="How the fraction s of the way grows with time.", choices=TIME_LAWS)
 
 
@@ -78,7 +78,7 @@ class Circle(Path):
     """
 
     kind = "circle"
-    radius: float = parameter("r.", POSITIVE, unit="m", usual=0.1)
+    radius: float = parameter("Radius of the circle, r.", POSITIVE, unit="m", usual=0.1)
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
@@ -95,13 +95,22 @@ class Lissajous(Path):
 
     kind = "lissajous"
     amplitude: ArrayField = parameter(
-        "a, one for both axes or one each.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
+        "Amplitude of the Lissajous figure, a: one for both axes or one each.",
+        POSITIVE,
+        shape="() or (2,)",
+        unit="m",
+        usual=0.1,
     )
     duration: float = parameter(like=DURATION)
     frequencies: ArrayField = parameter(
-        "f: whole, so that the figure closes.", default=(2, 1), kw_only=True, shape="(2,)", whole=True, low=1.0
+        "Frequencies of the Lissajous figure, f: whole, so that it closes.",
+        default=(2, 1),
+        kw_only=True,
+        shape="(2,)",
+        whole=True,
+        low=1.0,
     )
-    phase: float = parameter("delta.", default=pi / 6, kw_only=True, unit="rad")
+    phase: float = parameter("Phase of the Lissajous figure, delta.", default=pi / 6, kw_only=True, unit="rad")
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
     def _compiled(self) -> CorePath:
@@ -116,7 +125,7 @@ class Tricuspid(Path):
     """
 
     kind = "tricuspid"
-    size: float = parameter("a.", POSITIVE, unit="m", usual=0.05)
+    size: float = parameter("Size of the tricuspid, a.", POSITIVE, unit="m", usual=0.05)
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
@@ -130,7 +139,7 @@ class Line(Path):
 
     kind = "line"
     displacement: ArrayField = parameter(
-        "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
+        "Of the line, from its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
@@ -161,19 +170,23 @@ class Waypoints(Path):
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
-    duration: DerivedField = parameter("T.", POSITIVE, type=float, default=None, kw_only=True, unit="s")
+    duration: DerivedField = parameter(
+        "How long the path takes, T.", POSITIVE, type=float, default=None, kw_only=True, unit="s"
+    )
     times: OptionalArrayField = parameter(
         "When each point is passed, the first at 0.", default=None, kw_only=True, shape="(k,)", unit="s"
     )
-    velocity: float | None = parameter("Highest speed of the tip.", POSITIVE, default=None, kw_only=True, unit="m/s")
+    velocity: float | None = parameter(
+        "Highest speed of the tip on the way through points.", POSITIVE, default=None, kw_only=True, unit="m/s"
+    )
     acceleration: float | None = parameter(
-        "Its highest acceleration.", POSITIVE, default=None, kw_only=True, unit="m/s^2"
+        "The same, of its acceleration.", POSITIVE, default=None, kw_only=True, unit="m/s^2"
     )
     angular_velocity: float | None = parameter(
-        "Its highest angular velocity.", POSITIVE, default=None, kw_only=True, unit="rad/s"
+        "The same, of its angular velocity.", POSITIVE, default=None, kw_only=True, unit="rad/s"
     )
     angular_acceleration: float | None = parameter(
-        "Its highest angular acceleration.", POSITIVE, default=None, kw_only=True, unit="rad/s^2"
+        "The same, of its angular acceleration.", POSITIVE, default=None, kw_only=True, unit="rad/s^2"
     )
 
     def __post_init__(self) -> None:

@@ -89,7 +89,11 @@ class Scheme(Data, CoreScheme):
         "Posture that the null space is drawn to.", default=None, kw_only=True, shape="(n,)", unit="rad"
     )
     null_stiffness: float = parameter(
-        "How strongly it is drawn.", NOT_NEGATIVE, default=0.0, kw_only=True, unit="1/s^2, 1/s at velocity level"
+        "How strongly the null space is drawn there.",
+        NOT_NEGATIVE,
+        default=0.0,
+        kw_only=True,
+        unit="1/s^2, 1/s at velocity level",
     )
     c: OptionalArrayField = parameter(
         "The free choice in the general solution (5), (3) at velocity level.",
@@ -215,8 +219,8 @@ class FPBM(AccelerationScheme):
     kind = "fpbm"
     alpha: float = parameter(like=ALPHA)
     weights: ArrayField = parameter(like=WEIGHTS)
-    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
-    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
+    k1: float = parameter("FPBM's feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
+    k2: float = parameter("FPBM's feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
 
 
 # By the kind that a table has.

@@ -105,7 +105,7 @@ def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parame
     known = dict(parameters(maker))
     if maker is SecondTask and joints:
         del known["arm"]
-        return {"joints": Parameter("joints", int, help="How many of the arm's joints."), **known}
+        return {"joints": Parameter("joints", int, whole=True, help="How many of the arm's joints."), **known}
     return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
 
 

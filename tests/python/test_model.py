@@ -44,7 +44,7 @@ def test_jacobians_are_derivatives(state):
 
 def test_an_arm_describes_itself(arm):
     assert arm.dof == 4
-    assert repr(arm) == "PlanarArm([1, 1, 1, 1])"
+    assert repr(arm) == "PlanarArm(lengths=[1, 1, 1, 1])"
     assert arm.joint_names == ["joint_1", "joint_2", "joint_3", "joint_4"]
     assert np.all(arm.limits.upper == np.inf)
     assert arm.limits.lower.shape == (4,)
@@ -62,7 +62,7 @@ def test_an_arm_describes_itself(arm):
         ([1, np.inf], r"lengths\[1\] = inf: must be positive"),
         ([1], "lengths has 1 entries: must have 2 to 32"),
         (np.ones(33), "lengths has 33 entries"),
-        ([[1, 1]], r"lengths: must have 1 dimension, got shape \(1, 2\)"),
+        ([[1, 1]], r"lengths: must have shape \(n,\), got \(1, 2\)"),
         (["a", "b"], "lengths: must be real numbers"),
         ([1, 2j], "lengths: must be real numbers"),
         ([1, [2]], "lengths: must be real numbers"),
