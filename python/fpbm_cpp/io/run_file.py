@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import operator
 import os
 import platform
@@ -16,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .._core import Status, __version__, processor_kinds
-from ..arms import PlanarArm, SerialArm
+from ..arms import ARMS
 from ..motion.run import ARRAYS, LIMITED, Run
 from ..motion.run_status import RunStatus
 from ..schemes import SCHEMES
@@ -25,9 +24,6 @@ from .write_whole import write_whole
 
 FORMAT = "fpbm_cpp run"
 VERSION = 1  # Of the format: one more for each that older packages cannot read.
-
-# What a table of a file may stand for: nothing that is read from another file.
-ARMS = {arm.kind: arm for arm in (PlanarArm, SerialArm)}
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
@@ -44,7 +40,7 @@ def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
         "provenance": _provenance(run, note, seed),
     }
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, meta=np.array(json.dumps(_encoded(meta), allow_nan=False)), **run.arrays())
+    np.savez_compressed(buffer, meta=np.array(json.dumps(meta, allow_nan=False)), **run.arrays())
     write_whole(FilePath(file), buffer.getvalue())
 
 
@@ -87,21 +83,10 @@ def load(file: str | os.PathLike[str]) -> Run:
         raise ValueError(f"{file}: holds no run: {error}") from error
 
 
-def _encoded(value: Any) -> Any:
-    """A value with {"float": "inf"} and the like for the numbers that JSON lacks."""
-    if isinstance(value, dict):
-        return {name: _encoded(item) for name, item in value.items()}
-    if isinstance(value, list):
-        return [_encoded(item) for item in value]
-    return {"float": repr(value)} if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _decoded(table: dict[str, Any]) -> Any:
-    """What _encoded() made this of; of tables in tables, the inner ones come first."""
-    if table.keys() == {"float"} and table["float"] in ("inf", "-inf", "nan"):
-        return float(table["float"])
-    if "arm" in table and "format" not in table:  # A second task's.
-        table["arm"] = from_table(table["arm"], ARMS, "arm")
+def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
+    """The table; ValueError if another file would be read for it."""
+    if table.get("kind") == "urdf":
+        raise ValueError("kind = 'urdf': a run's file must not name another file")
     return table
 
 
@@ -134,7 +119,7 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
     with np.load(io.BytesIO(content), allow_pickle=False) as members:
         if "meta" not in members:
             raise ValueError("it says nothing of arm, path and scheme")
-        meta = json.loads(str(members["meta"]), object_hook=_decoded)
+        meta = json.loads(str(members["meta"]), object_hook=_refuse_files)
         if meta["format"] != FORMAT or not isinstance(meta["version"], int):
             raise ValueError(f"its format is {meta['format']!r} {meta['version']!r}")
         return meta, {name: members[name] for name in (*ARRAYS, *LIMITED) if name in members}
@@ -142,7 +127,7 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     kinds = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}
-    arm, path, scheme = (from_table(meta[name], kinds[name], name) for name in kinds)
+    arm, path, scheme = (from_table(meta[name], kind, name) for name, kind in kinds.items())
     known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
     rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
     shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": ()}

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .._core import check_sweep, not_run
 from ..arms import Arm, JointLimits
-from ..errors import SweepInterrupted
+from ..errors import ParameterError, SweepInterrupted
 from ..paths import Path
 from ..schemes import Scheme
 from .chunks import Result, run_chunks
@@ -49,18 +49,12 @@ def sweep(
 
     Parameters
     ----------
-    arm, path
-        What moves, along what.
+    arm, path, dt, hold, task
+        As for simulate().
     schemes : Scheme or sequence of Scheme
         S of them.
     q0s : array_like, shape (n,) or (K, n)
         Joint positions at the start [rad], one row a start; all begin at rest.
-    dt : float
-        Step [s]; it must divide the path's duration and the hold.
-    hold : float
-        Time to stay at rest on the path's end afterwards [s].
-    task : str
-        'position', or 'pose' to track the tip's orientation as well.
     limits : JointLimits, optional
         Limits that every motion keeps: arm.limits are the arm's own. None by default.
     max_error, integral_gain, integral_bound, singular_radius, singular_brake : float
@@ -92,17 +86,19 @@ def sweep(
     """
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
-        raise ValueError("schemes: must be one at least")
+        raise ParameterError("schemes", None, schemes, "schemes: must be one at least")
     for i, law in enumerate(laws):
         if not isinstance(law, Scheme):
             raise TypeError(f"schemes[{i}]: must be a Scheme, got {type(law).__name__}")
     if workers is not None and executor is not None:
-        raise ValueError("workers: must be left out where there is an executor, which has its own")
+        text = "workers: must be left out where there is an executor, which has its own"
+        raise ParameterError("workers", None, workers, text)
     if workers is not None and workers < 1:
-        raise ValueError(f"workers = {workers}: must be 1 at least")
+        raise ParameterError("workers", None, workers, f"workers = {workers}: must be 1 at least")
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
     if limits is None and limited != LimitOptions():
-        raise ValueError("limits: must be given where max_error, an integral or a singular option is")
+        text = "limits: must be given where max_error, an integral or a singular option is"
+        raise ParameterError("limits", None, None, text)
     kept = None if limits is None else limited
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
     plan = Plan(arm, path, laws, starts, float(dt), float(hold), task, kept, motions, samples)

@@ -53,18 +53,9 @@ def track(
 
     Parameters
     ----------
-    arm, path, scheme
-        What moves, along what, and how.
-    q0 : array_like, shape (n,)
-        Joint positions at the start [rad], within the limits.
-    dt : float
-        Length of a tick [s]; it must divide the path's duration and the hold.
-    hold : float
-        Time to stay on the path's end afterwards [s]; choose it longer if the limits make the arm late.
-    qd0 : array_like, shape (n,), optional
-        Joint velocities at the start [rad/s], zero by default.
-    task : str
-        'position', or 'pose' to track the tip's orientation as well.
+    arm, path, scheme, q0, dt, hold, qd0, task
+        As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
+        arrive.
     limits : JointLimits, optional
         The arm's own by default. A joint with bounds needs one on its acceleration, except at velocity level.
     max_error : float
