@@ -76,7 +76,7 @@ def test_mp4(tmp_path: Path) -> None:
         ("a", {}, "must end in .mp4 or .gif"),
         ("a.gif", {"fps": 0}, "fps = 0: must be positive and finite"),
         ("a.gif", {"fps": 60}, "fps = 60: must be at most 50 in a .gif"),
-        ("a.gif", {"speed": -1.0}, "speed = -1.0: must be positive"),
+        ("a.gif", {"speed": -1.0}, "speed = -1: must be positive"),
         ("a.gif", {"dpi": np.nan}, "dpi = nan: must be positive"),
         ("a.gif", {"panels": ["velocity"]}, "panels: 'velocity' must be one of"),
     ],

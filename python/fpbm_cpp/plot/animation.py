@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..motion.run import Run
+from ..parameter import Parameter
 from ..skeleton import joint_points
 from .animation_file import animation_writer
 from .arm import LINK, draw_base, draw_target, frame_arm
@@ -55,15 +56,14 @@ def animate(
     Raises
     ------
     ValueError
-        If an argument is out of range, the file has another suffix, or the run has no sample.
+        If an argument is out of range, the file has another suffix, or the run has no samples.
     ImportError
         If the file is .mp4 and there is no ffmpeg.
     OSError
         If the file cannot be written.
     """
     for name, value in (("fps", fps), ("speed", speed), ("dpi", dpi)):
-        if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} = {value}: must be positive and finite")
+        Parameter(name, float, low=0.0, open_low=True).check(value)
     if not len(run.t):
         raise ValueError("run: has no samples to animate")
     shown = {name: PANELS[name] for name in choose(run, panels) if name != "arm"}

@@ -47,7 +47,8 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     """Figure of several runs, with one line for each.
 
     Its panels show joint velocities, joint accelerations, tip error and manipulability over time; where the task is a
-    pose, also the orientation error and the distance of the joints from where they began.
+    pose, also the orientation error and the distance of the joints from where they began. Raises ValueError if there is
+    no run.
 
     Parameters
     ----------
@@ -57,11 +58,6 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
         Title of the figure.
     dark : bool
         Dark background.
-
-    Raises
-    ------
-    ValueError
-        If there is no run.
     """
     named = dict(runs) if isinstance(runs, Mapping) else _named(runs)
     if not named:

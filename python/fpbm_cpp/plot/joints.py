@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Array
-from ..arms import Arm, JointLimits
+from ..arms import Arm
 from ..joint_text import joint_labels, joint_units
 from ..motion.run import Run
 from .legends import side_legend
@@ -20,19 +20,18 @@ NEAR = 0.1  # Of the distance between a joint's bounds.
 
 def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint positions, and the bounds that a joint comes near."""
-    limits = _limits(run)
-    _joint_lines(axes, theme, run, run.q, r"$q$", "", limits.lower, limits.upper)
+    _joint_lines(axes, theme, run, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
 
 
 def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint velocities, and the bounds that a joint comes near."""
-    bound = _limits(run).velocity
+    bound = run.limits.velocity
     _joint_lines(axes, theme, run, run.qd, r"$\dot q$", "/s", -bound, bound)
 
 
 def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint accelerations, and the bounds that a joint comes near."""
-    bound = _limits(run).acceleration
+    bound = run.limits.acceleration
     _joint_lines(axes, theme, run, run.qdd, r"$\ddot q$", "/s²", -bound, bound)
 
 
@@ -48,12 +47,6 @@ def unit_of(runs: Sequence[Run], per: str) -> str:
     """Unit of a quantity of all joints: 'rad/s', or 'rad/s, m/s' where some are prismatic."""
     units = sorted({unit for run in runs for unit in joint_units(run.arm)}, reverse=True)
     return ", ".join(unit + per for unit in units)
-
-
-def _limits(run: Run) -> JointLimits:
-    """The limits that the motion kept, or else the arm's own."""
-    given = run.options.get("limits")
-    return given if isinstance(given, JointLimits) else run.arm.limits
 
 
 def _joint_lines(

@@ -26,6 +26,7 @@ def plot_run(
     """Figure of a run, as far as it went: the arm on the left, the first panels beside it, the others below it.
 
     Its text is 9 points high. It is two columns of a paper wide, or one column where there are few panels and no arm.
+    Raises ValueError if a panel is unknown or given twice, or no panel is left.
 
     Parameters
     ----------
@@ -38,11 +39,6 @@ def plot_run(
         out: 'scale' and 'saturation' without joint limits, 'axis_orientation_errors' where the task is a position.
     dark : bool
         Dark background.
-
-    Raises
-    ------
-    ValueError
-        If a name is not in PANELS or is given twice, or no panel is left.
     """
     names = choose(run, panels)
     if title is None:

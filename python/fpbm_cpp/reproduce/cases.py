@@ -16,6 +16,7 @@ from ..motion.run import Run
 from ..motion.simulation import simulate
 from ..paths import PATHS, Path
 from ..schemes import FPBM, MAN, Scheme
+from ..table import from_table
 
 DT = 1e-3  # [s]
 NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tricuspid"}
@@ -120,7 +121,7 @@ def load() -> Paper:
         source=data["source"],
         arm=PlanarArm(data["links"]),
         q0=np.deg2rad(data["q0_degrees"]),
-        paths={name: PATHS[name](**shape, duration=data["duration"]) for name, shape in data["paths"].items()},
+        paths={kind: from_table({"kind": kind, **shape}, PATHS) for kind, shape in data["paths"].items()},
         errata=[Erratum(**erratum) for erratum in data["errata"]],
         cases=[Case(**case) for case in data["cases"]],
     )

@@ -11,8 +11,7 @@ from .._types import Array
 from ..arms import Arm
 from ..paths import Path
 from ..schemes import FPBM
-from .sensitivity import numbers
-from .space import tunable
+from .space import numbers, tunable
 from .trials import Trials
 
 if TYPE_CHECKING:

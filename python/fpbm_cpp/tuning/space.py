@@ -19,21 +19,40 @@ TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
 
 
-def tunable(scheme: FPBM) -> dict[str, Any]:
-    """The parameters of a scheme that can be tuned."""
-    return {name: getattr(scheme, name) for name in TUNABLE}
-
-
 def paper_choice(dof: int) -> FPBM:
     """The paper's choice, with W = diag(1, 2, 3, 4) continued for arms of more joints."""
     return FPBM(0.6, np.arange(1.0, dof + 1), k1=1.0, k2=1.0)
 
 
+def tunable(scheme: FPBM) -> dict[str, Any]:
+    """The parameters of a scheme that can be tuned."""
+    return {name: getattr(scheme, name) for name in TUNABLE}
+
+
+def numbers(scheme: FPBM) -> dict[str, float]:
+    """The same with a name for each number: 'weights[0]' and so on."""
+    return {
+        f"{name}[{i}]" if np.ndim(value) else name: entry
+        for name, value in tunable(scheme).items()
+        for i, entry in enumerate(np.atleast_1d(value).tolist())
+    }
+
+
+def with_numbers(scheme: FPBM, changes: Mapping[str, float]) -> FPBM:
+    """The scheme with other numbers, by these names."""
+    values = {name: np.array(value) for name, value in tunable(scheme).items()}
+    for name, number in changes.items():
+        parameter, _, index = name.rstrip("]").partition("[")
+        values[parameter][int(index) if index else ()] = number
+    changed: dict[str, Any] = values
+    return replace(scheme, **changed)
+
+
 @dataclass(frozen=True)
 class Space:
-    """The schemes that differ from a baseline in the parameters searched, one for each point of the unit cube.
+    """The schemes that differ from a baseline in some numbers, one for each point of the unit cube.
 
-    names holds the parameter of each coordinate; low and high are its range, that of the logarithm where log is true.
+    names holds the number of each coordinate; low and high are its range, that of the logarithm where log is true.
     """
 
     baseline: FPBM
@@ -46,11 +65,8 @@ class Space:
         """The scheme of a point."""
         values = np.clip(self.low + point * (self.high - self.low), self.low, self.high)
         values[self.log] = np.exp(values[self.log])
-        columns: dict[str, list[float]] = {}
-        for name, value in zip(self.names, values.tolist()):
-            columns.setdefault(name, []).append(value)
-        changes: dict[str, Any] = {name: [1.0, *own] if name == "weights" else own[0] for name, own in columns.items()}
-        return replace(self.baseline, **changes)
+        first = {"weights[0]": 1.0} if "weights[1]" in self.names else {}  # Only ratios of weights matter.
+        return with_numbers(self.baseline, {**first, **dict(zip(self.names, values.tolist()))})
 
 
 def make_space(search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> Space:
@@ -62,24 +78,23 @@ def make_space(search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int)
     for name, given in (SEARCH if search is None else search).items():
         if name not in TUNABLE:
             raise ValueError(f"search: {name!r} must be one of {', '.join(map(repr, TUNABLE))}")
-        own = _ranges(name, given, dof - 1 if name == "weights" else 1)
-        names += [name] * len(own)
-        ranges.append(own)
+        own = [f"weights[{i}]" for i in range(1, dof)] if name == "weights" else [name]
+        names += own
+        ranges.append(_ranges(name, given, len(own)))
     if not names:
         raise ValueError("search: must name at least one parameter")
-    log = np.array([not _bounded(name) for name in names])
-    limits = np.concatenate(ranges)
+    log, limits = np.array([not _bounded(name) for name in names]), np.concatenate(ranges)
     limits[log] = np.log(limits[log])
     return Space(baseline, tuple(names), limits[:, 0], limits[:, 1], log)
 
 
 def _bounded(name: str) -> bool:
-    """Whether a parameter has an upper bound; all others are searched on a logarithmic scale."""
-    return bool(np.isfinite(parameters(FPBM)[name].high))
+    """Whether a number has an upper bound; all others are searched on a logarithmic scale."""
+    return bool(np.isfinite(parameters(FPBM)[name.partition("[")[0]].high))
 
 
 def _ranges(name: str, given: ArrayLike, count: int) -> Array:
-    """The ranges of a parameter's coordinates, shape (count, 2)."""
+    """The ranges of a parameter's numbers, shape (count, 2)."""
     what, bounds = f"search[{name!r}] = {given!r}", parameters(FPBM)[name]
     try:
         ranges = np.asarray(given, float)

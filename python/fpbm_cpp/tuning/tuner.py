@@ -15,13 +15,14 @@ from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
 from ..motion.progress import Progress, reporting
 from ..motion.sweeping import sweep
+from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Objective, measure
 from .result import Tuning
 from .search import Search, front, least, require_cmaes
-from .sensitivity import changes, neighbours, numbers
-from .space import Space, make_space, paper_choice
+from .sensitivity import changes, neighbours
+from .space import Space, make_space, numbers, paper_choice
 from .trials import Trials, joined, trials_of
 
 
@@ -99,9 +100,13 @@ def tune(
     ImportError
         If the extra 'tune' is missing, or with progress=True the extra 'progress'; nothing is run.
     """
-    start = np.asarray(q0, float)
+    start = Parameter("q0", np.ndarray, shape=f"({arm.dof},)").check(q0)
+    count = Parameter("trials", int, low=1, whole=True).check(trials)
+    seed = Parameter("seed", int, low=0, whole=True).check(seed)
+    tolerance = Parameter("tolerance", float, low=0.0, open_low=True).check(tolerance)
     first = paper_choice(arm.dof) if baseline is None else baseline
-    _check(arm, start, first, tolerance, trials, seed)
+    if not isinstance(first, FPBM):
+        raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
     space, objective_of = make_space(search, first, arm.dof), measure(objective, limits or arm.limits)
     require_cmaes()
     tried: list[Trials] = []
@@ -115,10 +120,9 @@ def tune(
     def tuning(sensitivity: dict[str, tuple[float, float]]) -> Tuning:
         return Tuning(joined(tried), sensitivity, objective_of.name, objective_of.unit, arm, path, start, task)
 
-    size, count = len(space.names), int(trials)
     halves = (
-        _half(least(size, int(seed)), Trials.scores, count - count // 2, space, run),
-        _half(front(size, int(seed)), Trials.peaks, count // 2, space, run),
+        _half(least(len(space.names), seed), Trials.scores, count - count // 2, space, run),
+        _half(front(len(space.names), seed), Trials.peaks, count // 2, space, run),
     )
     total = 1 + count + 2 * len(numbers(first))
     try:
@@ -137,19 +141,6 @@ def tune(
         feasible = any(batch.feasible.any() for batch in tried)
         raise TuneInterrupted(tuning({}) if feasible else None, sum(map(len, tried))) from None
     return tuning(sensitivity)
-
-
-def _check(arm: Arm, start: Array, first: object, tolerance: float, trials: int, seed: int) -> None:
-    """Raise for what no other part checks."""
-    if start.shape != (arm.dof,) or not np.all(np.isfinite(start)):
-        raise ValueError(f"q0 = {start.tolist()}: must be {arm.dof} finite numbers")
-    if not isinstance(first, FPBM):
-        raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
-    if not 0.0 < tolerance < np.inf:
-        raise ValueError(f"tolerance = {tolerance}: must be positive and finite")
-    for name, number, lowest in (("trials", trials, 1), ("seed", seed, 0)):
-        if number != int(number) or number < lowest:
-            raise ValueError(f"{name} = {number}: must be a whole number, at least {lowest}")
 
 
 def _half(

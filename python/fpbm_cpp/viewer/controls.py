@@ -19,10 +19,10 @@ LEAST_WEIGHT, MOST_WEIGHT = 0.1, 10.0
 def own_numbers() -> dict[str, Parameter]:
     """The numbers that some schemes have and others have not; a slider is made for each."""
     return {
-        name: declared
-        for kind in KINDS.values()
-        for name, declared in parameters(kind).items()
-        if declared.type is float and name not in parameters(Scheme)
+        name: known
+        for kind in reversed(KINDS.values())  # FPBM, which has most, says in which order.
+        for name, known in parameters(kind).items()
+        if known.type is float and name not in parameters(Scheme)
     }
 
 
@@ -47,7 +47,9 @@ class Controls:
         self._on_change = on_change
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
-            self._sliders = {name: _add_slider(gui, declared) for name, declared in own_numbers().items()}
+            own = own_numbers()
+            self._initial = {name: known.usual if known.required else known.default for name, known in own.items()}
+            self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in own.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
                 self._weights = [
@@ -80,7 +82,7 @@ class Controls:
         self._base = scheme
         self._kind.value = type(scheme).__name__
         for name, slider in self._sliders.items():
-            _set(slider, getattr(scheme, name, slider.initial_value))
+            _set(slider, getattr(scheme, name, self._initial[name]))
         weights = getattr(scheme, "weights", np.ones(len(self._weights)))
         self._dense = weights.ndim == 2  # No slider shows a dense matrix; it stays as it is.
         if not self._dense:
@@ -107,13 +109,12 @@ class Controls:
         self._on_change()
 
 
-def _add_slider(gui: GuiApi, declared: Parameter) -> GuiSliderHandle[float]:
+def _add_slider(gui: GuiApi, known: Parameter, initial: float) -> GuiSliderHandle[float]:
     """A slider from 0 to the parameter's bound or, without one, to ten times its usual value."""
-    usual = declared.usual if declared.required else declared.default
-    most = declared.high if isfinite(declared.high) else 10.0 * (declared.usual or 5.0)
-    name = declared.name.replace("alpha", "α").replace("_", " ").translate(str.maketrans("12", "₁₂"))
-    hint = f"{declared.help} [{declared.unit}]" if declared.unit else declared.help
-    return gui.add_slider(name, min=0.0, max=most, step=most / 100, initial_value=float(usual), hint=hint)
+    most = known.high if isfinite(known.high) else 10.0 * (known.usual or 5.0)
+    name = known.name.replace("alpha", "α").replace("_", " ").translate(str.maketrans("12", "₁₂"))
+    hint = f"{known.help} [{known.unit}]" if known.unit else known.help
+    return gui.add_slider(name, min=0.0, max=most, step=most / 100, initial_value=initial, hint=hint)
 
 
 def _set(slider: GuiSliderHandle[float], value: float) -> None:
