@@ -81,8 +81,8 @@ def forward(joints: Sequence[Joint], tip: np.ndarray, q: Sequence[float]) -> np.
     T = np.eye(4)
     for joint, position in zip(joints, own):
         if joint.mimic is not None:
-            master, ratio, offset = joint.mimic
-            position = ratio * own[master] + offset
+            leader, ratio, offset = joint.mimic
+            position = ratio * own[leader] + offset
         T = T @ joint.placement @ moved(joint.type, joint.axis, position)
     return T @ tip
 
