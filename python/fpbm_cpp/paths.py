@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
-from .errors import ParameterError
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
@@ -202,10 +201,6 @@ class Waypoints(Path):
 
     def _compiled(self) -> CorePath:
         bounds = (self.velocity, self.acceleration, self.angular_velocity, self.angular_acceleration)
-        ways = [self.duration is not None, self.times is not None, any(bound is not None for bound in bounds)]
-        if sum(ways) != 1:
-            text = "duration, times or bounds of velocity: must be given, one of the three"
-            raise ParameterError("duration", None, self.duration, text)
         return waypoints(self.points, self.duration, self.times, *bounds)
 
 
@@ -252,8 +247,6 @@ class Sequence(Path):
         parts: list[Path] = []
         for path in self.paths:
             parts.extend(path.paths if isinstance(path, Sequence) else [path])
-        if not parts:
-            raise ParameterError("paths", None, (), "paths: must be one at least")
         object.__setattr__(self, "paths", tuple(parts))
         return sequence(parts)
 
