@@ -118,4 +118,11 @@ template <typename Bounds>
   return arms::driven(chain, "joint_", bounds);
 }
 
+/// A preset by name, for programs that learn it at run time.
+struct Preset {
+  const char* name;
+  Chain<> (*chain)();
+};
+inline constexpr Preset kAll[] = {{"panda", panda}, {"iiwa14", iiwa14}, {"gen3", gen3}};
+
 }  // namespace fpbm::presets
