@@ -1,7 +1,5 @@
 """The command line: fpbm-cpp, built on click; one command a file."""
 
-from __future__ import annotations
-
 import click
 
 from .._core import __version__

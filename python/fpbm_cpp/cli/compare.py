@@ -1,7 +1,5 @@
 """fpbm-cpp compare."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click
@@ -9,11 +7,10 @@ import numpy as np
 
 from .._core import Status
 from ..errors import not_one_of
-from ..job import write_job
 from ..motion.run import Run
 from ..schemes import SCHEMES
-from .figures import figure_table, number
-from .out import Folder, dark_option, out_option
+from .figures import Row, figure_table
+from .out import Writer, dark_option, out_option, picture, write_files
 from .request import Request, motion_command
 
 
@@ -50,12 +47,8 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     if out is not None:
         from ..plot import compare as figure
 
-        folder = Folder(out)
-        folder.figure("compare.png", figure(runs, dark=dark))
-        for kind, run in runs.items():
-            folder.write(f"{kind}.npz", run.save)
-        folder.write("job.toml", lambda file: write_job(chosen.job, file))
-        folder.say()
+        saved: dict[str, Writer] = {f"{kind}.npz": run.save for kind, run in runs.items()}
+        write_files(out, {"compare.png": picture(figure(runs, dark=dark)), **saved, "job.toml": chosen.save})
     if not any(run.status for run in runs.values()):
         raise click.ClickException("no motion is complete")
 
@@ -68,14 +61,20 @@ def _table(runs: dict[str, Run]) -> str:
             remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
     rows = [_row(kind, run) for kind, run in runs.items()]
     task = next(iter(runs.values())).task
-    return figure_table(["scheme"], task, rows, "complete", [f"{', '.join(k)}: {text}" for text, k in remarks.items()])
+    return figure_table(["scheme"], task, rows, [f"{', '.join(kinds)}: {text}" for text, kinds in remarks.items()])
 
 
-def _row(kind: str, run: Run) -> list[str]:
+def _row(kind: str, run: Run) -> Row:
     if not len(run.t):
-        return [kind]
-    figures = [run.max_error(), *([run.max_orientation_error()] if run.task == "pose" else [])]
-    for values in (run.qd, run.qdd):
-        figures += [float(np.abs(values).max()), float(np.abs(values[-1]).max())]
-    figures.append(float(run.manipulability().min()))
-    return [kind, *map(number, figures), "yes" if run.status else f"to {run.status.time:.3g} s"]
+        return [kind], "", {}
+    speed, acceleration = np.abs(run.qd).max(axis=1), np.abs(run.qdd).max(axis=1)
+    figures = {
+        "max_error": run.max_error(),
+        "max_orientation_error": run.max_orientation_error(),
+        "peak_velocity": speed.max(),
+        "final_velocity": speed[-1],
+        "peak_acceleration": acceleration.max(),
+        "final_acceleration": acceleration[-1],
+        "manipulability": run.manipulability().min(),
+    }
+    return [kind], "yes" if run.status else f"to {run.status.time:.3g} s", figures

@@ -1,7 +1,5 @@
 """fpbm-cpp export-header."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click

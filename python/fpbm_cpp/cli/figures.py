@@ -1,8 +1,6 @@
 """Figures of motions as text."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import click
 import numpy as np
@@ -12,6 +10,18 @@ from .._types import Array
 from ..joint_text import joint_labels, joint_units
 from ..motion.run import Run
 from .plain import WIDTH
+
+# The figures of a motion that a sweep has, as the head of their column and its unit.
+FIGURES = {
+    "max_error": ("tip error", "m"),
+    "max_orientation_error": ("tip error", "rad"),
+    "peak_velocity": ("peak qd", "rad/s"),
+    "final_velocity": ("final qd", "rad/s"),
+    "peak_acceleration": ("peak qdd", "rad/s^2"),
+    "final_acceleration": ("final qdd", "rad/s^2"),
+    "manipulability": ("manip.", "least"),
+}
+Row = tuple[Sequence[str], str, Mapping[str, float]]
 
 
 def columns(*rows: Sequence[str]) -> str:
@@ -23,25 +33,15 @@ def columns(*rows: Sequence[str]) -> str:
     )
 
 
-def figure_table(first: Sequence[str], task: str, rows: Iterable[Sequence[str]], last: str, remarks: list[str]) -> str:
-    """A row of figures for each scheme, with remarks below; the columns are first, the figures, and last.
-
-    The figures are the largest errors of the tip, peak and final joint velocities and accelerations, and the least
-    manipulability; without a name for the last column, there is none.
-    """
-    header = [
-        *((name, "") for name in first),
-        ("tip error", "m"),
-        *([("tip error", "rad")] if task == "pose" else []),
-        ("peak qd", "rad/s"),
-        ("final qd", "rad/s"),
-        ("peak qdd", "rad/s^2"),
-        ("final qdd", "rad/s^2"),
-        ("manip.", "least"),
-        *([(last, "")] if last else []),
+def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
+    """A row for each scheme: cells of these names, what is complete, figures of the worst motion; remarks below."""
+    shown = [name for name in FIGURES if task == "pose" or name != "max_orientation_error"]
+    header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name] for name in shown))
+    cells = [
+        [*first, complete, *(number(figures[name]) for name in shown if figures)] for first, complete, figures in rows
     ]
     lines = [click.wrap_text(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
-    return "\n".join([columns(*zip(*header), *rows), *([""] if lines else []), *lines])
+    return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])
 
 
 def number(value: float) -> str:

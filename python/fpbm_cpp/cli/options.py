@@ -1,7 +1,5 @@
 """Options made from the declarations of what a job may say: one for each key, by its name."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -21,7 +19,7 @@ HEADINGS = {
 }
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
 # What jobs take where nothing is given and the arm decides.
-TAKEN = {"base": "the root", "q0": "a ready posture", "in_plane": "yz in space", "weights": "ones"}
+TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
 
 
 class Value(click.ParamType):  # type: ignore[type-arg]

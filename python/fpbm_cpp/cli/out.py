@@ -1,7 +1,5 @@
 """What commands write: into one folder, each file whole or not at all."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from pathlib import Path
@@ -15,41 +13,39 @@ from .plain import file_errors, file_option
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Writer = Callable[[Path], Any]
+
 out_option = file_option(
     "--out", metavar="DIR", help="Folder to write to, made where missing; other files in it are left alone."
 )
 dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
 
 
-class Folder:
-    """A folder that is made for the first file at the latest, and knows what was written."""
+def make_folder(out: Path) -> None:
+    """Make a folder, at once where work would be lost otherwise."""
+    with file_errors("write to", out):
+        out.mkdir(parents=True, exist_ok=True)
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.written: list[str] = []
 
-    def made(self) -> Folder:
-        """The folder, made at once, before work that would be lost."""
-        with file_errors("write to", self.path):
-            self.path.mkdir(parents=True, exist_ok=True)
-        return self
-
-    def write(self, name: str, write: Callable[[Path], Any]) -> None:
-        """Whatever write(file) writes."""
-        with file_errors("write to", self.path / name):
-            self.path.mkdir(parents=True, exist_ok=True)
+def write_files(out: Path, files: dict[str, Writer]) -> None:
+    """Write to a folder what each name's function writes to the file that it is given, and say so."""
+    for name, write in files.items():
+        with file_errors("write to", out / name):
+            out.mkdir(parents=True, exist_ok=True)
             try:
-                write(self.path / name)
+                write(out / name)
             except ValueError as error:  # A motion without a sample has no animation.
                 raise click.ClickException(f"cannot write {name}: {error}") from None
-        self.written.append(name)
+    click.echo(f"\nWritten to {out}: {', '.join(files)}")
 
-    def figure(self, name: str, figure: Figure) -> None:
-        """A figure as a picture."""
-        picture = io.BytesIO()
-        figure.savefig(picture, format="png")
-        self.write(name, lambda file: write_whole(file.resolve(), picture.getvalue()))
 
-    def say(self) -> None:
-        """Print what was written."""
-        click.echo(f"\nWritten to {self.path}: {', '.join(self.written)}")
+def content(content: str | bytes) -> Writer:
+    """Write this."""
+    return lambda file: write_whole(file.resolve(), content.encode() if isinstance(content, str) else content)
+
+
+def picture(figure: "Figure") -> Writer:
+    """Write a figure as PNG."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    return content(buffer.getvalue())

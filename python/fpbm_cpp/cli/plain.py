@@ -1,7 +1,5 @@
 """Commands that say in one plain line what went wrong, and never with a traceback."""
 
-from __future__ import annotations
-
 import importlib
 import signal
 import sys

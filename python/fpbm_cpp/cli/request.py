@@ -1,7 +1,5 @@
 """What the command line asks for: a job's file, with the options over it."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +10,7 @@ import click
 
 from .._core import PRESETS
 from ..errors import not_one_of
-from ..job import JobError, Motion, prepare, read_job, write_job
+from ..job import JobError, Motion, prepare, read_job
 from ..job.sections import FREE, SECTIONS, Table, known
 from .options import JobOption, job_options
 from .plain import WIDTH, Plain, file_errors, file_option
@@ -91,7 +89,7 @@ class Request:
         """Write the job where it is asked for; print what is run, and what was taken where nothing was said."""
         if self.copy is not None:
             with file_errors("write to", self.copy):
-                write_job(motion.job, self.copy)
+                motion.save(self.copy)
         click.echo(f"{motion.label}, {motion.scheme.kind}" if scheme else motion.label)
         if motion.taken:
             click.echo(click.wrap_text(f"by default: {', '.join(motion.taken)}", WIDTH, subsequent_indent="  "))

@@ -1,62 +1,21 @@
 """fpbm-cpp sweep."""
 
-from __future__ import annotations
-
 import csv
 import io
 import itertools
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import click
 import numpy as np
 
 from .._core import Status, advice, message
 from ..errors import SweepInterrupted
-from ..io.write_whole import write_whole
-from ..job import write_job
 from ..motion.sweep_result import Sweep
 from ..motion.sweeping import sweep as run_sweep
-from .figures import figure_table, number
-from .out import Folder, out_option
+from .figures import FIGURES, Row, figure_table, number
+from .out import content, make_folder, out_option, write_files
 from .plain import progress
 from .request import Request, motion_command, workers_option
-
-FIGURES = (
-    "time",
-    "max_error",
-    "max_orientation_error",
-    "peak_velocity",
-    "final_velocity",
-    "peak_acceleration",
-    "final_acceleration",
-    "manipulability",
-)
-
-
-class Variation(NamedTuple):
-    """An option of a scheme, and the values that it takes."""
-
-    key: str
-    values: list[float]
-
-
-class _Vary(click.ParamType):  # type: ignore[type-arg]
-    """alpha=0,0.6,1, or alpha=0:1:11."""
-
-    name = "variation"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Variation:
-        key, _, text = value.partition("=")
-        try:
-            if ":" in text:
-                first, last, count = text.split(":")
-                values = np.linspace(float(first), float(last), int(count)).tolist()
-            else:
-                values = [float(number) for number in text.split(",")]
-        except ValueError:
-            raise click.ClickException(f"--vary {value}: must be as alpha=0,0.6,1 or alpha=0:1:11") from None
-        return Variation(key.strip().replace("-", "_"), values)
 
 
 @motion_command(
@@ -68,23 +27,19 @@ class _Vary(click.ParamType):  # type: ignore[type-arg]
 @click.option(
     "--vary",
     multiple=True,
-    type=_Vary(),
     metavar="OPTION=VALUES",
     help="Numbers for an option of the scheme: alpha=0,0.6,1, or alpha=0:1:11 for 11 of them. All combinations run.",
 )
 @click.option("--starts", type=click.IntRange(1), default=1, help="How many starts: q0 and others near it.")
 @click.option(
-    "--spread",
-    type=click.FloatRange(0.0),
-    default=0.05,
-    help="Standard deviation of their joint positions [rad].",
+    "--spread", type=click.FloatRange(0.0), default=0.05, help="Standard deviation of their joint positions [rad]."
 )
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of the starts: the same seed, the same starts.")
 @workers_option
 @out_option
 def sweep(
     request: Request,
-    vary: tuple[Variation, ...],
+    vary: tuple[str, ...],
     starts: int,
     spread: float,
     seed: int,
@@ -98,13 +53,14 @@ def sweep(
     those of track.
     """
     motion = request.motion(at_rest=True)
-    keys = [variation.key for variation in vary]
-    cases = list(itertools.product(*(variation.values for variation in vary)))
+    keys = [text.partition("=")[0].strip().replace("-", "_") for text in vary]
+    cases = list(itertools.product(*map(_values, vary)))
     with request.plain():
-        schemes = [motion.scheme_with(dict(zip(keys, case))) for case in cases]
+        schemes = [motion.with_scheme(dict(zip(keys, case))).scheme for case in cases]
     q0s = motion.q0 + spread * np.random.default_rng(seed).normal(size=(starts, motion.arm.dof))
     q0s[0] = motion.q0
-    folder = Folder(out).made() if out is not None else None
+    if out is not None:
+        make_folder(out)
     request.say(motion)
     interruption = None
     try:
@@ -113,38 +69,39 @@ def sweep(
     except SweepInterrupted as interrupted:
         done, interruption = interrupted.sweep, interrupted
     click.echo(_table(done, keys, cases))
-    if folder is not None:
-        text = _csv(done, keys, cases)
-        folder.write("sweep.csv", lambda file: write_whole(file.resolve(), text.encode()))
-        folder.write("job.toml", lambda file: write_job(motion.job, file))
-        folder.say()
+    if out is not None:
+        write_files(out, {"sweep.csv": content(_csv(done, keys, cases)), "job.toml": motion.save})
     if interruption is not None:
         raise interruption
     if not done.ok.any():
         raise click.ClickException("no motion is complete")
 
 
+def _values(vary: str) -> list[float]:
+    """The values in alpha=0,0.6,1 or alpha=0:1:11."""
+    text = vary.partition("=")[2]
+    try:
+        if ":" not in text:
+            return [float(number) for number in text.split(",")]
+        first, last, count = text.split(":")
+        return [float(value) for value in np.linspace(float(first), float(last), int(count))]
+    except ValueError:
+        raise click.ClickException(f"--vary {vary}: must be as alpha=0,0.6,1 or alpha=0:1:11") from None
+
+
 def _table(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
     """A row for each scheme, with the worst figure of its complete motions, and what became of others."""
-    figures = [
-        done.max_error,
-        *([done.max_orientation_error] if done.task == "pose" else []),
-        done.peak_velocity,
-        done.final_velocity,
-        done.peak_acceleration,
-        done.final_acceleration,
-        -done.manipulability,
-    ]
-    rows = []
+    rows: list[Row] = []
     for i, (case, ok) in enumerate(zip(cases, done.ok)):
-        worst = [number(abs(values[i, ok].max())) for values in figures] if ok.any() else []
-        rows.append([*map(number, case), f"{ok.sum()} of {ok.size}", *worst])
+        figures = {name: getattr(done, name)[i, ok] for name in FIGURES if ok.any()}
+        worst = {name: values.min() if name == "manipulability" else values.max() for name, values in figures.items()}
+        rows.append(([number(value) for value in case], f"{ok.sum()} of {ok.size}", worst))
     remarks = [
         f"{(done.status == code).sum()} of {done.status.size}: {message(code)}. {advice(code)}"
         for code in Status
         if code is not Status.OK and (done.status == code).any()
     ]
-    return figure_table([*keys, "complete"], done.task, rows, "", remarks)
+    return figure_table(keys, done.task, rows, remarks)
 
 
 def _csv(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
@@ -152,8 +109,8 @@ def _csv(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     joints = [f"q0_{name}" for name in done.arm.joint_names]
-    rows.writerow([*keys, "start", *joints, "status", *FIGURES])
+    rows.writerow([*keys, "start", *joints, "status", "time", *FIGURES])
     for i, k in np.argwhere(done.done):
-        figures = [repr(float(getattr(done, name)[i, k])) for name in FIGURES]
+        figures = [repr(float(getattr(done, name)[i, k])) for name in ("time", *FIGURES)]
         rows.writerow([*cases[i], k, *map(repr, done.q0s[k].tolist()), done.status[i, k].name, *figures])
     return text.getvalue()

@@ -1,15 +1,12 @@
 """fpbm-cpp track."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click
 
-from ..job import Motion, write_job
 from ..motion.run import Run
 from .figures import summary
-from .out import Folder, dark_option, out_option
+from .out import Writer, dark_option, out_option, picture, write_files
 from .request import Request, motion_command
 
 EXTRAS = ("csv", "rosbag", "gif", "mp4")
@@ -45,24 +42,23 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     request.say(motion)
     click.echo(summary(run))
     if out is not None:
-        _write(Folder(out), motion, run, also, dark)
+        write_files(
+            out,
+            {
+                "run.png": picture(run.plot(dark=dark)),
+                **_also(run, also, dark),
+                "run.npz": run.save,
+                "job.toml": motion.save,
+            },
+        )
     if not run.status:
         raise click.ClickException("the motion is not complete")
 
 
-def _write(folder: Folder, motion: Motion, run: Run, also: tuple[str, ...], dark: bool) -> None:
-    """What may want something that is not installed comes first."""
-    picture = run.plot(dark=dark)
-    for kind in also:
-        if kind == "csv":
-            folder.write("run.csv", run.to_csv)
-        elif kind == "rosbag":
-            folder.write("rosbag", run.to_rosbag)
-        else:
-            from ..plot import animate
+def _also(run: Run, kinds: tuple[str, ...], dark: bool) -> dict[str, Writer]:
+    """What is asked for besides."""
+    from ..plot import animate
 
-            folder.write(f"run.{kind}", lambda file: animate(run, file, dark=dark))
-    folder.figure("run.png", picture)
-    folder.write("run.npz", run.save)
-    folder.write("job.toml", lambda file: write_job(motion.job, file))
-    folder.say()
+    writers: dict[str, Writer] = {"csv": run.to_csv, "rosbag": run.to_rosbag}
+    names = {kind: kind if kind == "rosbag" else f"run.{kind}" for kind in kinds}
+    return {name: writers.get(kind, lambda file: animate(run, file, dark=dark)) for kind, name in names.items()}

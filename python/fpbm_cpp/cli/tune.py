@@ -1,15 +1,16 @@
 """fpbm-cpp tune."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import click
 
 from ..errors import TuneInterrupted
-from ..job import write_job
-from .out import Folder, dark_option, out_option
+from ..schemes import FPBM
+from ..tuning import tune as search
+from ..tuning.objectives import KEY_FIGURES, OF_RUNS
+from .options import Word
+from .out import dark_option, make_folder, out_option, picture, write_files
 from .plain import progress
 from .request import Request, motion_command, workers_option
 
@@ -22,24 +23,14 @@ from .request import Request, motion_command, workers_option
     fpbm-cpp track --job tuned/job.toml""",
     kind=False,
 )
-@click.option(
-    "--objective",
-    default="peak_velocity",
-    help="What is to be small: peak_velocity, peak_acceleration, final_velocity, energy or limit_distance.",
-)
-@click.option("--trials", type=click.IntRange(1), help="How many schemes to try.")
+@click.option("--objective", type=Word([*KEY_FIGURES, *OF_RUNS]), default="peak_velocity", help="What is to be small.")
+@click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
 @workers_option
 @out_option
 @dark_option
 def tune(
-    request: Request,
-    objective: str,
-    trials: int | None,
-    seed: int,
-    workers: int | None,
-    out: Path | None,
-    dark: bool,
+    request: Request, objective: str, trials: int, seed: int, workers: int | None, out: Path | None, dark: bool
 ) -> None:
     """Find the parameters of FPBM that suit an arm and a path best.
 
@@ -47,12 +38,10 @@ def tune(
     With --out, the folder gets tune.png and job.toml, the job with the scheme that was found. Ctrl-C keeps the best so
     far.
     """
-    from ..tuning import tune as search
-
     motion = request.motion("fpbm", at_rest=True)
-    folder = Folder(out).made() if out is not None else None
+    if out is not None:
+        make_folder(out)
     request.say(motion)
-    options: dict[str, Any] = {"seed": seed, "workers": workers, **({} if trials is None else {"trials": trials})}
     interruption = None
     try:
         with progress("trying schemes") as report:
@@ -61,10 +50,12 @@ def tune(
                 motion.path,
                 motion.q0,
                 objective,
-                baseline=motion.scheme,
+                baseline=cast(FPBM, motion.scheme),
                 progress=report,
                 **motion.keywords,
-                **options,
+                trials=trials,
+                seed=seed,
+                workers=workers,
             )
     except (ValueError, RuntimeError) as error:  # The latter where nothing that was tried keeps to the path.
         raise click.ClickException(str(error)) from None
@@ -73,10 +64,8 @@ def tune(
             raise
         found, interruption = interrupted.tuning, interrupted
     click.echo(str(found))
-    if folder is not None:
-        best = {**motion.job, "scheme": {**motion.job["scheme"], **found.parameters}}
-        folder.figure("tune.png", found.plot(dark=dark))
-        folder.write("job.toml", lambda file: write_job(best, file))
-        folder.say()
+    if out is not None:
+        best = motion.with_scheme(found.parameters)
+        write_files(out, {"tune.png": picture(found.plot(dark=dark)), "job.toml": best.save})
     if interruption is not None:
         raise interruption

@@ -1,7 +1,5 @@
 """fpbm-cpp view."""
 
-from __future__ import annotations
-
 import click
 
 from .plain import import_undisturbed
@@ -15,12 +13,7 @@ from .request import Request, motion_command
     fpbm-cpp view my_arm.urdf --tip tool0 --path lissajous --port 9000
     fpbm-cpp view --job job.toml --no-browser""",
 )
-@click.option(
-    "--port",
-    type=click.IntRange(0, 65535),
-    default=8080,
-    help="Port to serve at; 0 takes one that is free.",
-)
+@click.option("--port", type=click.IntRange(0, 65535), default=8080, help="Port to serve at; 0 takes one that is free.")
 @click.option("--browser/--no-browser", default=True, help="Open the page in the browser, or not.")
 def view(request: Request, port: int, browser: bool) -> None:
     """Show an arm on its path in the browser, with the scheme and its gains at hand.

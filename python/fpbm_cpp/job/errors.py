@@ -1,7 +1,5 @@
 """What is wrong with a job."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -29,7 +27,7 @@ def within(job: Table, section: str) -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        if error.name in SECTIONS:
+        if error.name.partition(".")[0] in SECTIONS:
             raise JobError(error) from None
         for each in (section, *job):
             tables = job.get(each, {})

@@ -1,7 +1,5 @@
 """Jobs as TOML files."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 
@@ -11,7 +9,7 @@ from tomlkit.exceptions import TOMLKitError
 from ..errors import ParameterError
 from ..io.write_whole import write_whole
 from .errors import JobError
-from .sections import SECTIONS, Table, tidy
+from .sections import SECTIONS, Table, in_order
 
 
 def read_job(file: str | os.PathLike[str]) -> Table:
@@ -32,7 +30,7 @@ def read_job(file: str | os.PathLike[str]) -> Table:
 def write_job(job: Table, file: str | os.PathLike[str]) -> None:
     """Write a job that is sound to a file, whole or not at all; read_job reads it back. Raises OSError."""
     place = Path(file).resolve()
-    table = {section: tidy(section, job[section]) for section in SECTIONS if section in job}
+    table = {section: in_order(section, job[section]) for section in SECTIONS if section in job}
     if "file" in table["arm"]:
         table["arm"]["file"] = _seen_from(place.parent, table["arm"]["file"])
     write_whole(place, f"# fpbm-cpp track --job {place.name}\n\n{tomlkit.dumps(table)}".encode())

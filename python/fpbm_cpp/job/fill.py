@@ -1,32 +1,28 @@
-"""A job's blanks, filled."""
-
-from __future__ import annotations
+"""A sound job's blanks, filled."""
 
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from ..arms import Arm, PlanarArm
-from ..errors import ParameterError
 from ..parameter import REQUIRED
-from ..paths import PATH_OPTIONS, PATHS
-from ..table import from_table
+from ..paths import PATH_OPTIONS
+from ..table import to_table
+from .make import make
 from .ready import READY, ready
 from .sections import FREE, Table, known
 
 
-def filled(job: Table, arm: Arm | None) -> Table:
-    """The job with what it leaves out; what depends on the arm only where there is one. Never refuses anything."""
+def filled(job: Table, arm: Arm) -> Table:
+    """The job with what it leaves out."""
     path = job.get("path", {"kind": FREE["path"]})
     pieces = [_filled_path(piece, arm) for piece in path] if isinstance(path, list) else _filled_path(path, arm)
     scheme = _filled("scheme", job.get("scheme", {"kind": FREE["scheme"]}))
-    if isinstance(scheme, dict) and "weights" in known("scheme", scheme.get("kind")):
-        scheme = {"weights": [1.0] * (arm.dof if arm else 1), **scheme}
+    if "weights" in known("scheme", scheme["kind"]):
+        scheme = {"weights": [1.0] * arm.dof, **scheme}
     run = _filled("run", job.get("run", {}))
-    if isinstance(run, dict) and arm is not None and "q0" not in run:
-        named = job["arm"].get("name") if job["arm"]["kind"] == "preset" else None
-        run = {"q0": READY[named] if named in READY else ready(arm, run["task"]), **run}
+    if "q0" not in run:
+        preset = job["arm"].get("name")
+        run["q0"] = READY[preset] if preset in READY else ready(arm, run["task"])
     return {**job, "path": pieces, "scheme": scheme, "run": run}
 
 
@@ -40,23 +36,20 @@ def taken(job: Table, full: Table) -> Iterator[str]:
                     yield f"{key} = {_text(value)}"
 
 
-def _filled(section: str, said: Any) -> Any:
+def _filled(section: str, said: Table) -> Table:
     """A table with the usual values of its kind, where they are not what the library takes anyway."""
-    if not isinstance(said, dict):
-        return said
-    declared = known(section, said.get("kind")).values()
-    usual = {each.name: each.usual for each in declared if each.usual is not each.default or section == "run"}
-    return {**{key: value for key, value in usual.items() if value not in (REQUIRED, None)}, **said}
+    declared = known(section, said.get("kind")).items()
+    usual = {key: each.usual for key, each in declared if each.usual is not each.default or section == "run"}
+    return {**{key: to_table(value) for key, value in usual.items() if value not in (REQUIRED, None)}, **said}
 
 
-def _filled_path(said: Any, arm: Arm | None) -> Any:
+def _filled_path(said: Table, arm: Arm) -> Table:
     """A path; a path of the plane is laid before an arm in space."""
     whole = _filled("path", said)
-    if not isinstance(whole, dict) or arm is None or isinstance(arm, PlanarArm) or "in_plane" in whole:
+    if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
-    problems: list[ParameterError] = []
-    shape = from_table({key: whole[key] for key in whole if key not in PATH_OPTIONS}, PATHS, problems=problems)
-    return {"in_plane": "yz", **whole} if not problems and np.shape(shape.sample(0.0)[0]) == (2,) else whole
+    shape = make("path", {key: whole[key] for key in whole if key not in PATH_OPTIONS})
+    return {"in_plane": "yz", **whole} if len(shape.sample(0.0)[0]) == 2 else whole
 
 
 def _text(value: Any) -> str:

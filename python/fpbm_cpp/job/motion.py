@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,17 +12,18 @@ import numpy as np
 from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits
-from ..errors import ParameterError, suggestion
+from ..errors import ParameterError
 from ..motion.run import Run
 from ..motion.simulation import simulate
 from ..motion.tracking import track
-from ..parameter import parameters
 from ..paths import Path
 from ..schemes import Scheme
-from ..table import from_table
+from ..table import to_table
 from .errors import JobError, within
+from .file import write_job
 from .fill import filled, taken
-from .sections import SECTIONS, RunOptions, Table, tidy
+from .make import make, require_sound
+from .sections import SECTIONS, RunOptions, Table, in_order
 
 
 @dataclass(frozen=True)
@@ -57,13 +59,9 @@ class Motion:
     @property
     def label(self) -> str:
         """What to call the arm and the path."""
-        said, path = self.job["arm"], self.job["path"]
-        arm = {
-            "preset": said.get("name"),
-            "planar": f"planar arm of {self.arm.dof} links",
-            "urdf": f"{said.get('file')} to {said.get('tip')}",
-        }.get(said["kind"], f"arm of {self.arm.dof} joints")
-        return f"{arm}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
+        arm, path = self.job["arm"], self.job["path"]
+        name = arm.get("name") or arm.get("file") or f"arm of {self.arm.dof} joints"
+        return f"{name}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
 
     @property
     def keywords(self) -> dict[str, Any]:
@@ -71,13 +69,14 @@ class Motion:
         options = self.options
         return {"dt": options.dt, "hold": options.hold, "task": options.task, "limits": self.limits}
 
-    def scheme_with(self, options: Mapping[str, Any]) -> Scheme:
-        """Its scheme with other options. Raises JobError."""
-        problems: list[ParameterError] = []
-        scheme = _made("scheme", {**self.job["scheme"], **options}, problems, self.arm)
-        if problems:
-            raise JobError(*problems)
-        return scheme  # type: ignore[no-any-return]
+    def with_scheme(self, options: Mapping[str, Any]) -> Motion:
+        """The motion with other options of its scheme. Raises JobError."""
+        scheme = {**self.job["scheme"], **{key: to_table(value) for key, value in options.items()}}
+        return replace(self, job={**self.job, "scheme": scheme}, scheme=make("scheme", scheme, self.arm))
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Write the job to a file, whole or not at all. Raises OSError."""
+        write_job(self.job, file)
 
     def run(self) -> Run:
         """The motion: simulate()'s or, where limits are kept, track()'s; as far as it goes where it must stop early."""
@@ -94,58 +93,17 @@ def prepare(job: Table) -> Motion:
 
     Raises JobError with everything that is wrong with it, OSError where a file that it names cannot be read.
     """
-    problems: list[ParameterError] = []
-    for key in job:
-        if key not in SECTIONS:
-            text = f"{key}: a job has no such key: must be one of {', '.join(SECTIONS)}{suggestion(key, SECTIONS)}"
-            problems.append(ParameterError(key, None, job[key], text))
-    if "arm" not in job:
-        problems.append(ParameterError("arm", None, None, "arm: is missing"))
-    arm = _made("arm", _with_tip(job["arm"]), problems) if "arm" in job else None
+    require_sound(job)
+    arm = make("arm", job["arm"])
     full = filled(job, arm)
-    path = _made("path", full["path"], problems)
-    scheme = _made("scheme", full["scheme"], problems, arm)
-    options = _made("run", full["run"], problems)
-    limits = _limits(job["limits"], arm, problems) if "limits" in job else None
-    if problems:
-        raise JobError(*problems)
+    path, scheme, options = (make(section, full[section], arm) for section in ("path", "scheme", "run"))
+    limits = make("limits", job["limits"], arm) if "limits" in job else None
+    if limits is not None and "acceleration" not in job["limits"]:
+        bounded = np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
+        if np.any(bounded & np.isinf(limits.acceleration)):
+            text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+            raise JobError(ParameterError("limits.acceleration", None, None, text))
     with within(full, "run"):
         check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
-    tidied = {section: tidy(section, full[section]) for section in SECTIONS if section in full}
-    return Motion(tidied, list(taken(job, tidied)), arm, path, scheme, options, limits)
-
-
-def _made(section: str, said: Any, problems: list[ParameterError], arm: Arm | None = None) -> Any:
-    """What a section stands for; None where it has problems."""
-    kinds = SECTIONS[section]
-    if section in kinds and isinstance(said, dict):  # Of one kind, which is not said.
-        said = {"kind": section, **said}
-    found: list[ParameterError] = []
-    thing = from_table(said, kinds, section, arm=arm, problems=found)
-    problems.extend(found)
-    return thing
-
-
-def _with_tip(arm: Any) -> Any:
-    """An arm's table; a URDF file without a tip says what links there are."""
-    return {"tip": "", **arm} if isinstance(arm, dict) and arm.get("kind") == "urdf" else arm
-
-
-def _limits(said: Any, arm: Arm | None, problems: list[ParameterError]) -> JointLimits | None:
-    """The arm's own limits but for what is said, of each joint or of all."""
-    if not isinstance(said, dict):
-        return _made("limits", said, problems)  # type: ignore[no-any-return]
-    if arm is None:
-        return None
-    own = arm.limits
-    whole = {name: getattr(own, name) for name in parameters(JointLimits)}
-    for key, value in said.items():
-        whole[key] = (
-            np.full(arm.dof, value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
-        )
-    limits: JointLimits | None = _made("limits", whole, problems)
-    bounded = limits is not None and np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
-    if "acceleration" not in said and np.any(bounded & np.isinf(own.acceleration)):
-        text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
-        problems.append(ParameterError("limits.acceleration", None, None, text))
-    return limits
+    whole = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
+    return Motion(whole, list(taken(job, whole)), arm, path, scheme, options, limits)

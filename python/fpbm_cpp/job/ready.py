@@ -1,7 +1,5 @@
 """A posture to start from, where none is given."""
 
-from __future__ import annotations
-
 from itertools import islice, product
 
 import numpy as np

@@ -1,8 +1,5 @@
 """What a job may say: sections, the kinds of each, and their keys, as they are declared."""
 
-from __future__ import annotations
-
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from .._types import OptionalArrayField
@@ -10,7 +7,7 @@ from ..arms import ARMS, JointLimits
 from ..parameter import Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..schemes import SCHEMES
-from ..table import Makers, keys, to_table
+from ..table import Makers, keys
 
 Table = dict[str, Any]
 
@@ -21,12 +18,8 @@ class RunOptions(Data):
 
     kind: ClassVar[str] = "run"
     task: str = parameter(default="position", choices=("position", "pose"), help="What the tip keeps to.")
-    q0: OptionalArrayField = parameter(
-        default=None, shape="(n,)", unit="rad", help="Joint positions at the start; a ready posture unless given."
-    )
-    qd0: OptionalArrayField = parameter(
-        default=None, shape="(n,)", unit="rad/s", help="Joint velocities at the start; at rest unless given."
-    )
+    q0: OptionalArrayField = parameter(default=None, shape="(n,)", unit="rad", help="Joint positions at the start.")
+    qd0: OptionalArrayField = parameter(default=None, shape="(n,)", unit="rad/s", help="Joint velocities at the start.")
     dt: float = parameter(default=1e-3, unit="s", low=0.0, open_low=True, help="Step.")
     hold: float = parameter(default=0.0, unit="s", low=0.0, help="How long to stay on the path's end.")
 
@@ -45,20 +38,11 @@ FREE = {"path": "circle", "scheme": "fpbm"}  # The kind that is taken where the 
 def known(section: str, kind: object = None) -> dict[str, Parameter]:
     """The keys of a section of this kind; none where there is no such kind."""
     maker = SECTIONS[section].get(section if section in SECTIONS[section] else str(kind))
-    found = keys(maker) if maker else {}
-    if section != "limits":
-        return found
-    return {name: replace(each, default=None, shape=f"{each.shape} or ()") for name, each in found.items()}
+    return keys(maker) if maker else {}
 
 
-def tidy(section: str, said: Any) -> Any:
-    """A section that is sound as a file has it: keys in the order of their declarations, numbers and lists of them."""
+def in_order(section: str, said: Any) -> Any:
+    """A section with its keys in the order of their declarations."""
     if isinstance(said, list):
-        return [tidy(section, each) for each in said]
-    kind = {"kind": said["kind"]} if section in FREE or section == "arm" else {}
-    declared = known(section, said.get("kind")).values()
-    return {**kind, **{each.name: _plain(each, said[each.name]) for each in declared if each.name in said}}
-
-
-def _plain(declared: Parameter, value: Any) -> Any:
-    return to_table(declared.check(value)) if declared.shape or declared.type is float else value
+        return [in_order(section, each) for each in said]
+    return {key: said[key] for key in ("kind", *known(section, said.get("kind"))) if key in said}

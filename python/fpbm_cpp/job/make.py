@@ -1,0 +1,49 @@
+"""What a job's sections stand for, and what is wrong with them."""
+
+from math import inf
+from typing import Any
+
+from ..arms import Arm
+from ..errors import ParameterError, suggestion
+from ..table import from_table, problems
+from .errors import JobError
+from .sections import SECTIONS, Table, known
+
+
+def require_sound(job: Table) -> None:
+    """Raise JobError with all keys and values that are wrong, whatever is made of them."""
+    wrong: list[ParameterError] = []
+    for key in job:
+        if key not in SECTIONS:
+            text = f"{key}: a job has no such key: must be one of {', '.join(SECTIONS)}{suggestion(key, SECTIONS)}"
+            wrong.append(ParameterError(key, None, job[key], text))
+    if "arm" not in job:
+        wrong.append(ParameterError("arm", None, None, "arm: is missing"))
+    for section in SECTIONS:
+        if section in job:
+            wrong += problems(_whole(section, job[section]), SECTIONS[section], section, usual=True)
+    if wrong:
+        raise JobError(*wrong)
+
+
+def make(section: str, said: Table, arm: Arm | None = None) -> Any:
+    """What a section stands for, for this arm. Raises JobError."""
+    try:
+        return from_table(_whole(section, said, arm), SECTIONS[section], section, arm=arm)
+    except ParameterError as error:
+        raise JobError(error) from None
+
+
+def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
+    """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
+    if not isinstance(said, dict):
+        return said
+    if said.get("kind") == "urdf":
+        return {"tip": "", **said}  # Which is refused with what links there are.
+    if section == "limits":
+        own = {name: getattr(arm.limits, name) if arm else [inf] for name in known(section)}
+        every = {
+            key: [value] * (arm.dof if arm else 1) for key, value in said.items() if isinstance(value, (int, float))
+        }
+        said = {**own, **said, **every}
+    return {"kind": section, **said} if section in SECTIONS[section] else said
