@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from collections.abc import Sequence
 from math import inf
 from pathlib import Path
@@ -291,6 +290,20 @@ def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> No
     assert out.stat().st_mode == (tmp_path / "usual").stat().st_mode
 
 
+def test_held_joint_is_said(tmp_path: Path) -> None:
+    mimic = '<mimic joint="d" offset="0.1"/>'
+    finger = f'<joint name="c" type="prismatic"><parent link="tip"/><child link="pad"/>{mimic}</joint>'
+    leader = '<joint name="d" type="prismatic"><parent link="tip"/><child link="left"/></joint>'
+    file = tmp_path / "hand.urdf"
+    file.write_text(URDF.replace("</robot>", f'<link name="pad"/><link name="left"/>{finger}{leader}</robot>'))
+    result = call(file, "--tip", "pad", "-o", "-")
+    assert result.exit_code == 0
+    assert result.stderr == (
+        f"Warning: {file}: joint 'c' is held at 0.1 m: it mimics 'd', which does not move between base and tip\n"
+    )
+    assert "  chain.tip.p = {0.1, 0.0, 0.0};\n" in result.stdout
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/null"), reason="no /dev/null")
 def test_device(arm: Path) -> None:
     assert call(arm, "--tip", "tip", "-o", "/dev/null").exit_code == 0
@@ -311,8 +324,12 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
     assert_refused(call(bad, *to_out), f"cannot read {bad}: No such file or directory")
     assert_refused(call(tmp_path, *to_out), f"cannot read {tmp_path}: Is a directory")
     leaves = "its branches end in 'tip'"
-    assert_refused(call(arm, "--tip", "top", "-o", out), f"{arm}: tip = 'top': must be a link, perhaps 'tip'; {leaves}")
-    assert_refused(call(arm, *to_out, "--base", "x"), f"{arm}: base = 'x': must be a link; {leaves}")
+    assert_refused(call(arm, "--tip", "top", "-o", out), f"tip = 'top': must be a link, perhaps 'tip'; {leaves}")
+    assert_refused(call(arm, *to_out, "--base", "x"), f"base = 'x': must be a link; {leaves}")
+    broken = tmp_path / "broken.urdf"
+    broken.write_text("<robot/")
+    assert_refused(call(broken, *to_out), f"{broken}: line 1: invalid XML: unclosed token")
+    broken.unlink()
     assert_refused(call(arm, *to_out, "--name", "int"), "name = 'int': must be a C++ identifier that is not taken")
     assert_refused(call(arm, "--tip", "tip", "-o", tmp_path), f"cannot write to {tmp_path}: Is a directory")
     lost = tmp_path / "no" / "out.hpp"

@@ -638,6 +638,10 @@ HOSTILE = {
     "parameter entity": (lambda: '\n<!DOCTYPE r [<!ENTITY % e SYSTEM "http://localhost:9/x">%e;]><robot/>', DOCTYPE),
     "entity without DTD": (lambda: "<robot>&e;</robot>", "line 1: invalid XML: undefined entity"),
     "deep": (lambda: "<robot>" + "<a>" * 4_000_000, "line 1: XML elements are nested more than 64 deep"),
+    "long tag round many": (
+        lambda: "<robot><" + "x" * 15_000_000 + ">" + "<a/>" * 60_000,
+        "line 1: has more than 50000 XML elements",
+    ),
     "65 deep": (lambda: robot("<a>" * 64 + "</a>" * 64), "line 2: XML elements are nested more than 64 deep"),
     "many elements": (lambda: "<robot>" + "<a/>" * 4_000_000, "line 1: has more than 50000 XML elements"),
     "many attributes": (

@@ -16,7 +16,7 @@ MAX_ELEMENTS = 50_000
 MAX_DEPTH = 64
 MAX_TEXT = 256  # Characters of an attribute.
 
-# The attributes that are read.
+# The attributes that are read, by the elements that they are in.
 LIMITS = ("lower", "upper", "velocity", "acceleration")
 KEPT: dict[tuple[str, ...], dict[str, tuple[str, ...]]] = {
     ("robot",): {"link": ("name",), "joint": ("name", "type")},
@@ -53,30 +53,26 @@ def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
         xml = file.read(MAX_BYTES + 1)
     if len(xml) > MAX_BYTES:
         raise ValueError(f"has more than {MAX_BYTES >> 20} MiB")
-    elements = _Scanner().scan(xml)
-    links = _names("link", elements["link"])
-    joints = zip(_names("joint", elements["joint"]), elements["joint"])
-    return links, [_joint(name, parts) for name, parts in joints]
+    scanner = _Scanner()
+    try:
+        scanner.parser.Parse(xml, True)
+    except expat.ExpatError as error:
+        raise ValueError(f"line {error.lineno}: invalid XML: {expat.ErrorString(error.code)}") from None
+    except LookupError as error:
+        raise ValueError(f"line 1: invalid XML: {error}") from None
+    links, joints = scanner.elements["link"], scanner.elements["joint"]
+    return _names("link", links), [_joint(name, parts) for name, parts in zip(_names("joint", joints), joints)]
 
 
 class _Scanner:
     def __init__(self) -> None:
-        self._elements: dict[str, list[Parts]] = {"link": [], "joint": []}
-        self._open: tuple[str, ...] = ()
+        self.elements: dict[str, list[Parts]] = {"link": [], "joint": []}
+        self.parser = expat.ParserCreate()
+        self.parser.StartDoctypeDeclHandler = lambda *_: self._refuse("has a DOCTYPE: must have none")
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = lambda _: self._open.pop()
+        self._open: list[str] = []
         self._count = 0
-        self._parser = expat.ParserCreate()
-        self._parser.StartDoctypeDeclHandler = lambda *_: self._refuse("has a DOCTYPE: must have none")
-        self._parser.StartElementHandler = self._start
-        self._parser.EndElementHandler = self._end
-
-    def scan(self, xml: bytes) -> dict[str, list[Parts]]:
-        try:
-            self._parser.Parse(xml, True)
-        except expat.ExpatError as error:
-            raise ValueError(f"line {error.lineno}: invalid XML: {expat.ErrorString(error.code)}") from None
-        except LookupError as error:
-            raise ValueError(f"line 1: invalid XML: {error}") from None
-        return self._elements
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
@@ -88,13 +84,10 @@ class _Scanner:
             self._refuse(f"<{_cut(tag)}>: run xacro on the file first")
         if not self._open and tag != "robot":
             self._refuse(f"the root is <{_cut(tag)}>: must be <robot>")
-        keys = KEPT.get(self._open, {}).get(tag)
+        keys = KEPT.get(tuple(self._open[:3]), {}).get(tag, ())
         if keys:
             self._keep(tag, {key: attributes[key] for key in keys if key in attributes})
-        self._open += (tag,)
-
-    def _end(self, _: str) -> None:
-        self._open = self._open[:-1]
+        self._open.append(tag)
 
     def _keep(self, tag: str, attributes: dict[str, str]) -> None:
         for key, text in attributes.items():
@@ -102,16 +95,16 @@ class _Scanner:
                 self._refuse(f"{tag} {key} = {_cut(text)!r} has {len(text)} characters: must have at most {MAX_TEXT}")
             if "${" in text:
                 self._refuse(f"{tag} {key} = {_cut(text)!r}: run xacro on the file first")
-        if tag in self._elements:
-            self._elements[tag].append({tag: attributes})
+        if tag in self.elements:
+            self.elements[tag].append({tag: attributes})
             return
-        parts = self._elements["joint"][-1]
+        parts = self.elements["joint"][-1]
         if tag in parts:
             self._refuse(f"joint {parts['joint'].get('name')!r} has a second <{tag}>: must have one")
         parts[tag] = attributes
 
     def _refuse(self, reason: str) -> NoReturn:
-        raise ValueError(f"line {self._parser.CurrentLineNumber}: {reason}")
+        raise ValueError(f"line {self.parser.CurrentLineNumber}: {reason}")
 
 
 def _cut(text: str) -> str:
