@@ -16,7 +16,7 @@ from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
 from ._types import ArrayField
 from .errors import ParameterError, not_one_of
-from .parameter import POSITIVE, Data, Parameter, data, parameter
+from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
@@ -78,8 +78,7 @@ class Arm(Data, CoreArm):
     @cached_property
     def limits(self) -> JointLimits:
         """Bounds of the joints' motion."""
-        lower, upper, velocity, acceleration = self.bounds()
-        return JointLimits(lower=lower, upper=upper, velocity=velocity, acceleration=acceleration)
+        return JointLimits(**dict(zip(parameters(JointLimits), self.bounds())))
 
     def first(self, joints: int) -> Arm:
         """The arm of the first so many joints: of an elbow, say. Raises ParameterError."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 import textwrap
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
@@ -42,18 +43,13 @@ class Parameter:
     infinite: bool = False  # Whether infinity will do.
     whole: bool = False  # Whether numbers must be whole.
     choices: tuple[str, ...] = ()  # The words to choose from.
-    shape: str = ""  # The shapes that an array may have: '(n,) or (n, n)', '()' being a number.
+    shape: str = ""  # The shapes that an array may have: '(n,) or (n, n)'; '()' of a number.
     help: str = ""
 
     @property
     def required(self) -> bool:
         """Whether constructors need it."""
         return self.default is REQUIRED
-
-    @property
-    def standard(self) -> Any:
-        """The default as the constructor keeps it."""
-        return self.default if self.required else self.check(self.default)
 
     @property
     def range(self) -> str:
@@ -82,68 +78,42 @@ class Parameter:
             if value not in self.choices:
                 raise not_one_of(self.name, value, self.choices)
             return value
-        if self.shape:
-            return self._array(value)
         if self.type is str and not isinstance(value, str):
             raise self._error(value, "text")
-        return self._number(value) if self.type in (float, int) else value
+        return self._numbers(value) if self.shape or self.type in (float, int) else value
 
-    def _number(self, value: Any) -> float | int:
-        try:
-            if isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0:
-                raise TypeError
-            number = float(value)
-        except (TypeError, ValueError, OverflowError):
-            raise self._error(value, "a number") from None
-        if not self._allowed(np.float64(number)):
-            raise self._error(number, self.demand)
-        return int(number) if self.type is int else number
-
-    def _array(self, value: Any) -> Any:
+    def _numbers(self, value: Any) -> Any:
         try:
             given = np.asarray(value)
         except ValueError:  # Rows of different lengths.
             given = np.empty(0, dtype=object)
-        if given.dtype.kind not in "fiu":
-            text = f"{self.name}: must be real numbers in an array or a plain sequence, got {value!r:.80}"
-            raise ParameterError(self.name, None, value, text)
-        if not _fits(given.shape, self.shape):
-            text = f"{self.name}: must have shape {self.shape}, got {given.shape}"
-            raise ParameterError(self.name, None, value, text)
+        if given.dtype.kind not in "fiu" or not _fits(given.shape, self.shape):
+            raise self._error(value, f"real numbers of shape {self.shape}" if self.shape else "a number")
         array = np.array(given, dtype=float)
-        if not np.all(allowed := self._allowed(array)):
-            index = tuple(map(int, np.argwhere(~allowed)[0]))
+        allowed = ~np.isnan(array) if self.infinite else np.isfinite(array)
+        if array.ndim < 2:  # The entries of matrices need only be finite.
+            allowed &= (array > self.low if self.open_low else array >= self.low) & (array <= self.high)
+        if self.whole:
+            allowed &= array == np.floor(array)
+        for index in map(tuple, np.argwhere(~allowed).tolist()):
             raise self._error(float(array[index]), self.demand if array.ndim < 2 else "finite", index)
-        if array.ndim == 0:
-            return float(array)
         array = array.astype(int) if self.whole else array
         array.setflags(write=False)
-        return array
-
-    def _allowed(self, values: Any) -> Any:
-        """Which numbers are in range; the entries of matrices need only be finite."""
-        allowed = ~np.isnan(values) if self.infinite else np.isfinite(values)
-        if np.ndim(values) < 2:
-            allowed &= (values > self.low if self.open_low else values >= self.low) & (values <= self.high)
-        return allowed & (values == np.floor(values)) if self.whole else allowed
+        return array if array.ndim else array.item()
 
     def _error(self, value: object, demand: str, index: tuple[int, ...] = ()) -> ParameterError:
         where = f"{self.name}[{', '.join(map(str, index))}]" if index else self.name
-        shown = f"{value:.9g}" if isinstance(value, float) else f"{value!r:.80}"
+        shown = f"{value:.9g}" if isinstance(value, float) else " ".join(repr(value).split())[:80]
         return ParameterError(self.name, index[0] if index else None, value, f"{where} = {shown}: must be {demand}")
 
 
 def _fits(shape: tuple[int, ...], wanted: str) -> bool:
-    """Whether an array's shape is one of those in a text, as '(n,) or (n, n)'."""
-    for each in wanted.split(" or "):
-        letters: dict[str, int] = {}
-        sizes = [size.strip() for size in each.strip("()").split(",") if size.strip()]
-        if len(sizes) == len(shape) and all(
-            (int(size) if size.isdigit() else letters.setdefault(size, length)) == length
-            for size, length in zip(sizes, shape)
-        ):
-            return True
-    return False
+    """Whether an array's shape is one of those in a text, as '(n,) or (n, n)'; a number has none."""
+    return any(
+        len(sizes) == len(shape)
+        and all(size == str(n) or (size.isalpha() and shape[sizes.index(size)] == n) for size, n in zip(sizes, shape))
+        for sizes in (re.findall(r"\w+", each) for each in wanted.split(" or "))
+    )
 
 
 POSITIVE = Parameter(low=0.0, open_low=True)
@@ -177,8 +147,8 @@ def _parameters(maker: Any) -> dict[str, Parameter]:
         known = declared.get(name, Parameter(default=argument.default, usual=argument.default))
         annotation = str(argument.annotation)
         kind = {"float": float, "int": int, "str": str}.get(annotation.split(" | ")[0], known.type)
-        kind = np.ndarray if known.shape else kind
         whole = known.whole or kind is int
+        kind = np.ndarray if known.shape else kind
         found[name] = replace(known, name=name, type=kind, whole=whole, annotation=annotation)
     own_first = [name for each in inspect.getmro(maker) for name in inspect.get_annotations(each)] if declared else ()
     return {name: found[name] for name in dict.fromkeys((*own_first, *found)) if name in found}
@@ -201,8 +171,8 @@ class Data:
 
     def _given(self) -> dict[str, Any]:
         """The same without what is at its default."""
-        known = parameters(type(self))
-        return {name: value for name, value in self._values().items() if _key(value) != _key(known[name].standard)}
+        known, values = parameters(type(self)), self._values().items()
+        return {n: v for n, v in values if known[n].required or _key(v) != _key(known[n].check(known[n].default))}
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and _key(other) == _key(self)
@@ -233,7 +203,7 @@ def data(cls: type[D]) -> type[D]:
 def _entry(known: Parameter) -> str:
     """A parameter as docstrings have it."""
     kind = known.annotation.replace(" | ", " or ") if known.type is object else known.type.__name__
-    kind = f"array_like, shape {known.shape}" if known.shape else kind
+    kind = f"array_like, shape {known.shape}" if known.type is np.ndarray else kind
     words = [kind, known.range, "" if known.required else f"default {_text(known.default)}"]
     unit = f" [{known.unit}]" if known.unit else ""
     choices = f" One of {', '.join(map(repr, known.choices))}." if known.choices else ""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from math import pi
 from typing import Any, ClassVar
 
@@ -35,6 +37,7 @@ class Path(Data, CorePath):
     """
 
     kind: ClassVar[str]
+    core: ClassVar[Callable[..., CorePath]]  # Makes what is compiled, of the parameters in their order.
 
     @cached_property
     def duration(self) -> float:
@@ -63,10 +66,7 @@ class Path(Data, CorePath):
         return Sequence((self, path))
 
     def _finish(self) -> None:
-        CorePath.__init__(self, self._compiled())
-
-    def _compiled(self) -> CorePath:
-        raise NotImplementedError
+        CorePath.__init__(self, self.core(*self._values().values()))
 
 
 @data
@@ -77,12 +77,10 @@ class Circle(Path):
     """
 
     kind = "circle"
+    core = staticmethod(circle)
     radius: float = parameter("Radius of the circle, r.", POSITIVE, unit="m", usual=0.1)
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
-
-    def _compiled(self) -> CorePath:
-        return circle(self.radius, self.duration, self.time_law)
 
 
 @data
@@ -93,6 +91,7 @@ class Lissajous(Path):
     """
 
     kind = "lissajous"
+    core = staticmethod(lissajous)
     amplitude: ArrayField = parameter(
         "Amplitude of the Lissajous figure, a: one for both axes or one each.",
         POSITIVE,
@@ -112,9 +111,6 @@ class Lissajous(Path):
     phase: float = parameter("Phase of the Lissajous figure, delta.", default=pi / 6, kw_only=True, unit="rad")
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
 
-    def _compiled(self) -> CorePath:
-        return lissajous(self.amplitude, self.duration, self.frequencies, self.phase, self.time_law)
-
 
 @data
 class Tricuspid(Path):
@@ -124,12 +120,10 @@ class Tricuspid(Path):
     """
 
     kind = "tricuspid"
+    core = staticmethod(tricuspid)
     size: float = parameter("Size of the tricuspid, a.", POSITIVE, unit="m", usual=0.05)
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
-
-    def _compiled(self) -> CorePath:
-        return tricuspid(self.size, self.duration, self.time_law)
 
 
 @data
@@ -137,14 +131,12 @@ class Line(Path):
     """Straight line."""
 
     kind = "line"
+    core = staticmethod(line)
     displacement: ArrayField = parameter(
         "Of the line, from its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
     duration: float = parameter(like=DURATION)
     time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
-
-    def _compiled(self) -> CorePath:
-        return line(self.displacement, self.duration, self.time_law)
 
 
 class _Derived(float):
@@ -163,6 +155,7 @@ class Waypoints(Path):
     """
 
     kind = "waypoints"
+    core = staticmethod(waypoints)
     points: ArrayField = parameter(
         "Positions or poses, two at least. Only differences from the first matter, since a path starts where the tip "
         "is: coordinates in the base frame do as well as displacements.",
@@ -199,10 +192,6 @@ class Waypoints(Path):
         values = super()._values()
         return {**values, "duration": None} if isinstance(self.duration, _Derived) else values
 
-    def _compiled(self) -> CorePath:
-        bounds = (self.velocity, self.acceleration, self.angular_velocity, self.angular_acceleration)
-        return waypoints(self.points, self.duration, self.times, *bounds)
-
 
 @data
 class InPlane(Path):
@@ -215,15 +204,16 @@ class InPlane(Path):
         shape="(2, 3)",
     )
 
-    def _compiled(self) -> CorePath:
+    def _finish(self) -> None:
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
-        return in_plane(self.path, axes)
+        CorePath.__init__(self, in_plane(self.path, axes))
 
 
 @data
 class WithRotation(Path):
     """A path of positions, with the tip rotated on the way: path.with_rotation(rotation, time_law=...)."""
 
+    core = staticmethod(with_rotation)
     path: Path = parameter("A path of positions.")
     rotation: ArrayField = parameter(
         "Rotation vector along the base frame's axes, or an angle in the plane, from the orientation at the start.",
@@ -232,23 +222,19 @@ class WithRotation(Path):
     )
     time_law: str = parameter("How the rotation grows with time.", default="quintic", kw_only=True, choices=TIME_LAWS)
 
-    def _compiled(self) -> CorePath:
-        return with_rotation(self.path, self.rotation, self.time_law)
-
 
 @data
 class Sequence(Path):
     """Paths one after another: path.then(next). Sequences among them are replaced by their paths."""
 
     kind = "sequence"
+    core = staticmethod(sequence)
     paths: tuple[Path, ...] = parameter("In their order, one at least.")
 
-    def _compiled(self) -> CorePath:
-        parts: list[Path] = []
-        for path in self.paths:
-            parts.extend(path.paths if isinstance(path, Sequence) else [path])
-        object.__setattr__(self, "paths", tuple(parts))
-        return sequence(parts)
+    def _finish(self) -> None:
+        parts = [path.paths if isinstance(path, Sequence) else (path,) for path in self.paths]
+        object.__setattr__(self, "paths", tuple(chain.from_iterable(parts)))
+        super()._finish()
 
 
 # The shapes by the kind that a table has, and how any of them is laid and rotated.

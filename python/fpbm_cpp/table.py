@@ -70,8 +70,6 @@ def from_table(
         What errors call the table.
     arm : Arm, optional
         Of which second tasks may say the first `joints`, in place of an arm of their own.
-    usual : bool
-        Whether parameters that are left out take their usual values; weights are ones for the arm.
 
     Raises
     ------
@@ -80,7 +78,7 @@ def from_table(
     OSError
         Where a file that the table names cannot be read.
     """
-    reader = _Reader(arm, usual)
+    reader = _Reader(arm)
     thing = reader.read(table, kinds, name)
     for problem in reader.problems:
         raise problem
@@ -90,7 +88,7 @@ def from_table(
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
     """All that is wrong with the keys of a table and with each of its values, before anything is made of it.
 
-    As from_table() has it, for an arm that is yet to come.
+    As from_table() has it, for an arm that is yet to come. usual: whether what has a usual value may be missing.
     """
     reader = _Reader(None, usual, make=False)
     reader.read(table, kinds, name)
@@ -112,7 +110,7 @@ def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parame
 class _Reader:
     """Makes things of tables, and notes what is wrong with them: what it makes is None then."""
 
-    def __init__(self, arm: Arm | None, usual: bool, make: bool = True) -> None:
+    def __init__(self, arm: Arm | None, usual: bool = False, make: bool = True) -> None:
         self.arm, self.usual, self.make = arm, usual, make
         self.problems: list[ParameterError] = []
 
@@ -133,7 +131,7 @@ class _Reader:
 
     def _thing(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
         wrong, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
-        values = self._usual(known) if self.usual else {}
+        values = {}
         for key, value in table.items():
             if key in known:
                 values[key] = self._value(value, known[key], maker, _join(name, key))
@@ -141,15 +139,11 @@ class _Reader:
                 what = f": {table.get('kind', name)} has no such key: must be one of {', '.join(known)}"
                 self._wrong(_join(name, key), value, what + suggestion(key, known))
         for key, parameter in known.items():
-            if parameter.required and key not in values:
+            if parameter.required and key not in table and not (self.usual and parameter.usual is not REQUIRED):
                 self._wrong(_join(name, key), None, ": is missing")
         if len(self.problems) > wrong or not self.make:
             return None
         return self._checked(lambda: self._made(maker, values), name)
-
-    def _usual(self, known: Mapping[str, Parameter]) -> dict[str, Any]:
-        values = {key: each.usual for key, each in known.items() if each.usual not in (REQUIRED, None)}
-        return {**values, "weights": np.ones(self.arm.dof if self.arm else 1)} if "weights" in known else values
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
         if "joints" in values and maker is SecondTask and self.arm is not None:

@@ -356,15 +356,14 @@ def test_tables_that_people_write():
         "with_rotation": [0, 0, 1],
         "rotation_time_law": "quintic",
     }
-    path = from_table(table, PATHS, usual=True)
+    path = from_table({**table, "duration": 10}, PATHS)
     assert path == fp.Circle(0.2, 10.0).in_plane("yz").with_rotation([0, 0, 1], time_law="quintic")
     lines = [{"kind": "line", "displacement": [0, 1], "duration": 1}, {"kind": "circle", "radius": 1, "duration": 2}]
     assert from_table(lines, PATHS) == fp.Line([0, 1], 1).then(fp.Circle(1, 2))
     assert from_table(lines[:1], PATHS) == fp.Line([0, 1], 1)
     point = {"kind": "point", "joints": 4, "x": [0.1, 0.2, 0.6]}
-    scheme = from_table({"kind": "fpbm", "second_task": point}, SCHEMES, arm=PANDA, usual=True)
-    task = fp.SecondTask(PANDA.first(4), [0.1, 0.2, 0.6])
-    assert scheme == fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2, second_task=task)
+    scheme = from_table({"kind": "mvn", "k": 2, "second_task": point}, SCHEMES, arm=PANDA)
+    assert scheme == fp.MVN(k=2, second_task=fp.SecondTask(PANDA.first(4), [0.1, 0.2, 0.6]))
     assert from_table({"kind": "preset", "name": "panda"}, ARMS) == PANDA
     joints = [{"type": "prismatic", "upper": 1.0}, {"mimic": [0, 1.0, 0.5]}]
     assert from_table({"kind": "joints", "joints": joints}) == fp.SerialArm(
@@ -394,7 +393,11 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
         ({**CIRCLE, "in_plane": "xw"}, PATHS, ["path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"]),
         ([CIRCLE, {**CIRCLE, "radius": 0}], PATHS, ["path[1].radius = 0: must be positive"]),
         ({"kind": "mvn", "second_task": {"kind": "gaz"}}, SCHEMES, ["path.second_task.kind = 'gaz': must be one of"]),
-        ({"kind": "joints", "joints": [{}, {"axis": "x"}]}, ARMS, ["path.joints[1].axis: must be real numbers"]),
+        (
+            {"kind": "joints", "joints": [{}, {"axis": "x"}]},
+            ARMS,
+            ["path.joints[1].axis = 'x': must be real numbers of shape (3,)"],
+        ),
         ({"kind": "joints", "joints": [{}, 3]}, ARMS, ["path.joints[1] = 3: must be a table"]),
         ({"kind": "preset"}, ARMS, ["path.name: is missing"]),
     ],

@@ -106,8 +106,11 @@ def test_bounds_of_a_table():
             "type = 'helical': must be one of revolute, continuous, prismatic",
         ),
         (lambda: fp.SerialArm([fp.Joint(axis=[0, 0, 0])]), "axis is zero: must point somewhere"),
-        (lambda: fp.SerialArm([fp.Joint(axis=[0, 1])]), r"axis: must have shape \(3,\), got \(2,\)"),
-        (lambda: fp.SerialArm([fp.Joint(placement=np.eye(3))]), r"placement: must have shape \(4, 4\), got \(3, 3\)"),
+        (lambda: fp.SerialArm([fp.Joint(axis=[0, 1])]), r"axis = \[0, 1\]: must be real numbers of shape \(3,\)"),
+        (
+            lambda: fp.SerialArm([fp.Joint(placement=np.eye(3))]),
+            r"placement = .*: must be real numbers of shape \(4, 4\)",
+        ),
         (lambda: fp.SerialArm([fp.Joint(placement=np.diag([1, 1, 3, 1]))]), "placement.R: must be a rotation matrix"),
         (lambda: fp.SerialArm([fp.Joint(lower=1, upper=-1)]), "lower = 1: must be below upper"),
         (lambda: fp.SerialArm([fp.Joint(lower=np.nan)]), "lower = nan: must be a number"),
@@ -122,7 +125,10 @@ def test_bounds_of_a_table():
             lambda: fp.SerialArm.from_dh(np.zeros((2, 4)), "craig"),
             "convention = 'craig': must be 'classic' or 'modified'",
         ),
-        (lambda: fp.SerialArm.from_dh(np.zeros((2, 3)), "classic"), r"table: must have shape \(n, 4\), got \(2, 3\)"),
+        (
+            lambda: fp.SerialArm.from_dh(np.zeros((2, 3)), "classic"),
+            r"table = .*: must be real numbers of shape \(n, 4\)",
+        ),
         (lambda: fp.SerialArm.from_dh([[0, 0, 0, np.nan]], "classic"), r"table\[0, 3\] = nan: must be finite"),
         (lambda: fp.SerialArm.from_dh(np.zeros((2, 4)), "classic", lower=[1]), "lower has 1 entries: must have 2"),
         (
