@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import objectives, search
-from fpbm_cpp.tuning.pareto import unbeaten
+from fpbm_cpp.tuning.pareto import pareto_front
 from fpbm_cpp.tuning.sensitivity import changes, neighbours
 from fpbm_cpp.tuning.trials import Trials
 
@@ -373,9 +373,9 @@ points = st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), max_size=20)
 
 
 @given(points)
-def test_unbeaten(pairs):
+def test_pareto_front(pairs):
     x, y = np.array(pairs, float).reshape(-1, 2).T
-    kept = unbeaten(x, y)
+    kept = pareto_front(x, y)
     beaten = [any(a <= x[i] and b <= y[i] and (a, b) != (x[i], y[i]) for a, b in pairs) for i in range(len(pairs))]
     assert {pairs[i] for i in kept} == {pair for pair, loses in zip(pairs, beaten) if not loses}
     assert len({pairs[i] for i in kept}) == len(kept)
@@ -411,7 +411,7 @@ def test_a_search_finds_a_front_also_in_its_hollow():
         scored += scores.tolist()
         points = seeking.send(scores)
     f, g = np.array(scored).T
-    kept = unbeaten(f, g)
+    kept = pareto_front(f, g)
     on_front = 1 - np.exp(-((2 - np.sqrt(-np.log(1 - f[kept]))) ** 2))
     assert np.quantile(np.abs(g[kept] - on_front), 0.9) < 0.02
     late = np.abs(f - g)[-160:]

@@ -127,7 +127,7 @@ def test_the_page_chooses_schemes_and_gains(viewer):
     controls._kind.value = "MAN"
     controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
     assert not controls._folder.visible
-    controls._give_back(fpbm())
+    controls._reset(fpbm())
     assert repr(viewer.scheme) == repr(fpbm())
 
 

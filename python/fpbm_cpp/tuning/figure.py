@@ -37,7 +37,7 @@ def _front(axes: Any, tuning: Tuning, theme: Theme) -> None:
     """All feasible trials, the front, the best and the baseline."""
     trials, front = tuning.trials, tuning.front
     best, baseline = trials[[trials.best()]], trials[:1]
-    axes.plot(*_pair(trials[trials.feasible]), ".", color=theme.soft, alpha=0.4, mew=0, ms=5, label="tried")
+    axes.plot(*_pair(trials[trials.feasible]), ".", color=theme.soft, alpha=0.6, mew=0, ms=5, label="tried")
     axes.plot(*_pair(front), "o-", color=theme.lines[0], lw=1.4, ms=4, drawstyle="steps-post", label="front")
     axes.plot(*_pair(baseline), "s", color=theme.ink, ms=7, label="baseline")
     axes.plot(*_pair(best), "*", color=BEST, mec=theme.paper, mew=0.6, ms=15, label="best", zorder=3)

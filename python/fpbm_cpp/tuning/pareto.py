@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 from .._types import Array
 
 
-def unbeaten(x: Array, y: Array) -> NDArray[np.intp]:
-    """Indices of the points that no other point beats, sorted by x.
+def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
+    """Indices of the points that no other point beats, sorted by x: none is smaller in one and no larger in the other.
 
-    A point beats another if it is at most as large in both coordinates and smaller in one. Of equal points only the
-    first counts, and a point with a NaN does not.
+    Of equal points only the first counts; a point with a NaN does not.
     """
     order = np.lexsort((y, x))
     order = order[~np.isnan(x[order] + y[order])]

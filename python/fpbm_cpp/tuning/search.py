@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._types import Array
-from .pareto import unbeaten
+from .pareto import pareto_front
 
 if TYPE_CHECKING:
     from cmaes import CMA
@@ -62,7 +62,7 @@ def front(size: int, seed: int) -> Search:
         points = [_ask(search) for search in searches]
         scores = yield np.concatenate(points)
         best = np.concatenate([best, scores])
-        best = best[unbeaten(*best.T)]
+        best = best[pareto_front(*best.T)]
         low, extent = (best.min(axis=0), np.ptp(best, axis=0)) if len(best) else (np.zeros(2), np.ones(2))
         shifted = (scores - low) / np.where(extent > 0.0, extent, 1.0)
         for search, share, own, score in zip(searches, shares, points, np.split(shifted, WEIGHTINGS)):

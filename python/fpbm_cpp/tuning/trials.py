@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._types import Array
 from ..motion.sweep_result import Sweep
 from .objectives import Measure
-from .pareto import unbeaten
+from .pareto import pareto_front
 from .space import TUNABLE
 
 
@@ -48,7 +48,7 @@ class Trials:
 
     def front(self) -> Trials:
         """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
-        return self[unbeaten(*self.peaks().T)]
+        return self[pareto_front(*self.peaks().T)]
 
     def scores(self) -> Array:
         """The value of each; NaN if it is infeasible."""

@@ -59,11 +59,11 @@ class Controls:
             self._limited = gui.add_checkbox(
                 "keep joint limits", bool(limited), visible=limited is not None, hint="The bounds of every joint"
             )
-            again = gui.add_button("as it was given", color="gray")
+            reset = gui.add_button("reset", color="gray")
         self.take(scheme)
         for widget in (self._kind, self._limited, *self._sliders.values(), *self._weights):
             widget.on_update(self._on_update)
-        again.on_click(lambda _: self._give_back(scheme))
+        reset.on_click(lambda _: self._reset(scheme))
 
     @property
     def limited(self) -> bool:
@@ -104,7 +104,7 @@ class Controls:
             self._show_sliders()
         self._on_change()
 
-    def _give_back(self, scheme: Scheme) -> None:
+    def _reset(self, scheme: Scheme) -> None:
         self.take(scheme)
         self._on_change()
 

@@ -24,7 +24,7 @@ class Scene:
     def __init__(self, server: ViserServer, playback: Playback, model: Model | None) -> None:
         self._server = server
         run = playback.run
-        self._flat = isinstance(run.arm, PlanarArm)
+        self._planar = isinstance(run.arm, PlanarArm)
         self._arm: Links | Meshes
         if model is not None and model.has_meshes:
             self._arm = Meshes(server, model, run.q[0])
@@ -69,20 +69,20 @@ class Scene:
             plane="xy",
             cell_size=cell / 2,
             section_size=2 * cell,
-            position=(0.0, 0.0, -(0.1 if self._flat else 0.002) * radius),  # Under the joints.
+            position=(0.0, 0.0, -(0.1 if self._planar else 0.002) * radius),  # Under the joints.
             shadow_opacity=0.15,
         )
 
     def _place_camera(self, server: ViserServer, centre: Array, radius: float) -> None:
         """Look from above at a planar arm, from the side and above at one in space, with the whole motion in view."""
-        server.scene.set_up_direction("+y" if self._flat else "+z")
-        offset = np.array([0.0, 0.0, 1.0] if self._flat else [1.0, -1.3, 0.7])
-        room = 1.1 if self._flat else 0.95  # Seen from the side, the ball about an arm is emptier.
+        server.scene.set_up_direction("+y" if self._planar else "+z")
+        offset = np.array([0.0, 0.0, 1.0] if self._planar else [1.0, -1.3, 0.7])
+        room = 1.1 if self._planar else 0.95  # Seen from the side, the ball about an arm is emptier.
         offset *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(offset)
         camera = server.initial_camera
         camera.fov = FIELD
         camera.position, camera.look_at = centre + offset, centre
-        camera.up = (0.0, 1.0, 0.0) if self._flat else (0.0, 0.0, 1.0)
+        camera.up = (0.0, 1.0, 0.0) if self._planar else (0.0, 0.0, 1.0)
 
         def step_back(client: ClientHandle) -> None:
             if client.camera.aspect < 1.0:  # On a narrow screen the vertical field of view is not the smaller one.
