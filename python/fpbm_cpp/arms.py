@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence, Sized
-from dataclasses import replace
+from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar
@@ -32,10 +32,11 @@ class JointLimits(Data):
     """
 
     kind: ClassVar[str] = "limits"
-    lower: ArrayField = parameter("Lowest positions.", BOUND, kw_only=True, unit="rad")
-    upper: ArrayField = parameter("Highest positions.", BOUND, kw_only=True, unit="rad")
-    velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, kw_only=True, unit="rad/s")
-    acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, kw_only=True, unit="rad/s^2")
+    _: KW_ONLY
+    lower: ArrayField = parameter("Lowest positions.", BOUND, unit="rad")
+    upper: ArrayField = parameter("Highest positions.", BOUND, unit="rad")
+    velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, unit="rad/s")
+    acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, unit="rad/s^2")
 
     def _finish(self) -> None:
         for name in ("upper", "velocity", "acceleration"):

@@ -120,9 +120,7 @@ POSITIVE = Parameter(low=0.0, open_low=True)
 NOT_NEGATIVE = Parameter(low=0.0)
 
 
-def parameter(
-    help: str = "", like: Parameter = Parameter(), *, default: Any = REQUIRED, kw_only: bool = False, **known: Any
-) -> Any:
+def parameter(help: str = "", like: Parameter = Parameter(), *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
     Takes what Parameter has; what is not given is as in `like`. Name and type are the field's; the usual value is the
@@ -130,7 +128,7 @@ def parameter(
     """
     usual = default if like.usual is REQUIRED else like.usual
     declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})
-    return field(default=MISSING if default is REQUIRED else default, kw_only=kw_only, metadata={"parameter": declared})
+    return field(default=MISSING if default is REQUIRED else default, metadata={"parameter": declared})
 
 
 def parameters(maker: Callable[..., Any]) -> dict[str, Parameter]:

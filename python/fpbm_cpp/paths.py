@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from itertools import chain
 from math import pi
@@ -80,7 +80,8 @@ class Circle(Path):
     core = staticmethod(circle)
     radius: float = parameter("Radius of the circle, r.", POSITIVE, unit="m", usual=0.1)
     duration: float = parameter(like=DURATION)
-    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
+    _: KW_ONLY
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
 @data
@@ -100,16 +101,16 @@ class Lissajous(Path):
         usual=0.1,
     )
     duration: float = parameter(like=DURATION)
+    _: KW_ONLY
     frequencies: ArrayField = parameter(
         "Frequencies of the Lissajous figure, f: whole, so that it closes.",
         default=(2, 1),
-        kw_only=True,
         shape="(2,)",
         whole=True,
         low=1.0,
     )
-    phase: float = parameter("Phase of the Lissajous figure, delta.", default=pi / 6, kw_only=True, unit="rad")
-    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
+    phase: float = parameter("Phase of the Lissajous figure, delta.", default=pi / 6, unit="rad")
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
 @data
@@ -123,7 +124,8 @@ class Tricuspid(Path):
     core = staticmethod(tricuspid)
     size: float = parameter("Size of the tricuspid, a.", POSITIVE, unit="m", usual=0.05)
     duration: float = parameter(like=DURATION)
-    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
+    _: KW_ONLY
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
 @data
@@ -136,7 +138,8 @@ class Line(Path):
         "Of the line, from its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
     duration: float = parameter(like=DURATION)
-    time_law: str = parameter(like=TIME_LAW, default="sin_squared", kw_only=True)
+    _: KW_ONLY
+    time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
 class _Derived(float):
@@ -162,23 +165,20 @@ class Waypoints(Path):
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
-    duration: DerivedField = parameter(
-        "How long the path takes, T.", POSITIVE, type=float, default=None, kw_only=True, unit="s"
-    )
+    _: KW_ONLY
+    duration: DerivedField = parameter("How long the path takes, T.", POSITIVE, type=float, default=None, unit="s")
     times: OptionalArrayField = parameter(
-        "When each point is passed, the first at 0.", default=None, kw_only=True, shape="(k,)", unit="s"
+        "When each point is passed, the first at 0.", default=None, shape="(k,)", unit="s"
     )
     velocity: float | None = parameter(
-        "Highest speed of the tip on the way through points.", POSITIVE, default=None, kw_only=True, unit="m/s"
+        "Highest speed of the tip on the way through points.", POSITIVE, default=None, unit="m/s"
     )
-    acceleration: float | None = parameter(
-        "The same, of its acceleration.", POSITIVE, default=None, kw_only=True, unit="m/s^2"
-    )
+    acceleration: float | None = parameter("The same, of its acceleration.", POSITIVE, default=None, unit="m/s^2")
     angular_velocity: float | None = parameter(
-        "The same, of its angular velocity.", POSITIVE, default=None, kw_only=True, unit="rad/s"
+        "The same, of its angular velocity.", POSITIVE, default=None, unit="rad/s"
     )
     angular_acceleration: float | None = parameter(
-        "The same, of its angular acceleration.", POSITIVE, default=None, kw_only=True, unit="rad/s^2"
+        "The same, of its angular acceleration.", POSITIVE, default=None, unit="rad/s^2"
     )
 
     def __post_init__(self) -> None:
@@ -220,7 +220,8 @@ class WithRotation(Path):
         shape="() or (3,)",
         unit="rad",
     )
-    time_law: str = parameter("How the rotation grows with time.", default="quintic", kw_only=True, choices=TIME_LAWS)
+    _: KW_ONLY
+    time_law: str = parameter("How the rotation grows with time.", default="quintic", choices=TIME_LAWS)
 
 
 @data

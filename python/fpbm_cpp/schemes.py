@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import KW_ONLY, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -38,8 +38,9 @@ class SecondTask(Data):
     kind: ClassVar[str] = "point"
     arm: Arm = parameter("The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
     x: ArrayField = parameter("Where its tip is to be, in the base frame.", shape="(2,) or (3,)", unit="m")
-    k1: float = parameter(like=K1, default=10.0, kw_only=True)
-    k2: float = parameter(like=K2, default=25.0, kw_only=True)
+    _: KW_ONLY
+    k1: float = parameter(like=K1, default=10.0)
+    k2: float = parameter(like=K2, default=25.0)
 
     def _finish(self) -> None:
         if not isinstance(self.arm, Arm):
@@ -63,8 +64,9 @@ class Gaze(Data):
     direction: ArrayField = parameter(
         "Where the axis is to point, in the base frame; its length does not matter.", shape="(3,)"
     )
-    k1: float = parameter(like=K1, default=10.0, kw_only=True)
-    k2: float = parameter(like=K2, default=25.0, kw_only=True)
+    _: KW_ONLY
+    k1: float = parameter(like=K1, default=10.0)
+    k2: float = parameter(like=K2, default=25.0)
 
     def _finish(self) -> None:
         if not np.any(self.direction):
@@ -76,7 +78,10 @@ class Gaze(Data):
 
 @data
 class Scheme(Data, CoreScheme):
-    """A redundancy resolution scheme: what all of them have."""
+    """A redundancy resolution scheme: what all of them have.
+
+    joint_centring, manipulability_gain and second_task need an arm: resolve() cannot do them for a Kinematics.
+    """
 
     kind: ClassVar[str]
     level: ClassVar[str]
@@ -85,20 +90,16 @@ class Scheme(Data, CoreScheme):
     # What the scheme fixes of the law of its level.
     fixed: ClassVar[dict[str, float]] = {}
 
+    _: KW_ONLY
     rest_posture: OptionalArrayField = parameter(
-        "Posture that the null space is drawn to.", default=None, kw_only=True, shape="(n,)", unit="rad"
+        "Posture that the null space is drawn to.", default=None, shape="(n,)", unit="rad"
     )
     null_stiffness: float = parameter(
-        "How strongly the null space is drawn there.",
-        NOT_NEGATIVE,
-        default=0.0,
-        kw_only=True,
-        unit="1/s^2, 1/s at velocity level",
+        "How strongly the null space is drawn there.", NOT_NEGATIVE, default=0.0, unit="1/s^2, 1/s at velocity level"
     )
     c: OptionalArrayField = parameter(
         "The free choice in the general solution (5), (3) at velocity level.",
         default=None,
-        kw_only=True,
         shape="(n,)",
         unit="rad/s^2, rad/s at velocity level",
     )
@@ -107,29 +108,24 @@ class Scheme(Data, CoreScheme):
         "limits bound both ways (Liegeois, 1977).",
         SQUARED,
         default=0.0,
-        kw_only=True,
     )
     manipulability_gain: float = parameter(
         "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
         "without which it swings for ever.",
         SQUARED,
         default=0.0,
-        kw_only=True,
     )
     second_task: SecondTask | Gaze | None = parameter(
-        "What the null space does first of all: the other options have what it leaves.", default=None, kw_only=True
+        "What the null space does first of all: the other options have what it leaves.", default=None
     )
     singular_radius: float = parameter(
         "Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
         "postures; 0.02 is a good one.",
         default=0.0,
-        kw_only=True,
         low=0.0,
         high=1.0,
     )
-    singular_brake: float = parameter(
-        "Damping of the null space there.", NOT_NEGATIVE, default=10.0, kw_only=True, unit="1/s"
-    )
+    singular_brake: float = parameter("Damping of the null space there.", NOT_NEGATIVE, default=10.0, unit="1/s")
 
     def _finish(self) -> None:
         values = {name: getattr(self, name) for name in parameters(type(self))}
@@ -152,11 +148,11 @@ class AccelerationScheme(Scheme):
     """A scheme that resolves to joint accelerations."""
 
     level = "acceleration"
+    _: KW_ONLY
     null_damping: float = parameter(
         "Damping of the self-motion, which nothing in the paper's schemes damps.",
         NOT_NEGATIVE,
         default=0.0,
-        kw_only=True,
         usual=2.0,
         unit="1/s",
     )
@@ -167,7 +163,8 @@ class MVN(VelocityScheme):
     """Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3)."""
 
     kind = "mvn"
-    k: float = parameter(like=K, default=0.0, kw_only=True)
+    _: KW_ONLY
+    k: float = parameter(like=K, default=0.0)
 
 
 @data
@@ -176,7 +173,8 @@ class WMVN(VelocityScheme):
 
     kind = "wmvn"
     weights: ArrayField = parameter(like=WEIGHTS)
-    k: float = parameter(like=K, default=0.0, kw_only=True)
+    _: KW_ONLY
+    k: float = parameter(like=K, default=0.0)
 
 
 @data
