@@ -312,7 +312,7 @@ def test_interruption_within_an_objective():
         ({"trials": 2.5}, "trials = 2.5: must be a whole number, at least 1"),
         ({"seed": -1}, "seed = -1: must be a whole number, not negative"),
         ({"tolerance": 0}, "tolerance = 0: must be positive and finite"),
-        ({"q0": [0, 0, 0]}, r"q0: must have shape \(4,\), got \(3,\)"),
+        ({"q0": [0, 0, 0]}, r"q0 = \[0, 0, 0\]: must be .* of shape \(4,\)"),
         ({"q0": [0, 0, 0, np.nan]}, r"q0\[3\] = nan: must be finite"),
         ({"dt": 0.003}, "dt = 0.003: must be a divisor of duration = 10"),
         ({"hold": -1}, "hold = -1"),
