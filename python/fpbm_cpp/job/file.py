@@ -8,7 +8,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from ..errors import ParameterError
 from ..io.write_whole import write_whole
-from .errors import JobError
+from .make import JobError
 from .sections import SECTIONS, Table, in_order
 
 

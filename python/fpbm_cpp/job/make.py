@@ -1,13 +1,46 @@
 """What a job's sections stand for, and what is wrong with them."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import inf
 from typing import Any
 
 from ..arms import Arm
 from ..errors import ParameterError, suggestion
 from ..table import from_table, problems
-from .errors import JobError
 from .sections import SECTIONS, Table, known
+
+# The section of a key that the library names without one.
+OWNERS = {
+    key: section
+    for section in ("arm", "path", "limits", "scheme", "run")
+    for kind in SECTIONS[section]
+    for key in known(section, kind)
+}
+
+
+class JobError(ValueError):
+    """A job that cannot be run, and everything that is wrong with it.
+
+    Attributes
+    ----------
+    errors : tuple of ParameterError
+        One at least, named by their keys: 'path.radius'.
+    """
+
+    def __init__(self, *errors: ParameterError) -> None:
+        super().__init__("\n".join(map(str, errors)))
+        self.errors = errors
+
+
+@contextmanager
+def job_errors() -> Iterator[None]:
+    """Say by a job's keys what the library refuses: raise JobError for ParameterError."""
+    try:
+        yield
+    except ParameterError as error:
+        named = error.name.partition(".")[0] in SECTIONS
+        raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 
 def require_sound(job: Table) -> None:
@@ -28,10 +61,8 @@ def require_sound(job: Table) -> None:
 
 def make(section: str, said: Table, arm: Arm | None = None) -> Any:
     """What a section stands for, for this arm. Raises JobError."""
-    try:
+    with job_errors():
         return from_table(_whole(section, said, arm), SECTIONS[section], section, arm=arm)
-    except ParameterError as error:
-        raise JobError(error) from None
 
 
 def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:

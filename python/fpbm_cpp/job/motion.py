@@ -19,10 +19,9 @@ from ..motion.tracking import track
 from ..paths import Path
 from ..schemes import Scheme
 from ..table import to_table
-from .errors import JobError, within
 from .file import write_job
 from .fill import filled, taken
-from .make import make, require_sound
+from .make import JobError, job_errors, make, require_sound
 from .sections import SECTIONS, RunOptions, Table, in_order
 
 
@@ -81,7 +80,7 @@ class Motion:
     def run(self) -> Run:
         """The motion: simulate()'s or, where limits are kept, track()'s; as far as it goes where it must stop early."""
         keywords = {**self.keywords, "qd0": self.options.qd0}
-        with within(self.job, "run"):
+        with job_errors():
             if self.limits is not None:
                 return track(self.arm, self.path, self.scheme, self.q0, **keywords)
             del keywords["limits"]
@@ -103,7 +102,7 @@ def prepare(job: Table) -> Motion:
         if np.any(bounded & np.isinf(limits.acceleration)):
             text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(ParameterError("limits.acceleration", None, None, text))
-    with within(full, "run"):
+    with job_errors():
         check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
     whole = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
     return Motion(whole, list(taken(job, whole)), arm, path, scheme, options, limits)
