@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import objectives, search
-from fpbm_cpp.tuning.pareto import pareto_front
+from fpbm_cpp.tuning.search import pareto_front
 from fpbm_cpp.tuning.sensitivity import changes, neighbours
 from fpbm_cpp.tuning.trials import Trials
 

@@ -28,10 +28,9 @@ from fpbm_cpp.parameter import parameters
 from fpbm_cpp.skeleton import joint_points
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
-from fpbm_cpp.viewer.links import Links
-from fpbm_cpp.viewer.meshes import Model
+from fpbm_cpp.viewer.links import Links, along
+from fpbm_cpp.viewer.meshes import Meshes
 from fpbm_cpp.viewer.playback import FRAMES, Playback
-from fpbm_cpp.viewer.space import along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 Q0 = np.pi / np.array([12, 12, 15, 15])
@@ -438,8 +437,8 @@ def file(tmp_path):
 @pytest.mark.parametrize("base", [None, "foot", "upper"])
 def test_a_model_moves_as_the_arm_does(file, base):
     arm = fp.SerialArm.from_urdf(file, tip="hand", base=base)
-    model = Model(file, arm, np.zeros(arm.dof))
-    assert model.has_meshes
+    model = Meshes(file, arm, np.zeros(arm.dof))
+    assert model.found
 
     @settings(max_examples=20, deadline=None)
     @given(st.lists(st.floats(-2, 2), min_size=arm.dof, max_size=arm.dof))
@@ -459,9 +458,9 @@ def test_meshes_that_are_not_found_are_left_out(file):
     with pytest.warns(
         UserWarning, match=r"arm.urdf: 1 mesh is not found: package://made_up/meshes/nowhere.stl"
     ) as said:
-        model = Model(file, arm, np.zeros(4))
+        model = Meshes(file, arm, np.zeros(4))
     assert len(said) == 1
-    assert model.has_meshes  # The box and the cylinder.
+    assert model.found  # The box and the cylinder.
 
 
 def test_without_any_mesh_the_arm_is_drawn_from_its_links(file):

@@ -1,4 +1,4 @@
-"""Searches of the unit cube by CMA-ES (Hansen and Ostermeier, 2001): for the least score, and the front of two scores.
+"""Searches of the unit cube by CMA-ES (Hansen and Ostermeier, 2001): for the least score, and the Pareto front of two.
 
 Each is an endless generator: it yields points, shape (B, d), and is sent their scores, shape (B,) or (B, 2), NaN where
 a point is infeasible.
@@ -10,9 +10,9 @@ from collections.abc import Generator
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._types import Array
-from .pareto import pareto_front
 
 if TYPE_CHECKING:
     from cmaes import CMA
@@ -68,6 +68,18 @@ def front(size: int, seed: int) -> Search:
         for search, share, own, score in zip(searches, shares, points, np.split(shifted, WEIGHTINGS)):
             norms = np.max(np.array([share, 1.0 - share]) * score, axis=1)
             _tell(search, own, norms + SUM * score.sum(axis=1))
+
+
+def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
+    """Indices of the points that no other point beats, sorted by x: none is smaller in one and no larger in the other.
+
+    Of equal points only the first counts; a point with a NaN does not.
+    """
+    order = np.lexsort((y, x))
+    order = order[~np.isnan(x[order] + y[order])]
+    lowest = np.minimum.accumulate(y[order])
+    before = np.concatenate([[np.inf], lowest])[: len(order)]
+    return order[y[order] < before]
 
 
 def _begin(middle: Array, count: int, random: np.random.Generator) -> CMA:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._types import Array
 from ..motion.sweep_result import Sweep
 from .objectives import Measure
-from .pareto import pareto_front
+from .search import pareto_front
 from .space import TUNABLE
 
 

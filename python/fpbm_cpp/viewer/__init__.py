@@ -6,9 +6,15 @@ scheme (rerun) and prepared for drawing (playback); the scene, the chart and the
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
-from .entry import view
+from numpy.typing import ArrayLike
+
+from ..arms import Arm
+from ..motion.simulation import simulate
+from ..paths import Path
+from ..schemes import Scheme
 
 if TYPE_CHECKING:
     from .viewer import Viewer
@@ -23,3 +29,51 @@ def __getattr__(name: str) -> Any:
     from .viewer import Viewer
 
     return Viewer
+
+
+def view(
+    arm: Arm,
+    path: Path,
+    scheme: Scheme,
+    q0: ArrayLike,
+    *,
+    dt: float = 1e-3,
+    hold: float = 0.0,
+    task: str = "position",
+    urdf: str | os.PathLike[str] | None = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    open_browser: bool = True,
+) -> None:
+    """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
+
+    The motion is simulated again whenever the scheme or a parameter is changed on the page; a motion that stops early
+    is shown as far as it went. fpbm_cpp.viewer.Viewer does the same without waiting.
+
+    Parameters
+    ----------
+    arm, path, scheme, q0, dt, hold, task
+        As for simulate().
+    urdf : path, optional
+        The arm's URDF file, whose meshes are drawn; without it the arm is drawn as rods and cylinders. Joints of the
+        file that are not the arm's stay at zero.
+    host : str
+        Address to serve at: only this machine can open the page, unless it is '0.0.0.0' or an address on a network.
+    port : int
+        Port to serve at; 0 takes a free one.
+    open_browser : bool
+        Open the page in the browser.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the URDF file is not that of the arm; nothing is served.
+    OSError
+        If the port is in use, or the URDF file cannot be read.
+    ImportError
+        If the extra 'view' is missing.
+    """
+    from .viewer import Viewer
+
+    run = simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task, partial=True)
+    Viewer(run, urdf=urdf, host=host, port=port, open_browser=open_browser).wait()

@@ -8,7 +8,7 @@ from viser import SceneApi, SceneNodeHandle
 from .._types import Array
 from ..arms import Arm, SerialArm
 from ..skeleton import joint_axes, joint_points
-from .space import along, in_space
+from .playback import in_space
 
 LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
 RADIUS = 0.019  # Of links, as a share of the arm's length.
@@ -43,3 +43,13 @@ class Links:
                 link.position, link.wxyz = (start + end) / 2, along(end - start)
         for joint, point, axis in zip(self._joints, points[-len(self._joints) - 1 :], joint_axes(self._arm, q)):
             joint.position, joint.wxyz = point, along(axis)
+
+
+def along(direction: Array) -> Array:
+    """Quaternion (w, x, y, z) of a rotation that takes the z axis to a direction."""
+    x, y, z = direction / np.linalg.norm(direction)
+    if z < -1.0 + 1e-12:
+        return np.array([0.0, 1.0, 0.0, 0.0])
+    quaternion: Array = np.array([1.0 + z, -y, x, 0.0])
+    quaternion /= np.linalg.norm(quaternion)
+    return quaternion

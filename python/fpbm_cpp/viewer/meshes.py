@@ -22,8 +22,8 @@ from ..skeleton import joint_points
 TOLERANCE = 2e-3  # Between a joint of the file and of the arm [m].
 
 
-class Model:
-    """An arm's URDF file: its joints, and its meshes as far as they are found.
+class Meshes:
+    """The meshes of an arm's URDF file, as far as they are found; show() puts them into a scene.
 
     Raises ValueError if it is not that arm's file, OSError if it cannot be read. Warns once about missing meshes.
     """
@@ -31,14 +31,27 @@ class Model:
     def __init__(self, urdf: str | os.PathLike[str], arm: Arm, q: Array) -> None:
         self.file = Path(urdf)
         if not isinstance(arm, SerialArm):
-            raise ValueError(f"urdf = {str(self.file)!r}: must be left out where the arm is planar")
+            raise self._error("must be left out where the arm is planar")
         self._arm = arm
         self.robot = self._read()
-        self._require_joints()
+        there = self.robot.actuated_joint_names
+        for name in arm.joint_names:
+            if name not in there:
+                raise self._error(f"has no joint {name!r}, which the arm has; its own: {', '.join(there)}")
         # The file's root, seen from the arm's base, which may be another link.
         self.placement: Array = arm.joints[0].placement @ np.linalg.inv(self._frames(np.zeros(arm.dof))[0])
         self._require_same(q)
-        self.has_meshes = bool(self.robot.scene.geometry)
+        self.found = bool(self.robot.scene.geometry)
+
+    def show(self, server: ViserServer) -> None:
+        """Add the meshes to a scene."""
+        rotation = SO3.from_matrix(self.placement[:3, :3]).wxyz
+        server.scene.add_frame("/arm", show_axes=False, wxyz=rotation, position=self.placement[:3, 3])
+        self._shown = ViserUrdf(server, self.robot, root_node_name="/arm")
+
+    def pose(self, q: Array) -> None:
+        """Move the arm to a posture."""
+        self._shown.update_cfg(self.configuration(q))
 
     def configuration(self, q: Array) -> Array:
         """Positions of the file's own joints: the arm's, and 0 for all others."""
@@ -57,7 +70,7 @@ class Model:
                 warnings.simplefilter("ignore")
                 robot = yourdfpy.URDF.load(str(self.file), filename_handler=partial(self._find, missing=missing))
         except Exception as error:
-            raise ValueError(f"urdf = {str(self.file)!r}: yourdfpy cannot read it: {error}") from None
+            raise self._error(f"yourdfpy cannot read it: {error}") from None
         finally:
             log.setLevel(level)
         if missing:
@@ -78,14 +91,6 @@ class Model:
         missing.append(fname)
         return fname
 
-    def _require_joints(self) -> None:
-        there = self.robot.actuated_joint_names
-        for name in self._arm.joint_names:
-            if name not in there:
-                raise ValueError(
-                    f"urdf = {str(self.file)!r}: has no joint {name!r}, which the arm has; its own: {', '.join(there)}"
-                )
-
     def _frames(self, q: Array) -> Array:
         """Frames of the arm's joints in the file, seen from its root."""
         self.robot.update_cfg(self.configuration(q))
@@ -97,22 +102,10 @@ class Model:
         distances = np.linalg.norm(there - joint_points(self._arm, q)[1:-1], axis=1)
         worst = int(distances.argmax())
         if distances[worst] > TOLERANCE:
-            raise ValueError(
-                f"urdf = {str(self.file)!r}: is another arm's: its joint {self._arm.joints[worst].name!r} is"
-                f" {distances[worst]:.3g} m from where this arm has it"
+            name = self._arm.joints[worst].name
+            raise self._error(
+                f"is another arm's: its joint {name!r} is {distances[worst]:.3g} m from where this arm has it"
             )
 
-
-class Meshes:
-    """The meshes of a model, in a scene."""
-
-    def __init__(self, server: ViserServer, model: Model, q: Array) -> None:
-        rotation = SO3.from_matrix(model.placement[:3, :3]).wxyz
-        server.scene.add_frame("/arm", show_axes=False, wxyz=rotation, position=model.placement[:3, 3])
-        self._model = model
-        self._shown = ViserUrdf(server, model.robot, root_node_name="/arm")
-        self.pose(q)
-
-    def pose(self, q: Array) -> None:
-        """Move the arm to a posture."""
-        self._shown.update_cfg(self._model.configuration(q))
+    def _error(self, text: str) -> ValueError:
+        return ValueError(f"urdf = {str(self.file)!r}: {text}")

@@ -9,7 +9,6 @@ import numpy as np
 from .._types import Array
 from ..motion.run import Run
 from ..skeleton import joint_points, tip_axes
-from .space import in_space
 
 FRAMES = 500
 
@@ -63,3 +62,9 @@ def _at_start(run: Run) -> Run:
     x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.task).tip)[None]
     error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.task))))
     return replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
+
+
+def in_space(points: Array) -> Array:
+    """Points with three coordinates; z is 0 for points in the plane."""
+    missing = 3 - points.shape[-1]
+    return np.concatenate([points, np.zeros((*points.shape[:-1], missing))], axis=-1)

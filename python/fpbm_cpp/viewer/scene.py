@@ -10,9 +10,8 @@ from .._types import Array
 from ..arms import PlanarArm
 from ..skeleton import joint_points
 from .links import Links
-from .meshes import Meshes, Model
-from .playback import Playback
-from .space import in_space
+from .meshes import Meshes
+from .playback import Playback, in_space
 
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
 FIELD = 0.7  # Vertical field of view [rad].
@@ -21,13 +20,14 @@ FIELD = 0.7  # Vertical field of view [rad].
 class Scene:
     """An arm on its path: show() draws a run, at() moves the arm to a sample of the run."""
 
-    def __init__(self, server: ViserServer, playback: Playback, model: Model | None) -> None:
+    def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
         self._server = server
         run = playback.run
         self._planar = isinstance(run.arm, PlanarArm)
         self._arm: Links | Meshes
-        if model is not None and model.has_meshes:
-            self._arm = Meshes(server, model, run.q[0])
+        if meshes is not None and meshes.found:
+            meshes.show(server)
+            self._arm = meshes
         else:
             self._arm = Links(server.scene, run.arm, run.q[0])
         centre, radius = _bounding_ball(playback)

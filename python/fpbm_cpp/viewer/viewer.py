@@ -23,7 +23,7 @@ from ..motion.run import Run
 from ..schemes import Scheme
 from .chart import Chart
 from .controls import Controls
-from .meshes import Model
+from .meshes import Meshes
 from .playback import Playback
 from .player import Player
 from .port import require_free
@@ -67,7 +67,7 @@ class Viewer:
         open_browser: bool = False,
     ) -> None:
         playback = Playback(run)
-        model = None if urdf is None else Model(urdf, run.arm, playback.run.q[0])
+        meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
         require_free(host, port)
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
@@ -77,11 +77,11 @@ class Viewer:
         atexit.register(self.close)  # Before viser's own exit, which prints.
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
         with self._lock:  # The page's first events wait until all parts are there.
-            self._build(playback, model)
+            self._build(playback, meshes)
         if open_browser:
             webbrowser.open(self.url)
 
-    def _build(self, playback: Playback, model: Model | None) -> None:
+    def _build(self, playback: Playback, meshes: Meshes | None) -> None:
         run, gui = self._first, self._server.gui
         # The share button would show the page to others, through somebody's server.
         gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
@@ -92,7 +92,7 @@ class Viewer:
         self._player = Player(gui, duration, self._draw)
         self._controls = Controls(gui, run.scheme, joint_labels(run.arm), limited, self._on_change)
         self._chart = Chart(gui, playback, duration)
-        self._scene = Scene(self._server, playback, model)
+        self._scene = Scene(self._server, playback, meshes)
         self._show(run)
 
     @property
