@@ -1,6 +1,5 @@
 #pragma once
 
-#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -33,13 +32,13 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
   const auto any = py::array::ensure(argument);
   if (!any || (any.dtype().kind() != 'f' && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')) {
     PyErr_Clear();
-    throw std::invalid_argument(std::string(name) + ": must be real numbers in an array or a plain sequence, got " +
-                                py::cast<std::string>(py::repr(argument)).substr(0, 80));
+    validation::reject(name, ": must be real numbers in an array or a plain sequence, got " +
+                                 py::cast<std::string>(py::repr(argument)).substr(0, 80));
   }
   if (any.ndim() != dimensions) {
-    throw std::invalid_argument(std::string(name) + ": must have " + std::to_string(dimensions) +
-                                (dimensions == 1 ? " dimension" : " dimensions") + ", got shape " +
-                                py::cast<std::string>(py::str(any.attr("shape"))));
+    validation::reject(name, ": must have " + std::to_string(dimensions) +
+                                 (dimensions == 1 ? " dimension" : " dimensions") + ", got shape " +
+                                 py::cast<std::string>(py::str(any.attr("shape"))));
   }
   return py::array_t<double, py::array::c_style | py::array::forcecast>(any);
 }
@@ -51,8 +50,8 @@ template <int Size>
 Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
   if (array.size() != Size) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(array.size()) + " entries: must have " +
-                                std::to_string(Size));
+    validation::reject(name,
+                       " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
   }
   const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
   validation::require_finite(name, result);
@@ -79,8 +78,7 @@ inline Matrix<Eigen::Dynamic, Eigen::Dynamic> joint_matrix(const ArrayLike& argu
   const auto array = real_array(argument, name, 2);
   validation::require_dof(name, array.shape(0), 1);
   if (array.shape(1) != array.shape(0)) {
-    throw std::invalid_argument(std::string(name) + ": must be square, got shape (" + std::to_string(array.shape(0)) +
-                                ", " + std::to_string(array.shape(1)) + ")");
+    validation::reject(name, ": must be square, got shape " + py::cast<std::string>(py::str(array.attr("shape"))));
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
@@ -90,9 +88,8 @@ inline Matrix<Eigen::Dynamic, Eigen::Dynamic> joint_matrix(const ArrayLike& argu
 inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
   const auto array = real_array(argument, name, 2);
   if (array.shape(0) != rows || array.shape(1) != cols) {
-    throw std::invalid_argument(std::string(name) + ": must have shape (" + std::to_string(rows) + ", " +
-                                std::to_string(cols) + "), got (" + std::to_string(array.shape(0)) + ", " +
-                                std::to_string(array.shape(1)) + ")");
+    validation::reject(name, ": must have shape (" + std::to_string(rows) + ", " + std::to_string(cols) + "), got " +
+                                 py::cast<std::string>(py::str(array.attr("shape"))));
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::MatrixXd result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
@@ -109,8 +106,7 @@ inline Transform<> transform(const ArrayLike& argument, const char* name) {
   const Eigen::MatrixXd H = matrix(argument, name, 4, 4);
   const Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
   if (H.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw std::invalid_argument(std::string(name) +
-                                ": must be a homogeneous matrix, with (0, 0, 0, 1) as its last row");
+    validation::reject(name, ": must be a homogeneous matrix, with (0, 0, 0, 1) as its last row");
   }
   chain_check::require_transform(name, result);
   return result;
@@ -126,10 +122,35 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
   }
 }
 
-/// The point as Python has it.
-template <int M>
-py::array_t<double> array_of(const Vector<M>& x) {
-  return py::array_t<double>(M, x.data());
+/// Any object with lower, upper, velocity and acceleration, one number a joint each, none of them NaN.
+inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
+  const auto bound = [&](const char* name, Eigen::Index dof) {
+    const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
+    validation::require_size(name, values.size(), dof == 0 ? values.size() : dof);
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
+    }
+    return values;
+  };
+  const Vector<Eigen::Dynamic> lower = bound("lower", 0);
+  const Eigen::Index dof = lower.size();
+  return {lower, bound("upper", dof), bound("velocity", dof), bound("acceleration", dof)};
+}
+
+/// A vector, a matrix or a point of a task space as Python has it.
+template <typename Derived>
+py::array_t<double> array_of(const Eigen::MatrixBase<Derived>& values) {
+  if constexpr (Derived::ColsAtCompileTime == 1) {
+    py::array_t<double> result(values.size());
+    for (Eigen::Index i = 0; i < values.size(); ++i) result.mutable_at(i) = values(i);
+    return result;
+  } else {
+    py::array_t<double> result({values.rows(), values.cols()});
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      for (Eigen::Index j = 0; j < values.cols(); ++j) result.mutable_at(i, j) = values(i, j);
+    }
+    return result;
+  }
 }
 inline py::array_t<double> array_of(const Transform<>& x) {
   py::array_t<double> result({4, 4});

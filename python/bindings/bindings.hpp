@@ -4,9 +4,9 @@
 
 namespace fpbm::bindings {
 
-void bind_model(pybind11::module_& m);
-void bind_task(pybind11::module_& m);
-void bind_resolver(pybind11::module_& m);
+void bind_arm(pybind11::module_& m);
+void bind_path(pybind11::module_& m);
+void bind_scheme(pybind11::module_& m);
 void bind_sim(pybind11::module_& m);
 void bind_sweep(pybind11::module_& m);
 void bind_realtime(pybind11::module_& m);

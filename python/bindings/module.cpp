@@ -1,11 +1,31 @@
 #include "bindings.hpp"
+#include "fpbm/core/validation.hpp"
+
+namespace py = pybind11;
+
+namespace {
+
+/// A ParameterError becomes the package's own, a subclass of ValueError.
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const fpbm::ParameterError& error) {
+    const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
+    const py::object index = error.index() < 0 ? py::object(py::none()) : py::int_(error.index());
+    const py::object value = std::isnan(error.value()) ? py::object(py::none()) : py::float_(error.value());
+    py::set_error(type, type(error.name(), index, value, error.what()));
+  }
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of fpbm_cpp.";
   m.attr("__version__") = FPBM_VERSION;
-  fpbm::bindings::bind_model(m);
-  fpbm::bindings::bind_task(m);
-  fpbm::bindings::bind_resolver(m);
+  py::register_local_exception_translator(&translate);
+  fpbm::bindings::bind_arm(m);
+  fpbm::bindings::bind_path(m);
+  fpbm::bindings::bind_scheme(m);
   fpbm::bindings::bind_sim(m);
   fpbm::bindings::bind_sweep(m);
   fpbm::bindings::bind_realtime(m);

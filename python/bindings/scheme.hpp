@@ -47,8 +47,7 @@ struct Scheme {
   std::optional<SecondTaskData> second_task = {};
   SingularDamping<> singular = SingularDamping<>::off();
 
-  /// The scheme for an arm, objectives and all. Plain schemes of 4 joints in the plane, and of 6 and 7 in space, run in
-  /// code of fixed size. kLevel is the scheme's level.
+  /// The scheme for an arm, objectives and all. kLevel is the scheme's level.
   /// Throws std::invalid_argument where a parameter is out of range or does not fit the arm.
   template <Level kLevel, typename Space>
   [[nodiscard]] AnyScheme<kLevel, Space> make(const AnyArmFor<Space>& arm) const;
@@ -75,7 +74,11 @@ struct Scheme {
   /// Whether all of it is in law(): no objective wraps it.
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
 
-  /// The library's scheme without the objectives that wrap it, for joints of these limits.
+  /// The scheme without the objectives that wrap it, for joints of these limits. Compiled once, in scheme.cpp.
+  template <Level kLevel, typename Space>
+  [[nodiscard]] AnyScheme<kLevel, Space> plain(const JointLimits<kDynamic>& limits) const;
+
+  /// The same, as the library's own type with given weights.
   template <Level kLevel, int N, typename Weights>
   [[nodiscard]] auto law(const Weights& W, const JointLimits<N>& limits) const {
     if constexpr (kLevel == Level::kVelocity) {

@@ -2,6 +2,12 @@
 
 /// Redundancy resolution for robot arms: include this, or the headers you need.
 
+#include "fpbm/any/any_arm.hpp"
+#include "fpbm/any/any_path.hpp"
+#include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/any_time_law.hpp"
+#include "fpbm/any/convert_path.hpp"
+#include "fpbm/any/make_arm.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"
@@ -40,6 +46,7 @@
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/tick.hpp"
+#include "fpbm/realtime/track.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/least_norm.hpp"

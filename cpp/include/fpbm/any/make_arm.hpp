@@ -20,7 +20,8 @@ namespace fpbm {
   return AnyArm<Position<2>>(PlanarArm<Eigen::Dynamic>(lengths));
 }
 
-/// The arm of this chain: a CoupledArm where joints mimic others, else a SerialArm. Throws ParameterError where these do.
+/// The arm of this chain: a CoupledArm where joints mimic others, else a SerialArm. Throws ParameterError where these
+/// do.
 [[nodiscard]] inline AnyArm<Position<3>> make_arm(const Chain<>& chain) {
   const auto mimics = [](const Joint<>& joint) { return joint.mimic.joint >= 0; };
   if (std::any_of(chain.joints.begin(), chain.joints.end(), mimics)) {

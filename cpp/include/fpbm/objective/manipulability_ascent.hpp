@@ -18,6 +18,7 @@ template <typename Scheme, typename Arm>
 struct ManipulabilityAscent {
   using Scalar = typename Arm::Scalar;
   static constexpr Level kLevel = Scheme::kLevel;
+  static constexpr int kDof = Scheme::kDof;
 
   Scheme scheme;
   Arm arm;      ///< The arm that moves, for the derivatives of its J.

@@ -46,6 +46,7 @@ template <typename Scheme, typename Arm, typename Space>
 struct SecondTask {
   using Scalar = typename Arm::Scalar;
   static constexpr Level kLevel = Scheme::kLevel;
+  static constexpr int kDof = Scheme::kDof;
 
   Scheme scheme;
   Arm arm;                             ///< Its joints are the first joints of the first arm.

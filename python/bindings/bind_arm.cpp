@@ -1,0 +1,239 @@
+#include <pybind11/typing.h>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arm.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "fpbm/model/dh.hpp"
+#include "fpbm/model/presets.hpp"
+#include "kinematics.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+using Array = py::array_t<double>;
+
+constexpr std::array kTypes{"revolute", "continuous", "prismatic"};
+constexpr std::array kPresets{std::pair{"panda", &presets::panda}, std::pair{"iiwa14", &presets::iiwa14},
+                              std::pair{"gen3", &presets::gen3}};
+
+JointType joint_type(const std::string& type, const validation::Argument& name) {
+  for (std::size_t i = 0; i < kTypes.size(); ++i) {
+    if (type == kTypes[i]) return static_cast<JointType>(i);
+  }
+  validation::reject(name, " = '" + type + "': must be 'revolute', 'continuous' or 'prismatic'");
+}
+
+/// A chain of fpbm_cpp.Joint, or of anything with its attributes.
+Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& tip) {
+  Chain<> chain;
+  for (const py::handle given : joints) {
+    const validation::Argument name = validation::element("joints", static_cast<Eigen::Index>(chain.joints.size()));
+    const auto number = [&](const char* attribute) { return py::cast<double>(given.attr(attribute)); };
+    const auto array = [&](const char* attribute) { return ArrayLike(py::object(given.attr(attribute))); };
+    Joint<> joint;
+    joint.type = joint_type(py::cast<std::string>(given.attr("type")), name + ".type");
+    joint.placement = transform(array("placement"), (name + ".placement").text.c_str());
+    joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text.c_str());
+    joint.bounds = {number("lower"), number("upper"), number("velocity"), number("acceleration")};
+    joint.name = py::cast<std::string>(given.attr("name"));
+    if (const py::object mimic = given.attr("mimic"); !mimic.is_none()) {
+      const auto [index, ratio, offset] = py::cast<std::tuple<int, double, double>>(mimic);
+      if (index < 0) validation::fail(name + ".mimic[0]", index, "the index of a joint");
+      joint.mimic = {index, ratio, offset};
+    }
+    chain.joints.push_back(joint);
+  }
+  chain.tip = transform(tip, "tip");
+  return chain;
+}
+
+using PlainChain = py::typing::Tuple<py::typing::List<py::typing::Dict<py::str, py::object>>, Array>;
+
+/// A chain as Python makes its joints from: a dictionary for each, and the tip.
+PlainChain plain(const Chain<>& chain) {
+  py::list joints;
+  for (const Joint<>& joint : chain.joints) {
+    py::typing::Dict<py::str, py::object> fields;
+    fields["type"] = kTypes[static_cast<std::size_t>(joint.type)];
+    fields["placement"] = array_of(joint.placement);
+    fields["axis"] = array_of(joint.axis);
+    fields["lower"] = joint.bounds.lower;
+    fields["upper"] = joint.bounds.upper;
+    fields["velocity"] = joint.bounds.velocity;
+    fields["acceleration"] = joint.bounds.acceleration;
+    fields["name"] = joint.name;
+    joints.append(fields);
+  }
+  return py::make_tuple(joints, array_of(chain.tip));
+}
+
+/// The chain of a Denavit-Hartenberg table, one row (a, alpha, d, theta) a joint.
+PlainChain dh(const ArrayLike& table, const std::string& convention, const std::vector<std::string>& types) {
+  const auto rows = real_array(table, "table", 2).shape(0);
+  const Eigen::MatrixXd numbers = matrix(table, "table", rows, 4);
+  validation::require_size("types", static_cast<Eigen::Index>(types.size()), rows);
+  std::vector<DHRow<>> parameters;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const JointType type = joint_type(types[static_cast<std::size_t>(i)], validation::element("types", i));
+    parameters.push_back({numbers(i, 0), numbers(i, 1), numbers(i, 2), numbers(i, 3), type});
+  }
+  if (convention == "classic") return plain(classic_dh(parameters));
+  if (convention == "modified") return plain(modified_dh(parameters));
+  validation::reject("convention", " = '" + convention + "': must be 'classic' or 'modified'");
+}
+
+PlainChain preset(const std::string& name) {
+  for (const auto& [known, chain] : kPresets) {
+    if (name == known) return plain(chain());
+  }
+  validation::reject("name", " = '" + name + "': must be one of PRESETS");
+}
+
+AnyKinematics kinematics_of(const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const std::string& task) {
+  const JointVector positions = joint_vector(q, "q", arm.dof());
+  const JointVector velocities = joint_vector(qd, "qd", arm.dof());
+  return arm.visit(task, [&](const auto& any, auto space) {
+    Kinematics<decltype(space), kDynamic> result;
+    any.kinematics(positions, velocities, result);
+    return AnyKinematics{result};
+  });
+}
+
+Array tip_of(const AnyKinematics& kinematics) {
+  return std::visit([](const auto& known) { return array_of(known.tip); }, kinematics.value);
+}
+Array jacobian_of(const AnyKinematics& kinematics) {
+  return std::visit([](const auto& known) { return array_of(known.J); }, kinematics.value);
+}
+Array rate_of(const AnyKinematics& kinematics) {
+  return std::visit([](const auto& known) { return array_of(known.Jd); }, kinematics.value);
+}
+
+Array forward(const Arm& arm, const ArrayLike& q) {
+  const bool planar = std::holds_alternative<AnyArm<Position<2>>>(arm.any);
+  return tip_of(kinematics_of(arm, q, q, planar ? "position" : "pose"));
+}
+
+template <typename Space>
+AnyKinematics given(const ArrayLike& tip, const ArrayLike& J, const OptionalArray& Jd) {
+  const auto dof = real_array(J, "J", 2).shape(1);
+  validation::require_dof("a row of J", dof, 1);
+  Kinematics<Space, kDynamic> known;
+  known.tip = point<Space>(tip, "tip");
+  known.J = matrix(J, "J", Space::kRows, dof);
+  known.Jd.setZero(Space::kRows, dof);
+  if (Jd) known.Jd = matrix(*Jd, "Jd", Space::kRows, dof);
+  return {known, Jd.has_value()};
+}
+
+/// The task space goes by the shape of tip, with three numbers by the task as well.
+AnyKinematics make_kinematics(const ArrayLike& tip, const ArrayLike& J, const OptionalArray& Jd,
+                              const std::string& task) {
+  if (task != "position" && task != "pose") {
+    validation::reject("task", " = '" + task + "': must be 'position' or 'pose'");
+  }
+  const auto shape = py::array::ensure(tip);
+  PyErr_Clear();
+  if (shape && shape.ndim() == 2) return given<Pose>(tip, J, Jd);
+  if (shape && shape.size() == 2) return given<Position<2>>(tip, J, Jd);
+  return task == "pose" ? given<PlanarPose>(tip, J, Jd) : given<Position<3>>(tip, J, Jd);
+}
+
+void bind_kinematics(py::module_& m) {
+  py::class_<AnyKinematics>(m, "Kinematics", R"(Tip, J and Jd of an arm in one state: all that a scheme knows of it.
+
+From an arm's kinematics(), or from any library that has these three (Pinocchio, Drake, MuJoCo, ...).
+
+Parameters
+----------
+tip : array_like, shape (2,), (3,) or (4, 4)
+    f(q) in the base frame [m]: a position, (x, y, angle) of a pose in the plane, or a homogeneous matrix.
+J : array_like, shape (m, n)
+    Task Jacobian, linear rows first, then angular, along the base frame's axes (Pinocchio's LOCAL_WORLD_ALIGNED).
+Jd : array_like, shape (m, n), optional
+    dJ/dt along qd; velocity-level schemes do without.
+task : str
+    Tells what three numbers in tip are: a 'position' in space, or a 'pose' in the plane.
+
+Raises
+------
+ParameterError
+    Where a number is not finite, or shapes do not fit.)")
+      .def(py::init(&make_kinematics), py::arg("tip"), py::arg("J"), py::arg("Jd") = py::none(), py::kw_only(),
+           py::arg("task") = "position")
+      .def_property_readonly("tip", &tip_of, "f(q) in the base frame [m], shape (2,), (3,) or (4, 4).")
+      .def_property_readonly("J", &jacobian_of, "Task Jacobian, shape (m, n).")
+      .def_property_readonly("Jd", &rate_of, "dJ/dt along qd, shape (m, n).");
+}
+
+/// A docstring, with what the argument task means.
+std::string with_task(const char* text) {
+  return std::string(text) +
+         " task: 'position' or 'pose', whose rows are linear first, then\nangular, along the base frame's axes.";
+}
+
+}  // namespace
+
+void bind_arm(py::module_& m) {
+  m.attr("MAX_DOF") = kMaxDof;
+  py::tuple names(kPresets.size());
+  for (std::size_t i = 0; i < kPresets.size(); ++i) names[i] = kPresets[i].first;
+  m.attr("PRESETS") = names;
+  bind_kinematics(m);
+
+  const auto task = py::arg("task") = "position";
+  py::class_<Arm>(m, "Arm", "The compiled part of an arm: in the plane, of link lengths, or in space, of joints.")
+      .def(py::init([](const ArrayLike& lengths) { return Arm(joint_vector(lengths, "lengths")); }), py::arg("lengths"))
+      .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip) {
+             return Arm(chain_of(joints, tip));
+           }),
+           py::arg("joints"), py::arg("tip"))
+      .def_property_readonly("dof", &Arm::dof, "Number of joints n.")
+      .def_property_readonly(
+          "joint_names", [](const Arm& arm) { return arm.joint_names; }, "Names of the joints, from the base on.")
+      .def(
+          "bounds",
+          [](const Arm& arm) -> py::typing::Tuple<Array, Array, Array, Array> {
+            const auto& limits = arm.limits();
+            return py::make_tuple(array_of(limits.lower), array_of(limits.upper), array_of(limits.velocity),
+                                  array_of(limits.acceleration));
+          },
+          "(lower, upper, velocity, acceleration) of the joints, shape (n,) each; infinite where there is no bound.")
+      .def("forward", &forward, py::arg("q"),
+           "Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous\n"
+           "matrix, shape (4, 4), of one in space. q: shape (n,) [rad].")
+      .def("kinematics", &kinematics_of, py::arg("q"), py::arg("qd"), py::kw_only(), task,
+           with_task("Tip, J and Jd at q, qd, shape (n,) [rad], [rad/s].").c_str())
+      .def(
+          "jacobian",
+          [](const Arm& arm, const ArrayLike& q, const std::string& name) {
+            return jacobian_of(kinematics_of(arm, q, q, name));
+          },
+          py::arg("q"), py::kw_only(), task,
+          with_task("Task Jacobian J(q), shape (m, n): tip velocity is J qd. q: shape (n,) [rad].").c_str())
+      .def(
+          "jacobian_dot",
+          [](const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const std::string& name) {
+            return rate_of(kinematics_of(arm, q, qd, name));
+          },
+          py::arg("q"), py::arg("qd"), py::kw_only(), task,
+          with_task("dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
+              .c_str());
+
+  m.def("dh", &dh, py::arg("table"), py::arg("convention"), py::arg("types"));
+  m.def("preset", &preset, py::arg("name"));
+  m.def(
+      "rotation_vector",
+      [](const ArrayLike& R) { return array_of(rotation_vector(Matrix<3, 3>(matrix(R, "R", 3, 3)))); }, py::arg("R"),
+      "Rotation vector of a rotation matrix, shape (3,), of length at most pi [rad].");
+  m.def(
+      "rotation", [](const ArrayLike& r) { return array_of(rotation(fixed_vector<3>(r, "r"))); }, py::arg("r"),
+      "Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.");
+}
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,219 @@
+#include <pybind11/native_enum.h>
+
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "kinematics.hpp"
+#include "scheme.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+/// ("point", arm, x, k1, k2) or ("direction", d, k1, k2).
+SecondTaskData second_task_of(const py::tuple& given) {
+  const auto gain = [&](std::size_t i, const char* name) {
+    const auto value = py::cast<double>(given[given.size() - i]);
+    validation::require_non_negative(name, value);
+    return value;
+  };
+  const double k1 = gain(2, "k1");
+  const double k2 = gain(1, "k2");
+  if (py::cast<std::string>(given[0]) == "direction") {
+    const Vector<3> d = fixed_vector<3>(ArrayLike(py::object(given[1])), "direction");
+    if (d.isZero(0.0)) validation::fail("direction", 0.0, "longer: it must point somewhere");
+    return {SecondTaskData::Direction{d}, k1, k2};
+  }
+  const ArrayLike x{py::object(given[2])};
+  return py::cast<const Arm&>(given[1]).visit("position", [&](const auto& arm, auto space) -> SecondTaskData {
+    using Space = decltype(space);
+    if constexpr (std::is_same_v<Space, Position<2>> || std::is_same_v<Space, Position<3>>) {
+      return {SecondTaskData::Point<Space>{arm, point<Space>(x, "x")}, k1, k2};
+    }
+    validation::reject("arm", ": must have positions");
+  });
+}
+
+/// A trial run checks all parameters against each other, for as many joints as they tell of.
+void check(const Scheme& scheme) {
+  Eigen::Index dof = 2;
+  if (scheme.c) dof = scheme.c->size();
+  if (scheme.rest_posture) dof = scheme.rest_posture->size();
+  if (const auto* w = std::get_if<Scheme::Diagonal>(&scheme.weights)) dof = w->size();
+  if (const auto* W = std::get_if<Scheme::Dense>(&scheme.weights)) dof = W->rows();
+  validation::require_non_negative("manipulability_gain", scheme.manipulability_gain);
+  const auto limits = JointLimits<kDynamic>::none(dof);
+  if (scheme.level == Level::kVelocity) {
+    (void)scheme.plain<Level::kVelocity, Position<2>>(limits);
+  } else {
+    (void)scheme.plain<Level::kAcceleration, Position<2>>(limits);
+  }
+}
+
+Scheme make_scheme(const std::string& level, const py::dict& parameters) {
+  const auto given = [&](const char* key) -> std::optional<py::object> {
+    if (!parameters.contains(key) || py::object(parameters[key]).is_none()) return std::nullopt;
+    return py::object(parameters[key]);
+  };
+  const auto number = [&](const char* key, double neutral) {
+    const auto value = given(key);
+    return value ? py::cast<double>(*value) : neutral;
+  };
+  const auto vector = [&](const char* key) -> std::optional<JointVector> {
+    const auto value = given(key);
+    if (!value) return std::nullopt;
+    return joint_vector(ArrayLike(*value), key);
+  };
+  if (level != "velocity" && level != "acceleration") {
+    validation::reject("level", " = '" + level + "': must be 'velocity' or 'acceleration'");
+  }
+  Scheme scheme{level == "velocity" ? Level::kVelocity : Level::kAcceleration};
+  if (const auto weights = given("weights")) {
+    const auto any = py::array::ensure(*weights);
+    PyErr_Clear();
+    if (any && any.ndim() == 2) {
+      scheme.weights = joint_matrix(ArrayLike(*weights), "weights");
+    } else {
+      scheme.weights = joint_vector(ArrayLike(*weights), "weights");
+    }
+  }
+  scheme.alpha = number("alpha", 0.0);
+  scheme.k = number("k", 0.0);
+  scheme.k1 = number("k1", 0.0);
+  scheme.k2 = number("k2", 0.0);
+  scheme.null_damping = number("null_damping", 0.0);
+  scheme.null_stiffness = number("null_stiffness", 0.0);
+  scheme.rest_posture = vector("rest_posture");
+  scheme.c = vector("c");
+  scheme.joint_centring = number("joint_centring", 0.0);
+  scheme.manipulability_gain = number("manipulability_gain", 0.0);
+  if (const auto task = given("second_task")) scheme.second_task = second_task_of(py::cast<py::tuple>(*task));
+  const SingularDamping<> singular(number("singular_radius", 0.0), number("singular_brake", 0.0));
+  if (singular.radius() != 0.0) scheme.singular = singular;
+  check(scheme);
+  return scheme;
+}
+
+[[noreturn]] void raise(Status status) {
+  const py::object type = py::module_::import("fpbm_cpp.errors").attr("ResolutionError");
+  py::set_error(type, type(py::cast(status)));
+  throw py::error_already_set();
+}
+
+template <typename Space>
+Reference<Space> reference_of(const Scheme& scheme, const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd) {
+  auto reference = Reference<Space>::hold(point<Space>(x, "x"));
+  reference.xd = fixed_vector<Space::kRows>(xd, "xd");
+  if (xdd) {
+    reference.xdd = fixed_vector<Space::kRows>(*xdd, "xdd");
+  } else if (scheme.level == Level::kAcceleration) {
+    validation::reject("xdd", ": an acceleration-level scheme needs it");
+  }
+  return reference;
+}
+
+py::array_t<double> resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, const ArrayLike& qd,
+                                    const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
+                                    const std::string& task) {
+  const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
+  return arm.visit(task, [&](const auto& any, auto space) {
+    using Space = decltype(space);
+    require_enough_joints<Space>(arm.dof());
+    const Reference<Space> reference = reference_of<Space>(scheme, x, xd, xdd);
+    JointVector u = JointVector::Zero(arm.dof());
+    const Status status = scheme.visit<Space>(any, [&](const auto& made) {
+      Kinematics<Space, kDynamic> kinematics;
+      any.kinematics(state.q, state.qd, kinematics);
+      return made.resolve(kinematics, reference, state, u);
+    });
+    if (failed(status)) raise(status);
+    return array_of(u);
+  });
+}
+
+template <typename Space>
+Status resolve_alone(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
+                     const Reference<Space>& reference, const State<kDynamic>& state, JointVector& u) {
+  const auto resolve = [&](const auto& made) { return made.resolve(kinematics, reference, state, u); };
+  if (scheme.level == Level::kVelocity) {
+    return resolve(scheme.make_without_arm<Level::kVelocity, Space>(u.size()));
+  }
+  return resolve(scheme.make_without_arm<Level::kAcceleration, Space>(u.size()));
+}
+
+template <typename Space>
+py::array_t<double> resolve_known(const Scheme& scheme, const Kinematics<Space, kDynamic>& known, const ArrayLike& q,
+                                  const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd,
+                                  const OptionalArray& xdd) {
+  const auto dof = static_cast<int>(known.J.cols());
+  const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
+  require_enough_joints<Space>(dof);
+  JointVector u = JointVector::Zero(dof);
+  const Status status = resolve_alone(scheme, known, reference_of<Space>(scheme, x, xd, xdd), state, u);
+  if (failed(status)) raise(status);
+  return array_of(u);
+}
+
+py::array_t<double> resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinematics, const ArrayLike& q,
+                                           const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd,
+                                           const OptionalArray& xdd) {
+  if (!kinematics.has_rate && scheme.level == Level::kAcceleration) {
+    validation::reject("Jd", ": an acceleration-level scheme needs it");
+  }
+  return std::visit([&](const auto& known) { return resolve_known(scheme, known, q, qd, x, xd, xdd); },
+                    kinematics.value);
+}
+
+}  // namespace
+
+void bind_scheme(py::module_& m) {
+  py::native_enum<Status>(m, "Status", "enum.Enum", "What became of an evaluation or a rollout.")
+      .value("OK", Status::kOk, "The motion is complete.")
+      .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
+      .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
+      .value("SINGULAR", Status::kSingular, "The posture is singular.")
+      .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
+      .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")
+      .finalize();
+  m.def("failed", &failed, py::arg("status"), "Whether there is no result.");
+  m.def("message", &message, py::arg("status"), "One sentence: what happened.");
+  m.def("advice", &advice, py::arg("status"), "One sentence: what to do about it; empty for OK.");
+
+  py::class_<Scheme>(m, "Scheme", "The compiled part of a scheme: the law of a level with its parameters.")
+      .def(py::init(&make_scheme), py::arg("level"), py::arg("parameters"))
+      .def("resolve", &resolve_for_arm, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
+           py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position",
+           R"(Joint motion that the scheme asks for in one state.
+
+Parameters
+----------
+arm : Arm
+    The arm.
+q, qd : array_like, shape (n,)
+    Joint state [rad], [rad/s].
+x : array_like, shape (2,), (3,) or (4, 4)
+    Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
+xd, xdd : array_like, shape (m,)
+    Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
+task : str
+    'position' or 'pose'.
+
+Returns
+-------
+numpy.ndarray, shape (n,)
+    qd [rad/s] at velocity level, qdd [rad/s^2] at acceleration level.
+
+Raises
+------
+ParameterError
+    Where an argument is not finite or of the wrong shape.
+ResolutionError
+    Where the posture is singular or the result not finite.)")
+      .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
+           py::arg("xd"), py::arg("xdd") = py::none(),
+           "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.");
+}
+
+}  // namespace fpbm::bindings
