@@ -276,7 +276,7 @@ def test_bounds_are_kept(maker, value, data):
         (lambda: fp.WMVN([1, 0]), "weights", 1, 0.0),
         (lambda: fp.FPBM(2, [1, 1], 1, 1), "alpha", None, 2.0),
         (lambda: fp.MAN(null_stiffness=1.0), "null_stiffness", None, 1.0),
-        (lambda: fp.WMVN([[1, 2], [2, 1]]), "weights", None, 1.0),
+        (lambda: fp.WMVN([[1, 2], [2, 1]]), "weights", 1, 1.0),
         (lambda: fp.PlanarArm([1, np.inf]), "lengths", 1, np.inf),
         (lambda: fp.SerialArm.preset("pnada"), "name", None, "pnada"),
         (lambda: fp.PlanarArm([1, 1]).first(2), "joints", None, 2),
