@@ -62,7 +62,8 @@ using LimitedOptions = std::tuple<py::object, double, double, double, double, do
 
 inline Limited limited_of(const LimitedOptions& given, const Arm& arm) {
   const auto& [limits, max_error, gain, bound, radius, brake] = given;
-  return {limits_of(limits, arm), {1e-3, max_error, gain, bound, SingularDamping<>(radius, brake)}};
+  return {limits.is_none() ? arm.limits() : joint_limits(limits),
+          {1e-3, max_error, gain, bound, SingularDamping<>(radius, brake)}};
 }
 
 }  // namespace fpbm::bindings

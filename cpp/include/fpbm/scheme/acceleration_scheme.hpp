@@ -52,18 +52,20 @@ struct AccelerationScheme {
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
-    constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
-    const auto& J = kinematics.J;
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    if (all_of(alpha == Scalar(0)) && (kUnit || !projects())) {
-      return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
-    }
-    if (kUnit || all_of(alpha == Scalar(1))) {
-      const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
-        const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
-        return weights.solve(Jdtmu);
-      };
-      return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
+    if constexpr (!kInLanes<Scalar>) {  // Lanes differ in alpha.
+      constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
+      const auto& J = kinematics.J;
+      if (alpha == Scalar(0) && (kUnit || !projects())) {
+        return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
+      }
+      if (kUnit || alpha == Scalar(1)) {
+        const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
+          const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
+          return weights.solve(Jdtmu);
+        };
+        return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
+      }
     }
     return resolve_pair(b, kinematics, reference, state, qdd);
   }
@@ -71,7 +73,7 @@ struct AccelerationScheme {
  private:
   /// Whether there may be a motion for N_W to project.
   [[nodiscard]] bool projects() const noexcept {
-    return null_space.template active<kLevel>() || !all_of(singular.brake() == Scalar(0));
+    return null_space.template active<kLevel>() || singular.brake() != Scalar(0);
   }
 
   /// Two factorisations, made side by side:
