@@ -32,7 +32,7 @@ Array starts(const ArrayLike& q0s, int dof) {
                                   py::cast<std::string>(py::str(any.attr("shape"))));
   }
   if (!any || any.ndim() < 2) {
-    const JointVector q0 = joint_vector(q0s, "q0", dof);
+    const JointVector q0 = joint_vector(q0s, "q0s", dof);
     Array row({py::ssize_t{1}, py::ssize_t{dof}});
     std::copy_n(q0.data(), dof, row.mutable_data());
     return row;
@@ -74,7 +74,6 @@ py::typing::Tuple<Array, int> check_sweep(const Arm& arm, const Path& path, cons
         try {
           Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid}.require(limited ? &*limited : nullptr);
         } catch (const ParameterError& wrong) {
-          if (schemes.size() == 1 && rows.shape(0) == 1) throw;  // What is wrong is the one thing that was given.
           const std::string which = limited ? ", q0s[" + std::to_string(k) + "]" : "";
           throw ParameterError("schemes", static_cast<int>(i), wrong.value(),
                                "schemes[" + std::to_string(i) + "]" + which + ": " + wrong.what());
