@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import io
 import json
 import os
@@ -17,7 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_pickle import ELBOW, PANDA, PATHS, READY, SCHEMES, expect_same_path
+from test_data import ELBOW, PANDA, READY, SOME_PATHS, SOME_SCHEMES, expect_same
 
 import fpbm_cpp as fp
 
@@ -42,7 +41,10 @@ def bits(run):
 
 
 RUNS = {
-    **{f"Panda's position, {name}": (PANDA, fp.Circle(0.05, 0.5), SCHEMES[name], READY, {}) for name in SCHEMES},
+    **{
+        f"Panda's position, {name}": (PANDA, fp.Circle(0.05, 0.5), SOME_SCHEMES[name], READY, {})
+        for name in SOME_SCHEMES
+    },
     **{
         f"Panda's pose, {name}": (
             PANDA,
@@ -51,7 +53,7 @@ RUNS = {
             READY,
             {"task": "pose"},
         )
-        for name, scheme in SCHEMES.items()
+        for name, scheme in SOME_SCHEMES.items()
         if scheme.level == "velocity" or "all" not in name
     },
     "paper's": (FLAT, fp.Circle(0.2, 1.0), fp.FPBM(1 / 3, [1, 2, 3, 4], 1, 1), None, {"hold": 0.5}),
@@ -177,12 +179,11 @@ def test_another_process_reads_it_and_makes_it_again(run, tmp_path):
     subprocess.run([sys.executable, "-c", code, tmp_path / "run.npz"], check=True)
 
 
-@pytest.mark.parametrize("name", PATHS)
+@pytest.mark.parametrize("name", SOME_PATHS)
 def test_paths(name, run, tmp_path):
-    back = through_file(run, tmp_path, path=PATHS[name]).path
-    assert back == PATHS[name]
-    expect_same_path(PATHS[name], back)
-    expect_same_path(PATHS[name], through_file(run, tmp_path, path=back).path)
+    back = through_file(run, tmp_path, path=SOME_PATHS[name]).path
+    expect_same(SOME_PATHS[name], back)
+    expect_same(SOME_PATHS[name], through_file(run, tmp_path, path=back).path)
 
 
 @pytest.mark.parametrize(
@@ -191,7 +192,7 @@ def test_paths(name, run, tmp_path):
 def test_rotations_keep_their_kind(rotation, run, tmp_path):
     planar = np.ndim(rotation) == 0
     path = (fp.Line([1, 0], 1.0) if planar else fp.Line([1, 0, 0], 1.0)).with_rotation(rotation)
-    expect_same_path(path, through_file(run, tmp_path, path=path).path)
+    expect_same(path, through_file(run, tmp_path, path=path).path)
 
 
 def test_a_long_chain_of_paths(run, tmp_path):
@@ -209,21 +210,19 @@ def test_arms(tmp_path):
     for arm in (FLAT, fp.PlanarArm([0.1, 1 / 3]), PANDA, fp.SerialArm([rail, *PANDA.joints, follower], PANDA.tip)):
         run = fp.simulate(arm, fp.Circle(0.01, 1.0), fp.MVN(), np.full(arm.dof, 0.3), dt=0.5, partial=True)
         back = through_file(run, tmp_path).arm
-        assert back == arm
+        expect_same(arm, back)
         assert back.joint_names == arm.joint_names
         assert back.limits == arm.limits
 
 
 @pytest.mark.parametrize("task", [ELBOW, fp.Gaze([0, 0, -1 / 3], k1=3), fp.SecondTask(FLAT, [1, 2])], ids=repr)
 def test_second_tasks(task, run, tmp_path):
-    back = through_file(run, tmp_path, scheme=fp.MVN(second_task=task)).scheme
-    assert back.second_task == task
-    assert repr(back.second_task) == repr(task)
+    expect_same(task, through_file(run, tmp_path, scheme=fp.MVN(second_task=task)).scheme.second_task)
 
 
 @given(st.lists(st.floats(allow_nan=False), min_size=4, max_size=4))
 def test_numbers_are_exact(numbers):
-    run = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.9, 0.9, 0.5], dt=0.5)
+    run = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.9, 0.9, 0.5], dt=0.05)
     limits = fp.JointLimits(lower=numbers, upper=numbers, velocity=numbers, acceleration=numbers)
     with tempfile.TemporaryDirectory() as folder:
         back = through_file(run, Path(folder), options={"limits": limits}).options["limits"]
@@ -249,10 +248,9 @@ NO_PATHS = {
     "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: circle has no such key"),
     "too few": ({"kind": "circle", "radius": 1.0}, "path.duration: is missing"),
     "no table": (7, "path = 7: must be a table"),
-    "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1.0}, "must be real numbers in an array"),
+    "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1.0}, "path.points = .*must be real numbers"),
     "no number": ({"kind": "circle", "radius": {"float": "__import__('os')"}, "duration": 1.0}, "must be a number"),
     "of no path": ({"kind": "mvn"}, "path.kind = 'mvn': must be one of"),
-    "deep": (functools.reduce(lambda path, _: {"kind": "sequence", "paths": [path]}, range(5000), {}), "holds no run"),
 }
 
 

@@ -264,7 +264,7 @@ def test_workers_change_nothing_within_limits(arm, reference):
         ({"limits": TIGHT, "max_error": -1}, "max_error = -1: must be positive"),
         ({"limits": TIGHT, "integral_gain": -1}, "integral_gain = -1"),
         ({"limits": PANDA.limits}, "limits has 7 entries"),
-        ({"limits": TIGHT, "q0s": [[0.3] * 4, [0.3, 4, 0, 0]]}, r"q0s\[1\]\[1\] = 4: must be within"),
+        ({"limits": TIGHT, "q0s": [[0.3] * 4, [0.3, 4, 0, 0]]}, r"q0s\[1\]: q0\[1\] = 4: must be within"),
         (
             {"limits": fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[1] * 4, acceleration=[np.inf] * 4)},
             r"limits.acceleration\[0\] = inf: must be finite",
