@@ -18,7 +18,7 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
     "wrist_roll",      // q(6)
 };
 
-/// The joints from base to tip; placements are as seen from the joint before [m].
+/// The joints from base to tip, each placed as seen from the one before [m].
 /// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
 inline fpbm::Chain<> chain() {
   constexpr double kNone = fpbm::JointBounds<>::kNone;

@@ -290,6 +290,7 @@ def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> No
     assert out.stat().st_mode == (tmp_path / "usual").stat().st_mode
 
 
+@pytest.mark.filterwarnings("default")
 def test_held_joint_is_said(tmp_path: Path) -> None:
     mimic = '<mimic joint="d" offset="0.1"/>'
     finger = f'<joint name="c" type="prismatic"><parent link="tip"/><child link="pad"/>{mimic}</joint>'

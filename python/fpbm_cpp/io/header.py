@@ -72,7 +72,7 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 {_names(drives)}
 }};
 
-/// The joints from base to tip; placements are as seen from the joint before [m].
+/// The joints from base to tip, each placed as seen from the one before [m].
 /// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
 inline fpbm::Chain<> chain() {{
 {none}  fpbm::Chain<> chain;
