@@ -5,6 +5,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= demo
 SECONDS ?= 600
+JOBS ?= $(shell nproc)
+# A wheel to install in place of building the package from its sources.
+WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
 GTEST := /usr/include/gtest/gtest.h:libgtest-dev
@@ -22,10 +25,10 @@ help:
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
-	@echo 'make lint             formatting, static analysis, types, stubs'
+	@echo 'make lint             formatting, static analysis, imports, types, stubs'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
-	@echo 'make format, stubs    format all sources; write the Python stubs afresh'
+	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; write the Python stubs afresh'
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
 	@echo 'make test-docs        run every code block of the README and the documentation'
@@ -44,8 +47,8 @@ nightly: preset = nightly
 test-cpp clang sanitize nightly:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang,$(preset)),clang++:clang)
 	cmake --preset $(preset)
-	cmake --build --preset $(preset)
-	ctest --preset $(preset)
+	cmake --build --preset $(preset) --parallel $(JOBS)
+	ctest --preset $(preset) --parallel $(JOBS)
 
 # A day at 1 kHz, or TICKS of it.
 soak: TICKS ?= 8.64e7
@@ -60,7 +63,7 @@ fuzz:
 	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
 	tools/need.sh $$(clang++ -print-file-name=libclang_rt.fuzzer-$$(uname -m).a):libclang-rt-dev
 	cmake --preset fuzz
-	cmake --build --preset fuzz
+	cmake --build --preset fuzz --parallel $(JOBS)
 	mkdir -p build/fuzz/corpus
 	build/fuzz/tests/fuzz/tracker_fuzz -max_total_time=$(SECONDS) -max_len=1024 -len_control=0 -timeout=10 \
 	  -verbosity=0 -print_funcs=0 -print_final_stats=1 -artifact_prefix=build/fuzz/ build/fuzz/corpus
@@ -76,14 +79,17 @@ lint: $(VENV)/package $(VENV)/lint
 	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)
 	clang-format --dry-run --Werror $(CXX_SOURCES)
 	clang-tidy --quiet tools/umbrella.cpp -- -std=c++17 -I$(CURDIR)/cpp/include -isystem /usr/include/eigen3
+	$(PYTHON) tools/headers.py --check
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/lint-imports
 	$(BIN)/mypy --python-executable $(BIN)/python
 	$(BIN)/python tools/stubs.py --check
 	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
 
 format: $(VENV)/lint
 	tools/need.sh clang-format
+	$(PYTHON) tools/headers.py
 	clang-format -i $(CXX_SOURCES)
 	$(BIN)/ruff format .
 
@@ -111,7 +117,7 @@ bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK)
 	-tools/need.sh valgrind /usr/include/kdl/chain.hpp:liborocos-kdl-dev
 	cmake --preset bench -DFPBM_PINOCCHIO="$$(echo $(CURDIR)/$(VENV)/lib/python*/site-packages/cmeel.prefix)"
-	cmake --build --preset bench
+	cmake --build --preset bench --parallel $(JOBS)
 	$(BIN)/python bench/run.py build/bench/bench $(if $(QUICK),--quick)
 
 # Fails where a step takes more instructions than recorded; RECORD=1 records them.
@@ -134,7 +140,7 @@ clean:
 # The package with its command line, and the tools of a dependency group in pyproject.toml.
 $(VENV)/package: $(PACKAGE)
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
-	$(BIN)/python -m pip install '.[cli]'
+	$(BIN)/python -m pip install '$(or $(WHEEL),.)[cli]'
 	@touch $@
 
 $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)/package

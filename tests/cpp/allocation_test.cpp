@@ -6,15 +6,20 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <string>
 #include <vector>
 
+#include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/make_arm.hpp"
 #include "support/paper.hpp"
+#include "support/schemes.hpp"
 
-/// A rollout allocates nothing, whatever the scheme and however the number of joints is chosen; and each of the three
-/// watches that say so is seen to fail.
+/// A rollout and a control loop allocate nothing, whatever the scheme and the number of joints. Each of the three watches
+/// that check this is seen to catch a planted allocation.
 namespace fpbm::test {
 namespace {
 
+constexpr int kOpen = Eigen::Dynamic;
 constexpr int kSteps = 100;
 
 struct Watched {
@@ -24,17 +29,17 @@ struct Watched {
 };
 
 /// A whole rollout under watch, into buffers of the caller's. `extra` is called at every sample.
-template <typename Arm, typename Scheme, typename Extra>
-Watched watched_rollout(const Arm& arm, const Scheme& scheme, Extra&& extra) {
+template <typename Space, typename Arm, typename Scheme>
+Watched watched_rollout(const Arm& arm, const AnyPath<Space>& path, const Scheme& scheme, const Vector<Arm::kDof>& q0,
+                        void (*extra)()) {
   constexpr int N = Arm::kDof;
-  static std::array<double, 4 * (kSteps + 1)> q;
-  static std::array<double, 2 * (kSteps + 1)> error;
-  MotionBuffers<Position<2>, N> buffers;
+  static std::array<double, kMaxDof*(kSteps + 1)> q;
+  static std::array<double, 16 * (kSteps + 1)> x;
+  MotionBuffers<Space, N> buffers;
   buffers.q = q.data();
-  buffers.error = error.data();
-  const auto path = paper_circle();
-  const State<N> start{paper_start().q, Vector<4>::Zero()};
-  const TimeGrid<> grid(kDuration, 2.0 * kDuration / kSteps, kDuration);
+  buffers.x = x.data();
+  const State<N> start{q0, Vector<N>::Zero(q0.size())};
+  const TimeGrid<> grid(path.duration(), 2.0 * path.duration() / kSteps, path.duration());
 
   const AllocationWatch watch;
   const auto result = rollout(arm, path, scheme, start, grid, [&](const auto& sample) {
@@ -44,123 +49,107 @@ Watched watched_rollout(const Arm& arm, const Scheme& scheme, Extra&& extra) {
   return {result.status, result.samples, watch.count()};
 }
 
+void expect_none(const Watched& watched, const std::string& name) {
+  EXPECT_EQ(watched.status, Status::kOk) << name;
+  EXPECT_EQ(watched.samples, kSteps + 1) << name;
+  EXPECT_EQ(watched.count.by_new, 0) << name;
+  EXPECT_EQ(watched.count.by_malloc, 0) << name;
+  EXPECT_EQ(watched.count.by_eigen, 0) << name;
+}
+
+template <typename Scheme>
+Watched on_the_papers_circle(const Scheme& scheme, void (*extra)() = [] {}) {
+  return watched_rollout(paper_arm(), paper_circle(), scheme, paper_start().q, extra);
+}
+
+/// Under a scheme behind AnyScheme: the rollout compiles once for each level, and the scheme in its own size.
+template <typename Scheme>
+void expect_none_in(const Scheme& scheme, const std::string& name) {
+  const AnyScheme<Scheme::kLevel, Position<2>> any(scheme);
+  const Vector<kOpen> q0 = paper_start().q;
+  expect_none(watched_rollout(make_planar_arm(Vector<4>::Ones()), paper_circle(), any, q0, [] {}), name);
+}
+
 template <int N>
-class NoAllocation {
- public:
-  using Dense = DenseWeights<N>;
-
-  static void in_any_scheme() {
-    const DiagonalWeights<N> W{Vector<N>(Vector<4>(1, 2, 3, 4))};
-    const Dense dense{Matrix<N, N>(Matrix<4, 4>::Identity() + Matrix<4, 4>::Constant(0.2))};
-    const auto z = NullSpace<N>{}.with_damping(1.0).with_rest_posture(Vector<4>::Zero(), 1.0);
-    in(MVN<N>(), "MVN");
-    in(MVN<N>(1.0, z), "MVN with z");
-    in(WMVN<N>(W), "WMVN");
-    in(WMVN<N, double, Dense>(dense, 1.0, z), "WMVN, dense, with z");
-    in(MAN<N>(z), "MAN with z");
-    in(WMVNAcceleration<N>(W), "WMVNAcceleration");
-    in(WMVNAcceleration<N, double, Dense>(dense, z), "WMVNAcceleration, dense, with z");
-    in(Balanced<N>(0.5, W), "Balanced");
-    in(Balanced<N, double, Dense>(0.5, dense, z), "Balanced, dense, with z");
-    in(FPBM<N>(0.6, W, 1.0, 1.0), "FPBM");
-    in(FPBM<N>(0.6, W, 1.0, 1.0, z), "FPBM with z");
-    in(FPBM<N, double, Dense>(0.6, dense, 1.0, 1.0, z), "FPBM, dense, with z");
-  }
-
-  /// Secondary objectives round a scheme, one in the other.
-  static void in_any_wrapper() {
-    const PlanarArm<N> arm{Vector<N>(Vector<4>::Ones())};
-    const PlanarArm<2> elbow(Vector<2>::Ones());
-    const auto point = Reference<Position<2>>::hold(Vector<2>(1.83, 0.76));
-    const NullSpace<N> damped = NullSpace<N>{}.with_damping(2.0);
-    const FPBM<N> scheme(0.6, DiagonalWeights<N>(Vector<N>(Vector<4>::Ones())), 1.0, 1.0, damped);
-    in(ManipulabilityAscent(scheme, arm, 0.1), "ManipulabilityAscent");
-    in(SecondTask(scheme, elbow, point, 1.0, 0.1, 0.5), "SecondTask");
-    in(SecondTask(ManipulabilityAscent(MVN<N>(1.0), arm, 0.1), elbow, point, 0.0, 0.1, 0.5), "both, at velocity level");
-    in(ManipulabilityAscent(SecondTask(MVN<N>(1.0), elbow, point, 0.0, 0.1, 0.5), arm, 0.1),
-       "both, the other way round");
-  }
-
- private:
-  template <typename Scheme>
-  static void in(const Scheme& scheme, const char* name) {
-    const PlanarArm<N> arm{Vector<N>(Vector<4>::Ones())};
-    const Watched watched = watched_rollout(arm, scheme, [] {});
-    EXPECT_EQ(watched.status, Status::kOk) << name;
-    EXPECT_EQ(watched.samples, kSteps + 1) << name;
-    EXPECT_EQ(watched.count.by_new, 0) << name;
-    EXPECT_EQ(watched.count.by_malloc, 0) << name;
-    EXPECT_EQ(watched.count.by_eigen, 0) << name;
-  }
-};
+void expect_none_in_any_scheme() {
+  Law law;
+  law.alpha = 0.6;
+  law.k = law.k1 = law.k2 = 1.0;
+  law.damping = law.stiffness = 1.0;
+  law.q_rest = law.c = Vector<4>::Zero();
+  for_every_scheme<N>([&](const std::string& name, const Takes& takes, const auto& make) {
+    law.W = Vector<4>(1, 2, 3, 4).asDiagonal();
+    if (takes.dense) law.W += 0.2 * Matrix<4, 4>::Ones();
+    for (const bool with_z : {false, true}) {
+      law.has_null_space = with_z;
+      expect_none_in(make(law), name + (with_z ? " with z" : ""));
+    }
+  });
+}
 
 TEST(NoAllocation, in_a_rollout_of_a_fixed_size) {
-  NoAllocation<4>::in_any_scheme();
-  NoAllocation<4>::in_any_wrapper();
+  expect_none_in_any_scheme<4>();
+  expect_none(on_the_papers_circle(paper_fpbm()), "FPBM");
+  expect_none(on_the_papers_circle(MVN<4>(1.0)), "MVN");
 }
 TEST(NoAllocation, in_a_rollout_of_a_size_chosen_at_run_time) {
-  NoAllocation<Eigen::Dynamic>::in_any_scheme();
-  NoAllocation<Eigen::Dynamic>::in_any_wrapper();
+  expect_none_in_any_scheme<kOpen>();
+}
+
+/// Secondary objectives round a scheme, one in the other.
+template <typename Arm>
+void expect_none_in_any_wrapper(const Arm& arm) {
+  constexpr int N = Arm::kDof;
+  const PlanarArm<2> elbow(Vector<2>::Ones());
+  const auto point = Reference<Position<2>>::hold(Vector<2>(1.83, 0.76));
+  const auto scheme = FPBM<N>(0.6, Vector<N>(Vector<4>::Ones()), 1.0, 1.0, NullSpace<N>{}.with_damping(2.0));
+  const ManipulabilityAscent ascent(MVN<N>(1.0), arm, 0.1);
+  const SecondTask second(MVN<N>(1.0), elbow, point, 0.0, 0.1, 0.5);
+  expect_none_in(ManipulabilityAscent(SecondTask(scheme, elbow, point, 1.0, 0.1, 0.5), arm, 0.1), "both");
+  expect_none_in(SecondTask(ascent, elbow, point, 0.0, 0.1, 0.5), "both, at velocity level");
+  expect_none_in(ManipulabilityAscent(second, arm, 0.1), "both, the other way round");
+}
+TEST(NoAllocation, in_secondary_objectives) {
+  expect_none_in_any_wrapper(paper_arm());
+  expect_none_in_any_wrapper(make_planar_arm(Vector<4>::Ones()));
+}
+
+[[nodiscard]] Vector<kOpen> panda_ready() {
+  return Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
 }
 
 /// Arms in space, poses, and every kind of path: waypoints take their memory when they are made.
-template <typename Arm>
-void expect_none_in_space(const Arm& arm) {
-  constexpr int N = Arm::kDof;
-  Vector<N> q0 = Vector<N>::Zero(arm.dof());
-  q0.template tail<7>() << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
-  const FPBM<N> scheme(0.6, DiagonalWeights<N>(Vector<N>::Ones(arm.dof())), 10.0, 25.0);
+TEST(NoAllocation, in_space) {
+  using Accelerations = AnyScheme<Level::kAcceleration, Pose>;
   const InPlane circle(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
   const std::vector<Transform<>> points{{}, {{0.05, 0.0, 0.05}, rotation(Vector<3>(0.1, 0.2, 0.0))}, {{0.1, 0.0, 0.0}}};
-  const Sequence path(WithRotation(circle, Vector<3>(0.1, 0.2, 0.3)), Waypoints<Pose>::lasting(points, 5.0));
+  const AnyPath<Pose> path(
+      Sequence(WithRotation(circle, Vector<3>(0.1, 0.2, 0.3)), Waypoints<Pose>::lasting(points, 5.0)));
+  const Accelerations fixed(FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 10.0, 25.0));
+  const AnyArm<Position<3>> panda(SerialArm<7>(presets::panda()));
+  expect_none(watched_rollout(panda, path, fixed, panda_ready(), [] {}), "Panda");
 
-  static std::array<double, Pose::kSize*(kSteps + 1)> x;
-  MotionBuffers<Pose, N> buffers;
-  buffers.x = x.data();
-  const State<N> start{q0, 0.0 * q0};
-  const TimeGrid<> grid(path.duration(), path.duration() / kSteps);
-  const AllocationWatch watch;
-  const auto result = rollout(arm, path, scheme, start, grid, buffers);
-  EXPECT_EQ(watch.count().total(), 0);
-  EXPECT_EQ(result.status, Status::kOk);
-}
-
-TEST(NoAllocation, in_space) {
   Chain<> chain = presets::panda();
-  expect_none_in_space(SerialArm<7>(chain));
   chain.joints.insert(chain.joints.begin(), Joint<>{JointType::kPrismatic});
   chain.joints[0].mimic = {1, 0.1, 0.0};
-  expect_none_in_space(CoupledArm<Eigen::Dynamic>(chain));
-}
-
-template <typename Arm>
-void expect_none_in_a_gaze(const Arm& arm) {
-  constexpr int N = Arm::kDof;
-  Vector<N> q0 = Vector<N>::Zero(arm.dof());
-  q0 << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
-  const Gaze gaze(arm, Vector<3>(0.1, 0.1, -1.0));
-  const auto ahead = Reference<Position<2>>::hold(Vector<2>::Zero());
-  const SecondTask scheme(MVN<N>(1.0), gaze, ahead, 0.0, 1.0);
-  const InPlane path(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
-  const State<N> start{q0, 0.0 * q0};
-  const TimeGrid<> grid(5.0, 5.0 / kSteps);
-  const AllocationWatch watch;
-  const auto result = rollout(arm, path, scheme, start, grid, [](const auto&) {});
-  EXPECT_EQ(watch.count().total(), 0);
-  EXPECT_EQ(result.status, Status::kOk);
+  const Accelerations open(FPBM<kOpen>(0.6, Vector<kOpen>(Vector<7>::Ones()), 10.0, 25.0));
+  expect_none(watched_rollout(make_arm(chain), path, open, panda_ready(), [] {}), "Panda, coupled");
 }
 
 TEST(NoAllocation, in_a_gaze) {
-  expect_none_in_a_gaze(SerialArm<7>(presets::panda()));
-  expect_none_in_a_gaze(SerialArm<Eigen::Dynamic>(presets::panda()));
+  const SerialArm<7> arm(presets::panda());
+  const auto ahead = Reference<Position<2>>::hold(Vector<2>::Zero());
+  const SecondTask scheme(MVN<7>(1.0), Gaze(arm, Vector<3>(0.1, 0.1, -1.0)), ahead, 0.0, 1.0);
+  const AnyPath<Position<3>> path(InPlane(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ()));
+  const AnyScheme<Level::kVelocity, Position<3>> any(scheme);
+  expect_none(watched_rollout(AnyArm<Position<3>>(arm), path, any, panda_ready(), [] {}), "gaze");
 }
 
 /// Every call of a control loop, with targets within reach and beyond every limit, and nonsense.
 template <typename Space, typename Arm, typename Scheme>
 void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
   constexpr int N = Arm::kDof;
-  Vector<N> q0 = Vector<N>::Zero(arm.dof());
-  q0 << 0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785;
+  const Vector<N> q0 = panda_ready();
   TrackerOptions<> options;
   options.integral_gain = 1.0;
   Tracker tracker(arm, Space{}, scheme, q0, options);
@@ -169,19 +158,19 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
   const WithRotation turning(circle, Vector<3>(0.1, 0.2, 0.3));
   const auto path = [&] {
     if constexpr (std::is_same_v<Space, Pose>) {
-      return turning;
+      return AnyPath<Space>(turning);
     } else {
-      return circle;
+      return AnyPath<Space>(circle);
     }
   }();
-  PathFollower course(path, tracker.tip());
+  PathFollower follower(path, tracker.tip());
   const AllocationWatch watch;
   for (int i = 0; i < 2000; ++i) {
-    if (i == 100) course.pause();
-    if (i == 200) course.resume();
+    if (i == 100) follower.pause();
+    if (i == 200) follower.resume();
     if (i == 300) tracker.stop();
     if (i == 400) tracker.resume();
-    (void)tracker.tick(course);
+    (void)tracker.tick(follower);
     auto wild = home;
     wild.xdd.setConstant(i % 100 == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.1 * i);
     wild.xd.setConstant(i < 1000 ? 0.0 : 10.0);
@@ -189,44 +178,32 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
     if constexpr (Scheme::kLevel == Level::kAcceleration) (void)tracker.resolve_measured(q0, tracker.state().qd, wild);
   }
   EXPECT_EQ(watch.count().total(), 0);
-  EXPECT_TRUE(tracker.state().q.allFinite() && course.done());
+  EXPECT_TRUE(tracker.state().q.allFinite() && follower.done());
 }
 
 TEST(NoAllocation, in_a_control_loop) {
   const SerialArm<7> fixed(presets::panda());
-  const SerialArm<Eigen::Dynamic> open(presets::panda());
-  const Vector<7> ones = Vector<7>::Ones();
-  const FPBM<7> fpbm(0.6, DiagonalWeights<7>(ones), 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
-  const FPBM<Eigen::Dynamic> fpbm_open(0.6, DiagonalWeights<Eigen::Dynamic>(ones), 10.0, 25.0);
-  expect_none_in_a_loop<Pose>(fixed, fpbm);
-  expect_none_in_a_loop<Position<3>>(fixed, fpbm);
-  expect_none_in_a_loop<Pose>(open, fpbm_open);
-  expect_none_in_a_loop<Position<3>>(open, fpbm_open);
-  expect_none_in_a_loop<Pose>(fixed, MVN<7>(5.0));
-  expect_none_in_a_loop<Position<3>>(open, MVN<Eigen::Dynamic>(5.0));
+  const AnyArm<Position<3>> open = make_arm(presets::panda());
+  const auto fpbm = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
   expect_none_in_a_loop<Pose>(fixed, ManipulabilityAscent(fpbm, fixed, 0.1));
+  expect_none_in_a_loop<Pose>(open, AnyScheme<Level::kAcceleration, Pose>(fpbm));
+  expect_none_in_a_loop<Position<3>>(open, AnyScheme<Level::kVelocity, Position<3>>(MVN<kOpen>(5.0)));
 }
 
 /// A motion that has to stop does so without an allocation as well.
 TEST(NoAllocation, in_a_rollout_that_fails) {
-  const Path<Line<2>> path(Line<2>(Vector<2>(3.0, 0.0)), kDuration);
-  const PlanarArm<4> arm = paper_arm();
-  const FPBM<4> scheme = paper_fpbm();
-  const State<4> start = paper_start();
-  const TimeGrid<> grid(kDuration, 1e-2);
-  const AllocationWatch watch;
-  const auto result = rollout(arm, path, scheme, start, grid, [](const auto&) {});
-  EXPECT_EQ(watch.count().total(), 0);
-  EXPECT_NE(result.status, Status::kOk);
+  const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(3.0, 0.0)), kDuration));
+  const Watched watched = watched_rollout(paper_arm(), path, paper_fpbm(), paper_start().q, [] {});
+  EXPECT_EQ(watched.count.total(), 0);
+  EXPECT_NE(watched.status, Status::kOk);
 }
 
-/// Plants one allocation at every sample, and tells what the watches saw of the 101.
-template <typename Allocate>
-AllocationCount planted(Allocate&& allocate) {
-  return watched_rollout(paper_arm(), paper_fpbm(), allocate).count;
+/// Plants one allocation at each of the 101 samples, and returns what the watches saw.
+AllocationCount planted(void (*allocate)()) {
+  return on_the_papers_circle(paper_fpbm(), allocate).count;
 }
 
-/// Seen through a volatile pointer, lest the compiler take an allocation away with its release.
+/// Volatile, so that the compiler does not remove an allocation together with its release.
 void* volatile seen;
 
 TEST(AllocationWatch, sees_every_form_of_new) {

@@ -30,7 +30,7 @@ void expect_refusal(Call&& call, const std::vector<std::string>& words) {
   ADD_FAILURE() << "accepted: " << words.front();
 }
 
-/// As snprintf's %g writes it, which is how messages do.
+/// A number as messages write it, with snprintf's %g.
 std::string text(double value) {
   if (value == kInf) return "inf";
   if (value == -kInf) return "-inf";
@@ -41,7 +41,7 @@ const std::vector<double> kNotPositive = {0.0, -1.5, kNaN, kInf, -kInf};
 const std::vector<double> kNegative = {-1.5, kNaN, kInf, -kInf};
 const std::vector<double> kNotFinite = {kNaN, kInf, -kInf};
 
-/// "= 0" where text() has "0.0", so that a value is looked for as the message must have it.
+/// " = value:", as it stands in a message.
 std::string value(double bad) {
   return " = " + (bad == 0.0 ? std::string("0:") : text(bad) + ":");
 }
@@ -56,7 +56,7 @@ TEST(BadInput, lengths) {
 
 TEST(BadInput, number_of_joints) {
   for (const int bad : {0, 1, 33}) {
-    if (bad > kMaxDof) continue;  // Beyond its capacity a vector cannot even be made: Eigen's assertion.
+    if (bad > kMaxDof) continue;  // No vector holds more: Eigen asserts.
     expect_refusal([&] { PlanarArm<Eigen::Dynamic>(Open(Open::Ones(bad))); },
                    {"lengths has " + std::to_string(bad) + " entries", "2 to 32"});
   }
@@ -107,15 +107,15 @@ TEST(BadInput, shapes_and_paths) {
 TEST(BadInput, gains_and_balance) {
   const DiagonalWeights<4> W = paper_weights();
   for (const double bad : kNegative) {
-    expect_refusal([&] { MVN<4>{bad}; }, {"k" + value(bad), "not negative"});
-    expect_refusal([&] { WMVN<4>(W, bad); }, {"k" + value(bad)});
-    expect_refusal([&] { FPBM<4>(0.5, W, bad, 1.0); }, {"k1" + value(bad)});
-    expect_refusal([&] { FPBM<4>(0.5, W, 1.0, bad); }, {"k2" + value(bad)});
+    expect_refusal([&] { (void)MVN<4>(bad); }, {"k" + value(bad), "not negative"});
+    expect_refusal([&] { (void)WMVN<4>(W, bad); }, {"k" + value(bad)});
+    expect_refusal([&] { (void)FPBM<4>(0.5, W, bad, 1.0); }, {"k1" + value(bad)});
+    expect_refusal([&] { (void)FPBM<4>(0.5, W, 1.0, bad); }, {"k2" + value(bad)});
     expect_refusal([&] { static_cast<void>(NullSpace<4>{}.with_damping(bad)); }, {"null_damping" + value(bad)});
   }
   for (const double bad : {-0.5, 1.5, kNaN, kInf, -kInf}) {
-    expect_refusal([&] { FPBM<4>(bad, W, 1.0, 1.0); }, {"alpha" + value(bad), "[0, 1]"});
-    expect_refusal([&] { Balanced<4>(bad, W); }, {"alpha" + value(bad), "[0, 1]"});
+    expect_refusal([&] { (void)FPBM<4>(bad, W, 1.0, 1.0); }, {"alpha" + value(bad), "[0, 1]"});
+    expect_refusal([&] { (void)Balanced<4>(bad, W); }, {"alpha" + value(bad), "[0, 1]"});
   }
 }
 
@@ -148,7 +148,7 @@ TEST(BadInput, time_grid) {
   expect_refusal([] { TimeGrid<>(10.0, 1e-9); }, {"dt = 1e-09:"});
   expect_refusal([] { TimeGrid<float>(1.0F, 0.3F); }, {"dt = 0.3", "duration = 1"});
 
-  // What the message proposes is accepted.
+  // The step that the message proposes is accepted.
   EXPECT_EQ(TimeGrid<>(1.0, 0.33333333333333331).motion_steps(), 3);
   EXPECT_EQ(TimeGrid<float>(10.0F, 1e-3F, 0.5F).samples(), 10501);
 }
@@ -194,7 +194,7 @@ TEST(BadInput, a_grid_of_another_duration) {
 TEST(BadInput, joints_that_do_not_fit) {
   constexpr int N = Eigen::Dynamic;
   const PlanarArm<N> arm(Open(Open::Ones(4)));
-  const MAN<N> man;
+  const auto man = MAN<N>();
   const Open four = Open::Constant(4, 0.2);
   const Open three = Open::Constant(3, 0.2);
   const Open five = Open::Constant(5, 0.2);
@@ -213,7 +213,7 @@ TEST(BadInput, joints_that_do_not_fit) {
     expect_rollout_refusal(arm, WMVNAcceleration<N>(W), start, weights);
     expect_rollout_refusal(arm, Balanced<N>(0.5, W), start, weights);
     expect_rollout_refusal(arm, FPBM<N>(0.5, W, 1.0, 1.0), start, weights);
-    expect_rollout_refusal(arm, FPBM<N, double, DenseWeights<N>>(0.5, dense, 1.0, 1.0), start, weights);
+    expect_rollout_refusal(arm, FPBM<N>(0.5, dense, 1.0, 1.0), start, weights);
     expect_rollout_refusal(arm, MVN<N>(0.0, c), start, choice);
     expect_rollout_refusal(arm, MAN<N>(c), start, choice);
     expect_rollout_refusal(arm, FPBM<N>(0.5, DiagonalWeights<N>(four), 1.0, 1.0, c), start, choice);

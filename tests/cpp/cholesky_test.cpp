@@ -118,15 +118,14 @@ TEST_P(CholeskyOf, refuses_what_is_not_finite) {
   }
 }
 
-/// No scale is too small or too large: a pivot is judged against the diagonal.
+/// No scale is too small or too large: pivots are compared with the diagonal.
 TEST_P(CholeskyOf, is_indifferent_to_scale) {
   Random random(4);
   const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;
 }
 
-/// PlainPair matrices side by side: in each lane what that matrix alone gives, to the last bit, and a refusal where either is
-/// refused.
+/// Two matrices side by side give the bits that each gives alone, and are refused where either is refused.
 template <int M, typename Scalar>
 void expect_pair_to_agree() {
   using Square = Matrix<M, M, Scalar>;

@@ -9,11 +9,12 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// Motions that cannot be done end with a status, in time, and with good samples; motions that can be done are done.
+/// A motion that leaves the workspace ends with a status, in time, and its samples are good. A motion well inside reaches
+/// its end.
 namespace fpbm::test {
 namespace {
 
-/// What is asked of a random arm in a random posture.
+/// A line for a random arm in a random posture.
 struct Task {
   Eigen::VectorXd lengths;
   Eigen::VectorXd q0;
@@ -100,7 +101,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
       const Eigen::VectorXd q0 = random.uniform(n, -2.0, 2.0);
       const double direction = random.uniform(-kPi, kPi);
       const double reach = lengths.sum();
-      // Longer than the workspace is wide, so that it leaves whatever the start.
+      // Longer than the workspace is wide: leaves it from any start.
       const Vector<2> way = 2.5 * reach * Vector<2>(std::cos(direction), std::sin(direction));
       const Task task{lengths, q0, way, 5.0, dt, seed};
       const Ending ending = GetParam().run(task);
@@ -119,7 +120,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
   }
 }
 
-/// A rank lost from the start: nothing is recorded at all.
+/// From a singular start nothing is recorded.
 TEST_P(Failure, refuses_a_singular_start) {
   const int n = GetParam().dof;
   for (const double direction : {0.0, 0.3}) {
@@ -139,8 +140,8 @@ TEST_P(Failure, refuses_a_singular_start) {
   }
 }
 
-/// No false alarm: from a well bent posture, a fifth of a link's way in any direction.
-TEST_P(Failure, does_not_befall_a_motion_well_inside_the_workspace) {
+/// From a well bent posture the tip moves a fifth of a link in any direction without a false alarm.
+TEST_P(Failure, does_not_stop_a_motion_well_inside_the_workspace) {
   const int n = GetParam().dof;
   for (const double dt : {1e-3, 1e-2, 0.1}) {
     for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -164,8 +165,8 @@ TEST_P(Failure, does_not_befall_a_motion_well_inside_the_workspace) {
 INSTANTIATE_TEST_SUITE_P(every, Failure, ::testing::ValuesIn(contenders()),
                          [](const auto& each) { return each.param.name; });
 
-/// Whatever went wrong, there is a sentence for it; and where something went wrong, advice.
-TEST(Status, speaks) {
+/// Every status has a message, and every failure has advice.
+TEST(Status, has_a_message_and_advice) {
   for (const Status status : {Status::kOk, Status::kSingular, Status::kTaskLost, Status::kNotFinite}) {
     EXPECT_STRNE(message(status), "");
     EXPECT_STRNE(message(status), "unknown status");

@@ -38,7 +38,7 @@ struct ErasedArm {
   int dof;
   double epsilon;
   Evaluate evaluate;
-  Evaluate evaluate_in_double;  ///< For differences, which a float has not the digits for.
+  Evaluate evaluate_in_double;  ///< For difference quotients, for which a float has too few digits.
 };
 
 void PrintTo(const ErasedArm& arm, std::ostream* out) {
@@ -86,7 +86,7 @@ class PlanarKinematics : public ::testing::TestWithParam<ErasedArm> {
   }
 };
 
-/// tip, J and Jd are sums of n terms of known size, each good to the round-off of the sum of angles it is taken at.
+/// Tip, J and Jd are sums of n terms of known size; the round-off of each is that of the sum of angles in it.
 TEST_P(PlanarKinematics, equals_the_plain_formula) {
   everywhere([](const Eigen::VectorXd& lengths, const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
     const Situation out = GetParam().evaluate(lengths, q, qd);

@@ -9,7 +9,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// What is computed in lanes is what each motion by itself comes to, whatever goes on in the others.
+/// Each lane computes what its motion gives by itself, whatever happens in the other lanes.
 namespace fpbm::test {
 namespace {
 
@@ -49,7 +49,7 @@ TEST(Lanes, have_the_sines_and_cosines_of_each) {
   EXPECT_NEAR(sincos(beyond).sin[0], std::sin(1.0), 3e-16);
 }
 
-TEST(Lanes, have_the_rotation_vector_of_each_be_it_small_or_large) {
+TEST(Lanes, have_the_rotation_vector_of_each) {
   Random random(2);
   for (int trial = 0; trial < 500; ++trial) {
     Matrix<3, 3, In> all;
@@ -65,7 +65,7 @@ TEST(Lanes, have_the_rotation_vector_of_each_be_it_small_or_large) {
   }
 }
 
-/// The schemes in lanes, and of each lane, all with parameters of their own.
+/// Schemes in lanes and the scheme of each lane, with different parameters in each.
 template <int N>
 struct Schemes {
   Vector<N, In> weights;
@@ -84,21 +84,17 @@ struct Schemes {
   }
 
   template <typename Scalar, typename Part>
-  FPBM<N, Scalar> fpbm(const Part& part, const SingularDamping<Scalar>& singular) const {
+  AccelerationScheme<N, Scalar> fpbm(const Part& part, const SingularDamping<Scalar>& singular) const {
     Vector<N, Scalar> w;
     for (int i = 0; i < N; ++i) w(i) = part(weights(i));
-    return {part(alpha),
-            DiagonalWeights<N, Scalar>(w),
-            part(k1),
-            part(k2),
-            NullSpace<N, Scalar>().with_damping(part(damping)),
-            singular};
+    return FPBM<N, Scalar>(part(alpha), w, part(k1), part(k2), NullSpace<N, Scalar>().with_damping(part(damping)),
+                           singular);
   }
   template <typename Scalar, typename Part>
-  WMVN<N, Scalar> wmvn(const Part& part, const SingularDamping<Scalar>& singular) const {
+  VelocityScheme<N, Scalar> wmvn(const Part& part, const SingularDamping<Scalar>& singular) const {
     Vector<N, Scalar> w;
     for (int i = 0; i < N; ++i) w(i) = part(weights(i));
-    return WMVN<N, Scalar>(DiagonalWeights<N, Scalar>(w), part(k1),
+    return WMVN<N, Scalar>(w, part(k1),
                            NullSpace<N, Scalar>().with_rest_posture(Vector<N, Scalar>::Ones(), part(In(0.5))),
                            singular);
   }
@@ -154,7 +150,7 @@ void expect_each_to_be_resolved(const Arm& arm, double radius) {
         if (status == Status::kOk && (radius == 0.0 || !answer.hasNaN())) {
           ++regular;
           EXPECT_LE((answer - expected).norm(), 1e-15 * condition * condition * expected.norm());
-        } else {  // In lanes, damping is left to others wherever it cannot be ruled out.
+        } else {  // In lanes, wherever damping cannot be ruled out the answer is NaN.
           ++left;
           EXPECT_TRUE(answer.hasNaN()) << message(status);
         }
@@ -167,7 +163,7 @@ void expect_each_to_be_resolved(const Arm& arm, double radius) {
   EXPECT_EQ(left > 0, radius > 0.0);
 }
 
-TEST(Lanes, resolve_what_each_arm_by_itself_does) {
+TEST(Lanes, resolve_as_each_arm_does_by_itself) {
   expect_each_to_be_resolved<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), 0.0);
   expect_each_to_be_resolved<Pose>(SerialArm<7>(presets::panda()), 0.0);
 }
@@ -176,7 +172,7 @@ TEST(Lanes, leave_a_nearly_singular_posture_to_the_code_that_damps) {
   expect_each_to_be_resolved<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), 0.2);
 }
 
-/// The last posture and the summary of motions from starts, side by side.
+/// Last posture and summary of motions from several starts, side by side.
 struct Motions {
   Vector<4, In> q;
   MotionSummary<In> summary;
@@ -184,7 +180,7 @@ struct Motions {
 Motions run(const std::array<Vector<4>, kLanes>& starts, double radius) {
   const auto arm = PlanarArm<4>(Vector<4>::Ones()).cast<In>();
   const Path path(Circle<>(radius), 2.0);
-  const FPBM<4, In> scheme(In(0.6), DiagonalWeights<4, In>(Vector<4, In>::Ones()), In(10.0), In(25.0));
+  const auto scheme = FPBM<4, In>(In(0.6), DiagonalWeights<4, In>(Vector<4, In>::Ones()), In(10.0), In(25.0));
   State<4, In> start{Vector<4, In>::Zero(), Vector<4, In>::Zero()};
   for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane<4, 1>(start.q, lane, starts[lane]);
   Summary<Position<2>, 4, In> summary(Level::kAcceleration);
@@ -192,13 +188,13 @@ Motions run(const std::array<Vector<4>, kLanes>& starts, double radius) {
   return {result.last.q, summary.result()};
 }
 
-TEST(Lanes, run_each_motion_as_if_it_were_alone) {
+TEST(Lanes, run_each_motion_as_by_itself) {
   const Vector<4> bent(0.3, 0.8, 0.6, 0.5);
   const Vector<4> other(0.1, 1.2, -0.7, 0.9);
-  const Vector<4> outstretched(0.4, 0.01, -0.01, 0.02);  // From where half a metre outwards is out of reach.
+  const Vector<4> outstretched(0.4, 0.01, -0.01, 0.02);  // Half a metre further out is out of reach.
 
   const PlanarArm<4> arm(Vector<4>::Ones());
-  const FPBM<4> scheme(0.6, DiagonalWeights<4>(Vector<4>::Ones()), 10.0, 25.0);
+  const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>::Ones()), 10.0, 25.0);
   const Path path(Circle<>(0.25), 2.0);
   const auto alone = [&](const Vector<4>& q) {
     return rollout(arm, path, scheme, {q, Vector<4>::Zero()}, TimeGrid<double>(2.0, 0.01, 0.5), [](const auto&) {});
@@ -210,7 +206,7 @@ TEST(Lanes, run_each_motion_as_if_it_were_alone) {
   EXPECT_LE((lane_of<4, 1>(healthy.q, 0) - alone(bent).last.q).norm(), 1e-12);
   EXPECT_LE((lane_of<4, 1>(healthy.q, 1) - alone(other).last.q).norm(), 1e-12);
 
-  // To the last bit, whatever lane it is in and whatever happens in the others.
+  // To the last bit, in any lane, whatever happens in the others.
   const Motions left = run({bent, outstretched}, 0.25);
   const Motions right = run({outstretched, bent}, 0.25);
   EXPECT_EQ((lane_of<4, 1>(left.q, 0)), (lane_of<4, 1>(healthy.q, 0)));
@@ -221,10 +217,10 @@ TEST(Lanes, run_each_motion_as_if_it_were_alone) {
   EXPECT_TRUE(std::isnan(lane_of<4, 1>(right.q, 0).sum()));
 }
 
-TEST(Lanes, hold_constructors_to_their_demands_in_every_lane) {
+TEST(Lanes, check_the_arguments_of_every_lane) {
   const In alphas([](auto lane) { return lane == 1 ? 1.5 : 0.5; });
   const DiagonalWeights<4, In> weights(Vector<4, In>::Ones());
-  EXPECT_THROW((FPBM<4, In>(alphas, weights, In(0.0), In(0.0))), std::invalid_argument);
+  EXPECT_THROW((void)(FPBM<4, In>(alphas, weights, In(0.0), In(0.0))), std::invalid_argument);
   Vector<4, In> negative = Vector<4, In>::Ones();
   negative(3)[1] = -1.0;
   EXPECT_THROW((DiagonalWeights<4, In>(negative)), std::invalid_argument);

@@ -5,7 +5,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-/// The mathematics itself, in extended precision: what the other tests take the textbook's word for.
+/// The lemmas of the paper, in extended precision: they check the textbook, which the other tests rely on.
 namespace fpbm::test {
 namespace {
 
@@ -64,7 +64,7 @@ TEST(Lemma2, holds) {
   });
 }
 
-/// Both pseudoinverses are what their names say: right inverses, and equal for W = I.
+/// Both pseudoinverses are right inverses, and equal for W = I.
 TEST(Textbook, pseudoinverses_invert) {
   everywhere([](const Subject& subject) {
     const RealMatrix& J = subject.at.J;

@@ -16,12 +16,17 @@
 namespace fpbm::test {
 namespace {
 
+/// √det(JJᵀ)
+Real manipulability_as_written(const RealMatrix& J) {
+  return std::sqrt((J * J.transpose()).determinant());
+}
+
 template <typename Space, typename Arm>
 Real manipulability_as_written(const Arm& arm, const Vector<Arm::kDof>& q) {
   Kinematics<Space, Arm::kDof> kinematics;
   arm.kinematics(q, kinematics);
   const RealMatrix J = real(kinematics.J);
-  return std::sqrt((J * J.transpose()).determinant());
+  return manipulability_as_written(J);
 }
 
 TEST(Manipulability, is_the_root_of_the_determinant) {
@@ -34,7 +39,7 @@ TEST(Manipulability, is_the_root_of_the_determinant) {
   });
 }
 
-/// PlainPair links of 1 m: w = |sin q₂|, of which the determinant would lose all digits here.
+/// Two links of 1 m: w = |sin q₂|, which a determinant would give without a correct digit here.
 TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   const PlanarArm<2> arm(Vector<2>::Ones());
   Kinematics<Position<2>, 2> kinematics;
@@ -69,7 +74,7 @@ TEST(Manipulability, gradient_is_its_slope) {
   });
 }
 
-/// u + gain N∇w with the projector N = I − J⁺J formed, at either level; J u is the scheme's own.
+/// u + gain N∇w with the projector N = I − J⁺J formed, at either level; J u is that of the scheme alone.
 TEST(ManipulabilityAscent, equals_the_textbook) {
   on_every_arm([](const auto& each, const auto& q, const auto& qd) {
     using Space = typename std::decay_t<decltype(each)>::Space;
@@ -94,7 +99,7 @@ TEST(ManipulabilityAscent, equals_the_textbook) {
       EXPECT_LE((kinematics.J * (u - own)).norm(), 1e-12 * (1.0 + own.norm()));
     };
     check(MVN<N>(1.0));
-    check(FPBM<N>(0.6, DiagonalWeights<N>(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
+    check(FPBM<N>(0.6, Joints(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
   });
 }
 
@@ -122,7 +127,7 @@ TEST(ManipulabilityAscent, commutes_with_what_adds) {
 
 TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
   const PlanarArm<Eigen::Dynamic> arm(Vector<4>::Ones());
-  const MVN<Eigen::Dynamic> scheme;
+  const auto scheme = MVN<Eigen::Dynamic>();
   for (const double gain : {-1.0, std::numeric_limits<double>::infinity()}) {
     EXPECT_NE(complaint([&] { ManipulabilityAscent(scheme, arm, gain); }).find("manipulability_gain = "),
               std::string::npos);
@@ -130,11 +135,11 @@ TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
   EXPECT_NE(
       complaint([&] { ManipulabilityAscent(scheme, arm, 1.0).require_dof(5); }).find("has 4 entries: must have 5"),
       std::string::npos);
-  const MVN<Eigen::Dynamic> narrow(0.0, NullSpace<Eigen::Dynamic>{}.with_free_choice(Vector<3>::Ones()));
+  const auto narrow = MVN<Eigen::Dynamic>(0.0, NullSpace<Eigen::Dynamic>{}.with_free_choice(Vector<3>::Ones()));
   EXPECT_NE(complaint([&] { ManipulabilityAscent(narrow, arm, 1.0).require_dof(4); }), "");
 }
 
-/// What the scheme refuses, a posture or a reference, it refuses, and leaves u alone.
+/// Where the scheme fails, it fails with the same status and leaves u alone.
 TEST(ManipulabilityAscent, hands_failures_on) {
   const PlanarArm<4> arm = paper_arm();
   const auto attempt = [&](const Vector<4>& q, const Vector<2>& x) {
@@ -152,8 +157,8 @@ TEST(ManipulabilityAscent, hands_failures_on) {
   EXPECT_EQ(attempt(paper_start().q, Vector<2>(kPi / 0.0, 2.0)), Status::kNotFinite);
 }
 
-/// Round the circle and a hold, at either level: w ends higher, at the top of what the self-motion can reach, and the
-/// tip does not notice.
+/// After a circle and a hold, at either level, w is at the maximum that the self-motion can reach, and the tip has kept
+/// its path.
 template <typename Scheme>
 void expect_to_climb(const Scheme& scheme, double gain) {
   const PlanarArm<4> arm = paper_arm();

@@ -12,7 +12,7 @@
 namespace fpbm::test {
 namespace {
 
-/// Z of A by a null_basis whose type is erased.
+/// null_basis of a size and a Scalar, types erased.
 struct ErasedBasis {
   std::string name;
   Eigen::Index rows;
@@ -57,7 +57,7 @@ TEST_P(NullBasisOf, is_orthonormal_and_annihilated) {
   }
 }
 
-/// Rows that depend on one another, to round-off or exactly; rows and columns of zeros; nothing but zeros.
+/// Rows that are linearly dependent, to round-off or exactly; rows and columns of zeros; a zero matrix.
 TEST_P(NullBasisOf, is_so_at_every_rank) {
   const Eigen::Index m = GetParam().rows;
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
@@ -79,7 +79,7 @@ TEST_P(NullBasisOf, is_so_at_every_rank) {
   }
 }
 
-/// A row that fades away leaves no gap between a number and zero: not where its square is lost, either.
+/// While a row shrinks to zero, and also where its square underflows.
 TEST_P(NullBasisOf, is_so_while_a_row_fades) {
   Random random(1);
   const Eigen::MatrixXd A = random_matrix(random);

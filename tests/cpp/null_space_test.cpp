@@ -11,13 +11,13 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// Secondary motions that need no more than the state.
+/// Secondary motions that depend on the state alone.
 namespace fpbm::test {
 namespace {
 
 constexpr double kNone = JointBounds<>::kNone;
 
-/// Liégeois' H as written.
+/// Liégeois' H as printed.
 double centring_cost(const JointLimits<4>& limits, const Vector<4>& q) {
   double H = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -61,7 +61,7 @@ TEST(NullSpace, centring_leaves_joints_without_bounds_alone) {
   EXPECT_LE((z - Vector<4>(0.0, -2.0 * 0.2, 0.0, 0.0)).norm(), 1e-15);
 }
 
-/// All parts at once, in each of the 24 orders, are the sum of the parts.
+/// All four parts together, in each of the 24 orders, give the sum of the parts.
 TEST(NullSpace, parts_add_up_in_any_order) {
   const State<4> state{Vector<4>(0.1, 0.2, -0.3, 0.4), Vector<4>(1.0, -2.0, 3.0, -4.0)};
   const std::array<NullSpace<4> (*)(const NullSpace<4>&), 4> parts = {
@@ -105,7 +105,7 @@ TEST(NullSpace, refuses_what_makes_no_sense) {
             std::string::npos);
 }
 
-/// Round the circle and a hold after it, the joints end up nearer to their middle and the tip does not notice.
+/// After a circle and a hold, the joints are nearer to their middle, and the tip has kept its path.
 TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
   JointLimits<4> limits = JointLimits<4>::none(4);
   limits.lower = Vector<4>(-2.0, -2.0, -2.0, -2.0);
@@ -121,8 +121,8 @@ TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
   EXPECT_LT(with.result.last.qd.norm(), 1e-3);
 }
 
-/// Repetitive motion planning: drawn to the posture at the start, by a rate of 2/s at either level, the arm does not
-/// drift from circle to circle; of itself it does.
+/// Repetitive motion planning: with the start posture as rest posture, at a rate of 2/s at either level, the arm does not
+/// drift from circle to circle. Without it, the arm drifts.
 template <typename Scheme>
 double drift_in_third_circle(const Scheme& scheme) {
   const TimeGrid<> grid(kDuration, 5e-3);
@@ -130,7 +130,7 @@ double drift_in_third_circle(const Scheme& scheme) {
   Vector<4> second = state.q;
   for (int circle = 1; circle <= 3; ++circle) {
     if (circle == 3) second = state.q;
-    const auto result = rollout(paper_arm(), paper_circle(), scheme, state, grid, [](const auto&) {});
+    const auto result = recorded(paper_arm(), paper_circle(), scheme, state, grid).result;
     EXPECT_EQ(result.status, Status::kOk);
     state = result.last;
   }

@@ -11,15 +11,9 @@
 namespace fpbm::test {
 namespace {
 
-template <typename Scheme>
-Recording<4> draw(Figure figure, const Scheme& scheme) {
-  const TimeGrid<> grid(kDuration, 1e-3);
-  switch (figure) {
-    case Figure::kCircle: return recorded(paper_arm(), paper_circle(), scheme, paper_start(), grid);
-    case Figure::kLissajous: return recorded(paper_arm(), paper_lissajous(), scheme, paper_start(), grid);
-    case Figure::kTricuspid: return recorded(paper_arm(), paper_tricuspid(), scheme, paper_start(), grid);
-  }
-  return {};
+const TimeGrid<>& grid() {
+  static const TimeGrid<> result(kDuration, 1e-3);
+  return result;
 }
 
 void expect_final(const PaperCase& expected, const Recording<4>& run) {
@@ -37,22 +31,22 @@ class PaperCases : public ::testing::TestWithParam<PaperCase> {};
 
 TEST_P(PaperCases, end_as_in_the_independent_solution) {
   const PaperCase& expected = GetParam();
-  const FPBM<4> scheme(expected.alpha, DiagonalWeights<4>(Vector<4>(expected.weights.data())), expected.k1,
+  const auto scheme = FPBM<4>(expected.alpha, Vector<4>(expected.weights.data()), expected.k1,
                        expected.k2);
-  const Recording<4> run = draw(expected.figure, scheme);
+  const Recording<4> run = recorded(paper_arm(), paper_path(expected.figure), scheme, paper_start(), grid());
   expect_final(expected, run);
   if (expected.k2 > 0.0) {
     EXPECT_LE(run.max_error(), 1e-12);
   } else {
-    // α = k₁ = k₂ = 0 is MAN (8), and so must the scheme of that name be.
-    expect_final(expected, draw(expected.figure, MAN<4>()));
+    // α = k₁ = k₂ = 0 is MAN (8): MAN() must give the same.
+    expect_final(expected, recorded(paper_arm(), paper_path(expected.figure), MAN<4>(), paper_start(), grid()));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(all, PaperCases, ::testing::ValuesIn(kPaperCases),
                          [](const auto& each) { return "case_" + std::to_string(each.index); });
 
-/// "MAN's tip error diverges and FPBM's does not": with the same integrator and the same 50 steps.
+/// "MAN's tip error diverges and FPBM's does not", with the same integrator and 50 steps for both.
 TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
   const TimeGrid<> grid(kDuration, 0.2);
   const auto man = recorded(paper_arm(), paper_circle(), MAN<4>(), paper_start(), grid);
@@ -61,7 +55,7 @@ TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
   ASSERT_EQ(fpbm.result.status, Status::kOk);
   EXPECT_GT(man.max_error(), 10.0 * fpbm.max_error());
 
-  // Still growing at T: the last tenth is the worst, and its end is worse than its beginning.
+  // It still grows at T: the largest error is the last.
   const double last_tenth = 0.9 * kDuration;
   EXPECT_EQ(man.max_error(), man.max_error(last_tenth));
   EXPECT_EQ(man.max_error(), man.samples.back().error.norm());

@@ -17,7 +17,7 @@ namespace {
 
 using Sample2 = Reference<Position<2>>;
 
-/// A shape under a time law, types erased, as the Scalar under test gives it and as double does.
+/// A shape under a time law, types erased, in the Scalar under test and in double.
 struct ErasedPath {
   std::string name;
   bool closed;
@@ -76,7 +76,7 @@ std::vector<ErasedPath> paths() {
 
 class Paths : public ::testing::TestWithParam<ErasedPath> {
  protected:
-  static constexpr double kSteep = 20.0;  ///< No shape above is steeper in s [m].
+  static constexpr double kSteep = 20.0;  ///< Upper bound on the slopes of the shapes above in s [m].
 };
 
 TEST_P(Paths, differentiate_as_xd_and_xdd_say) {
@@ -94,7 +94,7 @@ TEST_P(Paths, are_the_same_in_every_scalar) {
     const Sample2 at = GetParam().sample(t);
     const Sample2 expected = GetParam().sample_in_double(t);
     const double round_off = 16.0 * GetParam().epsilon;
-    // Round-off of s comes first, and each derivative of a shape is steeper than the one before.
+    // The round-off of s counts most, and each derivative of a shape is steeper than the one before.
     EXPECT_LE((at.x - expected.x).norm(), round_off * kSteep) << "t = " << t;
     EXPECT_LE((at.xd - expected.xd).norm(), round_off * kSteep) << "t = " << t;
     EXPECT_LE((at.xdd - expected.xdd).norm(), round_off * kSteep * kSteep / kT) << "t = " << t;
@@ -132,7 +132,7 @@ TEST_P(Paths, hold_at_rest_outside_their_time) {
 
 INSTANTIATE_TEST_SUITE_P(every, Paths, ::testing::ValuesIn(paths()), [](const auto& each) { return each.param.name; });
 
-/// The paths as the paper gives them, with φ(t) = 2π sin²(πt / 2T).
+/// The paths as printed in the paper, with φ(t) = 2π sin²(πt / 2T).
 TEST(PaperPaths, are_the_papers_formulas) {
   for (double t = 0.0; t <= kDuration; t += 0.0625) {
     const double phi = 2.0 * kPi * std::pow(std::sin(kPi * t / (2.0 * kDuration)), 2);

@@ -9,8 +9,8 @@
 #include "fpbm/model/serial_arm.hpp"
 #include "support/random.hpp"
 
-/// The arms of presets.hpp against models of other origin, and the Denavit-Hartenberg tables they are built from
-/// against plain products.
+/// The arms of presets.hpp against models from other sources, and Denavit-Hartenberg tables against products of their
+/// factors.
 namespace fpbm::test {
 namespace {
 
@@ -48,7 +48,7 @@ std::vector<std::string> names_of(const Chain<>& chain) {
 
 /// Poses: panda.urdf of example-robot-data 6.0.0, panda_link8, by Pinocchio 4.1.0. Bounds: franka_ros,
 /// franka_description/robots/panda/joint_limits.yaml; of acceleration: franka_rust 0.1.15.
-TEST(Presets, panda_is_the_others_panda) {
+TEST(Presets, panda_agrees_with_other_models) {
   const Chain<> panda = presets::panda();
   // clang-format off
   expect_tip(panda, Vector<7>::Zero(), {
@@ -76,7 +76,7 @@ TEST(Presets, panda_is_the_others_panda) {
 }
 
 /// Franka: "The arm can reach its maximum extension when joint 4 has angle −0.467002423653011 rad".
-TEST(Presets, panda_reaches_farthest_where_its_maker_says) {
+TEST(Presets, panda_reaches_farthest_where_its_manufacturer_says) {
   Chain<> to_wrist = presets::panda();
   to_wrist.tip = to_wrist.joints[5].placement;
   to_wrist.joints.resize(5);
@@ -96,7 +96,7 @@ TEST(Presets, panda_reaches_farthest_where_its_maker_says) {
 
 /// Poses: the joint frames of mujoco_menagerie's iiwa14.xml, by Pinocchio 4.1.0. Bounds: Drake, iiwa_constants.cc, and
 /// lbr_fri_ros2_stack, joint_limits.yaml.
-TEST(Presets, iiwa14_is_the_others_iiwa14) {
+TEST(Presets, iiwa14_agrees_with_other_models) {
   const Chain<> iiwa14 = presets::iiwa14();
   // clang-format off
   expect_tip(iiwa14, Vector<7>::Zero(), {
@@ -125,7 +125,7 @@ TEST(Presets, iiwa14_is_the_others_iiwa14) {
 
 /// Poses: the joint frames of mujoco_menagerie's gen3.xml, by Pinocchio 4.1.0, and table 94 of the User Guide, R07, as
 /// it is printed: rounded to 0.1 mm. Bounds of position: menagerie's.
-TEST(Presets, gen3_is_the_others_gen3) {
+TEST(Presets, gen3_agrees_with_other_models) {
   const Chain<> gen3 = presets::gen3();
   const Vector<7> home = kDegree * Vector<7>(0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0);
   const Vector<7> generic{0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5};

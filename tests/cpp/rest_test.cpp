@@ -3,7 +3,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-/// What becomes of the self-motion. None of the paper's schemes damps it; the secondary motion z does.
+/// Self-motion: none of the paper's schemes damps it; the secondary motion z does.
 namespace fpbm::test {
 namespace {
 
@@ -12,8 +12,8 @@ Recording<4> circle_and_hold(const NullSpace<4>& null_space) {
                   TimeGrid<>(kDuration, 1e-3, 30.0));
 }
 
-/// Largest way of any joint during the hold [rad].
-double way_during_hold(const Recording<4>& run) {
+/// Largest travel of any joint during the hold [rad].
+double travel_during_hold(const Recording<4>& run) {
   return (run.result.last.q - run.samples[10000].q).cwiseAbs().maxCoeff();
 }
 
@@ -21,25 +21,25 @@ TEST(Rest, is_never_reached_without_damping) {
   const auto run = circle_and_hold({});
   ASSERT_EQ(run.result.status, Status::kOk);
   EXPECT_GT(run.result.last.qd.norm(), 1e-3);
-  EXPECT_NEAR(way_during_hold(run), 0.66, 0.005);
-  EXPECT_LE(run.max_error(), 1e-12) << "the tip is at rest all the while";
+  EXPECT_NEAR(travel_during_hold(run), 0.66, 0.005);
+  EXPECT_LE(run.max_error(), 1e-12) << "the tip is at rest meanwhile";
 }
 
 TEST(Rest, is_reached_with_damping) {
   const auto run = circle_and_hold(NullSpace<4>{}.with_damping(2.0));
   ASSERT_EQ(run.result.status, Status::kOk);
   EXPECT_LT(run.result.last.qd.norm(), 1e-6);
-  EXPECT_NEAR(way_during_hold(run), 0.004, 0.0005);
-  EXPECT_LE(run.max_error(), 1e-12) << "and the task does not notice";
+  EXPECT_NEAR(travel_during_hold(run), 0.004, 0.0005);
+  EXPECT_LE(run.max_error(), 1e-12) << "the task is not disturbed";
 }
 
-/// Chained circles: with a rest posture the arm repeats itself, without damping it does not.
+/// Circle after circle, the arm repeats its motion with a rest posture; without one it drifts.
 TEST(Rest, posture_makes_circles_repeat) {
   const TimeGrid<> grid(kDuration, 5e-3);
   const auto chain = [&](const NullSpace<4>& null_space, auto&& each) {
     State<4> state = paper_start();
     for (int circle = 1; circle <= 20; ++circle) {
-      const auto result = rollout(paper_arm(), paper_circle(), paper_fpbm(null_space), state, grid, [](const auto&) {});
+      const auto result = recorded(paper_arm(), paper_circle(), paper_fpbm(null_space), state, grid).result;
       ASSERT_EQ(result.status, Status::kOk) << "circle " << circle;
       state = result.last;
       each(circle, state);

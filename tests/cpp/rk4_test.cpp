@@ -36,7 +36,7 @@ TEST(RK4, is_of_order_four) {
 
 State<4> end_of_circle(int steps) {
   const TimeGrid<> grid(kDuration, kDuration / steps);
-  return rollout(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), grid, [](const auto&) {}).last;
+  return recorded(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), grid).result.last;
 }
 
 TEST(RK4, is_of_order_four_in_a_rollout) {
@@ -46,7 +46,7 @@ TEST(RK4, is_of_order_four_in_a_rollout) {
   EXPECT_NEAR(order(error(400), error(800)), 4.0, 0.1);
 }
 
-TEST(RK4, takes_the_first_slope_as_given_or_works_it_out) {
+TEST(RK4, takes_the_first_slope_as_given_or_evaluates_it) {
   Vector<2> x(1.5, -0.5);
   Vector<2> y = x;
   Vector<2> slope;
@@ -86,7 +86,7 @@ TEST(RK4, evaluates_at_the_ends_and_twice_in_the_middle) {
   EXPECT_EQ(times[1], 2.25);
   EXPECT_EQ(times[2], 2.25);
   EXPECT_EQ(times[3], 2.5);
-  // The Taylor series of eʰ as far as h⁴, in float throughout.
+  // The Taylor series of eʰ up to h⁴, in float.
   EXPECT_NEAR(x, 1.0 + 0.5 + 0.125 + 0.125 / 6.0 + 0.0625 / 24.0, 2e-7);
 }
 

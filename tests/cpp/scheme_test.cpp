@@ -6,7 +6,7 @@
 
 #include "support/subjects.hpp"
 
-/// What every scheme owes, whatever the arm, its number of joints and the Scalar.
+/// Laws of every scheme, on every arm, for every number of joints and Scalar.
 namespace fpbm::test {
 namespace {
 
@@ -35,15 +35,15 @@ class SchemeLaws : public ::testing::TestWithParam<Subject> {
     }
   }
 
-  /// What the subject makes of a scene that it must be able to resolve.
+  /// The answer to a scene that the subject must resolve.
   static Outcome resolved(const Law& law, const Scene& scene) {
     Outcome outcome = GetParam().resolve(law, scene);
     EXPECT_EQ(outcome.status, Status::kOk);
     return outcome;
   }
 
-  /// Round-off to expect in u. The schemes solve with JJᵀ and JW⁻¹Jᵀ, whose condition is that of J squared; and it is
-  /// the terms that are rounded, which may be larger than their sum.
+  /// Expected round-off in u. The schemes solve with JJᵀ and JW⁻¹Jᵀ, whose condition is that of J squared; and each term
+  /// is rounded, which may be larger than the sum.
   static double tolerance(const Law& law, const Situation& at) {
     const RealMatrix Winv = real(law.W).inverse();
     const double relative = 8.0 * GetParam().epsilon *
@@ -56,7 +56,7 @@ class SchemeLaws : public ::testing::TestWithParam<Subject> {
   }
 };
 
-/// (3), (5) to (9), (13), (16) as printed.
+/// The answers are those of (3), (5) to (9), (13) and (16) as printed.
 TEST_P(SchemeLaws, equals_the_textbook) {
   everywhere([](const Scene& scene, const Law& law) {
     const Outcome outcome = resolved(law, scene);
@@ -72,7 +72,7 @@ TEST_P(SchemeLaws, moves_the_tip_as_commanded) {
   });
 }
 
-/// J N_W = 0 (Lemma 2) through the scheme; and z does act where there is a null space for it to act in.
+/// J N_W = 0 (Lemma 2): z does not change the task; and where there is a null space it changes u.
 TEST_P(SchemeLaws, a_secondary_motion_leaves_the_task_alone) {
   everywhere([](const Scene& scene, const Law& law) {
     if (!law.has_null_space) return;
@@ -99,7 +99,7 @@ TEST_P(SchemeLaws, only_the_ratios_of_the_weights_matter) {
   });
 }
 
-/// A straight arm cannot move its tip along itself: refused, and the output stays as it was.
+/// A straight arm cannot move its tip along its links: the scheme refuses and leaves u alone.
 TEST_P(SchemeLaws, a_singular_posture_is_refused) {
   everywhere([](Scene scene, const Law& law) {
     for (const double direction : {0.0, 0.3, 2.0}) {
@@ -112,10 +112,10 @@ TEST_P(SchemeLaws, a_singular_posture_is_refused) {
   });
 }
 
-/// Whatever is not finite, in state or reference, gives a status and no output.
+/// A state or reference that is not finite gives a status, and u is left alone.
 TEST_P(SchemeLaws, what_is_not_finite_is_refused) {
   const Subject& subject = GetParam();
-  const bool acceleration = subject.level == Level::kAcceleration;
+  const bool acceleration = subject.takes.acceleration;
   everywhere([&](const Scene& good, const Law& law) {
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       const auto expect_refusal = [&](const char* what, auto&& member) {
@@ -136,7 +136,7 @@ TEST_P(SchemeLaws, what_is_not_finite_is_refused) {
         expect_refusal(
             "xd", [](Scene & scene) -> auto& { return scene.xd; });
       }
-      if (subject.kind == Kind::kFPBM || !acceleration) {
+      if (subject.takes.feedback) {
         expect_refusal(
             "x", [](Scene & scene) -> auto& { return scene.displacement; });
       }

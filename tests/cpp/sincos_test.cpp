@@ -13,7 +13,7 @@ namespace {
 
 constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
 
-/// Largest absolute error of both functions at an angle, alone and as the first of a vector.
+/// Largest absolute error of sine and cosine of an angle, by itself and as the first of a vector.
 double error_at(double angle) {
   const SinCos<double> alone = sincos(angle);
   const Vector<3> angles(angle, 0.5, -1.0);
@@ -30,7 +30,7 @@ double worst_over(double range, int samples) {
   Random random(7);
   double worst = 0.0;
   for (int i = 0; i < samples; ++i) {
-    // PlainPair draws: the numbers of Random have the 24 bits of a float, and the low bits of an angle are to vary as well.
+    // Two draws: Random gives floats, whose 24 bits would leave the low bits of an angle zero.
     const double angle = random.uniform(-range, range) + random.uniform(-1.0, 1.0) * 1e-7 * range;
     worst = std::max(worst, error_at(std::clamp(angle, -range, range)));
   }
@@ -46,7 +46,7 @@ TEST(SinCos, is_exact_to_round_off_in_reach) {
   }
 }
 
-/// Where the reduction cancels most, and where the quadrant changes.
+/// There the reduction of the angle cancels most, and the quadrant changes.
 TEST(SinCos, is_exact_at_multiples_of_a_quarter_turn) {
   double worst = 0.0;
   for (int k = -318000; k <= 318000; k += 7) {
@@ -63,7 +63,7 @@ TEST(SinCos, falls_back_beyond_its_reach) {
   for (const double angle : {std::nextafter(ReducedSinCos::kReach, 1e9), 1e6, -1e9, 1e15, 1e300}) {
     EXPECT_LE(error_at(angle), 2e-16) << angle;
   }
-  // One angle out of reach takes the whole vector the slow way, to the same round-off.
+  // One angle out of reach sends the whole vector through the slow code, to the same round-off.
   const Vector<3> angles(1.0, 1e9, -2.0);
   Vector<3> sines;
   Vector<3> cosines;

@@ -4,8 +4,8 @@
 
 #include "fpbm/fpbm.hpp"
 
-/// A day at 1 kHz, 8.64e7 ticks or as many as are asked for, of one circle after the other: the posture at the end of
-/// each circle is that of the circle before, to 1e-6 rad after the second. Prints the largest difference.
+/// Circles for a day at 1 kHz, 8.64e7 ticks, or for the number of ticks given. From the second circle on the posture at
+/// the end of each must be the same, to 1e-6 rad. Prints the largest difference.
 int main(int argc, char** argv) {
   using namespace fpbm;
   constexpr long kTicksPerCircle = 10000;
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
 
   const Vector<4> q0(0.3, 0.8, -0.5, 0.6);
   const auto z = NullSpace<4>{}.with_damping(2.0).with_rest_posture(q0, 1.0);
-  const FPBM<4> scheme(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
+  const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
   Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, q0);
   const Path path(Circle(0.5), kTicksPerCircle * 1e-3);
   const auto start = tracker.tip();
@@ -23,9 +23,9 @@ int main(int argc, char** argv) {
   double error = 0.0;
   long circles = 0;
   for (; static_cast<double>(circles * kTicksPerCircle) < ticks; ++circles) {
-    PathFollower course(path, start);
+    PathFollower follower(path, start);
     for (long i = 0; i < kTicksPerCircle; ++i) {
-      const auto tick = tracker.tick(course);
+      const auto tick = tracker.tick(follower);
       if (failed(tick.status)) {
         std::printf("circle %ld, tick %ld: %s\n", circles, i, message(tick.status));
         return EXIT_FAILURE;

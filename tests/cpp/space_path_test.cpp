@@ -11,7 +11,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// Paths in space, of poses, through waypoints and one after another.
+/// Paths in space, paths of poses, waypoints and sequences.
 namespace fpbm::test {
 namespace {
 
@@ -34,7 +34,7 @@ std::vector<typename Space::template Point<double>> random_points(Random& random
   return points;
 }
 
-/// xd is the rate of x by ⊖, and xdd that of xd, away from where xdd steps.
+/// xd is the rate of x by ⊖, and xdd that of xd, except where xdd steps.
 template <typename Path>
 void expect_exact_derivatives(const Path& path, const std::vector<double>& steps_at = {}) {
   using Space = typename Path::Space;
@@ -54,7 +54,7 @@ void expect_exact_derivatives(const Path& path, const std::vector<double>& steps
   }
 }
 
-/// At rest at both ends and outside of them, starting at the origin; with no step of xdd either.
+/// At rest at both ends and outside, from the origin, without a step of xdd.
 template <typename Path>
 void expect_smooth_ends(const Path& path) {
   using Space = typename Path::Space;
@@ -130,7 +130,7 @@ TEST(Waypoints, pass_every_point_on_time) {
   expect_waypoints<Pose>();
 }
 
-/// Least jerk is what makes jerk and snap continuous: one-sided differences of acceleration across each knot.
+/// A spline of least jerk has continuous jerk and snap: one-sided differences of acceleration agree across each knot.
 TEST(Spline, has_four_continuous_derivatives) {
   Random random(6);
   std::vector<Vector<2>> points;
@@ -143,7 +143,7 @@ TEST(Spline, has_four_continuous_derivatives) {
   for (std::size_t i = 1; i + 1 < times.size(); ++i) {
     constexpr double kStep = 1e-3;
     const auto at = [&](int steps) { return Vector<2>(spline.at(times[i] + steps * kStep).xdd); };
-    // Within a piece acceleration is a cubic, of which these four points are exact.
+    // Within a piece the acceleration is a cubic, which four points determine.
     const auto jerk = [&](int way) {
       return Vector<2>((-11 * at(0) + 18 * at(way) - 9 * at(2 * way) + 2 * at(3 * way)) / (6 * way * kStep));
     };
@@ -173,7 +173,7 @@ TEST(Waypoints, turn_through_more_than_half_a_turn) {
   EXPECT_NEAR(turned, 4 * kPi, 1e-4);
 }
 
-/// The fastest within its bounds: none is passed, and one is all but reached.
+/// The fastest path within the bounds exceeds none of them and nearly reaches one.
 TEST(Waypoints, keep_their_bounds) {
   Random random(2);
   for (int trial = 0; trial < 20; ++trial) {
@@ -205,32 +205,33 @@ TEST(Sequence, is_one_path_and_then_the_other) {
   EXPECT_LE((both.sample(3.0).x.p - Vector<3>(0.1, 0.0, 0.3)).norm(), 1e-15);
   const Matrix<3, 3> turned = rotation(Vector<3>(0.5, 0, 0)) * rotation(Vector<3>(0, 0, 1.0));
   EXPECT_LE((both.sample(3.0).x.R - turned).norm(), 1e-14);
-  // Where xdd steps, each integrator's step stays within its piece.
+  // Where xdd steps, a step of an integrator stays within its piece.
   EXPECT_LE((both.sample(2.0, 1.99).xdd - first.sample(2.0).xdd).norm(), 0.0);
   EXPECT_LE((both.sample(2.0, 2.0).xdd - second.sample(0.0).xdd).norm(), 0.0);
   EXPECT_GT((first.sample(2.0).xdd - second.sample(0.0).xdd).norm(), 0.1);
 }
 
-/// MAN, which corrects nothing, tracks a sequence whose acceleration steps to round-off: no step of RK4 straddles it.
+/// MAN, which corrects nothing, tracks a sequence to round-off although its acceleration steps: no step of RK4 straddles
+/// the joint between the pieces.
 TEST(Sequence, is_integrated_piece_by_piece) {
   const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
   const Path circle(Circle(0.2), 2.0);
   const Sequence twice(circle, circle);
   const State<4> start{{0.3, 0.4, 0.5, 0.3}, Vector<4>::Zero()};
   double worst = 0.0;
-  const auto run = rollout(arm, twice, MAN<4>{}, start, TimeGrid<>(4.0, 1e-3),
+  const auto run = rollout(arm, twice, MAN<4>(), start, TimeGrid<>(4.0, 1e-3),
                            [&](const auto& sample) noexcept { worst = std::max(worst, sample.error.norm()); });
   EXPECT_EQ(run.status, Status::kOk);
   EXPECT_LE(worst, 1e-10);
 }
 
-/// Where a reference steps in velocity, on the way or at its end, the arm is not said to have lost it.
+/// A step of the reference's velocity, on the way or at its end, is not taken for a lost task.
 TEST(Sequence, may_step_in_velocity) {
   const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
   const Path circle(Circle(0.2), 4.0, ConstantSpeed{});
   const Path line(Line<2>({-0.2, 0.1}), 1.0, ConstantSpeed{});
   const State<4> start{{0.3, 0.4, 0.5, 0.3}, Vector<4>::Zero()};
-  const FPBM<4> scheme(0.6, DiagonalWeights<4>({1, 2, 3, 4}), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
+  const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>({1, 2, 3, 4}), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
   const auto status = [&](const auto& path, const auto& by) {
     return rollout(arm, path, by, start, TimeGrid<>(path.duration(), 1e-3, 2.0), [](const auto&) noexcept {}).status;
   };

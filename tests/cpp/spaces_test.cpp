@@ -7,7 +7,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// Task spaces, and arms and rollouts in each of them.
+/// Task spaces, with arms and rollouts in each.
 namespace fpbm::test {
 namespace {
 
@@ -31,7 +31,7 @@ TEST(Spaces, difference_and_displace_are_inverse_to_each_other) {
   }
 }
 
-/// Near half a turn the error is near π still, and points along the axis: no digit lost, no jump but that of the sign.
+/// Near half a turn the error is near π and points along the axis, to the last digits; at π its sign may change.
 TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
   Random random(2);
   for (const double short_of : {1e-1, 1e-4, 1e-8, 1e-12}) {
@@ -40,7 +40,7 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
       const Matrix<3, 3> R = rotation(Vector<3>(random.uniform(3, -1.8, 1.8)));
       const Transform<> x{Vector<3>::Zero(), rotation(Vector<3>((kPi - short_of) * axis)) * R};
       const Vector<3> e = Pose::difference<double>(x, {Vector<3>::Zero(), R}).tail<3>();
-      // Within round-off of π the two ways round are the same turn.
+      // Within round-off of π both signs are the same rotation.
       const double sign = e.dot(axis) > 0.0 || short_of > 1e-10 ? 1.0 : -1.0;
       EXPECT_LE((e - sign * (kPi - short_of) * axis).norm(), 1e-13) << short_of;
       EXPECT_NEAR(e.norm(), kPi - short_of, 1e-14);
@@ -48,7 +48,7 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
   }
 }
 
-TEST(Spaces, planar_angles_go_the_shorter_way) {
+TEST(Spaces, planar_angles_take_the_shorter_way) {
   EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 3.0}, {0, 0, -3.0})(2), 6.0 - kTwoPi, 1e-15);
   EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 40.0}, {0, 0, 1.0})(2), 39.0 - 6 * kTwoPi, 1e-14);
 }
@@ -72,8 +72,8 @@ TEST(PlanarArm, has_a_pose) {
   }
 }
 
-/// A follower's columns go to its leader, and its rates are the derivatives.
-TEST(CoupledArm, moves_its_followers) {
+/// A mimic joint's column of J is added to its leader's, and J and Jd are the derivatives.
+TEST(CoupledArm, moves_its_mimic_joints) {
   Chain<> chain = presets::panda();
   chain.joints[3].mimic = {1, -2.0, 0.4};
   chain.joints[5].mimic = {1, 0.5, 0.0};
@@ -120,12 +120,12 @@ TEST(CoupledArm, moves_its_followers) {
   EXPECT_THROW(SerialArm<7>{chain}, std::invalid_argument);
 }
 
-/// The Panda holds its hand level along a circle, or turns it, for 10 s at 1 kHz.
+/// The Panda holds its orientation along a circle, or turns, for 10 s at 1 kHz.
 TEST(PoseTask, is_tracked_from_a_consistent_start) {
   const SerialArm<7> arm(presets::panda());
   const State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, Vector<7>::Zero()};
   const DiagonalWeights<7> weights({1, 1, 1, 1, 2, 2, 2});
-  const FPBM<7> fpbm(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
+  const auto fpbm = FPBM<7>(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
   const auto expect_tracked = [&](const auto& path, const auto& scheme) {
     double position = 0.0;
     double turn = 0.0;
@@ -140,17 +140,17 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
   const InPlane circle(Path(Circle(0.1), 10.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
   expect_tracked(WithRotation(circle), fpbm);
   expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), fpbm);
-  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>{});
+  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>());
   expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(weights));
-  expect_tracked(WithRotation(circle), MAN<7>{});
+  expect_tracked(WithRotation(circle), MAN<7>());
 }
 
-/// Out of reach, from any start: it stops before the way leaves the ball that no flange leaves, and the tip has not
-/// gone astray by more than one step of its reference; whatever is recorded is finite.
+/// From any start, a path out of reach ends before it leaves the ball that the flange cannot leave. The tip is never
+/// further from its reference than one step, and every sample is finite.
 TEST(PoseTask, that_leaves_the_workspace_ends) {
   const SerialArm<7> arm(presets::panda());
   const JointLimits<7>& limits = arm.limits();
-  constexpr double kReach = 1.2;  // More than all links in a row, from the shoulder 0.333 m up.
+  constexpr double kReach = 1.2;  // Longer than all links in a row, from the shoulder at 0.333 m.
   Random random(7);
   const auto expect_end = [&](const auto& scheme, const auto& path, double speed) {
     State<7> start{Vector<7>::Zero(), Vector<7>::Zero()};
@@ -180,24 +180,24 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
     const double speed = kPi / 2 * way.norm() / 4.0;
     const DiagonalWeights<7> weights(Vector<7>(random.uniform(7, 1, 4)));
     const WithRotation turned(line, Vector<3>(random.uniform(3, -1, 1)));
-    expect_end(MVN<7>{}, line, speed);
-    expect_end(MAN<7>{}, line, speed);
+    expect_end(MVN<7>(), line, speed);
+    expect_end(MAN<7>(), line, speed);
     expect_end(WMVN<7>(weights, 5.0), turned, speed);
-    expect_end(MAN<7>{}, turned, speed);
+    expect_end(MAN<7>(), turned, speed);
     expect_end(FPBM<7>(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0)), turned, speed);
   }
 }
 
-/// From a start 0.6 rad and 5 cm off, at rest: position errors, and orientation errors where the target is at rest, go
-/// as ë + k₁ė + k₂e = 0 has it; where the target turns, the orientation's error dies at that rate.
+/// From a start at rest, 0.6 rad and 5 cm off: position errors obey ë + k₁ė + k₂e = 0, and so do orientation errors where
+/// the target is at rest. Where the target turns, the orientation error decays at the same rate.
 TEST(PoseTask, converges_at_the_rate_of_its_gains) {
   using Arm = SerialArm<7>;
-  using Scheme = FPBM<7>;
+  using Scheme = AccelerationScheme<7>;
   using Loop = ClosedLoop<Arm, Scheme, Pose>;
   const Arm arm(presets::panda());
   const double k1 = 7.0;
   const double k2 = 10.0;  // Roots −2 and −5.
-  const Scheme scheme(0.6, DiagonalWeights<7>(Vector<7>::Ones()), k1, k2, NullSpace<7>{}.with_damping(2.0));
+  const Scheme scheme = FPBM<7>(0.6, DiagonalWeights<7>(Vector<7>::Ones()), k1, k2, NullSpace<7>{}.with_damping(2.0));
   for (const double rate : {0.0, 0.4}) {
     Loop loop{arm, scheme, {}, {}, Vector<7>::Zero()};
     Loop::X x = Loop::X::Zero();
@@ -226,7 +226,7 @@ TEST(PoseTask, converges_at_the_rate_of_its_gains) {
       if (rate == 0.0) {
         ASSERT_LE((e.tail<3>() - fading * e0.tail<3>()).norm(), 1e-9) << t;
       } else {
-        // ė starts from the target's rate, and not from zero.
+        // ė starts with the target's angular velocity.
         ASSERT_LE(e.tail<3>().norm(), 2.0 * (e0.tail<3>().norm() + rate / 2) * std::exp(-2.0 * t)) << t;
       }
     }

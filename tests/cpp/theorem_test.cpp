@@ -11,11 +11,11 @@
 namespace fpbm::test {
 namespace {
 
-/// Subjects of (7) paired with those of (9) on the same arm and weights.
+/// Subjects of (7), each with that of (9) on the same arm and weights.
 std::vector<std::pair<Subject, Subject>> pairs() {
   std::vector<std::pair<Subject, Subject>> all;
   for (const Subject& velocity : subjects()) {
-    if (velocity.kind != Kind::kWMVN || velocity.epsilon > 1e-10) continue;
+    if (velocity.takes.acceleration || !velocity.takes.weights || velocity.epsilon > 1e-10) continue;
     for (const Subject& acceleration : subjects()) {
       const std::string partner = "WMVNAcceleration" + velocity.name.substr(std::string("WMVN").size());
       if (acceleration.name == partner) all.emplace_back(velocity, acceleration);
@@ -24,7 +24,7 @@ std::vector<std::pair<Subject, Subject>> pairs() {
   return all;
 }
 
-/// At one instant: along qd = J_W⁺xd with xd moving at xdd, the rate of (7) is (9).
+/// At one instant: along qd = J_W⁺xd, with xd changing at xdd, the derivative of (7) is (9).
 TEST(Theorem1, is_true_at_every_instant) {
   EXPECT_EQ(pairs().size(), 16U);
   for (const auto& pair : pairs()) {
@@ -37,7 +37,8 @@ TEST(Theorem1, is_true_at_every_instant) {
       Law law = random_law(random, velocity, false);
       law.k = 0.0;
       Law differentiated = law;
-      differentiated.kind = Kind::kWMVNAcceleration;
+      differentiated.acceleration = true;
+      differentiated.k1 = differentiated.k2 = 0.0;
       scene.qd = velocity.resolve(law, scene).u.cast<double>();
       const RealVector qdd = acceleration.resolve(differentiated, scene).u;
 
@@ -60,10 +61,10 @@ void expect_same_motion(const Arm& arm, const Path& path, const Weights& weights
   constexpr int N = Arm::kDof;
   const TimeGrid<> grid(path.duration(), 1e-3);
   const State<N> at_rest{q0, 0.0 * q0};
-  const auto velocity = recorded(arm, path, WMVN<N, double, Weights>(weights), at_rest, grid);
+  const auto velocity = recorded(arm, path, WMVN<N>(weights), at_rest, grid);
   ASSERT_EQ(velocity.result.status, Status::kOk);
   const State<N> start{q0, velocity.samples.front().qd};
-  const auto acceleration = recorded(arm, path, WMVNAcceleration<N, double, Weights>(weights), start, grid);
+  const auto acceleration = recorded(arm, path, WMVNAcceleration<N>(weights), start, grid);
   ASSERT_EQ(acceleration.result.status, Status::kOk);
   ASSERT_EQ(velocity.samples.size(), acceleration.samples.size());
   double worst = 0.0;
@@ -78,7 +79,7 @@ TEST(Theorem1, is_true_over_the_papers_circle) {
   expect_same_motion(paper_arm(), paper_circle(), paper_weights(), paper_start().q);
 }
 
-/// From a start in motion, which the paper's time law does not have, under dense weights.
+/// From a start in motion, which the paper's time law does not have, with dense weights.
 TEST(Theorem1, is_true_from_a_start_in_motion) {
   const Vector<7> q0 = Vector<7>::Constant(0.25);
   const DenseWeights<7> weights(Matrix<7, 7>(Random(5).positive_definite(7)));

@@ -10,7 +10,7 @@
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
 
-/// One tick of a control loop: follows, slows, pauses, stops, comes to rest at the edge of its reach and comes back.
+/// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
 namespace fpbm::test {
 namespace {
 
@@ -23,14 +23,14 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return q;
 }
 
-/// What a person would use: damped self-motion and a posture to return to.
-[[nodiscard]] FPBM<7> settling(double k1 = 10.0, double k2 = 25.0) {
+/// Usual settings: damped self-motion and a rest posture.
+[[nodiscard]] AccelerationScheme<7> settling(double k1 = 10.0, double k2 = 25.0) {
   Vector<7> weights;
   weights << 1, 2, 3, 4, 1, 1, 1;
   const auto z = NullSpace<7>{}.with_damping(4.0).with_rest_posture(bent(), 4.0);
-  return {0.6, DiagonalWeights<7>(weights), k1, k2, z};
+  return FPBM<7>(0.6, weights, k1, k2, z);
 }
-[[nodiscard]] MVN<7> settling_velocity() {
+[[nodiscard]] VelocityScheme<7, double, UnitWeights> settling_velocity() {
   return MVN<7>(5.0, NullSpace<7>{}.with_rest_posture(bent(), 1.0));
 }
 
@@ -38,7 +38,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return SerialArm<7>(presets::panda());
 }
 
-template <typename Space = Pose, typename Scheme = FPBM<7>>
+template <typename Space = Pose, typename Scheme>
 [[nodiscard]] auto panda_tracker(const Scheme& scheme, const TrackerOptions<>& options = {}) {
   return Tracker(panda(), Space{}, scheme, bent(), options);
 }
@@ -60,7 +60,7 @@ template <typename Space>
   return reference;
 }
 
-/// A tick and what every tick must keep.
+/// A tick, checked against the bounds.
 template <typename AnyTracker, typename Goal>
 auto checked_tick(AnyTracker& tracker, Goal& goal) {
   const auto bounds = tracker.arm().limits();
@@ -85,34 +85,34 @@ template <typename Result>
 TEST(Tracker, promises_not_to_throw) {
   auto tracker = panda_tracker(settling());
   auto reference = Reference<Pose>::hold(tracker.tip());
-  auto course = PathFollower(turning_circle(), tracker.tip());
+  auto follower = PathFollower(turning_circle(), tracker.tip());
   const Vector<7> q = bent();
-  static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(course)));
+  static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(follower)));
   static_assert(noexcept(tracker.resolve_measured(q, q, reference)));
   static_assert(noexcept(tracker.stop())&& noexcept(tracker.resume())&& noexcept(tracker.state()));
   static_assert(noexcept(tracker.tip()));
-  static_assert(noexcept(course.pause())&& noexcept(course.resume())&& noexcept(course.ahead(0.0)));
-  static_assert(noexcept(course.advance(0.0))&& noexcept(course.done())&& noexcept(course.time()));
+  static_assert(noexcept(follower.pause())&& noexcept(follower.resume())&& noexcept(follower.ahead(0.0)));
+  static_assert(noexcept(follower.advance(0.0))&& noexcept(follower.done())&& noexcept(follower.time()));
 }
 
 /// Far from every limit a tick is a step of RK4, to the last bit.
-TEST(Tracker, takes_the_very_steps_of_a_rollout) {
+TEST(Tracker, takes_the_steps_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
   (void)rollout(panda(), path, settling(), State<7>{bent(), Vector<7>::Zero()}, TimeGrid<>(4.0, kTick),
                 [&](const auto& sample) { q.push_back(sample.q); });
   ASSERT_EQ(q.size(), 4001U);
   auto tracker = panda_tracker(settling());
-  PathFollower course(path, tracker.tip());
+  PathFollower follower(path, tracker.tip());
   for (int i = 0; i < 4000; ++i) {
-    const auto tick = checked_tick(tracker, course);
+    const auto tick = checked_tick(tracker, follower);
     ASSERT_EQ(tick.status, Status::kOk);
     ASSERT_EQ(tick.scale, 1.0);
     ASSERT_EQ(tick.saturated, 0U);
     ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-13) << i;
     ASSERT_LE(tick.error.norm(), 1e-11);
   }
-  EXPECT_EQ(course.time(), 4.0);  // Not a round-off late, whatever the number of ticks.
+  EXPECT_EQ(follower.time(), 4.0);  // Exactly, whatever the number of ticks.
 }
 
 TEST(Tracker, gives_the_same_bits_for_the_same_inputs) {
@@ -129,7 +129,7 @@ TEST(Tracker, gives_the_same_bits_for_the_same_inputs) {
   }
 }
 
-/// Targets that change in mid-motion.
+/// Targets that change while the arm moves.
 template <typename Space, typename Scheme>
 void expect_to_reach_changing_targets(const Scheme& scheme) {
   auto tracker = panda_tracker<Space>(scheme);
@@ -145,99 +145,99 @@ void expect_to_reach_changing_targets(const Scheme& scheme) {
   EXPECT_LE(tracker.tick(home).error.norm(), 1e-9);
   EXPECT_LE(tracker.state().qd.norm(), 1e-3);
 }
-TEST(Tracker, reaches_targets_that_change_on_the_fly) {
+TEST(Tracker, reaches_targets_that_change) {
   expect_to_reach_changing_targets<Pose>(settling());
   expect_to_reach_changing_targets<Position<3>>(settling());
   expect_to_reach_changing_targets<Pose>(settling_velocity());
   expect_to_reach_changing_targets<Position<3>>(settling_velocity());
 }
 
-/// The tip stays on its path while the clock comes to rest and goes on again, even if one changes one's mind.
+/// The tip stays on its path while the clock pauses and resumes, also when it resumes before it has paused.
 TEST(Tracker, pauses_and_resumes_on_its_path) {
   auto tracker = panda_tracker(settling());
-  PathFollower course(turning_circle(), tracker.tip(), 0.5);
+  PathFollower follower(turning_circle(), tracker.tip(), 0.5);
   const auto go = [&](int ticks) {
     for (int i = 0; i < ticks; ++i) {
-      const auto tick = checked_tick(tracker, course);
+      const auto tick = checked_tick(tracker, follower);
       ASSERT_EQ(tick.status, Status::kOk);
-      // The path's end comes in mid-tick now, and its acceleration jumps there.
-      ASSERT_LE(tick.error.norm(), course.time() < 4.0 ? 1e-9 : 1e-5);
+      // The path now ends within a tick, and its acceleration jumps there.
+      ASSERT_LE(tick.error.norm(), follower.time() < 4.0 ? 1e-9 : 1e-5);
     }
   };
   go(1500);
-  course.pause();
+  follower.pause();
   go(600);
-  const double paused = course.time();
+  const double paused = follower.time();
   EXPECT_NEAR(paused, 1.5 + 0.25, 1e-9);
-  EXPECT_EQ(course.ahead(0.0).xd.norm(), 0.0);
+  EXPECT_EQ(follower.ahead(0.0).xd.norm(), 0.0);
   go(500);
-  EXPECT_EQ(course.time(), paused);
-  course.resume();
+  EXPECT_EQ(follower.time(), paused);
+  follower.resume();
   go(200);
-  course.pause();
+  follower.pause();
   go(100);
-  course.resume();
+  follower.resume();
   go(8000);
-  EXPECT_TRUE(course.done());
-  EXPECT_LE(Pose::difference<double>(course.ahead(0.0).x, tracker.tip()).norm(), 1e-9);
+  EXPECT_TRUE(follower.done());
+  EXPECT_LE(Pose::difference<double>(follower.ahead(0.0).x, tracker.tip()).norm(), 1e-9);
 }
 
-/// The reference's velocity is the derivative of its position, and its acceleration of its velocity, in every phase.
-TEST(Tracker, has_courses_that_are_smooth) {
-  PathFollower course(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
+/// In every phase the reference's velocity is the derivative of its position, and its acceleration that of its velocity.
+TEST(Tracker, follows_paths_smoothly) {
+  PathFollower follower(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
   const double h = 1e-5;
   for (int i = 0; i < 1000; ++i) {
-    if (i == 200) course.pause();
-    if (i == 300 || i == 420) course.resume();
-    if (i == 400) course.pause();
-    const auto before = course.ahead(-h);
-    const auto now = course.ahead(0.0);
-    const auto after = course.ahead(h);
-    const bool turning = i == 0 || i == 200 || i == 300 || i == 400 || i == 420 || course.done();
+    if (i == 200) follower.pause();
+    if (i == 300 || i == 420) follower.resume();
+    if (i == 400) follower.pause();
+    const auto before = follower.ahead(-h);
+    const auto now = follower.ahead(0.0);
+    const auto after = follower.ahead(h);
+    const bool turning = i == 0 || i == 200 || i == 300 || i == 400 || i == 420 || follower.done();
     if (!turning) {
       ASSERT_LE(((after.x - before.x) / (2.0 * h) - now.xd).norm(), 1e-8) << i;
       ASSERT_LE(((after.xd - before.xd) / (2.0 * h) - now.xdd).norm(), 1e-6) << i;
     }
-    const auto ahead = course.ahead(4e-3);
-    course.advance(4e-3);
-    ASSERT_LE((course.ahead(0.0).x - ahead.x).norm(), 1e-14) << i;
-    ASSERT_LE((course.ahead(0.0).xd - ahead.xd).norm(), 1e-13) << i;
+    const auto ahead = follower.ahead(4e-3);
+    follower.advance(4e-3);
+    ASSERT_LE((follower.ahead(0.0).x - ahead.x).norm(), 1e-14) << i;
+    ASSERT_LE((follower.ahead(0.0).xd - ahead.xd).norm(), 1e-13) << i;
   }
 }
 
-/// A stop is as quick as the slowest joint's bound on acceleration allows, and keeps the joints' path straight.
+/// A stop is as quick as the slowest joint's acceleration allows, and keeps the joints' path straight.
 template <typename Scheme>
 void expect_to_stop(const Scheme& scheme) {
   auto tracker = panda_tracker(scheme);
-  PathFollower course(turning_circle(2.0), tracker.tip());
-  for (int i = 0; i < 900; ++i) checked_tick(tracker, course);
+  PathFollower follower(turning_circle(2.0), tracker.tip());
+  for (int i = 0; i < 900; ++i) checked_tick(tracker, follower);
   const State<7> moving = tracker.state();
-  const double time = course.time();
+  const double time = follower.time();
   const Vector<7> bound = tracker.arm().limits().acceleration;
   const double quickest = (moving.qd.cwiseAbs().array() / bound.array()).maxCoeff();
   ASSERT_GT(moving.qd.norm(), 0.1);
   tracker.stop();
   for (int i = 0; i * kTick <= quickest + 2.0 * kTick; ++i) {
-    EXPECT_EQ(checked_tick(tracker, course).scale, 0.0);
+    EXPECT_EQ(checked_tick(tracker, follower).scale, 0.0);
     const Vector<7> way = tracker.state().q - moving.q;
     EXPECT_LE((way - way.norm() * moving.qd.normalized()).norm(), 1e-12);
   }
   EXPECT_EQ(tracker.state().qd.norm(), 0.0);
-  EXPECT_EQ(course.time(), time);
+  EXPECT_EQ(follower.time(), time);
   const Vector<7> rest = tracker.state().q;
-  for (int i = 0; i < 100; ++i) checked_tick(tracker, course);
+  for (int i = 0; i < 100; ++i) checked_tick(tracker, follower);
   EXPECT_EQ(tracker.state().q, rest);
   tracker.resume();
-  for (int i = 0; i < 8000; ++i) checked_tick(tracker, course);
-  EXPECT_TRUE(course.done());
-  EXPECT_LE(tracker.tick(course).error.norm(), 1e-9);
+  for (int i = 0; i < 8000; ++i) checked_tick(tracker, follower);
+  EXPECT_TRUE(follower.done());
+  EXPECT_LE(tracker.tick(follower).error.norm(), 1e-9);
 }
 TEST(Tracker, stops_on_request_and_goes_on) {
   expect_to_stop(settling());
   expect_to_stop(settling_velocity());
 }
 
-/// A target out of reach, through the singular posture of the outstretched arm: at rest at the edge, then back.
+/// Led to a target out of reach, the arm passes the outstretched, singular posture, rests at the edge and comes back.
 template <typename Space, typename Scheme>
 void expect_to_come_back(const char* name, const Scheme& scheme) {
   for (const double forward : {0.4, 0.6, 0.9, 3.0}) {
@@ -271,14 +271,14 @@ TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
   expect_to_come_back<Position<3>>("MVN, position", settling_velocity());
 }
 
-/// Where limits leave next to nothing of what a stiff feedback asks for, the answer for a measured state still changes
-/// smoothly: next to no tick's acceleration jumps away and back again.
+/// Where limits allow only a small part of what a stiff feedback asks for, the answer for a measured state still changes
+/// smoothly: accelerations hardly ever jump to and fro.
 TEST(Tracker, does_not_chatter_out_of_reach) {
   const Vector<7> weights = (Vector<7>() << 8, 8, 4, 4, 2, 1, 1).finished();
   const auto z = NullSpace<7>{}.with_damping(10.0).with_rest_posture(bent(), 25.0);
-  const FPBM<7> stiff(0.6, DiagonalWeights<7>(weights), 60.0, 900.0, z);
+  const auto stiff = FPBM<7>(0.6, DiagonalWeights<7>(weights), 60.0, 900.0, z);
   auto bounds = panda().limits();
-  bounds.upper(3) = -0.47;  // The outstretched elbow. Bent the other way, the arm would not find home.
+  bounds.upper(3) = -0.47;  // The outstretched elbow: it must not bend the other way.
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
   for (const Vector<3>& leap : {Vector<3>(0.5, 0, 0), Vector<3>(0.5, 0.1, 0), Vector<3>(-0.4, 0, -0.3),
                                 Vector<3>(-0.4, 0.1, -0.3), Vector<3>(0, 0, 0.6)}) {
@@ -306,8 +306,8 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   }
 }
 
-/// The answer for a measured state is the scheme's own where no limit is near, and within the box where one is; the
-/// tracker's own state does not move.
+/// The answer for a measured state is the scheme's where no limit is near, and within the box elsewhere. The tracker's own
+/// state does not change.
 TEST(Tracker, answers_for_a_measured_state) {
   auto tracker = panda_tracker(settling());
   const auto home = Reference<Pose>::hold(tracker.tip());
@@ -348,8 +348,8 @@ TEST(Tracker, answers_for_a_measured_state) {
   EXPECT_EQ(lost.qdd, Vector<7>(Vector<7>::Zero()));
 }
 
-/// A constant disturbance: without the integral an error stays, with it none does; and it does not wind up.
-TEST(Tracker, takes_away_what_a_constant_bias_leaves) {
+/// The integral removes the error that a constant disturbance leaves, and does not wind up.
+TEST(Tracker, removes_the_error_of_a_constant_bias) {
   Vector<7> bias;
   bias << 0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1;
   const auto steady_error = [&](double gain, int ticks, double blocked_until) {
@@ -372,7 +372,7 @@ TEST(Tracker, takes_away_what_a_constant_bias_leaves) {
   EXPECT_LE(steady_error(50.0, 115000, 100.0), 1e-6);
 }
 
-/// Nonsense in the reference: the arm brakes, says why, and goes on when the nonsense is over.
+/// While the reference is not finite, the arm brakes and the status says why. After that it goes on.
 template <typename Scheme>
 void expect_to_brake_on_nonsense(const Scheme& scheme) {
   auto tracker = panda_tracker(scheme);
@@ -396,21 +396,21 @@ void expect_to_brake_on_nonsense(const Scheme& scheme) {
   for (int i = 0; i < 6000; ++i) checked_tick(tracker, home);
   EXPECT_LE(tracker.tick(home).error.norm(), 1e-9);
 }
-TEST(Tracker, brakes_on_nonsense) {
+TEST(Tracker, brakes_where_the_reference_is_not_finite) {
   expect_to_brake_on_nonsense(settling());
   expect_to_brake_on_nonsense(settling_velocity());
 }
 
-/// An hour at rest on a target, after a motion.
+/// An hour at rest on a target after a motion.
 TEST(Tracker, holds_at_rest_for_an_hour) {
   const auto z = NullSpace<4>{}.with_damping(2.0);
-  const FPBM<4> scheme(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
+  const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
   Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
-  PathFollower course(Path(Circle(0.3), 5.0), tracker.tip());
-  for (int i = 0; i < 65000; ++i) tracker.tick(course);
+  PathFollower follower(Path(Circle(0.3), 5.0), tracker.tip());
+  for (int i = 0; i < 65000; ++i) tracker.tick(follower);
   const Vector<4> start = tracker.state().q;
   double fastest = 0.0;
-  for (int i = 0; i < trials(3600000); ++i) fastest = std::max(fastest, tracker.tick(course).qd.cwiseAbs().maxCoeff());
+  for (int i = 0; i < trials(3600000); ++i) fastest = std::max(fastest, tracker.tick(follower).qd.cwiseAbs().maxCoeff());
   EXPECT_LE(fastest, 1e-9);
   EXPECT_LE((tracker.state().q - start).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -421,7 +421,7 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   };
   EXPECT_EQ(make({}), "");
   EXPECT_EQ(make({0.0}), "dt = 0: must be positive and finite");
-  EXPECT_EQ(make({kTick, -1.0}), "pull = -1: must be positive and finite");
+  EXPECT_EQ(make({kTick, -1.0}), "max_error = -1: must be positive and finite");
   EXPECT_EQ(make({kTick, 0.1, -1.0}), "integral_gain = -1: must be finite and not negative");
   EXPECT_EQ(make({kTick, 0.1, 1.0, 0.0}), "integral_bound = 0: must be positive and finite");
   Vector<7> q0 = bent();

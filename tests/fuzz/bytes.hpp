@@ -7,7 +7,7 @@
 
 #include <fpbm/fpbm.hpp>
 
-/// A fuzzer's bytes, read as numbers; zeros once they are used up.
+/// Reads a fuzzer's bytes as numbers, and zeros after the last byte.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
@@ -28,10 +28,10 @@ class Bytes {
 
   double within(double lower, double upper) { return lower + fraction() * (upper - lower); }
 
-  /// From lower to upper, small numbers as likely as great ones.
+  /// From lower to upper, evenly in the logarithm.
   double spread(double lower, double upper) { return lower * std::pow(upper / lower, fraction()); }
 
-  /// Anything that a double can be.
+  /// Any double.
   double any() {
     using Double = std::numeric_limits<double>;
     const double sign = (byte() & 1) != 0 ? -1.0 : 1.0;
@@ -52,10 +52,10 @@ class Bytes {
     return value;
   }
 
-  /// True in so many of 256 cases.
+  /// True in of_256 of 256 cases.
   bool chance(int of_256) { return byte() >= 256 - of_256; }
 
-  /// As a rule what is given, now and then anything.
+  /// Mostly the number given, sometimes any double.
   double mostly(double ordinary) { return chance(8) ? any() : ordinary; }
 
   template <typename Derived>

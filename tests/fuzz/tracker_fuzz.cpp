@@ -1,6 +1,6 @@
-// Makes states, references, options and limits of arbitrary bytes, and holds the tracker and the schemes to what they
-// promise: no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same
-// input, and a good tick again as soon as the reference is good again.
+// Makes states, references, options and limits of arbitrary bytes, and checks what the tracker and the schemes promise:
+// no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same input, and
+// a good tick again as soon as the reference is good again.
 
 #include <cmath>
 #include <cstdio>
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <fpbm/any/make_arm.hpp>
 #include <fpbm/fpbm.hpp>
-#include <fpbm/realtime/tracker.hpp>
 
 #include "bytes.hpp"
 
@@ -39,7 +39,7 @@ void require_same(const Result& a, const Result& b) {
           "the same input gives the same bits");
 }
 
-/// What holds of every result, whatever came in.
+/// Checks that hold for every result, whatever the input.
 template <typename Result>
 void require_sane(const Result& result) {
   require(result.qdd.allFinite(), "accelerations are finite");
@@ -49,7 +49,7 @@ void require_sane(const Result& result) {
   require(result.sigma >= 0.0 || !result.q.allFinite(), "a singular value is not negative");
 }
 
-/// Bounds and a tick, and how far rounding may take a joint beyond them.
+/// Checks bounds, up to round-off.
 template <int N>
 struct Keeper {
   fpbm::JointLimits<N> bounds;
@@ -62,7 +62,7 @@ struct Keeper {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       require(q(i) <= bounds.upper(i) + kSlack && q(i) >= bounds.lower(i) - kSlack, "positions keep their bounds");
       require(std::abs(qd(i)) <= bounds.velocity(i) + kSlack, "velocities keep their bounds");
-      // A difference of velocities over a tick has so much rounding.
+      // Round-off of a difference of velocities over a tick.
       const double rounding = 1e-15 * (std::abs(qd(i)) + std::abs(from.qd(i))) / tick;
       require(std::abs(qdd(i)) <= bounds.acceleration(i) * (1.0 + kSlack) + kSlack + rounding,
               "accelerations keep their bounds");
@@ -84,7 +84,7 @@ fpbm::Reference<Space> any_reference(Bytes& bytes, const typename Space::templat
   return {Space::template displace<double>(near, way), xd, xdd};
 }
 
-/// Ordinary bounds, infinite ones among them.
+/// Usual bounds, some of them infinite; rarely any bounds, which makes the case wild.
 template <int N>
 fpbm::JointLimits<N> any_limits(Bytes& bytes, Eigen::Index dof, bool& wild) {
   auto limits = fpbm::JointLimits<N>::none(dof);
@@ -104,7 +104,7 @@ fpbm::JointLimits<N> any_limits(Bytes& bytes, Eigen::Index dof, bool& wild) {
   return limits;
 }
 
-/// Within the bounds, and slow enough to stay there; as a rule.
+/// Mostly within the bounds, and slow enough to stay there.
 template <int N>
 fpbm::State<N> any_start(Bytes& bytes, const fpbm::JointLimits<N>& limits, bool& wild) {
   const Eigen::Index dof = limits.lower.size();
@@ -126,8 +126,8 @@ fpbm::State<N> any_start(Bytes& bytes, const fpbm::JointLimits<N>& limits, bool&
   return start;
 }
 
-/// Where a constructor takes a number beyond all measure, the arithmetic may overflow: the case is wild, and its bounds
-/// are not looked at.
+/// Where a constructor accepts a huge number, the arithmetic may overflow: the case is wild, and its bounds are not
+/// checked.
 double any_gain(Bytes& bytes, double most, bool& wild) {
   const double gain = bytes.mostly(bytes.within(0.0, most));
   wild = wild || !(gain <= most);
@@ -149,7 +149,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     options.dt = bytes.any();
     wild = true;
   }
-  options.pull = bytes.mostly(bytes.spread(1e-3, 1.0));
+  options.max_error = bytes.mostly(bytes.spread(1e-3, 1.0));
   if (bytes.chance(64)) options.integral_gain = any_gain(bytes, 100.0, wild);
   options.integral_bound = bytes.mostly(bytes.spread(1e-3, 10.0));
   options.singular = any_damping(bytes, wild);
@@ -158,7 +158,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
   const fpbm::Limits<Scheme::kLevel, N> limits(bounds, options.dt);
   Tracker_ tracker(arm, space, scheme, start, options, limits);
   Tracker_ twin(arm, space, scheme, start, options, limits);
-  // Where the tick or the start is beyond all measure, so is the way to rest.
+  // From a huge tick or start, the arm cannot brake without overflow.
   if (!(options.dt > 1e-9 && options.dt < 1e9 && start.q.norm() < 1e100 && start.qd.norm() < 1e100)) return;
   const Keeper<N> keeper{limits.bounds(), options.dt};
   constexpr bool kEvenly = Scheme::kLevel == fpbm::Level::kAcceleration;
@@ -208,8 +208,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     }
   }
 
-  // The past leaves no trace: where the tip is, it can be held. Joints without bounds may be too fast or too far by
-  // now.
+  // Whatever happened before, the tip can be held where it is; unless joints without bounds have become too fast.
   tracker.resume();
   const fpbm::State<N> before = tracker.state();
   wild = wild || before.qd.norm() > 1e3 || before.q.norm() > 1e6;
@@ -273,16 +272,16 @@ void run_any_scheme(Bytes& bytes, const Arm& arm, Space space) {
     w(i) = bytes.mostly(bytes.spread(0.1, 10.0));
     wild = wild || !(w(i) >= 0.1 && w(i) <= 10.0);
   }
-  const fpbm::DiagonalWeights<N> weights(w);
-  // Drawn before any of them is used: the order in which a call's arguments are evaluated is anyone's guess.
-  const double alpha = bytes.mostly(bytes.fraction());
+  // Equal weights make MVN of WMVN and, with alpha = 0, MAN of Balanced.
+  if ((which & 4) != 0) w.setOnes();
+  // Drawn one by one: C++ does not say in which order a call's arguments are evaluated.
+  const double alpha = (which & 8) != 0 ? 0.0 : bytes.mostly(bytes.fraction());
   const double k1 = any_gain(bytes, 100.0, wild);
   const double k2 = any_gain(bytes, 1000.0, wild);
   switch (which % 4) {
-    case 0: return run(bytes, arm, space, fpbm::FPBM<N>(alpha, weights, k1, k2, null_space, damping), wild);
-    case 1: return run(bytes, arm, space, fpbm::MAN<N>(null_space, damping), wild);
-    case 2: return run(bytes, arm, space, fpbm::MVN<N>(k1, null_space, damping), wild);
-    default: return run(bytes, arm, space, fpbm::WMVN<N>(weights, k1, null_space, damping), wild);
+    case 0: return run(bytes, arm, space, fpbm::WMVN<N>(w, k1, null_space, damping), wild);
+    case 1: return run(bytes, arm, space, fpbm::Balanced<N>(alpha, w, null_space, damping), wild);
+    default: return run(bytes, arm, space, fpbm::FPBM<N>(alpha, w, k1, k2, null_space, damping), wild);
   }
 }
 
@@ -297,10 +296,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 1: run_any_scheme(bytes, panda, fpbm::Pose{}); break;
       default: {
         const fpbm::Vector<Eigen::Dynamic> lengths = fpbm::Vector<Eigen::Dynamic>::Constant(2 + bytes.byte() % 7, 0.5);
-        run_any_scheme(bytes, fpbm::PlanarArm<Eigen::Dynamic>(lengths), fpbm::Position<2>{});
+        run_any_scheme(bytes, fpbm::make_planar_arm(lengths), fpbm::Position<2>{});
       }
     }
-  } catch (const std::invalid_argument&) {  // Of a constructor, which says what is wrong.
+  } catch (const std::invalid_argument&) {  // A constructor refused its arguments.
   }
   return 0;
 }

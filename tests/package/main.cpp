@@ -6,7 +6,7 @@ int main() {
   constexpr double kPi = 3.14159265358979323846;
   const fpbm::PlanarArm<4> arm(fpbm::Vector<4>::Ones());
   const fpbm::Path<fpbm::Circle<>> path(fpbm::Circle<>(0.45), 10.0);
-  const fpbm::FPBM<4> scheme(0.6, fpbm::DiagonalWeights<4>(fpbm::Vector<4>(1, 2, 3, 4)), 1.0, 1.0);
+  const auto scheme = fpbm::FPBM<4>(0.6, fpbm::Vector<4>(1, 2, 3, 4), 1.0, 1.0);
   const fpbm::State<4> start{{kPi / 12, kPi / 12, kPi / 15, kPi / 15}, fpbm::Vector<4>::Zero()};
   const auto result = fpbm::rollout(arm, path, scheme, start, fpbm::TimeGrid<>(10.0, 1e-3), [](const auto&) {});
 

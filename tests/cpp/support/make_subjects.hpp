@@ -10,17 +10,17 @@
 
 namespace fpbm::test {
 
-/// A planar arm of these links.
+/// A planar arm with these links.
 template <typename Arm, typename Scalar = typename Arm::Scalar>
-[[nodiscard]] std::enable_if_t<std::is_constructible_v<Arm, Vector<Arm::kDof, Scalar>>, Arm> make_arm(
+[[nodiscard]] std::enable_if_t<std::is_constructible_v<Arm, Vector<Arm::kDof, Scalar>>, Arm> arm_of(
     const Eigen::VectorXd& lengths) {
   return Arm(lengths.cast<Scalar>());
 }
 
-/// An arm in space of these links, all upright at q = 0, which turn about x and z by turns; from eight joints on it
+/// An arm in space of these links, all upright at q = 0, which turn about z and x by turns; from eight joints on it
 /// stands on a rail along x.
 template <typename Arm, typename Scalar = typename Arm::Scalar>
-[[nodiscard]] std::enable_if_t<std::is_constructible_v<Arm, Chain<Scalar>>, Arm> make_arm(
+[[nodiscard]] std::enable_if_t<std::is_constructible_v<Arm, Chain<Scalar>>, Arm> arm_of(
     const Eigen::VectorXd& lengths) {
   Chain<Scalar> chain;
   for (Eigen::Index i = 0; i < lengths.size(); ++i) {
@@ -37,7 +37,12 @@ template <typename Arm, typename Scalar = typename Arm::Scalar>
   return Arm(chain);
 }
 
-/// x ⊖ f(q), the difference of positions as the Scalar has it and the turn as it was asked for.
+/// The Panda, whatever the links.
+[[nodiscard]] inline SerialArm<7> panda_arm(const Eigen::VectorXd&) {
+  return SerialArm<7>(presets::panda());
+}
+
+/// x ⊖ f(q): the difference of positions as the Scalar rounds it, and the rotation as it was asked for.
 template <typename Space, typename Scalar>
 [[nodiscard]] RealVector error_of(const typename Space::template Point<Scalar>& x,
                                   const typename Space::template Point<Scalar>& tip, const RealVector& displacement) {
@@ -50,60 +55,55 @@ template <typename Space, typename Scalar>
   return error;
 }
 
-template <typename Arm, typename Space, typename Scheme>
-[[nodiscard]] Outcome resolve_erased(const Law& law, const Scene& scene) {
+/// A scene as the library's types have it, and as the textbook's.
+template <typename Space, int N, typename Scalar>
+struct Staged {
+  State<N, Scalar> state;
+  Kinematics<Space, N, Scalar> kinematics;
+  Reference<Space, Scalar> reference;
+  Situation at;
+};
+
+template <typename Space, typename Arm>
+[[nodiscard]] Staged<Space, Arm::kDof, typename Arm::Scalar> stage(const Arm& arm, const Scene& scene) {
   using Scalar = typename Arm::Scalar;
-  using Joints = Vector<Arm::kDof, Scalar>;
-  using Rows = Vector<Space::kRows, Scalar>;
-  const auto arm = make_arm<Arm>(scene.lengths);
-  const State<Arm::kDof, Scalar> state{scene.q.cast<Scalar>(), scene.qd.cast<Scalar>()};
-  Kinematics<Space, Arm::kDof, Scalar> kinematics;
+  Staged<Space, Arm::kDof, Scalar> result;
+  auto& [state, kinematics, reference, at] = result;
+  state = {scene.q.cast<Scalar>(), scene.qd.cast<Scalar>()};
   arm.kinematics(state.q, state.qd, kinematics);
-  const auto x = Space::template displace<Scalar>(kinematics.tip, Rows(scene.displacement.cast<Scalar>()));
-  const Reference<Space, Scalar> reference{x, scene.xd.cast<Scalar>(), scene.xdd.cast<Scalar>()};
-
-  Joints u = Joints::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
-  auto scheme = SchemeTraits<Scheme>::make(law);
-  scheme.singular =
-      SingularDamping<Scalar>(static_cast<Scalar>(law.singular_radius), static_cast<Scalar>(law.singular_brake));
-  const Status status = scheme.resolve(kinematics, reference, state, u);
-  return {
-      status,
-      real(u),
-      {real(state.q), real(state.qd), RealVector(), real(kinematics.J), real(kinematics.Jd),
-       error_of<Space, Scalar>(x, kinematics.tip, real(scene.displacement)), real(reference.xd), real(reference.xdd)}};
-}
-
-template <typename Arm, typename Space, typename Scheme>
-[[nodiscard]] Subject make_subject(const std::string& name, int dof) {
-  using Traits = SchemeTraits<Scheme>;
-  return {name,
-          dof,
-          Space::kRows,
-          static_cast<double>(std::numeric_limits<typename Arm::Scalar>::epsilon()),
-          Traits::kKind,
-          Scheme::kLevel,
-          Traits::kWeighted,
-          Traits::kDense,
-          &resolve_erased<Arm, Space, Scheme>};
+  const Vector<Space::kRows, Scalar> displacement = scene.displacement.cast<Scalar>();
+  reference = {Space::template displace<Scalar>(kinematics.tip, displacement), scene.xd.cast<Scalar>(),
+               scene.xdd.cast<Scalar>()};
+  at = {real(state.q),
+        real(state.qd),
+        RealVector(),
+        real(kinematics.J),
+        real(kinematics.Jd),
+        error_of<Space, Scalar>(reference.x, kinematics.tip, real(scene.displacement)),
+        real(reference.xd),
+        real(reference.xdd)};
+  return result;
 }
 
 /// Every scheme on one kind of arm, of dof joints, with one kind of task.
-template <typename Arm, typename Space = Position<2>>
-[[nodiscard]] std::vector<Subject> make_subjects(const std::string& arm, int dof) {
+template <typename Arm, typename Space, bool kDense = true>
+[[nodiscard]] std::vector<Subject> make_subjects(const std::string& name, int dof,
+                                                 Arm (*make_arm)(const Eigen::VectorXd&) = &arm_of<Arm>) {
   constexpr int N = Arm::kDof;
-  using S = typename Arm::Scalar;
-  using Dense = DenseWeights<N, S>;
-  return {make_subject<Arm, Space, MVN<N, S>>("MVN_" + arm, dof),
-          make_subject<Arm, Space, WMVN<N, S>>("WMVN_" + arm, dof),
-          make_subject<Arm, Space, WMVN<N, S, Dense>>("WMVN_dense_" + arm, dof),
-          make_subject<Arm, Space, MAN<N, S>>("MAN_" + arm, dof),
-          make_subject<Arm, Space, WMVNAcceleration<N, S>>("WMVNAcceleration_" + arm, dof),
-          make_subject<Arm, Space, WMVNAcceleration<N, S, Dense>>("WMVNAcceleration_dense_" + arm, dof),
-          make_subject<Arm, Space, Balanced<N, S>>("Balanced_" + arm, dof),
-          make_subject<Arm, Space, Balanced<N, S, Dense>>("Balanced_dense_" + arm, dof),
-          make_subject<Arm, Space, FPBM<N, S>>("FPBM_" + arm, dof),
-          make_subject<Arm, Space, FPBM<N, S, Dense>>("FPBM_dense_" + arm, dof)};
+  using Scalar = typename Arm::Scalar;
+  std::vector<Subject> all;
+  for_every_scheme<N, Scalar, kDense>([&](const std::string& scheme, const Takes& takes, const auto& make_scheme) {
+    const auto resolve = [make_arm, make_scheme](const Law& law, const Scene& scene) {
+      const auto staged = stage<Space>(make_arm(scene.lengths), scene);
+      Vector<N, Scalar> u =
+          Vector<N, Scalar>::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
+      const Status status = make_scheme(law).resolve(staged.kinematics, staged.reference, staged.state, u);
+      return Outcome{status, real(u), staged.at};
+    };
+    const auto epsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+    all.push_back({scheme + "_" + name, dof, Space::kRows, epsilon, takes, resolve});
+  });
+  return all;
 }
 
 }  // namespace fpbm::test

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "fpbm/any/any_path.hpp"
 #include "fpbm/fpbm.hpp"
 
 /// The paper's examples: set-up as identified from its printed numbers, and an independent solution of each case
@@ -20,14 +21,14 @@ inline constexpr double kDuration = 10.0;  ///< [s]
   return {{kPi / 12, kPi / 12, kPi / 15, kPi / 15}, Vector<4>::Zero()};
 }
 
-[[nodiscard]] inline Path<Circle<>> paper_circle() {
-  return {Circle<>(0.45), kDuration};
+[[nodiscard]] inline AnyPath<Position<2>> paper_circle() {
+  return AnyPath<Position<2>>(Path(Circle(0.45), kDuration));
 }
-[[nodiscard]] inline Path<Lissajous<>> paper_lissajous() {
-  return {Lissajous<>({0.4, 0.4}, {2, 1}, kPi / 6), kDuration};
+[[nodiscard]] inline AnyPath<Position<2>> paper_lissajous() {
+  return AnyPath<Position<2>>(Path(Lissajous<>({0.4, 0.4}, {2, 1}, kPi / 6), kDuration));
 }
-[[nodiscard]] inline Path<Tricuspid<>> paper_tricuspid() {
-  return {Tricuspid<>(0.3), kDuration};
+[[nodiscard]] inline AnyPath<Position<2>> paper_tricuspid() {
+  return AnyPath<Position<2>>(Path(Tricuspid(0.3), kDuration));
 }
 
 /// W = diag(1, 2, 3, 4), the paper's first choice.
@@ -36,11 +37,16 @@ inline constexpr double kDuration = 10.0;  ///< [s]
 }
 
 /// The paper's scheme, α = 0.6 and k₁ = k₂ = 1, with a secondary motion to choose.
-[[nodiscard]] inline FPBM<4> paper_fpbm(const NullSpace<4>& null_space = {}) {
-  return {0.6, paper_weights(), 1.0, 1.0, null_space};
+[[nodiscard]] inline AccelerationScheme<4> paper_fpbm(const NullSpace<4>& null_space = {}) {
+  return FPBM<4>(0.6, paper_weights(), 1.0, 1.0, null_space);
 }
 
 enum class Figure { kCircle, kLissajous, kTricuspid };
+
+[[nodiscard]] inline AnyPath<Position<2>> paper_path(Figure figure) {
+  if (figure == Figure::kLissajous) return paper_lissajous();
+  return figure == Figure::kCircle ? paper_circle() : paper_tricuspid();
+}
 
 struct PaperCase {
   Figure figure;

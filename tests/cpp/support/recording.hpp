@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "fpbm/fpbm.hpp"
+#include "support/paper.hpp"
 
 namespace fpbm::test {
 
@@ -33,5 +35,19 @@ template <typename Arm, typename Path, typename Scheme>
   const auto result = rollout(arm, path, scheme, start, grid, [&](const auto& sample) { samples.push_back(sample); });
   return {std::move(samples), result};
 }
+
+// The paper's arm under the schemes that many tests take: compiled once, in recording.cpp.
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
+                                      const AccelerationScheme<4>&, const State<4>&,
+                                      const TimeGrid<>&);
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
+                                      const AccelerationScheme<4, double, UnitWeights>&, const State<4>&,
+                                      const TimeGrid<>&);
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
+                                      const VelocityScheme<4>&, const State<4>&,
+                                      const TimeGrid<>&);
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
+                                      const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
+                                      const TimeGrid<>&);
 
 }  // namespace fpbm::test

@@ -1,31 +1,31 @@
 #include "support/subjects.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 namespace fpbm::test {
 
 std::vector<Subject> subjects() {
-  std::vector<Subject> all;
-  for (const auto& some : {subjects_n2(), subjects_n4(), subjects_n7(), subjects_dynamic(), subjects_float(),
-                           subjects_planar_pose(), subjects_position(), subjects_pose(), subjects_pose_dynamic()}) {
-    all.insert(all.end(), some.begin(), some.end());
-  }
+  std::vector<Subject> all = planar_subjects();
+  const std::vector<Subject> spatial = spatial_subjects();
+  all.insert(all.end(), spatial.begin(), spatial.end());
   return all;
 }
 
 Law random_law(Random& random, const Subject& subject, bool has_null_space) {
   const Eigen::Index n = subject.dof;
+  const Takes& takes = subject.takes;
   Law law;
-  law.kind = subject.kind;
-  law.alpha = std::clamp(random.uniform(-0.3, 1.3), 0.0, 1.0);  // Both ends are paths of their own through the code.
-  law.k = random.uniform(0.0, 5.0);
-  law.k1 = random.uniform(0.0, 5.0);
-  law.k2 = random.uniform(0.0, 5.0);
+  law.acceleration = takes.acceleration;
+  const double share = std::clamp(random.uniform(-0.3, 1.3), 0.0, 1.0);  // 0 and 1 are branches of their own.
+  law.alpha = takes.alpha.value_or(share);
+  const double feedback = takes.feedback ? 1.0 : 0.0;
+  law.k = feedback * random.uniform(0.0, 5.0);
+  law.k1 = feedback * random.uniform(0.0, 5.0);
+  law.k2 = feedback * random.uniform(0.0, 5.0);
   law.W = Eigen::MatrixXd::Identity(n, n);
-  if (subject.dense) {
+  if (takes.dense) {
     law.W = random.positive_definite(n);
-  } else if (subject.weighted) {
+  } else if (takes.weights) {
     law.W = random.uniform(n, 0.5, 8.0).asDiagonal();
   }
   law.has_null_space = has_null_space;
@@ -50,11 +50,9 @@ namespace {
 /// Condition number of J.
 double condition(const Subject& subject, const Scene& scene) {
   Law law;
-  law.kind = subject.kind;
   law.W = Eigen::MatrixXd::Identity(subject.dof, subject.dof);
-  const Eigen::MatrixXd J = subject.resolve(law, scene).at.J.cast<double>();
-  const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
-  return sigma(0) / sigma(sigma.size() - 1);
+  const RealVector sigma = singular_values(subject.resolve(law, scene).at.J);
+  return static_cast<double>(sigma(0) / sigma(sigma.size() - 1));
 }
 
 /// A planar arm with a position task: all joints bend the same way, by 1 to 2 rad in all, which is far from straight

@@ -1,19 +1,19 @@
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "fpbm/core/status.hpp"
-#include "fpbm/objective/null_space.hpp"
 #include "support/random.hpp"
+#include "support/schemes.hpp"
 #include "support/textbook.hpp"
 
-/// Every scheme on every kind of arm, their types erased: a law is written and compiled once and run over them all.
+/// Every scheme on every kind of arm, their types erased: a test of a law compiles once and runs on all of them.
 namespace fpbm::test {
 
-/// An arm with links of these lengths in a state, and what is asked of its tip, x as a displacement from where the tip
+/// An arm with links of these lengths in a state, and the reference of its tip, x as a displacement from where the tip
 /// is.
 struct Scene {
   Eigen::VectorXd lengths;
@@ -24,47 +24,43 @@ struct Scene {
   Eigen::VectorXd xdd;
 };
 
-/// What a scheme made of a scene.
+/// A scheme's answer to a scene.
 struct Outcome {
   Status status;
-  RealVector u;  ///< Joint velocities or accelerations; untouched if left as kSentinel in every entry.
-  Situation at;  ///< What it was told, J and Jd as the arm computed them: the scheme is judged apart from the arm.
+  RealVector u;  ///< Joint velocities or accelerations; kSentinel in every entry where the scheme left them untouched.
+  Situation at;  ///< The scheme's input, J and Jd as the arm computed them: the scheme is judged apart from the arm.
 
   static constexpr double kSentinel = 42.0;
   [[nodiscard]] bool untouched() const { return (u.array() == static_cast<Real>(kSentinel)).all(); }
 };
 
-/// A scheme type on an arm type.
+/// A scheme on a kind of arm with a kind of task.
 struct Subject {
   std::string name;
   int dof;
   int rows;        ///< Of its task.
   double epsilon;  ///< Of its Scalar.
-  Kind kind;
-  Level level;
-  bool weighted;
-  bool dense;
-  Outcome (*resolve)(const Law&, const Scene&);
+  Takes takes;
+  std::function<Outcome(const Law&, const Scene&)> resolve;
 };
 
 inline void PrintTo(const Subject& subject, std::ostream* out) {
   *out << subject.name;
 }
 
-[[nodiscard]] std::vector<Subject> subjects_n2();
-[[nodiscard]] std::vector<Subject> subjects_n4();
-[[nodiscard]] std::vector<Subject> subjects_n7();
-[[nodiscard]] std::vector<Subject> subjects_dynamic();
-[[nodiscard]] std::vector<Subject> subjects_float();
-[[nodiscard]] std::vector<Subject> subjects_planar_pose();
-[[nodiscard]] std::vector<Subject> subjects_position();
-[[nodiscard]] std::vector<Subject> subjects_pose();
-[[nodiscard]] std::vector<Subject> subjects_pose_dynamic();
-
-/// All of the above.
+/// Planar arms of 4 joints, in double and in float, and of 2, 7 and 12 joints at run-time size; of 4 joints with the task
+/// space PlanarPose.
+[[nodiscard]] std::vector<Subject> planar_subjects();
+/// Arms in space of 7 joints, with the task spaces Position<3> and Pose; of 9 joints at run-time size, on a rail.
+[[nodiscard]] std::vector<Subject> spatial_subjects();
+/// Both.
 [[nodiscard]] std::vector<Subject> subjects();
 
-/// A law of the subject's kind with random parameters.
+/// The Panda with the task spaces Position<3> and Pose.
+[[nodiscard]] std::vector<Subject> panda_position_subjects();
+[[nodiscard]] std::vector<Subject> panda_pose_subjects();
+
+/// A law for the subject with random parameters.
 [[nodiscard]] Law random_law(Random& random, const Subject& subject, bool has_null_space);
 
 /// Where in its state space the arm is.

@@ -1,14 +1,14 @@
 #include "support/textbook.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 namespace fpbm::test {
 namespace {
-
-bool is_velocity(Kind kind) {
-  return kind == Kind::kMVN || kind == Kind::kWMVN;
-}
 
 RealMatrix identity(const RealMatrix& J) {
   return RealMatrix::Identity(J.cols(), J.cols());
@@ -38,8 +38,33 @@ Situation planar_arm(const RealVector& lengths, const RealVector& q, const RealV
   return at;
 }
 
+Spectrum spectrum(const RealMatrix& J) {
+  const Eigen::JacobiSVD<RealMatrix, Eigen::HouseholderQRPreconditioner> svd(J, Eigen::ComputeFullU);
+  return {svd.singularValues(), svd.matrixU()};
+}
+
+RealVector singular_values(const RealMatrix& J) {
+  return spectrum(J).sigma;
+}
+
+RealMatrix orthogonal(const RealMatrix& A) {
+  return Eigen::HouseholderQR<RealMatrix>(A).householderQ();
+}
+
+RealVector eigenvalues(const RealMatrix& A) {
+  return Eigen::SelfAdjointEigenSolver<RealMatrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+RealVector sorted(RealVector values) {
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
 RealMatrix pseudoinverse(const RealMatrix& J) {
-  return Eigen::CompleteOrthogonalDecomposition<RealMatrix>(J).pseudoInverse();
+  const Eigen::HouseholderQR<RealMatrix> qr(J.transpose());  // Jᵀ = QR: J⁺ = Q R⁻ᵀ.
+  const RealMatrix Q = qr.householderQ() * RealMatrix::Identity(J.cols(), J.rows());
+  const RealMatrix R = qr.matrixQR().topRows(J.rows()).triangularView<Eigen::Upper>();
+  return Q * R.transpose().inverse();
 }
 
 RealMatrix weighted_pseudoinverse(const RealMatrix& J, const RealMatrix& W) {
@@ -57,39 +82,26 @@ RealMatrix rate_term(const RealMatrix& J, const RealMatrix& Jd, const RealMatrix
 }
 
 RealVector commanded(const Law& law, const Situation& at) {
-  if (is_velocity(law.kind)) return at.xd + static_cast<Real>(law.k) * at.error;
-  RealVector b = at.xdd - at.Jd * at.qd;
-  if (law.kind == Kind::kFPBM) {
-    b += static_cast<Real>(law.k1) * (at.xd - at.J * at.qd) + static_cast<Real>(law.k2) * at.error;
-  }
-  return b;
+  if (!law.acceleration) return at.xd + static_cast<Real>(law.k) * at.error;
+  return at.xdd - at.Jd * at.qd + static_cast<Real>(law.k1) * (at.xd - at.J * at.qd) +
+         static_cast<Real>(law.k2) * at.error;
 }
 
 RealVector secondary(const Law& law, const Situation& at) {
   if (!law.has_null_space) return RealVector::Zero(at.q.size());
   RealVector z = real(law.c) + static_cast<Real>(law.stiffness) * (real(law.q_rest) - at.q);
-  if (!is_velocity(law.kind)) z -= static_cast<Real>(law.damping) * at.qd;
+  if (law.acceleration) z -= static_cast<Real>(law.damping) * at.qd;
   return z;
 }
 
 RealVector resolve(const Law& law, const Situation& at) {
   const RealMatrix W = real(law.W);
   const RealVector b = commanded(law, at);
-  const RealVector z = secondary(law, at);
-  const RealMatrix Jp = pseudoinverse(at.J);
-  const RealMatrix JWp = weighted_pseudoinverse(at.J, W);
-  const RealVector man = Jp * b;
-  const RealVector wmvn = JWp * b + rate_term(at.J, at.Jd, W) * at.xd;
+  const RealVector unweighted = pseudoinverse(at.J) * b;
+  RealVector weighted = weighted_pseudoinverse(at.J, W) * b;
+  if (law.acceleration) weighted += rate_term(at.J, at.Jd, W) * at.xd;
   const auto alpha = static_cast<Real>(law.alpha);
-  switch (law.kind) {
-    case Kind::kMVN:
-    case Kind::kMAN: return man + (identity(at.J) - Jp * at.J) * z;
-    case Kind::kWMVN: return JWp * b + projector(at.J, W) * z;
-    case Kind::kWMVNAcceleration: return wmvn + projector(at.J, W) * z;
-    case Kind::kBalanced:
-    case Kind::kFPBM: return (1 - alpha) * man + alpha * wmvn + projector(at.J, W) * z;
-  }
-  return {};
+  return (1 - alpha) * unweighted + alpha * weighted + projector(at.J, W) * secondary(law, at);
 }
 
 }  // namespace fpbm::test

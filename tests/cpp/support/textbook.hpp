@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-/// The same mathematics a second time: as printed, with pseudoinverses and projectors formed, in extended precision,
-/// and with nothing of the library in it.
+/// The paper's mathematics a second time, without the library: as printed, with pseudoinverses and projectors formed,
+/// in extended precision.
 namespace fpbm::test {
 
 using Real = long double;
@@ -15,14 +15,12 @@ template <typename Derived>
   return values.template cast<Real>();
 }
 
-enum class Kind { kMVN, kWMVN, kMAN, kWMVNAcceleration, kBalanced, kFPBM };
-
-/// A scheme with all that any of them can be told.
+/// Every scheme of the paper, by its parameters. A scheme that lacks one has the neutral value there.
 struct Law {
-  Kind kind;
-  double alpha = 0.0;
-  double k = 0.0;
-  double k1 = 0.0;
+  bool acceleration = false;  ///< The level: qdd is asked for, or qd.
+  double alpha = 0.0;         ///< Share of the weighted pseudoinverse: 0 in MVN and MAN, 1 in WMVN at both levels.
+  double k = 0.0;             ///< Feedback gain at velocity level.
+  double k1 = 0.0;            ///< Feedback gains at acceleration level.
   double k2 = 0.0;
   Eigen::MatrixXd W;
   bool has_null_space = false;
@@ -30,11 +28,11 @@ struct Law {
   double stiffness = 0.0;
   Eigen::VectorXd q_rest;
   Eigen::VectorXd c;
-  double singular_radius = 0.0;  ///< Share of ‖J‖_F below which the schemes damp; the laws here never do.
+  double singular_radius = 0.0;  ///< Share of ‖J‖_F below which the library damps; the functions here never do.
   double singular_brake = 0.0;
 };
 
-/// An arm in a state, and what is asked of its tip.
+/// An arm in a state, and the reference of its tip.
 struct Situation {
   RealVector q;
   RealVector qd;
@@ -46,10 +44,27 @@ struct Situation {
   RealVector xdd;
 };
 
-/// Tip position, J and Jd of a planar arm, each element summed on its own; q and qd as given, the rest left alone.
+/// Tip position, J and Jd of a planar arm at (q, qd), each element summed on its own. The reference stays empty.
 [[nodiscard]] Situation planar_arm(const RealVector& lengths, const RealVector& q, const RealVector& qd);
 
-/// J⁺, from an orthogonal decomposition, whose round-off goes by the condition of J and not by its square.
+/// Singular values of J, the largest first, and its left singular vectors.
+struct Spectrum {
+  RealVector sigma;
+  RealMatrix U;
+};
+[[nodiscard]] Spectrum spectrum(const RealMatrix& J);
+[[nodiscard]] RealVector singular_values(const RealMatrix& J);
+
+/// Eigenvalues of a symmetric matrix, the least first.
+[[nodiscard]] RealVector eigenvalues(const RealMatrix& A);
+
+/// The same numbers, the least first.
+[[nodiscard]] RealVector sorted(RealVector values);
+
+/// Orthogonal matrix: Q of A = QR.
+[[nodiscard]] RealMatrix orthogonal(const RealMatrix& A);
+
+/// J⁺ of a J of full rank, from an orthogonal decomposition: its round-off grows with the condition of J, and not with its square.
 [[nodiscard]] RealMatrix pseudoinverse(const RealMatrix& J);
 
 /// J_W⁺ = W⁻¹Jᵀ(JW⁻¹Jᵀ)⁻¹.
@@ -58,10 +73,10 @@ struct Situation {
 /// N_W = I − J_W⁺J.
 [[nodiscard]] RealMatrix projector(const RealMatrix& J, const RealMatrix& W);
 
-/// N_W W⁻¹Jdᵀ(JW⁻¹Jᵀ)⁻¹: what (9) has beside J_W⁺, and the first half of Lemma 1.
+/// N_W W⁻¹Jdᵀ(JW⁻¹Jᵀ)⁻¹: the factor of xd in (9), and the first term of Lemma 1.
 [[nodiscard]] RealMatrix rate_term(const RealMatrix& J, const RealMatrix& Jd, const RealMatrix& W);
 
-/// What J qd, or J qdd, is to be.
+/// The J qd, or J qdd, that the law prescribes.
 [[nodiscard]] RealVector commanded(const Law& law, const Situation& at);
 
 /// z, before any projection.

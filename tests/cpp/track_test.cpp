@@ -1,0 +1,100 @@
+#include "fpbm/realtime/track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/paper.hpp"
+
+/// A whole motion of a tracker is its ticks, one after another.
+namespace fpbm::test {
+namespace {
+
+constexpr double kTick = 1e-3;
+
+[[nodiscard]] auto make_tracker(double velocity) {
+  auto bounds = JointLimits<4>::none(4);
+  for (int i = 0; i < 4; ++i) bounds.set(i, {-3.0, 3.0, velocity, 10.0});
+  const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
+  const Limits<Level::kAcceleration, 4> limits(bounds, kTick);
+  return Tracker(paper_arm(), Position<2>{}, scheme, paper_start(), TrackerOptions<>{}, limits);
+}
+
+[[nodiscard]] Path<Circle<>> circle() {
+  return {Circle<>(0.45), 2.0};
+}
+
+using Samples = std::vector<Sample<Position<2>, 4>>;
+
+TEST(Track, is_tick_after_tick) {
+  for (const double velocity : {0.3, 3.0}) {
+    auto whole = make_tracker(velocity);
+    auto single = make_tracker(velocity);
+    PathFollower whole_follower(circle(), whole.tip());
+    PathFollower single_follower(circle(), single.tip());
+    const TimeGrid<> grid(2.0, kTick, 0.5);
+    Status worst = Status::kOk;
+    int next = 0;
+    bool same = true;
+    const auto result = track(whole, whole_follower, grid, [&](const auto& sample, const auto& tick) noexcept {
+      const State<4> before = single.state();
+      const auto reference = single_follower.ahead(0.0);
+      const auto expected = single.tick(single_follower);
+      worst = worse(worst, expected.status);
+      same = same && sample.index == next++ && sample.q == before.q && sample.qd == before.qd &&
+             sample.qdd == expected.qdd && sample.error == expected.error && sample.reference.x == reference.x &&
+             sample.reference.xd == reference.xd && sample.reference.xdd == reference.xdd && tick.q == expected.q &&
+             tick.scale == expected.scale && tick.saturated == expected.saturated && tick.status == expected.status &&
+             (sample.reference.x - sample.tip - sample.error).norm() <= 1e-15;
+    });
+    EXPECT_TRUE(same);
+    EXPECT_EQ(next, 2501);
+    EXPECT_EQ(result.samples, 2501);
+    EXPECT_DOUBLE_EQ(result.time, 2.5);
+    EXPECT_EQ(result.status, worst);
+    EXPECT_EQ(worst, velocity < 1.0 ? Status::kSlowed : Status::kOk);
+    EXPECT_EQ(whole.state().q, single.state().q);
+  }
+}
+
+/// Far from every limit it is the rollout; within narrow limits it keeps them.
+TEST(Track, keeps_the_limits_and_is_a_rollout_far_from_them) {
+  const auto record = [](double velocity) {
+    auto tracker = make_tracker(velocity);
+    PathFollower follower(circle(), tracker.tip());
+    Samples samples;
+    samples.reserve(2501);
+    (void)track(tracker, follower, TimeGrid<>(2.0, kTick, 0.5),
+                [&](const auto& sample, const auto&) noexcept { samples.push_back(sample); });
+    return samples;
+  };
+  const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
+  Samples expected;
+  (void)rollout(paper_arm(), circle(), scheme, paper_start(), TimeGrid<>(2.0, kTick, 0.5),
+                [&](const auto& sample) { expected.push_back(sample); });
+  const Samples wide = record(3.0);
+  ASSERT_EQ(wide.size(), expected.size());
+  for (std::size_t i = 0; i < wide.size(); ++i) {
+    ASSERT_EQ(wide[i].t, expected[i].t);
+    ASSERT_LE((wide[i].q - expected[i].q).norm() + (wide[i].qd - expected[i].qd).norm(), 1e-12) << i;
+    ASSERT_LE((wide[i].error - expected[i].error).norm(), 1e-12) << i;
+  }
+  double fastest = 0.0;
+  for (const auto& sample : record(0.3)) fastest = std::max(fastest, sample.qd.cwiseAbs().maxCoeff());
+  EXPECT_LE(fastest, 0.3 + 1e-9);
+  EXPECT_GT(fastest, 0.299);
+}
+
+TEST(Track, ends_where_the_recorder_says_so) {
+  auto tracker = make_tracker(3.0);
+  PathFollower follower(circle(), tracker.tip());
+  int seen = 0;
+  const auto result = track(tracker, follower, TimeGrid<>(2.0, kTick),
+                            [&](const auto&, const auto&) noexcept { return ++seen < 7; });
+  EXPECT_EQ(seen, 7);
+  EXPECT_EQ(result.samples, 7);
+  EXPECT_DOUBLE_EQ(result.time, 0.006);
+}
+
+}  // namespace
+}  // namespace fpbm::test

@@ -1,0 +1,25 @@
+"""Writes fpbm.hpp, which includes every header, or checks that it does (--check)."""
+
+import sys
+from pathlib import Path
+
+INCLUDE = Path(__file__).parent.parent / "cpp" / "include"
+UMBRELLA = INCLUDE / "fpbm" / "fpbm.hpp"
+# Lanes need a standard library that not everyone has.
+LEFT_OUT = {"fpbm/fpbm.hpp", "fpbm/core/lanes.hpp"}
+
+
+def main() -> int:
+    headers = {path.relative_to(INCLUDE).as_posix() for path in INCLUDE.rglob("*.hpp")}
+    head = UMBRELLA.read_text().partition("#include")[0]
+    fresh = head + "".join(f'#include "{header}"\n' for header in sorted(headers - LEFT_OUT))
+    if "--check" not in sys.argv:
+        UMBRELLA.write_text(fresh)
+    elif UMBRELLA.read_text() != fresh:
+        print(f"{UMBRELLA} does not include every header: run make format", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
