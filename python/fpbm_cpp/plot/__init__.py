@@ -8,8 +8,6 @@ or write it with run.plot().savefig("run.pdf").
 Imports go one way: theme ← lines ← panels (arm, errors, joints, limits, measures) ← run_figure, comparison, animation.
 """
 
-from __future__ import annotations
-
 try:
     import matplotlib as _matplotlib  # noqa: F401
 except ModuleNotFoundError as missing:

@@ -1,7 +1,5 @@
 """Animation of one motion: the arm and the trail of its tip, beside panels with a time cursor."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Frames into a file: .mp4 by ffmpeg, .gif by Pillow, which comes with matplotlib."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable

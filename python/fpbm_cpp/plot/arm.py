@@ -1,7 +1,5 @@
 """Panel of the arm: postures at equal intervals of time, in the plane or in space, and the tip's path."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

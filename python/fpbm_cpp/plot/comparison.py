@@ -1,7 +1,5 @@
 """Figure of several motions, with one line for each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Panels of the tip's error: its norm on a logarithmic axis, or its components."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

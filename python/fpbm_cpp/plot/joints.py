@@ -1,7 +1,5 @@
 """Panels of the joints: positions, velocities and accelerations, with the bounds that they come near."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Legends: in the line of a heading, beside one panel, or below all panels."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import ceil
 from typing import Any

@@ -1,7 +1,5 @@
 """Panels of a motion within joint limits: the task scale, and the joints that were on a bound."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 

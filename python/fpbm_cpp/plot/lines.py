@@ -1,7 +1,5 @@
 """Lines over time, one for each column of an array."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Panels of the distance from singular postures, and of the joint motion that does not move the tip."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The panels that a figure of a motion may have, by name."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Figure of one motion: its panels, laid out on a column or a page."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Mapping, Sequence

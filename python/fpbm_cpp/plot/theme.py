@@ -1,7 +1,5 @@
 """The style of all figures: colours, dashes, and sizes that suit a paper's column."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle

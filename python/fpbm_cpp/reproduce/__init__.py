@@ -3,8 +3,6 @@
 Imports go one way: paper.json → cases (runs) → tables, figures, claims → report.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The paper as data: the arm, the paths, and the 18 motions with their printed and their correct numbers."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The paper's claims, confirmed or corrected, and four findings of our own; every number is computed here."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Figures 1 to 8 of the paper."""
 
-from __future__ import annotations
-
 from io import BytesIO
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The report: settings, figures, tables, errata, claims."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Tables of printed values, our values and their differences, as plain text and as Markdown."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest

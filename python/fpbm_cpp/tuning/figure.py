@@ -1,7 +1,5 @@
 """Figure of a tuning: Pareto front, sensitivity and convergence."""
 
-from __future__ import annotations
-
 import textwrap
 from typing import Any
 

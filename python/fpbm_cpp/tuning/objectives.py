@@ -1,7 +1,5 @@
 """What a scheme can be tuned for: a number of its motion, to be made small."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

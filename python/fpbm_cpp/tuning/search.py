@@ -4,18 +4,13 @@ Each is an endless generator: it yields points, shape (B, d), and is sent their 
 a point is infeasible.
 """
 
-from __future__ import annotations
-
 from collections.abc import Generator
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
-
-if TYPE_CHECKING:
-    from cmaes import CMA
 
 Search = Generator[Array, Array, None]
 
@@ -82,7 +77,7 @@ def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
     return order[y[order] < before]
 
 
-def _begin(middle: Array, count: int, random: np.random.Generator) -> CMA:
+def _begin(middle: Array, count: int, random: np.random.Generator) -> Any:
     """A search around a point, in generations of so many points."""
     from cmaes import CMA
 
@@ -90,10 +85,10 @@ def _begin(middle: Array, count: int, random: np.random.Generator) -> CMA:
     return CMA(middle, DEVIATION, bounds=cube, seed=int(random.integers(2**31)), population_size=count)
 
 
-def _ask(search: CMA) -> Array:
+def _ask(search: Any) -> Array:
     return np.array([search.ask() for _ in range(search.population_size)])
 
 
-def _tell(search: CMA, points: Array, scores: Array) -> None:
+def _tell(search: Any, points: Array, scores: Array) -> None:
     """Tell a search its scores; infeasible points count as worst."""
     search.tell(list(zip(points, np.where(np.isnan(scores), np.inf, scores).tolist())))

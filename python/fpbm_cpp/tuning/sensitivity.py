@@ -1,7 +1,5 @@
 """How much the objective changes when one number of a scheme takes a step."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

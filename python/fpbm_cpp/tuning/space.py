@@ -1,7 +1,5 @@
 """The parameters that a search varies, and their ranges: each point of the unit cube stands for a scheme."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any

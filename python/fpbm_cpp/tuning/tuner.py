@@ -1,7 +1,5 @@
 """The search for the parameters of a scheme."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from itertools import chain

@@ -4,8 +4,6 @@ Data flows one way. The page asks for a scheme (controls) and a time (player); t
 scheme (rerun) and prepared for drawing (playback); the scene, the chart and the readout draw it.
 """
 
-from __future__ import annotations
-
 import os
 from typing import TYPE_CHECKING, Any
 

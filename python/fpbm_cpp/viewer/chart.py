@@ -1,7 +1,5 @@
 """Chart of one quantity over time, with a line at the time shown."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The page's inputs for the scheme: its kind, its parameters, and whether joint limits are kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from math import isfinite
 from typing import Any

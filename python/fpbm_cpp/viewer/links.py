@@ -1,7 +1,5 @@
 """An arm drawn as rods and cylinders."""
 
-from __future__ import annotations
-
 import numpy as np
 from viser import SceneApi, SceneNodeHandle
 

@@ -1,7 +1,5 @@
 """An arm drawn with the meshes of its URDF file."""
 
-from __future__ import annotations
-
 import logging
 import os
 import warnings

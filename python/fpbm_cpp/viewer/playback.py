@@ -1,7 +1,5 @@
 """A run prepared for drawing: the tip's frame at any sample, and curves through some hundred samples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

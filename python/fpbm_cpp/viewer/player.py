@@ -1,7 +1,5 @@
 """The time shown: a slider, and a clock that moves it."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable

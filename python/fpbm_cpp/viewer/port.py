@@ -1,7 +1,5 @@
 """Check of the port to serve at."""
 
-from __future__ import annotations
-
 import errno
 import socket
 

@@ -1,7 +1,5 @@
 """A run in words and numbers: how it ended, and figures of the sample shown and of the whole motion."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """A motion made again, under another scheme."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..motion.run import Run

@@ -1,7 +1,5 @@
 """The scene: ground, arm, tip and paths, and the camera."""
 
-from __future__ import annotations
-
 import numpy as np
 from viser import ClientHandle, SceneApi, ViserServer
 from viser.transforms import SO3
