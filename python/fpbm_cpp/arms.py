@@ -202,7 +202,10 @@ class SerialArm(Arm):
         """Arm between two links of a URDF file.
 
         Fixed joints become part of the frames; bounds and names are kept; mimic joints follow. A joint that mimics one
-        that does not move between base and tip is held where that one's zero puts it.
+        that does not move between base and tip is held where that one's zero puts it, with a UserWarning.
+
+        Raises ValueError where the file is no sound URDF or has no chain between these links, OSError where it cannot
+        be read.
 
         Parameters
         ----------
@@ -210,18 +213,6 @@ class SerialArm(Arm):
             The file; xacro files must be expanded first.
         tip, base : str
             Names of links; base is the root link unless given.
-
-        Raises
-        ------
-        ValueError
-            Where the file is no sound URDF or has no chain between these links.
-        OSError
-            Where the file cannot be read.
-
-        Warns
-        -----
-        UserWarning
-            Where a mimic joint is held.
         """
         from .io.urdf import read_urdf
 

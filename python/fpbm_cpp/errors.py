@@ -19,16 +19,8 @@ if TYPE_CHECKING:
 class ParameterError(ValueError):
     """An argument is out of range, of the wrong shape or type, or unknown.
 
-    Attributes
-    ----------
-    name : str
-        The argument, as in 'radius'; in a table, with the tables that it is in: 'path.radius'.
-    index : int or None
-        The entry of an array that is wrong, where one is.
-    value : object
-        What was given, where it is known.
-    problem : str
-        The message after the name.
+    name: the argument, 'radius' say; in a table, with the tables that it is in: 'path.radius'. index: the entry of an
+    array that is wrong, or None. value: what was given, where it is known. problem: the message after the name.
     """
 
     def __init__(self, name: str, index: int | None, value: object, message: str) -> None:
@@ -60,12 +52,7 @@ def suggestion(word: object, words: Iterable[str]) -> str:
 class ResolutionError(RuntimeError):
     """The motion cannot be resolved: a singular posture, a target out of reach, a number that is not finite.
 
-    Attributes
-    ----------
-    status : Status
-        Why.
-    run : Run or None
-        The motion up to there, where a simulation stopped.
+    status: why. run: the motion up to there, where a simulation stopped.
     """
 
     def __init__(self, status: Status, text: str | None = None, run: Run | None = None) -> None:
@@ -75,13 +62,7 @@ class ResolutionError(RuntimeError):
 
 
 class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C.
-
-    Attributes
-    ----------
-    sweep : Sweep
-        What was finished until then; sweep.done says which motions.
-    """
+    """A sweep was stopped by Ctrl-C. sweep: what was finished until then; sweep.done says which motions."""
 
     def __init__(self, sweep: Sweep) -> None:
         super().__init__(f"interrupted after {int(sweep.done.sum())} of {sweep.done.size} motions")
@@ -89,13 +70,7 @@ class SweepInterrupted(KeyboardInterrupt):
 
 
 class TuneInterrupted(KeyboardInterrupt):
-    """A tuning was stopped by Ctrl-C.
-
-    Attributes
-    ----------
-    tuning : Tuning or None
-        What was found until then; None where no feasible scheme was.
-    """
+    """A tuning was stopped by Ctrl-C. tuning: what was found until then; None where no feasible scheme was."""
 
     def __init__(self, tuning: Tuning | None, tried: int) -> None:
         super().__init__(f"interrupted after {tried} schemes")

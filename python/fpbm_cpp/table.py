@@ -17,7 +17,7 @@ import numpy as np
 from .arms import ARMS, Arm, Joint, JointLimits, SerialArm
 from .errors import ParameterError, not_one_of, suggestion
 from .parameter import REQUIRED, Data, Parameter, parameters
-from .paths import PATH_OPTIONS, PATHS, Circle, InPlane, WithRotation
+from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
 from .schemes import SCHEMES, SECOND_TASKS, SecondTask
 
@@ -25,8 +25,9 @@ Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
 KINDS: Makers = {**ARMS, **EVERY_PATH, **SCHEMES, **SECOND_TASKS, JointLimits.kind: JointLimits}
 
-# What stands in tables that are in others, by its key.
+# What stands within other tables, by its key.
 WITHIN: dict[str, Makers] = {"arm": ARMS, "second_task": SECOND_TASKS}
+LISTS: dict[Any, Any] = {(SerialArm, "joints"): Joint, (PathSequence, "paths"): EVERY_PATH}
 
 
 def to_table(thing: Any) -> Any:
@@ -55,9 +56,7 @@ def to_table(thing: Any) -> Any:
     raise TypeError(f"{thing!r:.80}: must be a thing of this package, numbers or text")
 
 
-def from_table(
-    table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None, usual: bool = False
-) -> Any:
+def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None) -> Any:
     """The thing that a table stands for.
 
     Parameters
@@ -114,14 +113,16 @@ class _Reader:
         self.arm, self.usual, self.make = arm, usual, make
         self.problems: list[ParameterError] = []
 
-    def read(self, table: Any, kinds: Makers, name: str) -> Any:
-        """The thing of a table with a kind, or of a list of those."""
+    def read(self, table: Any, kinds: Makers | type[Joint], name: str) -> Any:
+        """The thing of a table, or of a list of those of paths."""
         if isinstance(table, Data):
             return table
-        if isinstance(table, (list, tuple)) and Circle.kind in kinds:
+        if isinstance(table, (list, tuple)) and kinds in (PATHS, EVERY_PATH, KINDS):
             return self._paths(table, kinds, name)
         if not isinstance(table, Mapping):
             return self._wrong(name, table, f" = {table!r:.60}: must be a table")
+        if not isinstance(kinds, Mapping):
+            return self._thing(table, kinds, name)
         key, kind = _join(name, "kind"), table.get("kind")
         if kind is None:
             return self._wrong(key, None, f": is missing: must be one of {', '.join(kinds)}")
@@ -157,30 +158,23 @@ class _Reader:
     def _value(self, value: Any, parameter: Parameter, maker: Callable[..., Any], name: str) -> Any:
         if parameter.name in WITHIN:
             return self.read(value, WITHIN[parameter.name], name)
-        if maker is SerialArm and parameter.name == "joints":
-            return self._each(value, name, lambda table, where: self._joint(table, where))
-        if maker is PathSequence and parameter.name == "paths":
-            return self._each(value, name, lambda table, where: self.read(table, EVERY_PATH, where))
+        if (maker, parameter.name) in LISTS:
+            return self._each(value, LISTS[maker, parameter.name], name)
         if parameter.infinite:
             value = _with_infinities(value)
         return self._checked(lambda: parameter.check(value), name.rpartition(".")[0])
 
-    def _joint(self, table: Any, name: str) -> Any:
-        if isinstance(table, Mapping):
-            return self._thing(table, Joint, name)
-        return table if isinstance(table, Joint) else self._wrong(name, table, f" = {table!r:.60}: must be a table")
-
-    def _each(self, tables: Any, name: str, read: Callable[[Any, str], Any]) -> Any:
+    def _each(self, tables: Any, kinds: Any, name: str) -> Any:
         if not isinstance(tables, (list, tuple)):
             return self._wrong(name, tables, f" = {tables!r:.60}: must be a list")
-        return tuple(read(table, f"{name}[{i}]") for i, table in enumerate(tables))
+        return tuple(self.read(table, kinds, f"{name}[{i}]") for i, table in enumerate(tables))
 
-    def _paths(self, tables: Sequence[Any], kinds: Makers, name: str) -> Any:
-        if not tables:
-            return self._wrong(name, tables, " = []: must be one at least")
+    def _paths(self, tables: Sequence[Any], kinds: Any, name: str) -> Any:
         if len(tables) == 1:
             return self.read(tables[0], kinds, name)
-        paths = self._each(tables, name, lambda table, where: self.read(table, kinds, where))
+        if not tables:
+            return self._wrong(name, tables, " = []: must be one at least")
+        paths = self._each(tables, kinds, name)
         return None if None in paths else self._checked(lambda: PathSequence(paths), name)
 
     def _checked(self, make: Callable[[], Any], name: str) -> Any:
