@@ -20,7 +20,7 @@ from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
 # What shapes have in common.
-DURATION = replace(POSITIVE, help="How long the path takes, T.", usual=10.0, unit="s")
+DURATION = replace(POSITIVE, help="Duration T of the path.", usual=10.0, unit="s")
 TIME_LAW = Parameter(help="How the fraction s of the way grows with time.", choices=TIME_LAWS)
 
 
@@ -78,7 +78,7 @@ class Circle(Path):
 
     kind = "circle"
     core = staticmethod(circle)
-    radius: float = parameter("Radius of the circle, r.", POSITIVE, unit="m", usual=0.1)
+    radius: float = parameter("Radius r.", POSITIVE, unit="m", usual=0.1)
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
@@ -94,7 +94,7 @@ class Lissajous(Path):
     kind = "lissajous"
     core = staticmethod(lissajous)
     amplitude: ArrayField = parameter(
-        "Amplitude of the Lissajous figure, a: one for both axes or one each.",
+        "Amplitude a: one for both axes or one each.",
         POSITIVE,
         shape="() or (2,)",
         unit="m",
@@ -103,13 +103,13 @@ class Lissajous(Path):
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     frequencies: ArrayField = parameter(
-        "Frequencies of the Lissajous figure, f: whole, so that it closes.",
+        "Frequencies f: whole, so that the figure closes.",
         default=(2, 1),
         shape="(2,)",
         whole=True,
         low=1.0,
     )
-    phase: float = parameter("Phase of the Lissajous figure, delta.", default=pi / 6, unit="rad")
+    phase: float = parameter("Phase delta.", default=pi / 6, unit="rad")
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
@@ -122,7 +122,7 @@ class Tricuspid(Path):
 
     kind = "tricuspid"
     core = staticmethod(tricuspid)
-    size: float = parameter("Size of the tricuspid, a.", POSITIVE, unit="m", usual=0.05)
+    size: float = parameter("Size a.", POSITIVE, unit="m", usual=0.05)
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
@@ -135,7 +135,7 @@ class Line(Path):
     kind = "line"
     core = staticmethod(line)
     displacement: ArrayField = parameter(
-        "Of the line, from its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
+        "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
@@ -166,19 +166,17 @@ class Waypoints(Path):
         unit="m",
     )
     _: KW_ONLY
-    duration: DerivedField = parameter("How long the path takes, T.", POSITIVE, type=float, default=None, unit="s")
+    duration: DerivedField = parameter("Duration T of the path.", POSITIVE, type=float, default=None, unit="s")
     times: OptionalArrayField = parameter(
         "When each point is passed, the first at 0.", default=None, shape="(k,)", unit="s"
     )
-    velocity: float | None = parameter(
-        "Highest speed of the tip on the way through points.", POSITIVE, default=None, unit="m/s"
-    )
-    acceleration: float | None = parameter("The same, of its acceleration.", POSITIVE, default=None, unit="m/s^2")
+    velocity: float | None = parameter("Highest speed of the tip.", POSITIVE, default=None, unit="m/s")
+    acceleration: float | None = parameter("Highest acceleration of the tip.", POSITIVE, default=None, unit="m/s^2")
     angular_velocity: float | None = parameter(
-        "The same, of its angular velocity.", POSITIVE, default=None, unit="rad/s"
+        "Highest angular velocity of the tip.", POSITIVE, default=None, unit="rad/s"
     )
     angular_acceleration: float | None = parameter(
-        "The same, of its angular acceleration.", POSITIVE, default=None, unit="rad/s^2"
+        "Highest angular acceleration of the tip.", POSITIVE, default=None, unit="rad/s^2"
     )
 
     def __post_init__(self) -> None:

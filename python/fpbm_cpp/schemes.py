@@ -95,7 +95,7 @@ class Scheme(Data, CoreScheme):
         "Posture that the null space is drawn to.", default=None, shape="(n,)", unit="rad"
     )
     null_stiffness: float = parameter(
-        "How strongly the null space is drawn there.", NOT_NEGATIVE, default=0.0, unit="1/s^2, 1/s at velocity level"
+        "How strongly rest_posture draws it.", NOT_NEGATIVE, default=0.0, unit="1/s^2, 1/s at velocity level"
     )
     c: OptionalArrayField = parameter(
         "The free choice in the general solution (5), (3) at velocity level.",
@@ -217,8 +217,8 @@ class FPBM(AccelerationScheme):
     kind = "fpbm"
     alpha: float = parameter(like=ALPHA)
     weights: ArrayField = parameter(like=WEIGHTS)
-    k1: float = parameter("FPBM's feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
-    k2: float = parameter("FPBM's feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, usual=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
 
 
 # By the kind that a table has.
