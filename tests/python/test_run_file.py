@@ -248,7 +248,7 @@ NO_PATHS = {
     "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: circle has no such key"),
     "too few": ({"kind": "circle", "radius": 1.0}, "path.duration: is missing"),
     "no table": (7, "path = 7: must be a table"),
-    "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1.0}, "path.points = .*must be real numbers"),
+    "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1}, "path.points = .*: must be real"),
     "no number": ({"kind": "circle", "radius": {"float": "__import__('os')"}, "duration": 1.0}, "must be a number"),
     "of no path": ({"kind": "mvn"}, "path.kind = 'mvn': must be one of"),
 }

@@ -1,7 +1,5 @@
 """Quaternions of rotation matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .._core import rotation_vector

@@ -1,7 +1,5 @@
 """Runs as ROS 2 bags."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile

@@ -1,7 +1,5 @@
 """Runs in files, and back as they were: arrays in an .npz file, all else in it as JSON; nothing is pickled."""
 
-from __future__ import annotations
-
 import io
 import json
 import operator
@@ -19,10 +17,11 @@ from ..arms import ARMS
 from ..motion.run import ARRAYS, LIMITED, Run
 from ..motion.run_status import RunStatus
 from ..schemes import SCHEMES
-from ..table import EVERY_PATH, from_table, to_table
+from ..table import EVERY_PATH, Makers, from_table, to_table
 from .write_whole import write_whole
 
 FORMAT = "fpbm_cpp run"
+KINDS: dict[str, Makers] = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}
 VERSION = 1  # Of the format: one more for each that older packages cannot read.
 
 
@@ -126,8 +125,7 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
-    kinds = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}
-    arm, path, scheme = (from_table(meta[name], kind, name) for name, kind in kinds.items())
+    arm, path, scheme = (from_table(meta[name], KINDS[name], name) for name in KINDS)
     known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
     rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
     shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": ()}

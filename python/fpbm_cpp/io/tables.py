@@ -1,7 +1,5 @@
 """Runs as tables, one row a sample: for pandas, and as CSV."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os
@@ -29,7 +27,7 @@ class Column(NamedTuple):
     values: NDArray[Any]
 
 
-def to_pandas(run: Run) -> pd.DataFrame:
+def to_pandas(run: Run) -> "pd.DataFrame":
     """A run as a data frame."""
     try:
         import pandas as pd

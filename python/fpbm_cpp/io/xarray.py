@@ -1,7 +1,5 @@
 """Runs as xarray datasets."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +14,7 @@ if TYPE_CHECKING:
 Variable = tuple[str, tuple[str, ...], Any, str]
 
 
-def to_xarray(run: Run) -> xr.Dataset:
+def to_xarray(run: Run) -> "xr.Dataset":
     """A run as a dataset."""
     try:
         import xarray as xr

@@ -1,7 +1,5 @@
 """Chunks of a sweep, and running them: in threads of our own, or in any executor."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait

@@ -1,7 +1,5 @@
 """What users call on a run that lies in rooms above: figures, the viewer, files. The one place that reaches up."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
@@ -18,10 +16,10 @@ class Conveniences:
     """Calls that import what they need when they are made; Run has them."""
 
     @property
-    def _run(self) -> Run:
+    def _run(self) -> "Run":
         return cast("Run", self)
 
-    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
+    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> "Figure":
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
         panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
@@ -40,7 +38,7 @@ class Conveniences:
 
         Viewer(self._run, urdf=urdf, **{"open_browser": True, **how}).wait()
 
-    def replay(self) -> Run:
+    def replay(self) -> "Run":
         """Make the motion again from arm, path, scheme and options, by simulate() or track().
 
         Equal to this run to the last bit in the same build on a processor of the same kind; another compiler, C library
@@ -78,7 +76,7 @@ class Conveniences:
 
         save(self._run, file, note, seed)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> "pd.DataFrame":
         """Data frame of a row for each sample.
 
         Columns t, q_<joint>, qd_<joint>, qdd_<joint>, the tip as x, y, z with qx, qy, qz, qw or angle for its
@@ -99,7 +97,7 @@ class Conveniences:
 
         to_csv(self._run, file)
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> "xr.Dataset":
         """Dataset over time, joint and axis, with units as attributes.
 
         Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and

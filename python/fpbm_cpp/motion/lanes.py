@@ -1,7 +1,5 @@
 """The code that sweeps run in: for the lanes of this processor, or for any processor."""
 
-from __future__ import annotations
-
 import os
 from importlib import import_module
 

@@ -1,7 +1,5 @@
 """All motions of a sweep, divided into chunks and put together again."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Progress of something long, as its caller wants to see it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeAlias

@@ -1,7 +1,5 @@
 """A finished motion, as data."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How a motion ended."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Simulation of a whole motion."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

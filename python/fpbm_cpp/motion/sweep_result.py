@@ -1,7 +1,5 @@
 """The key figures of many motions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

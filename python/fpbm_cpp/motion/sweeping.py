@@ -1,7 +1,5 @@
 """Many motions at once: every scheme from every start."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from typing import Any

@@ -1,7 +1,5 @@
 """A whole motion within the joints' limits."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike
