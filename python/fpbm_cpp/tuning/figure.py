@@ -21,7 +21,7 @@ BEST = OKABE_ITO[5]
 def plot_tuning(tuning: Tuning, *, dark: bool = False) -> Figure:
     """The Pareto front with best and baseline, the change of the objective by a step, and the best value so far."""
     theme = theme_of(dark)
-    title = f"{tuning.objective} of {tuning.arm!r} along {tuning.path!r}"
+    title = f"{tuning.objective} of {tuning.arm} along {tuning.path!r}"
     wrapped = "\n".join(textwrap.wrap(title, 120, max_lines=2, placeholder=" …"))
     figure, (part,) = sheet(SIZE[0], [SIZE[1]], wrapped, theme)
     panels = (("Pareto front", _front), ("Sensitivity", _sensitivity), ("Convergence", _convergence))

@@ -95,7 +95,7 @@ class Tuning:
         """A table of each parameter: the baseline's value, the best value, and the sensitivity."""
         trials, unit = self.trials, f" {self.unit}" if self.unit else ""
         lines = [
-            f"{self.objective} of {self.arm!r} along {self.path!r}",
+            f"{self.objective} of {self.arm} along {self.path!r}",
             f"{self.value:.5g}{unit}, {self._against()}",
             f"{len(trials)} schemes tried, {trials.feasible.sum()} feasible, {len(self.front)} on the Pareto front",
             "",
