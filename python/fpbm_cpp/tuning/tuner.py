@@ -48,7 +48,7 @@ def tune(
 
     One half of the trials searches for the least objective, by CMA-ES, the other half for the Pareto front of peak
     velocity and peak acceleration. Both run on sweep(), in batches; the result is the best of all trials, the first of
-    which is the baseline. The same seed gives the same result to the last bit, whoever runs the motions.
+    which is the baseline. The same seed gives the same result to the last bit, with any executor.
 
     Parameters
     ----------
