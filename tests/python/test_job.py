@@ -103,7 +103,7 @@ def test_arms(table: dict[str, Any], arm: Any) -> None:
 )
 def test_paths(text: str, path: fp.Path) -> None:
     flat = len(path.sample(0.0)[0]) == 2
-    assert prepare({"arm": PANDA, "path": job_of(text)}).path == (path.in_plane("yz") if flat else path)
+    assert prepare({"arm": PANDA, "path": job_of(text), "run": {"task": "pose"}}).path == (path.in_plane("yz") if flat else path)
 
 
 def test_paths_follow_one_another() -> None:
@@ -309,7 +309,7 @@ def test_a_file_is_as_one_would_write_it(tmp_path: Path) -> None:
         "",
         "[arm]",
         'kind = "planar"',
-        "lengths = [1.0, 1.0, 1.0, 1.0]",
+        "lengths = [1, 1, 1, 1]",
         "",
         "[path]",
     ]
@@ -357,23 +357,23 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'preset'", "arm.name: is missing"),
         (
             "[arm]\nkind = 'preset'\nname = 'pnada'",
-            'arm.name = "pnada": must be one of panda, iiwa14, gen3; did you mean "panda"?',
+            "arm.name = 'pnada': must be one of panda, iiwa14, gen3; did you mean 'panda'?",
         ),
         ("[arm]\nkind = 'planar'\nlengths = [1, -1]", "arm.lengths[1] = -1: must be positive and finite"),
-        ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", 'arm.joints[1].axis = "x": must be numbers'),
+        ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", "arm.joints[1].axis = 'x': must be real numbers"),
         (
             f"{ARM}[pth]",
-            'pth: a job has no such key: must be one of arm, path, scheme, run, limits; did you mean "path"?',
+            "pth: a job has no such key: must be one of arm, path, scheme, run, limits; did you mean 'path'?",
         ),
-        (f"{ARM}[path]\nkind = 'cirle'", f'path.kind = "cirle": must be one of {SHAPES}; did you mean "circle"?'),
+        (f"{ARM}[path]\nkind = 'cirle'", f"path.kind = 'cirle': must be one of {SHAPES}; did you mean 'circle'?"),
         (f"{ARM}[path]\nradius = 1", f"path.kind: is missing: must be one of {SHAPES}"),
         (f"{ARM}[path]\nkind = 'circle'\nradius = -1", "path.radius = -1: must be positive and finite"),
-        (f"{ARM}[path]\nkind = 'circle'\nradius = '1'", 'path.radius = "1": must be a number'),
-        (f"{ARM}[path]\nkind = 'circle'\nradius = true", "path.radius = true: must be a number"),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = '1'", "path.radius = '1': must be a number"),
+        (f"{ARM}[path]\nkind = 'circle'\nradius = true", "path.radius = True: must be a number"),
         (f"{ARM}[path]\nkind = 'circle'\nradius = nan", "path.radius = nan: must be positive and finite"),
-        (f"{ARM}[path]\nkind = 'circle'\nradus = 1", 'turn_time_law; did you mean "radius"?'),
-        (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f'path.time_law = "sin": must be one of {LAWS}'),
-        (f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'", "path.in_plane = 'xw': must be two of 'x', 'y' and 'z'"),
+        (f"{ARM}[path]\nkind = 'circle'\nradus = 1", "rotation_time_law; did you mean 'radius'?"),
+        (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f"path.time_law = 'sin': must be one of {LAWS}"),
+        (f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'", "path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"),
         (f"{ARM}[path]\nkind = 'circle'\nwith_rotation = [1]", "path.with_rotation"),
         (
             f"{ARM}[path]\nkind = 'lissajous'\nfrequencies = [1, 1.5]",
@@ -381,11 +381,11 @@ LAWS = "sin_squared, quintic, constant_speed"
         ),
         (f"{ARM}[path]\nkind = 'waypoints'\npoints = [[0, 0], [1, 0]]", "path.duration, times or bounds of velocity"),
         (f"path = []\n{ARM}", "path = []: must be one at least"),
-        (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 'a'", 'path[1].radius = "a": must be'),
+        (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 'a'", "path[1].radius = 'a': must be"),
         (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 0", "path[1].radius = 0: must be"),
-        (f"{ARM}[scheme]\nkind = 'fbpm'", f'scheme.kind = "fbpm": must be one of {KINDS}; did you mean "fpbm"?'),
-        (f"{ARM}[scheme]\nkind = 'FPBM'", f'scheme.kind = "FPBM": must be one of {KINDS}; did you mean "fpbm"?'),
-        (f"{ARM}[scheme]\nkind = 'wmvn-acceleration'", 'did you mean "wmvn_acceleration"?'),
+        (f"{ARM}[scheme]\nkind = 'fbpm'", f"scheme.kind = 'fbpm': must be one of {KINDS}; did you mean 'fpbm'?"),
+        (f"{ARM}[scheme]\nkind = 'FPBM'", f"scheme.kind = 'FPBM': must be one of {KINDS}; did you mean 'fpbm'?"),
+        (f"{ARM}[scheme]\nkind = 'wmvn-acceleration'", "did you mean 'wmvn_acceleration'?"),
         (f"{ARM}[scheme]\nkind = 'fpbm'\nalpha = 2", "scheme.alpha = 2: must be in [0, 1]"),
         (f"{ARM}[scheme]\nkind = 'fpbm'\nweights = [1, 2]", "scheme.weights has 2 entries: must have 7, one per joint"),
         (
@@ -398,9 +398,9 @@ LAWS = "sin_squared, quintic, constant_speed"
         ),
         (
             f"{ARM}[scheme]\nkind = 'mvn'\nsecond_task = {{kind = 'gaz'}}",
-            'scheme.second_task.kind = "gaz": must be one of',
+            "scheme.second_task.kind = 'gaz': must be one of",
         ),
-        (f"{ARM}[run]\ntask = 'pos'", 'run.task = "pos": must be one of position, pose; did you mean "pose"?'),
+        (f"{ARM}[run]\ntask = 'pos'", "run.task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (f"{ARM}[run]\nq0 = [1, 2]", "run.q0 has 2 entries: must have 7, one per joint"),
         (f"{ARM}[run]\ndt = 0.3", "run.dt = 0.3: must be a divisor of duration = 10"),
         (f"{ARM}[limits]\nvelocity = [1, 2]", "limits.velocity has 2 entries"),
@@ -420,13 +420,13 @@ def test_what_is_wrong_is_said(text: str, line: str) -> None:
 
 
 def test_everything_that_is_wrong_is_said() -> None:
-    text = "[arm]\nkind = 'preset'\nname = 'x'\n[path]\nkind = 'circle'\nradius = 'x'\n[run]\nq0 = 'x'\ndt = 'x'"
+    text = "[arm]\nkind = 'preset'\nname = 3\n[path]\nkind = 'circle'\nradius = 'x'\n[run]\nq0 = 'x'\ndt = 'x'"
     assert [line.split(" ")[0] for line in complaints(text)] == ["arm.name", "path.radius", "run.q0", "run.dt"]
 
 
 def test_a_long_value_is_cut() -> None:
     (line,) = complaints(f"{ARM}[run]\nq0 = {['x' * 500]}")
-    assert len(line) < 120
+    assert len(line) < 130
 
 
 def test_what_the_run_finds_is_said_too() -> None:

@@ -72,9 +72,11 @@ def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
     if said.get("kind") == "urdf":
         return {"tip": "", **said}  # Which is refused with what links there are.
     if section == "limits":
-        own = {name: getattr(arm.limits, name) if arm else [inf] for name in known(section)}
+        own = {name: getattr(arm.limits, name).tolist() if arm else [inf] for name in known(section)}
         every = {
             key: [value] * (arm.dof if arm else 1) for key, value in said.items() if isinstance(value, (int, float))
         }
         said = {**own, **said, **every}
+    if section == "scheme" and "weights" in known(section, said.get("kind")):
+        return {"weights": [1.0], **said}  # Which are filled in for the arm.
     return {"kind": section, **said} if section in SECTIONS[section] else said

@@ -1,5 +1,7 @@
 """What a job may say: sections, the kinds of each, and their keys, as they are declared."""
 
+from __future__ import annotations
+
 from typing import Any, ClassVar
 
 from .._types import OptionalArrayField
