@@ -39,7 +39,7 @@ struct ManipulabilityAscent {
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& u) const noexcept {
-    Vector<N, Scalar> result = u;
+    Vector<N, Scalar> result = Vector<N, Scalar>::Zero(state.q.size());
     const Status status = scheme.resolve(kinematics, reference, state, result);
     if (failed(status)) return status;
     const Vector<N, Scalar> z = gain * manipulability_gradient<Space>(arm, state.q);

@@ -79,7 +79,7 @@ struct SecondTask {
     const Eigen::Index head = arm.dof();
     State<Arm::kDof, Scalar> seen{state.q.head(head), {}};
     if constexpr (kLevel == Level::kAcceleration) seen.qd = state.qd.head(head);
-    Vector<N, Scalar> result = u;
+    Vector<N, Scalar> result = Vector<N, Scalar>::Zero(state.q.size());
     const Status status = scheme.resolve(kinematics, first, state, result);
     if (failed(status)) return status;
 
