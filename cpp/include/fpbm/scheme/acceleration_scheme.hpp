@@ -53,24 +53,33 @@ struct AccelerationScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    if constexpr (!kInLanes<Scalar>) {  // Lanes differ in alpha.
-      constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
-      const auto& J = kinematics.J;
-      if (alpha == Scalar(0) && (kUnit || !projects())) {
-        return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
-      }
-      if (kUnit || alpha == Scalar(1)) {
-        const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
-          const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(gram.solve(reference.xd));
-          return weights.solve(Jdtmu);
-        };
-        return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
-      }
-    }
-    return resolve_pair(b, kinematics, reference, state, qdd);
+    return solve(b, kinematics.J, kinematics.Jd, reference.xd, state, qdd);
   }
 
  private:
+  /// Compiled once for each number of rows, whatever the task space.
+  template <int M>
+  [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
+                             const Vector<M, Scalar>& xd, const State<N, Scalar>& state,
+                             Vector<N, Scalar>& qdd) const noexcept {
+    constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
+    if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
+      return solve_pair(b, J, Jd, xd, state, qdd);
+    } else {
+      if (alpha == Scalar(0) && (kUnit || !projects())) {
+        return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
+      }
+      if constexpr (!kUnit) {
+        if (alpha != Scalar(1)) return solve_pair(b, J, Jd, xd, state, qdd);
+      }
+      const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
+        const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(gram.solve(xd));
+        return weights.solve(Jdtmu);
+      };
+      return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
+    }
+  }
+
   /// Whether there may be a motion for N_W to project.
   [[nodiscard]] bool projects() const noexcept {
     return null_space.template active<kLevel>() || singular.brake() != Scalar(0);
@@ -80,23 +89,19 @@ struct AccelerationScheme {
   ///
   ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
   ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z).
-  template <typename Space>
-  [[nodiscard, gnu::flatten]] Status resolve_pair(const Vector<Space::kRows, Scalar>& b,
-                                                  const Kinematics<Space, N, Scalar>& kinematics,
-                                                  const Reference<Space, Scalar>& reference,
-                                                  const State<N, Scalar>& state,
-                                                  Vector<N, Scalar>& qdd) const noexcept {
-    constexpr int M = Space::kRows;
-    const auto& J = kinematics.J;
+  template <int M>
+  [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
+                                                const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
+                                                const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
     DampedGram<M, N, Pair<Scalar>> gram(singular, J);                // Of JJᵀ and JW⁻¹Jᵀ.
     const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);  // Jᵀ and W⁻¹Jᵀ.
     const Status status = gram.factor(WinvJt, Scalar(1));
     if (failed(status)) return status;
 
-    const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, reference.xd));
+    const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, xd));
     const Vector<M, Scalar> lambda1 = first<M, 1, Scalar>(both);
     const Vector<M, Scalar> mu = second<M, 1, Scalar>(both);
-    const Vector<N, Scalar> Jdtmu = alpha * kinematics.Jd.transpose().lazyProduct(mu);
+    const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(mu);
     Vector<N, Scalar> u = weights.solve(Jdtmu);
     if (null_space.template active<kLevel>()) u += null_space.template at<kLevel>(state);
     if (status == Status::kDamped) u -= gram.brake() * state.qd;
