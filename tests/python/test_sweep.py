@@ -244,7 +244,6 @@ def test_within_limits_a_sweep_is_many_tracks(case):
 
 
 def test_workers_change_nothing_within_limits(arm, reference):
-    """Starts that break no limit; some motions never leave them."""
     starts = reference.q0s[:40]
     how = {"limits": TIGHT, "dt": 0.01}
     alone = fp.sweep(arm, reference.path, reference.schemes, starts, workers=1, **how)
@@ -253,7 +252,7 @@ def test_workers_change_nothing_within_limits(arm, reference):
         same(fp.sweep(arm, reference.path, reference.schemes, starts, executor=processes, **how), alone)
     assert {fp.Status.SLOWED} <= set(alone.status.ravel())
     assert alone.peak_velocity.max() <= 0.3 + 1e-12
-    assert fp.sweep(arm, reference.path, reference.schemes, starts, 0.01).peak_velocity.max() > 0.3
+    assert np.nanmax(reference.peak_velocity[:, :40]) > 0.3
 
 
 @pytest.mark.parametrize(
