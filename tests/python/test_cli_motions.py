@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import importlib
 import os
@@ -29,6 +30,7 @@ pytest.importorskip("tomlkit")
 import click
 from click.testing import CliRunner, Result
 
+from fpbm_cpp import viewer
 from fpbm_cpp.cli import command
 from fpbm_cpp.cli.figures import summary
 from fpbm_cpp.job import prepare, read_job, write_job
@@ -227,7 +229,7 @@ def test_sweep_and_tune_keep_limits(in_a_folder: Path) -> None:
     quick = ["planar:1,1,1,1", "--duration", "2", "--dt", "0.01"]
     assert call("sweep", *quick, "--starts", "3", *limits, "--out", "out").exit_code == 0
     rows = list(csv.DictReader(Path("out/sweep.csv").read_text().splitlines()))
-    assert [row["status"] for row in rows] == ["OK"] * 3
+    assert {row["status"] for row in rows} <= {"OK", "SLOWED"}
     peaks = [float(row["peak_velocity"]) for row in rows]
     assert max(peaks) <= 0.05 * (1 + 1e-9)
     assert call("sweep", *quick, "--starts", "3", "--out", "free").exit_code == 0
@@ -314,7 +316,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
     [
         (
             ["pnada"],
-            'ARM = "pnada": must be one of panda, iiwa14, gen3, planar:1,1,1,1, a URDF file; did you mean "panda"?',
+            "ARM = 'pnada': must be one of panda, iiwa14, gen3, planar:1,1,1,1, a URDF file; did you mean 'panda'?",
         ),
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
         (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
@@ -327,22 +329,22 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         ),
         (["panda", "--tip", "tool"], "--tip: preset has no such key: must be one of name"),
         (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),
-        (["panda", "--alpha", "x"], '--alpha = "x": must be a number'),
-        (["panda", "--scheme", "fbpm"], 'fpbm; did you mean "fpbm"?'),
+        (["panda", "--alpha", "x"], "--alpha = 'x': must be a number"),
+        (["panda", "--scheme", "fbpm"], "fpbm; did you mean 'fpbm'?"),
         (["panda", "--scheme", "man", "--alpha", "1"], "--alpha: man has no such key: must be one of null_damping, "),
         (["panda", "--weights", "1,2"], "--weights has 2 entries: must have 7, one per joint"),
         (["panda", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),
         (["panda", "--qd0", "0,0"], "--qd0 has 2 entries: must have 7, one per joint"),
         (["panda", "--dt", "0.3"], "--dt = 0.3: must be a divisor of duration = 10"),
-        (["panda", "--task", "pos"], '--task = "pos": must be one of position, pose; did you mean "pose"?'),
+        (["panda", "--task", "pos"], "--task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (["panda", "--path", "waypoints", "--duration", "1"], "--points: is missing"),
-        (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of speed: must be given"),
+        (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of velocity: must be given"),
         (["planar:1,1", "--in-plane", "xy"], "path: it lies in space, and the arm in a plane"),
         (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
         (["--job", "bad.toml"], "bad.toml: no TOML: "),
         (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),
         (["--job", "wrong.toml", "--radius", "-2"], "--radius = -2: must be positive and finite"),
-        (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], '--path = "cirle": must be one of '),
+        (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], "--path = 'cirle': must be one of "),
     ],
 )
 def test_what_is_wrong_is_said(arguments: list[str], line: str) -> None:
@@ -432,8 +434,8 @@ def test_compare() -> None:
         ],
     ):
         run = fp.simulate(fp.PlanarArm([1, 1, 1, 1]), path, scheme, q0)
-        assert row[2] == f"{np.abs(run.qd).max():.4g}"
-        assert row[-1] == "yes"
+        assert row[1] == "yes"
+        assert row[3] == f"{np.abs(run.qd).max():.4g}"
 
 
 @pytest.mark.usefixtures("sketches")
@@ -444,10 +446,10 @@ def test_compare_writes() -> None:
 
 
 def test_compare_refuses() -> None:
-    assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith('--schemes = "fbpm": must be one of mvn, ')
+    assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith("--schemes = 'fbpm': must be one of mvn, ")
     assert refused("compare", "panda", "--weights", "1") == "--weights: must have 1 dimension, got shape ()"
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[scheme]\nkind = 'fpbm'\nalhpa = 1")
-    assert 'did you mean "alpha"?' in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
+    assert "did you mean 'alpha'?" in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
     result = call("compare", "planar:1,1,1,1", "--q0", "0,0,0,0")
     assert result.exit_code == 1
     assert result.stderr == "Error: no motion is complete\n"
@@ -481,7 +483,7 @@ def test_sweep() -> None:
 def test_sweep_refuses() -> None:
     assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must be as alpha=0,0.6,1 or ")
     assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must be as ")
-    assert 'did you mean "alpha"?' in refused("sweep", "panda", "--vary", "alhpa=1")
+    assert "did you mean 'alpha'?" in refused("sweep", "panda", "--vary", "alhpa=1")
     assert refused("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
     assert "leave qd0 out" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
 
@@ -554,21 +556,36 @@ def test_tune_writes_a_job() -> None:
     assert peaks[0] <= peaks[1]
 
 
+class Shown(contextlib.nullcontext):
+    """A viewer that ends at once."""
+
+    url = "http://localhost:9000"
+
+    def __enter__(self) -> Shown:
+        return self
+
+    def wait(self) -> None:
+        pass
+
+
 @pytest.mark.parametrize("limits", [(), ("--limits",)])
 def test_view(limits: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     """Hands on the run that is asked for, to a viewer that ends at once."""
     shown = []
-    monkeypatch.setattr(fp.Run, "view", lambda run, **how: shown.append((run, how)))
+    monkeypatch.setitem(vars(viewer), "Viewer", lambda run, **how: shown.append((run, how)) or Shown())
     result = call("view", "panda", "--task", "pose", "--port", "9000", "--no-browser", "--hold", "1", *limits)
     assert result.exit_code == 0, result.output
     ((run, how),) = shown
     assert (run.arm, run.task, run.t[-1]) == (fp.SerialArm.preset("panda"), "pose", 11.0)
     assert (run.scale is not None) == bool(limits)
     assert how == {"urdf": None, "port": 9000, "open_browser": False}
+    assert result.stdout.splitlines()[-1] == "http://localhost:9000: Ctrl-C ends it."
 
 
 def test_warnings_are_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fp.Run, "view", lambda run, **how: warnings.warn("a mesh is missing", stacklevel=1))
+    monkeypatch.setitem(
+        vars(viewer), "Viewer", lambda run, **how: warnings.warn("a mesh is missing", stacklevel=1) or Shown()
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("default")
         result = call("view", "panda", *QUICK)
@@ -588,7 +605,7 @@ def test_view_on_a_port_in_use() -> None:
 @posix
 def test_ctrl_c_ends_the_viewer_in_peace() -> None:
     pytest.importorskip("viser")
-    _, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], "Websocket", 1.0)
+    _, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], "Ctrl-C ends it.", 1.0)
     assert (code, err) == (0, "")
 
 
@@ -597,7 +614,7 @@ def test_ctrl_c_ends_the_viewer_in_peace() -> None:
 def test_ctrl_c_ends_the_viewer_while_it_starts(seconds: float) -> None:
     pytest.importorskip("viser")
     arguments = ["view", "panda", *QUICK, "--port", "0", "--no-browser"]
-    _, err, code = interrupted(arguments, "Ctrl-C ends it.", seconds)
+    _, err, code = interrupted(arguments, "by default", seconds)
     assert (code, err) == (0, "")
 
 

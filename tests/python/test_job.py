@@ -103,7 +103,9 @@ def test_arms(table: dict[str, Any], arm: Any) -> None:
 )
 def test_paths(text: str, path: fp.Path) -> None:
     flat = len(path.sample(0.0)[0]) == 2
-    assert prepare({"arm": PANDA, "path": job_of(text), "run": {"task": "pose"}}).path == (path.in_plane("yz") if flat else path)
+    assert prepare({"arm": PANDA, "path": job_of(text), "run": {"task": "pose"}}).path == (
+        path.in_plane("yz") if flat else path
+    )
 
 
 def test_paths_follow_one_another() -> None:
@@ -373,7 +375,10 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[path]\nkind = 'circle'\nradius = nan", "path.radius = nan: must be positive and finite"),
         (f"{ARM}[path]\nkind = 'circle'\nradus = 1", "rotation_time_law; did you mean 'radius'?"),
         (f"{ARM}[path]\nkind = 'circle'\ntime_law = 'sin'", f"path.time_law = 'sin': must be one of {LAWS}"),
-        (f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'", "path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"),
+        (
+            f"{ARM}[path]\nkind = 'circle'\nin_plane = 'xw'",
+            "path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy",
+        ),
         (f"{ARM}[path]\nkind = 'circle'\nwith_rotation = [1]", "path.with_rotation"),
         (
             f"{ARM}[path]\nkind = 'lissajous'\nfrequencies = [1, 1.5]",

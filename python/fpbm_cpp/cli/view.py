@@ -24,10 +24,13 @@ def view(request: Request, port: int, browser: bool) -> None:
     with request.plain():
         run = motion.run()
     request.say(motion)
-    click.echo("Ctrl-C ends it.")
     try:
         import_undisturbed("viser", "viser.extras")
-        run.view(urdf=motion.job["arm"].get("file"), port=port, open_browser=browser)
+        from ..viewer import Viewer
+
+        with Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser) as viewer:
+            click.echo(f"{viewer.url}: Ctrl-C ends it.")
+            viewer.wait()
     except OSError as error:
         raise click.ClickException(error.strerror or str(error)) from None
     except KeyboardInterrupt:

@@ -102,7 +102,12 @@ def prepare(job: Table) -> Motion:
         if np.any(bounded & np.isinf(limits.acceleration)):
             text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(ParameterError("limits.acceleration", None, None, text))
+    motion = Motion({}, [], arm, path, scheme, options, limits)
     with job_errors():
-        check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
+        try:
+            check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
+        except ValueError:
+            motion.run()  # Refuses the same, by the names that a job has for it.
+            raise
     whole = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
-    return Motion(whole, list(taken(job, whole)), arm, path, scheme, options, limits)
+    return replace(motion, job=whole, taken=list(taken(job, whole)))
