@@ -14,8 +14,8 @@
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
-/// A rollout and a control loop allocate nothing, whatever the scheme and the number of joints. Each of the three watches
-/// that check this is seen to catch a planted allocation.
+/// A rollout and a control loop allocate nothing, whatever the scheme and the number of joints. Each of the three
+/// watches that check this is seen to catch a planted allocation.
 namespace fpbm::test {
 namespace {
 
@@ -58,7 +58,8 @@ void expect_none(const Watched& watched, const std::string& name) {
 }
 
 template <typename Scheme>
-Watched on_the_papers_circle(const Scheme& scheme, void (*extra)() = [] {}) {
+Watched on_the_papers_circle(
+    const Scheme& scheme, void (*extra)() = [] {}) {
   return watched_rollout(paper_arm(), paper_circle(), scheme, paper_start().q, extra);
 }
 
@@ -77,7 +78,7 @@ void expect_none_in_any_scheme() {
   law.k = law.k1 = law.k2 = 1.0;
   law.damping = law.stiffness = 1.0;
   law.q_rest = law.c = Vector<4>::Zero();
-  for_every_scheme<N>([&](const std::string& name, const Takes& takes, const auto& make) {
+  for_every_scheme<N, double, N == 4>([&](const std::string& name, const Takes& takes, const auto& make) {
     law.W = Vector<4>(1, 2, 3, 4).asDiagonal();
     if (takes.dense) law.W += 0.2 * Matrix<4, 4>::Ones();
     for (const bool with_z : {false, true}) {

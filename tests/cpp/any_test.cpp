@@ -64,9 +64,7 @@ void expect_same_arm(const AnyArm<Positions>& any, const Arm& arm) {
 }
 
 TEST(AnyArm, is_the_arm_that_it_holds) {
-  const auto check = [](auto positions, const auto& arm) {
-    expect_same_arm(AnyArm<decltype(positions)>(arm), arm);
-  };
+  const auto check = [](auto positions, const auto& arm) { expect_same_arm(AnyArm<decltype(positions)>(arm), arm); };
   check(Position<2>{}, PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)));
   check(Position<2>{}, PlanarArm<kOpen>(Vector<6>::Ones()));
   check(Position<3>{}, SerialArm<7>(presets::panda()));
@@ -103,53 +101,51 @@ TEST(AnyArm, shares_what_it_holds_with_its_copies) {
   expect_same_arm(copy, arm);
 }
 
-/// Every scheme at every level, in regular postures, at a singular one, and with a reference that is not finite.
-template <typename Space, typename Arm>
-void expect_same_answers(const Arm& arm) {
+/// In regular postures, at a singular one, and with a reference that is not finite.
+template <typename Space, typename Arm, typename Scheme>
+void expect_same_answers(const Arm& arm, const Scheme& scheme) {
   constexpr int N = Arm::kDof;
   const int dof = arm.dof();
-  for_every_scheme<N>([&](const std::string& name, const Takes& takes, const auto& make) {
+  const AnyScheme<Scheme::kLevel, Space> held(scheme);
+  const auto any = held;
+  EXPECT_EQ(complaint([&] { any.require_dof(dof); }), "");
+  EXPECT_EQ(complaint([&] { any.require_dof(dof + 1); }), complaint([&] { scheme.require_dof(dof + 1); }));
+  Random random(5);
+  for (int trial = 0; trial < 20; ++trial) {
+    State<N> state{random.uniform(dof, -1.5, 1.5), random.uniform(dof, -1.0, 1.0)};
+    if (trial == 0) state.q.setZero();
+    Kinematics<Space, N> kinematics;
+    arm.kinematics(state.q, state.qd, kinematics);
+    auto reference = random_reference(random, kinematics);
+    if (trial == 1) reference.xd(1) = reference.xdd(1) = std::numeric_limits<double>::quiet_NaN();
+    Kinematics<Space, kOpen> any_kinematics;
+    copy(kinematics, true, any_kinematics);
+    const State<kOpen> any_state{state.q, state.qd};
+    Vector<N> expected = Vector<N>::Constant(dof, 42.0);
+    Vector<kOpen> found = expected;
+    const Status status = scheme.resolve(kinematics, reference, state, expected);
+    EXPECT_EQ(any.resolve(any_kinematics, reference, any_state, found), status);
+    EXPECT_EQ(failed(status), trial < 2) << message(status);
+    expect_same(found, expected, "u");
+  }
+}
+
+TEST(AnyScheme, is_the_scheme_that_it_holds) {
+  for_every_scheme<4>([](const std::string& name, const Takes& takes, const auto& make) {
     SCOPED_TRACE(name);
     Random random(5);
     Law law;
     law.alpha = 0.6;
     law.k = law.k1 = law.k2 = 2.0;
-    law.W = takes.dense ? random.positive_definite(dof) : Eigen::MatrixXd(random.uniform(dof, 0.5, 4.0).asDiagonal());
+    law.W = takes.dense ? random.positive_definite(4) : Eigen::MatrixXd(random.uniform(4, 0.5, 4.0).asDiagonal());
     law.has_null_space = true;
     law.damping = law.stiffness = 1.5;
-    law.q_rest = law.c = random.uniform(dof, -1.0, 1.0);
-    const auto scheme = make(law);
-    using Scheme = std::decay_t<decltype(scheme)>;
-    const AnyScheme<Scheme::kLevel, Space> held(scheme);
-    const auto any = held;
-    EXPECT_EQ(complaint([&] { any.require_dof(dof); }), "");
-    EXPECT_EQ(complaint([&] { any.require_dof(dof + 1); }), complaint([&] { scheme.require_dof(dof + 1); }));
-    for (int trial = 0; trial < 20; ++trial) {
-      State<N> state{random.uniform(dof, -1.5, 1.5), random.uniform(dof, -1.0, 1.0)};
-      if (trial == 0) state.q.setZero();
-      Kinematics<Space, N> kinematics;
-      arm.kinematics(state.q, state.qd, kinematics);
-      auto reference = random_reference(random, kinematics);
-      if (trial == 1) {
-        reference.xd(1) = reference.xdd(1) = std::numeric_limits<double>::quiet_NaN();
-      }
-      Kinematics<Space, kOpen> any_kinematics;
-      copy(kinematics, true, any_kinematics);
-      const State<kOpen> any_state{state.q, state.qd};
-      Vector<N> expected = Vector<N>::Constant(dof, 42.0);
-      Vector<kOpen> found = expected;
-      const Status status = scheme.resolve(kinematics, reference, state, expected);
-      EXPECT_EQ(any.resolve(any_kinematics, reference, any_state, found), status);
-      EXPECT_EQ(failed(status), trial < 2) << message(status);
-      expect_same(found, expected, "u");
-    }
+    law.q_rest = law.c = random.uniform(4, -1.0, 1.0);
+    expect_same_answers<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), make(law));
   });
-}
-
-TEST(AnyScheme, is_the_scheme_that_it_holds) {
-  expect_same_answers<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)));
-  expect_same_answers<Pose>(SerialArm<7>(presets::panda()));
-  expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()));
+  const auto fpbm = FPBM<7>(0.6, Vector<7>(Vector<7>::LinSpaced(1.0, 2.0)), 10.0, 25.0);
+  expect_same_answers<Pose>(SerialArm<7>(presets::panda()), fpbm);
+  expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()), MVN<kOpen>(1.0));
 }
 
 template <typename Path>

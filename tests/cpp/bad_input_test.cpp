@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/make_arm.hpp"
 #include "support/paper.hpp"
+#include "support/recording.hpp"
 
 /// Bad arguments throw std::invalid_argument, and the message names the argument, the index and the value.
 namespace fpbm::test {
@@ -154,54 +157,52 @@ TEST(BadInput, time_grid) {
 }
 
 /// Runs a rollout that must be refused before anything is recorded.
-template <typename Arm, typename Scheme>
-void expect_rollout_refusal(const Arm& arm, const Scheme& scheme, const State<Arm::kDof>& start,
-                            const std::vector<std::string>& words) {
+template <typename Scheme>
+void expect_rollout_refusal(const Scheme& scheme, const State<Eigen::Dynamic>& start,
+                            const std::vector<std::string>& words, double duration = 10.0) {
+  const AnyScheme<Scheme::kLevel, Position<2>> any(scheme);
+  const TimeGrid<> grid(duration, 0.1);
   int recorded = 0;
   expect_refusal(
-      [&] { rollout(arm, paper_circle(), scheme, start, TimeGrid<>(10.0, 0.1), [&](const auto&) { ++recorded; }); },
+      [&] {
+        rollout(make_planar_arm(Open::Ones(4)), paper_circle(), any, start, grid, [&](const auto&) { ++recorded; });
+      },
       words);
   EXPECT_EQ(recorded, 0);
 }
 
 TEST(BadInput, start) {
-  const PlanarArm<4> arm = paper_arm();
   for (const double bad : kNotFinite) {
     State<4> start = paper_start();
     start.q(2) = bad;
-    expect_rollout_refusal(arm, paper_fpbm(), start, {"q0[2]" + value(bad), "finite"});
-    expect_rollout_refusal(arm, MVN<4>(), start, {"q0[2]" + value(bad)});
+    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"q0[2]" + value(bad), "finite"});
+    expect_rollout_refusal(MVN<4>(), {start.q, start.qd}, {"q0[2]" + value(bad)});
     start = paper_start();
     start.qd(3) = bad;
-    expect_rollout_refusal(arm, paper_fpbm(), start, {"qd0[3]" + value(bad), "finite"});
+    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"qd0[3]" + value(bad), "finite"});
     // At velocity level the start velocity is not read.
-    EXPECT_EQ(rollout(arm, paper_circle(), MVN<4>(), start, TimeGrid<>(10.0, 0.1), [](const auto&) {}).status,
-              Status::kOk);
+    EXPECT_EQ(recorded(paper_arm(), paper_circle(), MVN<4>(), start, TimeGrid<>(10.0, 0.1)).result.status, Status::kOk);
   }
 }
 
 TEST(BadInput, a_grid_of_another_duration) {
+  const State<4> start = paper_start();
   for (const double duration : {5.0, 20.0}) {
-    expect_refusal(
-        [&] {
-          rollout(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), TimeGrid<>(duration, 0.1),
-                  [](const auto&) { FAIL() << "nothing is to be recorded"; });
-        },
-        {"grid duration = ", "must be the duration of the path"});
+    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"grid duration = ", "must be the duration of the path"},
+                           duration);
   }
 }
 
 TEST(BadInput, joints_that_do_not_fit) {
   constexpr int N = Eigen::Dynamic;
-  const PlanarArm<N> arm(Open(Open::Ones(4)));
   const auto man = MAN<N>();
   const Open four = Open::Constant(4, 0.2);
   const Open three = Open::Constant(3, 0.2);
   const Open five = Open::Constant(5, 0.2);
   for (const Open& wrong : {three, five}) {
     const std::string count = std::to_string(wrong.size());
-    expect_rollout_refusal(arm, man, {wrong, four}, {"q0 has " + count + " entries", "must have 4"});
-    expect_rollout_refusal(arm, man, {four, wrong}, {"qd0 has " + count + " entries", "must have 4"});
+    expect_rollout_refusal(man, {wrong, four}, {"q0 has " + count + " entries", "must have 4"});
+    expect_rollout_refusal(man, {four, wrong}, {"qd0 has " + count + " entries", "must have 4"});
 
     const DiagonalWeights<N> W(wrong);
     const DenseWeights<N> dense(OpenSquare(wrong.asDiagonal()));
@@ -209,14 +210,14 @@ TEST(BadInput, joints_that_do_not_fit) {
     const std::vector<std::string> weights = {"weights has " + count + " entries", "must have 4"};
     const std::vector<std::string> choice = {"c has " + count + " entries", "must have 4"};
     const State<N> start{four, Open::Zero(4)};
-    expect_rollout_refusal(arm, WMVN<N>(W), start, weights);
-    expect_rollout_refusal(arm, WMVNAcceleration<N>(W), start, weights);
-    expect_rollout_refusal(arm, Balanced<N>(0.5, W), start, weights);
-    expect_rollout_refusal(arm, FPBM<N>(0.5, W, 1.0, 1.0), start, weights);
-    expect_rollout_refusal(arm, FPBM<N>(0.5, dense, 1.0, 1.0), start, weights);
-    expect_rollout_refusal(arm, MVN<N>(0.0, c), start, choice);
-    expect_rollout_refusal(arm, MAN<N>(c), start, choice);
-    expect_rollout_refusal(arm, FPBM<N>(0.5, DiagonalWeights<N>(four), 1.0, 1.0, c), start, choice);
+    expect_rollout_refusal(WMVN<N>(W), start, weights);
+    expect_rollout_refusal(WMVNAcceleration<N>(W), start, weights);
+    expect_rollout_refusal(Balanced<N>(0.5, W), start, weights);
+    expect_rollout_refusal(FPBM<N>(0.5, W, 1.0, 1.0), start, weights);
+    expect_rollout_refusal(FPBM<N>(0.5, dense, 1.0, 1.0), start, weights);
+    expect_rollout_refusal(MVN<N>(0.0, c), start, choice);
+    expect_rollout_refusal(MAN<N>(c), start, choice);
+    expect_rollout_refusal(FPBM<N>(0.5, DiagonalWeights<N>(four), 1.0, 1.0, c), start, choice);
   }
 }
 

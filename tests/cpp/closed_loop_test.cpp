@@ -41,29 +41,29 @@ void on_the_planar_arm(const Scheme& scheme, Check&& check) {
 
 TEST(ClosedLoop, of_the_first_order_has_the_scheme_s_velocity) {
   const auto scheme = WMVN<4>(Vector<4>(1, 2, 3, 4), 3.0);
-  on_the_planar_arm(scheme, [&](const auto&, const auto& dx, const auto& kinematics, const auto& reference,
-                                const auto& loop) {
-    Vector<4> qd;
-    EXPECT_EQ(scheme.resolve(kinematics, reference, loop.state, qd), Status::kOk);
-    EXPECT_EQ(dx, qd);
-    EXPECT_EQ(loop.state.qd, qd);
-    EXPECT_EQ(loop.qdd, Vector<4>::Zero());
-  });
+  on_the_planar_arm(scheme,
+                    [&](const auto&, const auto& dx, const auto& kinematics, const auto& reference, const auto& loop) {
+                      Vector<4> qd;
+                      EXPECT_EQ(scheme.resolve(kinematics, reference, loop.state, qd), Status::kOk);
+                      EXPECT_EQ(dx, qd);
+                      EXPECT_EQ(loop.state.qd, qd);
+                      EXPECT_EQ(loop.qdd, Vector<4>::Zero());
+                    });
 }
 
 TEST(ClosedLoop, of_the_second_order_has_the_scheme_s_acceleration) {
   const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
-  on_the_planar_arm(scheme, [&](const auto& x, const auto& dx, const auto& kinematics, const auto& reference,
-                                const auto& loop) {
-    const State<4> state{x.col(0), x.col(1)};
-    Vector<4> qdd;
-    EXPECT_EQ(scheme.resolve(kinematics, reference, state, qdd), Status::kOk);
-    EXPECT_EQ(dx.col(0), x.col(1));
-    EXPECT_EQ(dx.col(1), qdd);
-    EXPECT_EQ(loop.state.qd, x.col(1));
-    EXPECT_EQ(loop.kinematics.Jd, kinematics.Jd);
-    EXPECT_EQ(loop.qdd, qdd);
-  });
+  on_the_planar_arm(
+      scheme, [&](const auto& x, const auto& dx, const auto& kinematics, const auto& reference, const auto& loop) {
+        const State<4> state{x.col(0), x.col(1)};
+        Vector<4> qdd;
+        EXPECT_EQ(scheme.resolve(kinematics, reference, state, qdd), Status::kOk);
+        EXPECT_EQ(dx.col(0), x.col(1));
+        EXPECT_EQ(dx.col(1), qdd);
+        EXPECT_EQ(loop.state.qd, x.col(1));
+        EXPECT_EQ(loop.kinematics.Jd, kinematics.Jd);
+        EXPECT_EQ(loop.qdd, qdd);
+      });
 }
 
 }  // namespace

@@ -85,18 +85,18 @@ Expected damped(const Law& law, const Situation& at) {
   const RealMatrix lost = lost_directions(at.J, law.singular_radius);
   const Real edge = static_cast<Real>(law.singular_radius) * at.J.norm();
   const RealMatrix delta = edge * edge * lost;
-  RealMatrix Winv = real(law.W).inverse();
+  RealMatrix Winv = inverse(real(law.W));
   Winv /= Winv.diagonal().maxCoeff();
 
-  const RealMatrix inverse = (at.J * Winv * at.J.transpose() + delta).inverse();
-  const RealMatrix Jp = at.J.transpose() * (at.J * at.J.transpose() + delta).inverse();
-  const RealMatrix JWp = Winv * at.J.transpose() * inverse;
+  const RealMatrix damped_inverse = inverse(at.J * Winv * at.J.transpose() + delta);
+  const RealMatrix Jp = at.J.transpose() * inverse(at.J * at.J.transpose() + delta);
+  const RealMatrix JWp = Winv * at.J.transpose() * damped_inverse;
   const RealVector b = commanded(law, at);
   RealVector z = secondary(law, at);
   RealVector rate = RealVector::Zero(at.q.size());
   if (law.acceleration) {
     z -= static_cast<Real>(law.singular_brake) * lost.trace() * at.qd;
-    rate = alpha * Winv * at.Jd.transpose() * inverse * at.xd;
+    rate = alpha * Winv * at.Jd.transpose() * damped_inverse * at.xd;
   }
   const RealVector v = z + rate;
   const RealVector task = (1 - alpha) * Jp * b + alpha * JWp * b;
@@ -407,8 +407,7 @@ TYPED_TEST(Spectra, bound_the_damped_inverse) {
   double largest = 0.0;
   Fixture::everywhere(0.1, [&](const auto& J, Random& random) {
     const double edge = 0.05 * static_cast<double>(J.norm());
-    const double gain =
-        edge * static_cast<double>(singular_values(damped_inverse(UnitWeights{}, damping, J))(0));
+    const double gain = edge * static_cast<double>(singular_values(damped_inverse(UnitWeights{}, damping, J))(0));
     EXPECT_LE(gain, 1.17 * slack);
     largest = std::max(largest, gain);
 
@@ -451,7 +450,7 @@ TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
     const Gram A = random.positive_definite(Fixture::M).template cast<typename Fixture::Number>();
     Cholesky<Fixture::M, typename Fixture::Number> cholesky;
     if (cholesky.factor(A) != Status::kOk) FAIL();  // g++ warns of an uninitialised factor after ASSERT_EQ.
-    const auto expected = static_cast<double>(real(A).inverse().trace());
+    const auto expected = static_cast<double>(inverse(real(A)).trace());
     EXPECT_NEAR(static_cast<double>(cholesky.inverse_trace()), expected, 256.0 * Fixture::kEpsilon * expected);
   }
 }
@@ -531,8 +530,8 @@ TEST(DampedMotion, that_leaves_its_path_is_stopped) {
     for (const double radius : {0.01, 0.05, 0.2}) {
       for (const double dt : {1e-3, 1e-2}) {
         for (std::uint32_t seed = 0; seed < 10; ++seed) {
-          SCOPED_TRACE(name + ", radius " + std::to_string(radius) + ", dt " + std::to_string(dt) +
-                       ", seed " + std::to_string(seed));
+          SCOPED_TRACE(name + ", radius " + std::to_string(radius) + ", dt " + std::to_string(dt) + ", seed " +
+                       std::to_string(seed));
           Random random(seed);
           State<4> start{random.uniform(4, 0.2, 1.0), Vector<4>::Zero()};
           start.q(0) = random.uniform(-kPi, kPi);

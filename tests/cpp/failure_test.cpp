@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/make_arm.hpp"
 #include "support/paper.hpp"
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// A motion that leaves the workspace ends with a status, in time, and its samples are good. A motion well inside reaches
-/// its end.
+/// A motion that leaves the workspace ends with a status, in time, and its samples are good. A motion well inside
+/// reaches its end.
 namespace fpbm::test {
 namespace {
 
@@ -32,24 +34,30 @@ struct Ending {
   bool finite;
 };
 
-template <int N, typename Scheme>
-Ending run(const Task& task, const Scheme& scheme) {
-  const PlanarArm<N> arm(task.lengths);
-  const Path<Line<2>> path(Line<2>(task.way), task.duration);
-  const State<N> start{task.q0, Vector<N>::Zero()};
-  const auto motion = recorded(arm, path, scheme, start, TimeGrid<>(task.duration, task.dt));
+constexpr int kOpen = Eigen::Dynamic;
+
+template <Level kLevel>
+Ending run(const Task& task, const AnyScheme<kLevel, Position<2>>& scheme) {
+  const AnyPath<Position<2>> path(Path(Line<2>(task.way), task.duration));
+  const State<kOpen> start{task.q0, Vector<kOpen>::Zero(task.q0.size())};
+  const TimeGrid<> grid(task.duration, task.dt);
+  const auto motion = recorded(make_planar_arm(task.lengths), path, scheme, start, grid);
   const bool finite = std::all_of(motion.samples.begin(), motion.samples.end(), [](const auto& sample) {
     return sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite() && sample.error.allFinite();
   });
   return {motion.result.status, motion.result.time, motion.result.samples, motion.max_error(), finite};
 }
 
-template <int N>
-DiagonalWeights<N> weights(const Task& task) {
-  return DiagonalWeights<N>(Vector<N>(Random(task.seed).uniform(N, 0.5, 8.0)));
+template <typename Scheme>
+Ending run(const Task& task, const Scheme& scheme) {
+  return run(task, AnyScheme<Scheme::kLevel, Position<2>>(scheme));
 }
 
-/// A scheme on an arm, types erased.
+Vector<kOpen> weights(const Task& task) {
+  return Random(task.seed).uniform(task.q0.size(), 0.5, 8.0);
+}
+
+/// A scheme on an arm of dof joints.
 struct Contender {
   std::string name;
   int dof;
@@ -60,25 +68,20 @@ void PrintTo(const Contender& contender, std::ostream* out) {
   *out << contender.name;
 }
 
-template <int N>
-void add_contenders(std::vector<Contender>& all) {
-  const auto add = [&](const char* scheme, Ending (*go)(const Task&)) {
-    all.push_back({std::string(scheme) + "_n" + std::to_string(N), N, go});
-  };
-  add("MVN", [](const Task& task) { return run<N>(task, MVN<N>()); });
-  add("WMVN", [](const Task& task) { return run<N>(task, WMVN<N>(weights<N>(task), 5.0)); });
-  add("MAN", [](const Task& task) { return run<N>(task, MAN<N>()); });
-  add("FPBM", [](const Task& task) { return run<N>(task, FPBM<N>(0.6, weights<N>(task), 1.0, 1.0)); });
-  add("FPBM_damped", [](const Task& task) {
-    return run<N>(task, FPBM<N>(0.6, weights<N>(task), 1.0, 1.0, NullSpace<N>{}.with_damping(2.0)));
-  });
-}
-
 std::vector<Contender> contenders() {
   std::vector<Contender> all;
-  add_contenders<2>(all);
-  add_contenders<4>(all);
-  add_contenders<7>(all);
+  for (const int dof : {2, 4, 7}) {
+    const auto add = [&](const char* scheme, Ending (*go)(const Task&)) {
+      all.push_back({std::string(scheme) + "_n" + std::to_string(dof), dof, go});
+    };
+    add("MVN", [](const Task& task) { return run(task, MVN<kOpen>()); });
+    add("WMVN", [](const Task& task) { return run(task, WMVN<kOpen>(weights(task), 5.0)); });
+    add("MAN", [](const Task& task) { return run(task, MAN<kOpen>()); });
+    add("FPBM", [](const Task& task) { return run(task, FPBM<kOpen>(0.6, weights(task), 1.0, 1.0)); });
+    add("FPBM_damped", [](const Task& task) {
+      return run(task, FPBM<kOpen>(0.6, weights(task), 1.0, 1.0, NullSpace<kOpen>{}.with_damping(2.0)));
+    });
+  }
   return all;
 }
 

@@ -94,9 +94,8 @@ struct Schemes {
   VelocityScheme<N, Scalar> wmvn(const Part& part, const SingularDamping<Scalar>& singular) const {
     Vector<N, Scalar> w;
     for (int i = 0; i < N; ++i) w(i) = part(weights(i));
-    return WMVN<N, Scalar>(w, part(k1),
-                           NullSpace<N, Scalar>().with_rest_posture(Vector<N, Scalar>::Ones(), part(In(0.5))),
-                           singular);
+    return WMVN<N, Scalar>(
+        w, part(k1), NullSpace<N, Scalar>().with_rest_posture(Vector<N, Scalar>::Ones(), part(In(0.5))), singular);
   }
 };
 

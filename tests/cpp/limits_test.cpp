@@ -155,8 +155,8 @@ TEST(Limits, hold_on_a_rail) {
   roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
 }
 
-/// One joint, driven toward its end as hard as its box allows, comes to rest there. Once it brakes, its velocity falls all
-/// the way: no chatter.
+/// One joint, driven toward its end as hard as its box allows, comes to rest there. Once it brakes, its velocity falls
+/// all the way: no chatter.
 TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-1.0, 1.0, 2.0, 10.0});
@@ -192,7 +192,8 @@ void expect_invariance() {
     ASSERT_NO_THROW(limits.require_viable(state));
     const auto box = limits.box(state);
     ASSERT_TRUE((box.lower.array() <= box.upper.array()).all()) << "seed " << seed;
-    for (const double share : {1e-6, 1.0 - 1e-6}) {  // Near the ends of the box: round-off may take the ends themselves out of it.
+    for (const double share :
+         {1e-6, 1.0 - 1e-6}) {  // Near the ends of the box: round-off may take the ends themselves out of it.
       const Vector<3> u = (1.0 - share) * box.lower + share * box.upper;
       State<3> next = state;
       if constexpr (kLevel == Level::kAcceleration) {

@@ -121,8 +121,8 @@ TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
   EXPECT_LT(with.result.last.qd.norm(), 1e-3);
 }
 
-/// Repetitive motion planning: with the start posture as rest posture, at a rate of 2/s at either level, the arm does not
-/// drift from circle to circle. Without it, the arm drifts.
+/// Repetitive motion planning: with the start posture as rest posture, at a rate of 2/s at either level, the arm does
+/// not drift from circle to circle. Without it, the arm drifts.
 template <typename Scheme>
 double drift_in_third_circle(const Scheme& scheme) {
   const TimeGrid<> grid(kDuration, 5e-3);

@@ -31,8 +31,7 @@ class PaperCases : public ::testing::TestWithParam<PaperCase> {};
 
 TEST_P(PaperCases, end_as_in_the_independent_solution) {
   const PaperCase& expected = GetParam();
-  const auto scheme = FPBM<4>(expected.alpha, Vector<4>(expected.weights.data()), expected.k1,
-                       expected.k2);
+  const auto scheme = FPBM<4>(expected.alpha, Vector<4>(expected.weights.data()), expected.k1, expected.k2);
   const Recording<4> run = recorded(paper_arm(), paper_path(expected.figure), scheme, paper_start(), grid());
   expect_final(expected, run);
   if (expected.k2 > 0.0) {

@@ -34,8 +34,8 @@ AccelerationScheme<7> panda_scheme() {
   return FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 10.0, 25.0, NullSpace<7>{}.with_damping(5.0));
 }
 
-/// s = 0 where the tip looks in the desired direction, elsewhere |s| = 2 tan(θ/2); J is the derivative of s, and Jd that
-/// of J along qd.
+/// s = 0 where the tip looks in the desired direction, elsewhere |s| = 2 tan(θ/2); J is the derivative of s, and Jd
+/// that of J along qd.
 TEST(Gaze, is_a_chart_of_directions) {
   const auto check = [](const auto& arm) {
     using Arm = std::decay_t<decltype(arm)>;
@@ -173,7 +173,8 @@ TEST(SecondTask, comes_strictly_second) {
   const AnyArm<Position<2>> any_planar_elbow(planar_elbow);
   const AnyArm<Position<3>> elbow = make_arm(first_joints(panda_on_rail(), 5));
   int met = at_both_levels(flat, flat, OwnArm{}, planar_elbow);
-  for (const Vector<kOpen>& lengths : {Vector<kOpen>(Vector<4>(1.0, 0.8, 0.6, 0.4)), Vector<kOpen>(Vector<6>::Ones())}) {
+  for (const Vector<kOpen>& lengths :
+       {Vector<kOpen>(Vector<4>(1.0, 0.8, 0.6, 0.4)), Vector<kOpen>(Vector<6>::Ones())}) {
     met += at_both_levels(flat, flat, make_planar_arm(lengths), any_planar_elbow);
   }
   met += at_both_levels(spatial, spatial, make_arm(panda_on_rail()), elbow);

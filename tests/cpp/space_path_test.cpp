@@ -211,8 +211,8 @@ TEST(Sequence, is_one_path_and_then_the_other) {
   EXPECT_GT((first.sample(2.0).xdd - second.sample(0.0).xdd).norm(), 0.1);
 }
 
-/// MAN, which corrects nothing, tracks a sequence to round-off although its acceleration steps: no step of RK4 straddles
-/// the joint between the pieces.
+/// MAN, which corrects nothing, tracks a sequence to round-off although its acceleration steps: no step of RK4
+/// straddles the joint between the pieces.
 TEST(Sequence, is_integrated_piece_by_piece) {
   const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
   const Path circle(Circle(0.2), 2.0);

@@ -188,8 +188,8 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
   }
 }
 
-/// From a start at rest, 0.6 rad and 5 cm off: position errors obey ë + k₁ė + k₂e = 0, and so do orientation errors where
-/// the target is at rest. Where the target turns, the orientation error decays at the same rate.
+/// From a start at rest, 0.6 rad and 5 cm off: position errors obey ë + k₁ė + k₂e = 0, and so do orientation errors
+/// where the target is at rest. Where the target turns, the orientation error decays at the same rate.
 TEST(PoseTask, converges_at_the_rate_of_its_gains) {
   using Arm = SerialArm<7>;
   using Scheme = AccelerationScheme<7>;

@@ -89,8 +89,8 @@ TEST(Track, ends_where_the_recorder_says_so) {
   auto tracker = make_tracker(3.0);
   PathFollower follower(circle(), tracker.tip());
   int seen = 0;
-  const auto result = track(tracker, follower, TimeGrid<>(2.0, kTick),
-                            [&](const auto&, const auto&) noexcept { return ++seen < 7; });
+  const auto result =
+      track(tracker, follower, TimeGrid<>(2.0, kTick), [&](const auto&, const auto&) noexcept { return ++seen < 7; });
   EXPECT_EQ(seen, 7);
   EXPECT_EQ(result.samples, 7);
   EXPECT_DOUBLE_EQ(result.time, 0.006);

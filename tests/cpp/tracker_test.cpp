@@ -182,7 +182,8 @@ TEST(Tracker, pauses_and_resumes_on_its_path) {
   EXPECT_LE(Pose::difference<double>(follower.ahead(0.0).x, tracker.tip()).norm(), 1e-9);
 }
 
-/// In every phase the reference's velocity is the derivative of its position, and its acceleration that of its velocity.
+/// In every phase the reference's velocity is the derivative of its position, and its acceleration that of its
+/// velocity.
 TEST(Tracker, follows_paths_smoothly) {
   PathFollower follower(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
   const double h = 1e-5;
@@ -271,8 +272,8 @@ TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
   expect_to_come_back<Position<3>>("MVN, position", settling_velocity());
 }
 
-/// Where limits allow only a small part of what a stiff feedback asks for, the answer for a measured state still changes
-/// smoothly: accelerations hardly ever jump to and fro.
+/// Where limits allow only a small part of what a stiff feedback asks for, the answer for a measured state still
+/// changes smoothly: accelerations hardly ever jump to and fro.
 TEST(Tracker, does_not_chatter_out_of_reach) {
   const Vector<7> weights = (Vector<7>() << 8, 8, 4, 4, 2, 1, 1).finished();
   const auto z = NullSpace<7>{}.with_damping(10.0).with_rest_posture(bent(), 25.0);
@@ -306,8 +307,8 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   }
 }
 
-/// The answer for a measured state is the scheme's where no limit is near, and within the box elsewhere. The tracker's own
-/// state does not change.
+/// The answer for a measured state is the scheme's where no limit is near, and within the box elsewhere. The tracker's
+/// own state does not change.
 TEST(Tracker, answers_for_a_measured_state) {
   auto tracker = panda_tracker(settling());
   const auto home = Reference<Pose>::hold(tracker.tip());
@@ -410,7 +411,8 @@ TEST(Tracker, holds_at_rest_for_an_hour) {
   for (int i = 0; i < 65000; ++i) tracker.tick(follower);
   const Vector<4> start = tracker.state().q;
   double fastest = 0.0;
-  for (int i = 0; i < trials(3600000); ++i) fastest = std::max(fastest, tracker.tick(follower).qd.cwiseAbs().maxCoeff());
+  for (int i = 0; i < trials(3600000); ++i)
+    fastest = std::max(fastest, tracker.tick(follower).qd.cwiseAbs().maxCoeff());
   EXPECT_LE(fastest, 1e-9);
   EXPECT_LE((tracker.state().q - start).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -431,7 +433,8 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   const SerialArm<7> iiwa(presets::iiwa14());
   EXPECT_EQ(complaint([&] { Tracker(iiwa, Pose{}, settling(), bent()); }),
             "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
-  EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }), "ramp = 0: must be positive and finite");
+  EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }),
+            "ramp = 0: must be positive and finite");
   const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);
   EXPECT_EQ(complaint([&] {
               Tracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);

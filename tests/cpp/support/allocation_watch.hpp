@@ -20,11 +20,11 @@ constexpr bool is_about_allocation(const char* text) noexcept {
 }  // namespace fpbm::test
 
 #define EIGEN_RUNTIME_NO_MALLOC
-#define eigen_assert(condition)                                \
-  do {                                                         \
+#define eigen_assert(condition)                                    \
+  do {                                                             \
     if constexpr (::fpbm::test::is_about_allocation(#condition)) { \
-      if (!(condition)) ::fpbm::test::count_eigen_assertion(); \
-    }                                                          \
+      if (!(condition)) ::fpbm::test::count_eigen_assertion();     \
+    }                                                              \
   } while (false)
 
 #include <Eigen/Core>

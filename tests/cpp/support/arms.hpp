@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "fpbm/any/make_arm.hpp"
 #include "fpbm/fpbm.hpp"
@@ -53,8 +54,8 @@ struct ArmCase {
   Arm arm;
 };
 
-/// Calls check(case, q, qd) for each kind of arm and task, in random states. Most kinds are held by AnyArm, so that check
-/// compiles for its four pairs of arm and task, and for two of a fixed size.
+/// Calls check(case, q, qd) for each kind of arm and task, in random states. Most kinds are held by AnyArm, so that
+/// check compiles for its four pairs of arm and task, and for two of a fixed size.
 template <typename Check>
 void on_every_arm(Check&& check) {
   constexpr int kOpen = Eigen::Dynamic;
@@ -72,9 +73,9 @@ void on_every_arm(Check&& check) {
   using Spatial = AnyArm<Position<3>>;
   in_states(ArmCase<Planar, Position<2>>{"planar", Planar(PlanarArm<4>(Vector<4>::Ones()))});
   in_states(ArmCase<Planar, PlanarPose>{"planar pose", Planar(PlanarArm<kOpen>(Vector<6>::Ones()))});
-  for (const auto& [name, chain] : {std::pair<std::string, Chain<>>{"panda", presets::panda()},
-                                    {"rail", panda_on_rail()},
-                                    {"coupled", coupled_panda()}}) {
+  const std::vector<std::pair<std::string, Chain<>>> chains = {
+      {"panda", presets::panda()}, {"rail", panda_on_rail()}, {"coupled", coupled_panda()}};
+  for (const auto& [name, chain] : chains) {
     in_states(ArmCase<Spatial, Position<3>>{name, make_arm(chain)});
     in_states(ArmCase<Spatial, Pose>{name + " pose", make_arm(chain)});
   }

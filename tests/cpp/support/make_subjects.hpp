@@ -74,14 +74,10 @@ template <typename Space, typename Arm>
   const Vector<Space::kRows, Scalar> displacement = scene.displacement.cast<Scalar>();
   reference = {Space::template displace<Scalar>(kinematics.tip, displacement), scene.xd.cast<Scalar>(),
                scene.xdd.cast<Scalar>()};
-  at = {real(state.q),
-        real(state.qd),
-        RealVector(),
-        real(kinematics.J),
-        real(kinematics.Jd),
-        error_of<Space, Scalar>(reference.x, kinematics.tip, real(scene.displacement)),
-        real(reference.xd),
-        real(reference.xdd)};
+  at = {real(state.q),       real(state.qd),
+        RealVector(),        real(kinematics.J),
+        real(kinematics.Jd), error_of<Space, Scalar>(reference.x, kinematics.tip, real(scene.displacement)),
+        real(reference.xd),  real(reference.xdd)};
   return result;
 }
 
@@ -95,8 +91,7 @@ template <typename Arm, typename Space, bool kDense = true>
   for_every_scheme<N, Scalar, kDense>([&](const std::string& scheme, const Takes& takes, const auto& make_scheme) {
     const auto resolve = [make_arm, make_scheme](const Law& law, const Scene& scene) {
       const auto staged = stage<Space>(make_arm(scene.lengths), scene);
-      Vector<N, Scalar> u =
-          Vector<N, Scalar>::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
+      Vector<N, Scalar> u = Vector<N, Scalar>::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
       const Status status = make_scheme(law).resolve(staged.kinematics, staged.reference, staged.state, u);
       return Outcome{status, real(u), staged.at};
     };

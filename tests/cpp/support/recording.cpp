@@ -2,17 +2,13 @@
 
 namespace fpbm::test {
 
+template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const AccelerationScheme<4>&,
+                               const State<4>&, const TimeGrid<>&);
 template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                               const AccelerationScheme<4>&, const State<4>&,
-                               const TimeGrid<>&);
+                               const AccelerationScheme<4, double, UnitWeights>&, const State<4>&, const TimeGrid<>&);
+template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const VelocityScheme<4>&,
+                               const State<4>&, const TimeGrid<>&);
 template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                               const AccelerationScheme<4, double, UnitWeights>&, const State<4>&,
-                               const TimeGrid<>&);
-template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                               const VelocityScheme<4>&, const State<4>&,
-                               const TimeGrid<>&);
-template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                               const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
-                               const TimeGrid<>&);
+                               const VelocityScheme<4, double, UnitWeights>&, const State<4>&, const TimeGrid<>&);
 
 }  // namespace fpbm::test

@@ -37,15 +37,13 @@ template <typename Arm, typename Path, typename Scheme>
 }
 
 // The paper's arm under the schemes that many tests take: compiled once, in recording.cpp.
-extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                                      const AccelerationScheme<4>&, const State<4>&,
-                                      const TimeGrid<>&);
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const AccelerationScheme<4>&,
+                                      const State<4>&, const TimeGrid<>&);
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
                                       const AccelerationScheme<4, double, UnitWeights>&, const State<4>&,
                                       const TimeGrid<>&);
-extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
-                                      const VelocityScheme<4>&, const State<4>&,
-                                      const TimeGrid<>&);
+extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const VelocityScheme<4>&,
+                                      const State<4>&, const TimeGrid<>&);
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
                                       const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
                                       const TimeGrid<>&);

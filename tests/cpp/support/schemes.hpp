@@ -44,8 +44,7 @@ void for_every_scheme(Visit&& visit) {
 
   visit("MVN", Takes{false, 0.0, true, false, false},
         [=](const Law& law) { return MVN<N, S>(number(law.k), z(law), damping(law)); });
-  visit("MAN", Takes{true, 0.0, false, false, false},
-        [=](const Law& law) { return MAN<N, S>(z(law), damping(law)); });
+  visit("MAN", Takes{true, 0.0, false, false, false}, [=](const Law& law) { return MAN<N, S>(z(law), damping(law)); });
   const auto visit_weighted = [&](const std::string& suffix, bool is_dense, const auto& W) {
     visit("WMVN" + suffix, Takes{false, 1.0, true, true, is_dense},
           [=](const Law& law) { return WMVN<N, S>(W(law), number(law.k), z(law), damping(law)); });

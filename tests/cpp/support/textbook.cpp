@@ -51,6 +51,10 @@ RealMatrix orthogonal(const RealMatrix& A) {
   return Eigen::HouseholderQR<RealMatrix>(A).householderQ();
 }
 
+RealMatrix inverse(const RealMatrix& A) {
+  return A.inverse();
+}
+
 RealVector eigenvalues(const RealMatrix& A) {
   return Eigen::SelfAdjointEigenSolver<RealMatrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
 }
@@ -64,12 +68,12 @@ RealMatrix pseudoinverse(const RealMatrix& J) {
   const Eigen::HouseholderQR<RealMatrix> qr(J.transpose());  // Jᵀ = QR: J⁺ = Q R⁻ᵀ.
   const RealMatrix Q = qr.householderQ() * RealMatrix::Identity(J.cols(), J.rows());
   const RealMatrix R = qr.matrixQR().topRows(J.rows()).triangularView<Eigen::Upper>();
-  return Q * R.transpose().inverse();
+  return Q * inverse(R.transpose());
 }
 
 RealMatrix weighted_pseudoinverse(const RealMatrix& J, const RealMatrix& W) {
-  const RealMatrix WinvJt = W.inverse() * J.transpose();
-  return WinvJt * (J * WinvJt).inverse();
+  const RealMatrix WinvJt = inverse(W) * J.transpose();
+  return WinvJt * inverse(J * WinvJt);
 }
 
 RealMatrix projector(const RealMatrix& J, const RealMatrix& W) {
@@ -77,8 +81,8 @@ RealMatrix projector(const RealMatrix& J, const RealMatrix& W) {
 }
 
 RealMatrix rate_term(const RealMatrix& J, const RealMatrix& Jd, const RealMatrix& W) {
-  const RealMatrix Winv = W.inverse();
-  return projector(J, W) * Winv * Jd.transpose() * (J * Winv * J.transpose()).inverse();
+  const RealMatrix Winv = inverse(W);
+  return projector(J, W) * Winv * Jd.transpose() * inverse(J * Winv * J.transpose());
 }
 
 RealVector commanded(const Law& law, const Situation& at) {

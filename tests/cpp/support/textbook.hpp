@@ -55,6 +55,8 @@ struct Spectrum {
 [[nodiscard]] Spectrum spectrum(const RealMatrix& J);
 [[nodiscard]] RealVector singular_values(const RealMatrix& J);
 
+[[nodiscard]] RealMatrix inverse(const RealMatrix& A);
+
 /// Eigenvalues of a symmetric matrix, the least first.
 [[nodiscard]] RealVector eigenvalues(const RealMatrix& A);
 
@@ -64,7 +66,8 @@ struct Spectrum {
 /// Orthogonal matrix: Q of A = QR.
 [[nodiscard]] RealMatrix orthogonal(const RealMatrix& A);
 
-/// J⁺ of a J of full rank, from an orthogonal decomposition: its round-off grows with the condition of J, and not with its square.
+/// J⁺ of a J of full rank, from an orthogonal decomposition: its round-off grows with the condition of J, and not with
+/// its square.
 [[nodiscard]] RealMatrix pseudoinverse(const RealMatrix& J);
 
 /// J_W⁺ = W⁻¹Jᵀ(JW⁻¹Jᵀ)⁻¹.
