@@ -235,7 +235,7 @@ def test_sweep_and_tune_keep_limits(in_a_folder: Path) -> None:
     assert call("sweep", *quick, "--starts", "3", "--out", "free").exit_code == 0
     rows = list(csv.DictReader(Path("free/sweep.csv").read_text().splitlines()))
     assert min(float(row["peak_velocity"]) for row in rows) > 0.05
-    result = call("tune", *quick, "--trials", "20", *limits, "--out", "out")
+    result = call("tune", *quick, "--duration", "20", "--trials", "20", *limits, "--out", "out")
     assert result.exit_code == 0, result.output
     assert read_job("out/job.toml")["limits"] == {"velocity": 0.05, "acceleration": 5.0}
 
@@ -447,7 +447,9 @@ def test_compare_writes() -> None:
 
 def test_compare_refuses() -> None:
     assert refused("compare", "panda", "--schemes", "mvn,fbpm").startswith("--schemes = 'fbpm': must be one of mvn, ")
-    assert refused("compare", "panda", "--weights", "1") == "--weights: must have 1 dimension, got shape ()"
+    assert (
+        refused("compare", "panda", "--weights", "1") == "--weights = 1: must be real numbers of shape (n,) or (n, n)"
+    )
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[scheme]\nkind = 'fpbm'\nalhpa = 1")
     assert "did you mean 'alpha'?" in refused("compare", "--job", "job.toml", "--schemes", "fpbm")
     result = call("compare", "planar:1,1,1,1", "--q0", "0,0,0,0")

@@ -23,8 +23,8 @@ def view(request: Request, port: int, browser: bool) -> None:
     motion = request.motion()
     with request.plain():
         run = motion.run()
-    request.say(motion)
     try:
+        request.say(motion)
         import_undisturbed("viser", "viser.extras")
         from ..viewer import Viewer
 
