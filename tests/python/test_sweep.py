@@ -388,6 +388,27 @@ def test_interruption_keeps_what_is_finished(arm, reference):
             assert np.isnan(values[~sweep.done]).all()
 
 
+class Pressed(ThreadPoolExecutor):
+    """Ctrl-C is pressed in the midst of each submission."""
+
+    submitted = 0
+
+    def submit(self, function, /, *args, **kwargs):
+        signal.raise_signal(signal.SIGINT)
+        self.submitted += 1
+        return super().submit(function, *args, **kwargs)
+
+
+def test_ctrl_c_leaves_no_lock_taken(arm):
+    """It ends the sweep after the submission, and not within, where it might hold a lock of the executor's."""
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with Pressed(2) as threads:
+        with pytest.raises(fp.SweepInterrupted):
+            large(arm, executor=threads)
+        assert threads.submitted == 1
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
 def interrupted(script, *arguments):
     """Sends Ctrl-C a second after a script says 'begun': how many motions it says are done, and how soon [s]."""
     command = [sys.executable, str(script), *map(str, arguments)]

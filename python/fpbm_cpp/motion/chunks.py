@@ -11,13 +11,14 @@ from .._types import Array
 from ..arms import Arm
 from ..paths import Path
 from ..schemes import Scheme
+from .interruption import interrupted_at_checks
 from .tracking import LimitOptions
 
 # Outcomes, one for each motion, and the arrays of each if the whole motions are wanted.
 Result = tuple[Any, list[Any]]
 
-# How often to look for Ctrl-C, on platforms where a signal does not end a wait for a lock [s].
-POLL = 0.1
+# How often to look for Ctrl-C [s].
+POLL = 0.05
 
 
 class Chunk(NamedTuple):
@@ -50,8 +51,7 @@ def run_chunks(
     """Run all chunks. In this thread, take(i, result) receives each as it arrives, report(n) the motions done so far.
 
     On an exception, chunks that have not begun are cancelled, those in this process stop within a sample, and those in
-    other processes are left to them. On KeyboardInterrupt, all that is finished is still taken, the last chunk perhaps
-    a second time.
+    other processes are left to them. On KeyboardInterrupt, all that is finished is still taken.
     """
     if executor is None:
         with ThreadPoolExecutor(workers or os.cpu_count()) as threads:
@@ -61,29 +61,31 @@ def run_chunks(
     pending: dict[Future[Result], int] = {}
     arrived: SimpleQueue[Future[Result]] = SimpleQueue()
     done = 0
-    try:
-        for i, chunk in enumerate(chunks):
-            future = executor.submit(run_chunk, chunk) if stop is None else executor.submit(run_chunk, chunk, stop)
-            pending[future] = i
-            future.add_done_callback(arrived.put)
-        while pending:
-            try:
-                future = arrived.get(timeout=POLL)
-            except Empty:
-                continue
-            result = future.result()
-            take(pending[future], result)
-            del pending[future]
-            done += len(result[0])
-            report(done)
-    except BaseException as error:
-        if stop is not None:
-            stop.set()
-        begun = {future: i for future, i in pending.items() if not future.cancel()}
-        if stop is not None:
-            wait(begun)
-        if isinstance(error, KeyboardInterrupt):
-            for future, i in begun.items():
-                if future.done() and future.exception() is None:
-                    take(i, future.result())
-        raise
+    with interrupted_at_checks() as check:
+        try:
+            for i, chunk in enumerate(chunks):
+                future = executor.submit(run_chunk, chunk) if stop is None else executor.submit(run_chunk, chunk, stop)
+                pending[future] = i
+                future.add_done_callback(arrived.put)
+                check()
+            while pending:
+                check()
+                try:
+                    future = arrived.get(timeout=POLL)
+                except Empty:
+                    continue
+                result = future.result()
+                take(pending.pop(future), result)
+                done += len(result[0])
+                report(done)
+        except BaseException as error:
+            if stop is not None:
+                stop.set()
+            begun = {future: i for future, i in pending.items() if not future.cancel()}
+            if stop is not None:
+                wait(begun)
+            if isinstance(error, KeyboardInterrupt):
+                for future, i in begun.items():
+                    if future.done() and future.exception() is None:
+                        take(i, future.result())
+            raise
