@@ -45,7 +45,7 @@ TEST(Rest, posture_makes_circles_repeat) {
       each(circle, state);
     }
   };
-  Vector<4> second;
+  Vector<4> second = Vector<4>::Zero();
   chain(NullSpace<4>{}.with_damping(2.0).with_rest_posture(paper_start().q, 1.0), [&](int circle, const State<4>& end) {
     if (circle == 2) second = end.q;
     if (circle > 2) {

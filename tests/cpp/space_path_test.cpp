@@ -184,7 +184,7 @@ TEST(Waypoints, keep_their_bounds) {
     double most = 0.0;
     for (double t = 0.0; t < path.duration(); t += 1e-3) {
       const auto at = path.sample(t);
-      most = std::max({most, at.xd.head<3>().norm() / bounds.speed, at.xd.tail<3>().norm() / bounds.angular_velocity,
+      most = std::max({most, at.xd.head<3>().norm() / bounds.velocity, at.xd.tail<3>().norm() / bounds.angular_velocity,
                        std::sqrt(at.xdd.head<3>().norm() / bounds.acceleration),
                        std::sqrt(at.xdd.tail<3>().norm() / bounds.angular_acceleration)});
     }
@@ -259,7 +259,7 @@ TEST(SpacePaths, bad_ones_are_refused) {
             "u v / |u| |v| = 0.7071067");
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, kInf, 0), Vector<3>(1, 0, 1)); }),
             "u[1] = inf: must be finite");
-  EXPECT_EQ(refusal([&] { return WithRotation(circle, Vector<1>(kInf)); }), "turn[0] = inf: must be finite");
+  EXPECT_EQ(refusal([&] { return WithRotation(circle, Vector<1>(kInf)); }), "rotation[0] = inf: must be finite");
 
   using Way = Waypoints<Position<2>>;
   const std::vector<Vector<2>> points{{0, 0}, {1, 0}, {1, 1}};
@@ -274,7 +274,7 @@ TEST(SpacePaths, bad_ones_are_refused) {
   EXPECT_EQ(refusal([&] { return Way::lasting(points, -1.0); }), "duration = -1: must be positive and finite");
   EXPECT_EQ(refusal([&] { return Way::lasting({{0, 0}, {0, 0}}, 1.0); }), "points[1]: must differ from the one before");
   EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must hold the tip back");
-  EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "speed = 0: must be positive");
+  EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");
 }
 
 }  // namespace

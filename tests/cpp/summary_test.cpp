@@ -86,7 +86,7 @@ TEST(Summary, equals_what_the_samples_give) {
         return AnyPath<Space>(line);
       } else {
         using Turned = WithRotation<Path<Line<Positions::kRows>>>;
-        return AnyPath<Space>(Turned(line, Turned::Turn::Constant(0.01)));
+        return AnyPath<Space>(Turned(line, Turned::Rotation::Constant(0.01)));
       }
     }();
     const TimeGrid<> grid(path.duration(), 0.01, 0.1);
