@@ -1,19 +1,21 @@
 #include "scheme.hpp"
 
+#include "fpbm/any/any_weights.hpp"
+
 namespace fpbm::bindings {
 
 template <Level kLevel, typename Space>
 AnyScheme<kLevel, Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
-  using Any = AnyScheme<kLevel, Space>;
-  const Eigen::Index dof = limits.lower.size();
-  if (const auto* W = std::get_if<Dense>(&weights)) {
-    validation::require_size("weights", W->rows(), dof);
-    return Any(law<kLevel>(DenseWeights<kDynamic>(*W), limits));
-  }
-  if constexpr (kLevel == Level::kAcceleration) {  // With W = I both parts of the law need one factorisation only.
-    if (std::holds_alternative<std::monostate>(weights)) return Any(law<kLevel>(UnitWeights{}, limits));
-  }
-  return Any(law<kLevel>(diagonal_weights<kDynamic>(dof), limits));
+  const AnyWeights W = std::visit(
+      [](const auto& given) {
+        using Given = std::decay_t<decltype(given)>;
+        if constexpr (std::is_same_v<Given, Diagonal>) return AnyWeights(DiagonalWeights<kDynamic>(given));
+        if constexpr (std::is_same_v<Given, Dense>) return AnyWeights(DenseWeights<kDynamic>(given));
+        if constexpr (std::is_same_v<Given, std::monostate>) return AnyWeights(UnitWeights{});
+      },
+      weights);
+  W.require_dof(limits.lower.size());
+  return AnyScheme<kLevel, Space>(law<kLevel>(W, limits));
 }
 
 template AnyScheme<Level::kVelocity, Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;

@@ -6,6 +6,7 @@
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/any/any_scheme.hpp"
 #include "fpbm/any/any_time_law.hpp"
+#include "fpbm/any/any_weights.hpp"
 #include "fpbm/any/convert_path.hpp"
 #include "fpbm/any/make_arm.hpp"
 #include "fpbm/core/level.hpp"

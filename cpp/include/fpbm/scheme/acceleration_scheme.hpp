@@ -66,7 +66,7 @@ struct AccelerationScheme {
     if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
       return solve_pair(b, J, Jd, xd, state, qdd);
     } else {
-      if (alpha == Scalar(0) && (kUnit || !projects())) {
+      if (alpha == Scalar(0) && (weights.is_unit() || !projects())) {
         return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
       }
       if constexpr (!kUnit) {

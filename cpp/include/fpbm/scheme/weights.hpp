@@ -12,12 +12,14 @@
 ///   solve_Jt(J)      W⁻¹Jᵀ
 ///   with_unit(J)     Jᵀ and W⁻¹Jᵀ side by side
 ///   inverse_bound()  a bound on the largest eigenvalue of W⁻¹
+///   is_unit()        whether W = I
 ///   require_dof(n)   throws std::invalid_argument where W is for another number of joints
 namespace fpbm {
 
 /// W = I.
 struct UnitWeights {
   void require_dof(Eigen::Index) const noexcept {}
+  [[nodiscard]] static constexpr bool is_unit() noexcept { return true; }
 
   template <typename Scalar>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
@@ -64,6 +66,7 @@ class DiagonalWeights {
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
+  [[nodiscard]] static constexpr bool is_unit() noexcept { return false; }
 
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
@@ -120,6 +123,7 @@ class DenseWeights {
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
+  [[nodiscard]] static constexpr bool is_unit() noexcept { return false; }
 
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {

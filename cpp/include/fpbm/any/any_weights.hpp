@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <variant>
+
+#include "fpbm/scheme/weights.hpp"
+
+namespace fpbm {
+
+/// Weights of any kind behind one type, of run-time size: a law is then compiled once for all three.
+class AnyWeights {
+ public:
+  explicit AnyWeights(const UnitWeights& weights) : weights_(weights) {}
+  explicit AnyWeights(const DiagonalWeights<Eigen::Dynamic>& weights) : weights_(weights) {}
+  explicit AnyWeights(const DenseWeights<Eigen::Dynamic>& weights) : weights_(weights) {}
+
+  void require_dof(Eigen::Index dof) const {
+    std::visit([&](const auto& weights) { weights.require_dof(dof); }, weights_);
+  }
+
+  [[nodiscard]] bool is_unit() const noexcept { return std::holds_alternative<UnitWeights>(weights_); }
+
+  template <typename Scalar>
+  [[nodiscard]] Scalar inverse_bound() const noexcept {
+    return std::visit([](const auto& weights) { return weights.template inverse_bound<Scalar>(); }, weights_);
+  }
+
+  // Calls, so that the large functions that use them stay small.
+  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> solve(const Vector<Eigen::Dynamic>& a) const noexcept {
+    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.solve(a); }, weights_);
+  }
+
+  template <int M>
+  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> solve_Jt(const Matrix<M, Eigen::Dynamic>& J) const noexcept {
+    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.solve_Jt(J); }, weights_);
+  }
+
+  template <int M>
+  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M, Pair<double>> with_unit(
+      const Matrix<M, Eigen::Dynamic>& J) const noexcept {
+    return std::visit([&](const auto& weights) { return weights.with_unit(J); }, weights_);
+  }
+
+ private:
+  std::variant<UnitWeights, DiagonalWeights<Eigen::Dynamic>, DenseWeights<Eigen::Dynamic>> weights_;
+};
+
+}  // namespace fpbm
