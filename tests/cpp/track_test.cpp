@@ -14,7 +14,7 @@ constexpr double kTick = 1e-3;
 
 [[nodiscard]] auto make_tracker(double velocity) {
   auto bounds = JointLimits<4>::none(4);
-  for (int i = 0; i < 4; ++i) bounds.set(i, {-3.0, 3.0, velocity, 10.0});
+  for (int i = 0; i < 4; ++i) bounds.set(i, {-3.0, 3.0, velocity, 100.0});
   const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
   const Limits<Level::kAcceleration, 4> limits(bounds, kTick);
   return Tracker(paper_arm(), Position<2>{}, scheme, paper_start(), TrackerOptions<>{}, limits);
