@@ -7,6 +7,8 @@
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/any_time_law.hpp"
+#include "fpbm/any/any_weights.hpp"
 #include "fpbm/any/convert_path.hpp"
 #include "fpbm/any/make_arm.hpp"
 #include "support/arms.hpp"
@@ -146,6 +148,51 @@ TEST(AnyScheme, is_the_scheme_that_it_holds) {
   const auto fpbm = FPBM<7>(0.6, Vector<7>(Vector<7>::LinSpaced(1.0, 2.0)), 10.0, 25.0);
   expect_same_answers<Pose>(SerialArm<7>(presets::panda()), fpbm);
   expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()), MVN<kOpen>(1.0));
+}
+
+/// Weights of any kind answer as the kind that they hold, at both levels.
+TEST(AnyWeights, are_the_weights_that_they_hold) {
+  const PlanarArm<kOpen> arm(Vector<6>::Ones());
+  Random random(8);
+  const State<kOpen> state{random.uniform(6, -1.5, 1.5), random.uniform(6, -1.0, 1.0)};
+  Kinematics<Position<2>, kOpen> kinematics;
+  arm.kinematics(state.q, state.qd, kinematics);
+  const auto reference = random_reference(random, kinematics);
+  const auto z = NullSpace<kOpen>{}.with_damping(1.0);
+  const auto check = [&](const auto& weights) {
+    const AnyWeights any(weights);
+    EXPECT_EQ(complaint([&] { any.require_dof(5); }), complaint([&] { weights.require_dof(5); }));
+    Vector<kOpen> expected;
+    Vector<kOpen> found;
+    EXPECT_EQ(WMVN<kOpen>(weights, 1.0, z).resolve(kinematics, reference, state, expected), Status::kOk);
+    EXPECT_EQ(WMVN<kOpen>(any, 1.0, z).resolve(kinematics, reference, state, found), Status::kOk);
+    EXPECT_LE((found - expected).norm(), 1e-14 * expected.norm());
+    for (const double alpha : {0.0, 0.6, 1.0}) {
+      EXPECT_EQ(FPBM<kOpen>(alpha, weights, 1.0, 1.0, z).resolve(kinematics, reference, state, expected), Status::kOk);
+      EXPECT_EQ(FPBM<kOpen>(alpha, any, 1.0, 1.0, z).resolve(kinematics, reference, state, found), Status::kOk);
+      EXPECT_LE((found - expected).norm(), 1e-13 * expected.norm()) << alpha;
+    }
+  };
+  check(UnitWeights{});
+  check(DiagonalWeights<kOpen>(Vector<kOpen>(random.uniform(6, 0.5, 4.0))));
+  check(DenseWeights<kOpen>(Matrix<kOpen, kOpen>(random.positive_definite(6))));
+}
+
+TEST(AnyTimeLaw, is_the_law_of_its_name) {
+  const auto check = [](const char* name, auto law) {
+    const AnyTimeLaw any(name);
+    for (double tau = 0.0; tau <= 1.0; tau += 0.125) {
+      const auto expected = decltype(law)::at(tau);
+      const auto found = any.at(tau);
+      EXPECT_EQ(found.s, expected.s);
+      EXPECT_EQ(found.sd, expected.sd);
+      EXPECT_EQ(found.sdd, expected.sdd);
+    }
+  };
+  check("sin_squared", SinSquared{});
+  check("quintic", Quintic{});
+  check("constant_speed", ConstantSpeed{});
+  EXPECT_NE(complaint([] { AnyTimeLaw("cubic"); }).find("time_law = 'cubic'"), std::string::npos);
 }
 
 template <typename Path>
