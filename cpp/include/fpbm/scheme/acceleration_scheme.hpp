@@ -66,8 +66,16 @@ struct AccelerationScheme {
     if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
       return solve_pair(b, J, Jd, xd, state, qdd);
     } else {
-      if (alpha == Scalar(0) && (weights.is_unit() || !projects())) {
-        return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
+      if constexpr (kUnit) {
+        if (alpha == Scalar(0)) return unweighted(b, J, state, qdd);
+      } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
+        Vector<N, Scalar> result;
+        const Status status = unweighted(b, J, state, result);
+        // The brake near a singular posture is a motion for N_W to project.
+        if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
+          if (!failed(status)) qdd = result;
+          return status;
+        }
       }
       if constexpr (!kUnit) {
         if (alpha != Scalar(1)) return solve_pair(b, J, Jd, xd, state, qdd);
@@ -80,9 +88,11 @@ struct AccelerationScheme {
     }
   }
 
-  /// Whether there may be a motion for N_W to project.
-  [[nodiscard]] bool projects() const noexcept {
-    return null_space.template active<kLevel>() || singular.brake() != Scalar(0);
+  /// The law with α = 0 and W = I: one factorisation.
+  template <int M>
+  [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
+                                  const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
+    return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
   }
 
   /// Two factorisations, made side by side:
