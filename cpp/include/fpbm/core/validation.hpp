@@ -127,7 +127,7 @@ void require_finite(const char* argument, const Eigen::MatrixBase<Derived>& valu
   for (Eigen::Index i = 0; i < values.size(); ++i) require_finite(element(argument, i), values(i));
 }
 
-inline void require_size(const Argument& argument, Eigen::Index size, Eigen::Index expected) {
+inline void require_size(const char* argument, Eigen::Index size, Eigen::Index expected) {
   if (size != expected) {
     reject(argument,
            " has " + std::to_string(size) + " entries: must have " + std::to_string(expected) + ", one per joint",
