@@ -101,22 +101,17 @@ struct LaneRecorder {
 }
 
 /// RunInLanes for the schemes of one level.
-template <Level kLevel, typename FixedArm, typename Space>
-void run_level(const FixedArm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-               const Scheme* const* schemes, const JointVector* starts, const std::atomic<bool>& stop,
-               Outcome* outcomes) {
-  constexpr int N = FixedArm::kDof;
-  const auto law = [&](int lane) {
-    return schemes[lane]->law<kLevel, N>(schemes[lane]->diagonal_weights<N>(N), arm.limits());
-  };
-  std::vector<decltype(law(0))> laws;
-  for (int lane = 0; lane < kLanes; ++lane) laws.push_back(law(lane));
+template <typename Space, typename Law>
+void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+               const std::vector<Law>& laws, const std::vector<Vector<Law::kDof>>& starts,
+               const std::atomic<bool>& stop, Outcome* outcomes) {
+  constexpr int N = Law::kDof;
   const auto scheme = side_by_side(laws);
   State<N, InLanes> start{Vector<N, InLanes>::Zero(), Vector<N, InLanes>::Zero()};
   for (int i = 0; i < N; ++i) start.q(i) = InLanes([&](auto lane) { return starts[lane](i); });
 
   const auto in_lanes = arm.template cast<InLanes>();
-  LaneRecorder<Space, N> record{Summary<Space, N, InLanes>(kLevel), stop};
+  LaneRecorder<Space, N> record{Summary<Space, N, InLanes>(Law::kLevel), stop};
   const auto result = rollout(ArmOnce<std::decay_t<decltype(in_lanes)>>{in_lanes}, path,
                               SchemeOnce<std::decay_t<decltype(scheme)>>{scheme}, start, grid, record);
   const MotionSummary<InLanes> summary = record.summary.result();
@@ -129,15 +124,13 @@ void run_level(const FixedArm& arm, const AnyPath<Space>& path, const TimeGrid<d
 }
 
 template <typename Space>
-void run_in_lanes(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                  const Scheme* const* schemes, const JointVector* starts, const std::atomic<bool>& stop,
-                  Outcome* outcomes) {
-  using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
-  const ArmInLanes<Space> fixed(std::get<Source>(arm.source));
-  if (schemes[0]->level == Level::kVelocity) {
-    run_level<Level::kVelocity>(fixed, path, grid, schemes, starts, stop, outcomes);
+void run_in_lanes(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+                  const SchemesInLanes<Space>& schemes, const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts,
+                  const std::atomic<bool>& stop, Outcome* outcomes) {
+  if (schemes.acceleration.empty()) {
+    run_level<Space>(arm, path, grid, schemes.velocity, starts, stop, outcomes);
   } else {
-    run_level<Level::kAcceleration>(fixed, path, grid, schemes, starts, stop, outcomes);
+    run_level<Space>(arm, path, grid, schemes.acceleration, starts, stop, outcomes);
   }
 }
 

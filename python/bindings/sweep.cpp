@@ -33,28 +33,48 @@ class Runner {
   /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
   void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, std::size_t lanes,
                 RunInLanes<Space> run, Outcome* outcomes) const {
-    std::vector<const Scheme*> schemes(lanes);
-    std::vector<JointVector> starts(lanes);
+    using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
+    const ArmInLanes<Space> arm(std::get<Source>(arm_.source));
     std::vector<Outcome> results(lanes, Outcome::of_nothing());
     for (std::size_t first = 0; first < members.size() && !stopped(); first += lanes) {
       const std::size_t last = std::min(first + lanes, members.size());
+      SchemesInLanes<Space> schemes;
+      std::vector<Vector<kDof>> starts;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
-        schemes[lane] = job.scheme;
-        starts[lane] = job.q0;
+        const DiagonalWeights<kDof> weights = job.scheme->template diagonal_weights<kDof>(kDof);
+        if (job.scheme->level == Level::kVelocity) {
+          schemes.velocity.push_back(job.scheme->template law<Level::kVelocity>(weights, arm.limits()));
+        } else {
+          schemes.acceleration.push_back(job.scheme->template law<Level::kAcceleration>(weights, arm.limits()));
+        }
+        starts.emplace_back(job.q0);
       }
-      run(arm_, path_, grid_, schemes.data(), starts.data(), stop_, results.data());
+      run(arm, path_, grid_, schemes, starts, stop_, results.data());
       for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
     }
   }
 
  private:
+  static constexpr int kDof = ArmInLanes<Space>::kDof;
+
   const Arm& arm_;
   const AnyArmFor<Space>& any_;
   const AnyPath<Space>& path_;
   const TimeGrid<double>& grid_;
   const std::atomic<bool>& stop_;
 };
+
+[[nodiscard]] bool runs_in_lanes(const Arm& arm) noexcept {
+  if (const auto* chain = std::get_if<Chain<>>(&arm.source)) {
+    return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
+  }
+  return arm.dof() == 4;
+}
+
+[[nodiscard]] bool runs_in_lanes(const Scheme& scheme) noexcept {
+  return scheme.is_plain() && !std::holds_alternative<Scheme::Dense>(scheme.weights);
+}
 
 /// The jobs of a level that can go side by side.
 template <typename Space>
