@@ -13,8 +13,9 @@ from pathlib import Path
 STUBS = Path(__file__).parent.parent / "python" / "fpbm_cpp" / "_core.pyi"
 
 
-def with_enum_members(text: str) -> str:
-    """Members of an enum as type checkers want them; pybind11_stubgen writes them as class variables."""
+def with_types(text: str) -> str:
+    """With members of enums and tuples of words as type checkers want them."""
+    text = re.sub(r"^(\w+): tuple = \(\"", r'\1: tuple[str, ...] = ("', text, flags=re.MULTILINE)
     text = re.sub(r"^    (\w+): typing\.ClassVar\[Status\].*$", r"    \1 = ...", text, flags=re.MULTILINE)
     return text.replace("    @classmethod\n    def __new__(cls, value):\n        ...\n", "")
 
@@ -24,7 +25,7 @@ def main() -> int:
         generate = [sys.executable, "-m", "pybind11_stubgen", "fpbm_cpp._core", "--exit-code", "-o", scratch]
         subprocess.run(generate, check=True, cwd=scratch)
         fresh = Path(scratch) / "fpbm_cpp" / "_core.pyi"
-        fresh.write_text(with_enum_members(fresh.read_text()))
+        fresh.write_text(with_types(fresh.read_text()))
         config = STUBS.parents[2] / "pyproject.toml"
         subprocess.run([sys.executable, "-m", "ruff", "format", "--quiet", "--config", config, fresh], check=True)
         if "--check" not in sys.argv:

@@ -50,8 +50,7 @@ template <int Size>
 Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
   if (array.size() != Size) {
-    validation::reject(name,
-                       " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
+    validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
   }
   const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
   validation::require_finite(name, result);

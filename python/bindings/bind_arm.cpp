@@ -18,8 +18,6 @@ namespace {
 using Array = py::array_t<double>;
 
 constexpr std::array kTypes{"revolute", "continuous", "prismatic"};
-constexpr std::array kPresets{std::pair{"panda", &presets::panda}, std::pair{"iiwa14", &presets::iiwa14},
-                              std::pair{"gen3", &presets::gen3}};
 
 JointType joint_type(const std::string& type, const validation::Argument& name) {
   for (std::size_t i = 0; i < kTypes.size(); ++i) {
@@ -88,8 +86,8 @@ PlainChain dh(const ArrayLike& table, const std::string& convention, const std::
 }
 
 PlainChain preset(const std::string& name) {
-  for (const auto& [known, chain] : kPresets) {
-    if (name == known) return plain(chain());
+  for (const presets::Preset& known : presets::kAll) {
+    if (name == known.name) return plain(known.chain());
   }
   validation::reject("name", " = '" + name + "': must be one of PRESETS");
 }
@@ -181,8 +179,8 @@ std::string with_task(const char* text) {
 
 void bind_arm(py::module_& m) {
   m.attr("MAX_DOF") = kMaxDof;
-  py::tuple names(kPresets.size());
-  for (std::size_t i = 0; i < kPresets.size(); ++i) names[i] = kPresets[i].first;
+  py::tuple names(std::size(presets::kAll));
+  for (std::size_t i = 0; i < std::size(presets::kAll); ++i) names[i] = presets::kAll[i].name;
   m.attr("PRESETS") = names;
   bind_kinematics(m);
 
@@ -222,7 +220,8 @@ void bind_arm(py::module_& m) {
             return rate_of(kinematics_of(arm, q, qd, name));
           },
           py::arg("q"), py::arg("qd"), py::kw_only(), task,
-          with_task("dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
+          with_task(
+              "dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
               .c_str());
 
   m.def("dh", &dh, py::arg("table"), py::arg("convention"), py::arg("types"));

@@ -52,7 +52,7 @@ void check(const Scheme& scheme) {
   }
 }
 
-Scheme make_scheme(const std::string& level, const py::dict& parameters) {
+Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py::object>& parameters) {
   const auto given = [&](const char* key) -> std::optional<py::object> {
     if (!parameters.contains(key) || py::object(parameters[key]).is_none()) return std::nullopt;
     return py::object(parameters[key]);

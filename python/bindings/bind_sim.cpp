@@ -44,8 +44,7 @@ Tracked track(const Arm& arm, const Path& path, const Scheme& scheme, const Arra
   const LimitedOptions options{limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake};
   const Limited limited = limited_of(options, arm);
   return run(arm, path, scheme, q0, qd0, dt, hold, task, &limited, [](const auto& result, const auto& all) {
-    return Tracked(
-        py::make_tuple(result.status, result.time, result.samples, all.arrays(), all.scale, all.saturated));
+    return Tracked(py::make_tuple(result.status, result.time, result.samples, all.arrays(), all.scale, all.saturated));
   });
 }
 

@@ -18,7 +18,7 @@ struct Stop {
 };
 
 using Schemes = std::vector<const Scheme*>;
-using Motions = py::typing::List<py::tuple>;
+using Motions = py::typing::List<py::typing::Tuple<Array, py::ellipsis>>;
 using Chunk = py::typing::Tuple<py::array, Motions>;
 
 const LaneCode* lane_code = nullptr;
@@ -28,8 +28,8 @@ Array starts(const ArrayLike& q0s, int dof) {
   const auto any = py::array::ensure(q0s);
   PyErr_Clear();
   if (any && any.ndim() > 2) {
-    validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " +
-                                  py::cast<std::string>(py::str(any.attr("shape"))));
+    validation::reject(
+        "q0s", ": must have shape (n,) or (K, n), got shape " + py::cast<std::string>(py::str(any.attr("shape"))));
   }
   if (!any || any.ndim() < 2) {
     const JointVector q0 = joint_vector(q0s, "q0s", dof);

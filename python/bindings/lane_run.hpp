@@ -60,7 +60,8 @@ struct ArmOnce {
     arm.kinematics(q, qd, out);
   }
   template <typename Space>
-  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q, Kinematics<Space, kDof, Scalar>& out) const noexcept {
+  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q,
+                                    Kinematics<Space, kDof, Scalar>& out) const noexcept {
     arm.kinematics(q, out);
   }
 };
@@ -96,8 +97,8 @@ struct LaneRecorder {
 
 [[nodiscard]] inline MotionSummary<> lane_of(const MotionSummary<InLanes>& all, int lane) noexcept {
   const auto at = static_cast<std::size_t>(lane);
-  return {all.max_error[at],     all.max_orientation_error[at], all.peak_velocity[at], all.final_velocity[at],
-          all.peak_acceleration[at], all.final_acceleration[at], all.manipulability[at]};
+  return {all.max_error[at],         all.max_orientation_error[at], all.peak_velocity[at], all.final_velocity[at],
+          all.peak_acceleration[at], all.final_acceleration[at],    all.manipulability[at]};
 }
 
 /// RunInLanes for the schemes of one level.

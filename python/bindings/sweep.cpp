@@ -92,8 +92,9 @@ template <typename Space>
 }  // namespace
 
 template <typename Space>
-void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::vector<Job<Space>>& jobs,
-           const Limited* limited, const LaneCode* code, const std::atomic<bool>& stop, Outcome* outcomes) {
+void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+           const std::vector<Job<Space>>& jobs, const Limited* limited, const LaneCode* code,
+           const std::atomic<bool>& stop, Outcome* outcomes) {
   const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {

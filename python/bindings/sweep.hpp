@@ -22,7 +22,8 @@ struct Job {
 /// Once stop is set, which is looked at in every sample, all that are not done yet are not run.
 /// Throws std::invalid_argument where a scheme, a start or the limits do not fit the arm.
 template <typename Space>
-void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::vector<Job<Space>>& jobs,
-           const Limited* limited, const LaneCode* code, const std::atomic<bool>& stop, Outcome* outcomes);
+void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+           const std::vector<Job<Space>>& jobs, const Limited* limited, const LaneCode* code,
+           const std::atomic<bool>& stop, Outcome* outcomes);
 
 }  // namespace fpbm::bindings

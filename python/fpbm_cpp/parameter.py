@@ -124,9 +124,10 @@ def _fits(shape: tuple[int, ...], wanted: str) -> bool:
 
 POSITIVE = Parameter(low=0.0, open_low=True)
 NOT_NEGATIVE = Parameter(low=0.0)
+ANY = Parameter()
 
 
-def parameter(help: str = "", like: Parameter = Parameter(), *, default: Any = REQUIRED, **known: Any) -> Any:
+def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
     Takes what Parameter has; what is not given is as in `like`. Name and type are the field's; the usual value is the
