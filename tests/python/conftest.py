@@ -1,3 +1,5 @@
+import signal
+
 import numpy as np
 import pytest
 
@@ -20,3 +22,11 @@ def circle() -> fp.Path:
 @pytest.fixture(scope="session")
 def q0() -> np.ndarray:
     return Q0.copy()
+
+
+@pytest.fixture
+def ctrl_c():
+    """Python's usual handler of Ctrl-C, which a shell's background jobs lack."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -399,9 +399,9 @@ class Pressed(ThreadPoolExecutor):
         return super().submit(function, *args, **kwargs)
 
 
+@pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_leaves_no_lock_taken(arm):
     """It ends the sweep after the submission, and not within, where it might hold a lock of the executor's."""
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     with Pressed(2) as threads:
         with pytest.raises(fp.SweepInterrupted):
             large(arm, executor=threads)

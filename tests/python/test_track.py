@@ -184,6 +184,7 @@ def test_a_missing_limit_is_named():
         fp.track(fp.SerialArm.preset("iiwa14"), SMOOTH, fp.MAN(), BENT)
 
 
+@pytest.mark.usefixtures("ctrl_c")
 def test_ctrl_c_ends_it(arm, q0):
     timer = threading.Timer(0.2, signal.raise_signal, [signal.SIGINT])
     timer.start()
