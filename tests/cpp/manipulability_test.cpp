@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
@@ -18,7 +17,7 @@ namespace {
 
 /// √det(JJᵀ)
 Real manipulability_as_written(const RealMatrix& J) {
-  return std::sqrt((J * J.transpose()).determinant());
+  return std::sqrt(determinant(J * J.transpose()));
 }
 
 template <typename Space, typename Arm>

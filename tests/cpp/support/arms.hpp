@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "fpbm/any/make_arm.hpp"
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
@@ -16,22 +15,10 @@
 namespace fpbm::test {
 
 /// The Panda on a rail along y.
-[[nodiscard]] inline Chain<> panda_on_rail() {
-  Chain<> chain = presets::panda();
-  Joint<> rail;
-  rail.type = JointType::kPrismatic;
-  rail.axis = Vector<3>::UnitY();
-  rail.bounds = {-1.0, 1.0, 1.0, 5.0};
-  chain.joints.insert(chain.joints.begin(), rail);
-  return chain;
-}
+[[nodiscard]] Chain<> panda_on_rail();
 
 /// The same, its last joint geared to the first of the Panda's.
-[[nodiscard]] inline Chain<> coupled_panda() {
-  Chain<> chain = panda_on_rail();
-  chain.joints.back().mimic = {1, -0.7, 0.3};
-  return chain;
-}
+[[nodiscard]] Chain<> coupled_panda();
 
 /// An arm of a user's own: it has kinematics and nothing else.
 struct OwnArm {
@@ -44,7 +31,10 @@ struct OwnArm {
     planar.kinematics(std::forward<Arguments>(arguments)...);
   }
 
-  PlanarArm<4> planar{Vector<4>(1.0, 0.8, 0.6, 0.4)};
+  PlanarArm<4> planar = make_planar();
+
+ private:
+  [[nodiscard]] static PlanarArm<4> make_planar();
 };
 
 template <typename Arm, typename Space_>

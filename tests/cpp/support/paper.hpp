@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "fpbm/any/any_path.hpp"
 #include "fpbm/fpbm.hpp"
 
 /// The paper's examples: set-up as identified from its printed numbers, and an independent solution of each case
@@ -12,41 +11,24 @@ namespace fpbm::test {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kDuration = 10.0;  ///< [s]
 
-[[nodiscard]] inline PlanarArm<4> paper_arm() {
-  return PlanarArm<4>(Vector<4>::Ones());
-}
+[[nodiscard]] PlanarArm<4> paper_arm();
 
 /// At rest in the paper's posture.
-[[nodiscard]] inline State<4> paper_start() {
-  return {{kPi / 12, kPi / 12, kPi / 15, kPi / 15}, Vector<4>::Zero()};
-}
+[[nodiscard]] State<4> paper_start();
 
-[[nodiscard]] inline AnyPath<Position<2>> paper_circle() {
-  return AnyPath<Position<2>>(Path(Circle(0.45), kDuration));
-}
-[[nodiscard]] inline AnyPath<Position<2>> paper_lissajous() {
-  return AnyPath<Position<2>>(Path(Lissajous<>({0.4, 0.4}, {2, 1}, kPi / 6), kDuration));
-}
-[[nodiscard]] inline AnyPath<Position<2>> paper_tricuspid() {
-  return AnyPath<Position<2>>(Path(Tricuspid(0.3), kDuration));
-}
+[[nodiscard]] AnyPath<Position<2>> paper_circle();
+[[nodiscard]] AnyPath<Position<2>> paper_lissajous();
+[[nodiscard]] AnyPath<Position<2>> paper_tricuspid();
 
 /// W = diag(1, 2, 3, 4), the paper's first choice.
-[[nodiscard]] inline DiagonalWeights<4> paper_weights() {
-  return DiagonalWeights<4>(Vector<4>(1, 2, 3, 4));
-}
+[[nodiscard]] DiagonalWeights<4> paper_weights();
 
 /// The paper's scheme, α = 0.6 and k₁ = k₂ = 1, with a secondary motion to choose.
-[[nodiscard]] inline AccelerationScheme<4> paper_fpbm(const NullSpace<4>& null_space = {}) {
-  return FPBM<4>(0.6, paper_weights(), 1.0, 1.0, null_space);
-}
+[[nodiscard]] AccelerationScheme<4> paper_fpbm(const NullSpace<4>& null_space = {});
 
 enum class Figure { kCircle, kLissajous, kTricuspid };
 
-[[nodiscard]] inline AnyPath<Position<2>> paper_path(Figure figure) {
-  if (figure == Figure::kLissajous) return paper_lissajous();
-  return figure == Figure::kCircle ? paper_circle() : paper_tricuspid();
-}
+[[nodiscard]] AnyPath<Position<2>> paper_path(Figure figure);
 
 struct PaperCase {
   Figure figure;

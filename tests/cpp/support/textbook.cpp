@@ -55,6 +55,10 @@ RealMatrix inverse(const RealMatrix& A) {
   return A.inverse();
 }
 
+Real determinant(const RealMatrix& A) {
+  return A.determinant();
+}
+
 RealVector eigenvalues(const RealMatrix& A) {
   return Eigen::SelfAdjointEigenSolver<RealMatrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
 }

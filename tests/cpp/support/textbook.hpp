@@ -56,6 +56,7 @@ struct Spectrum {
 [[nodiscard]] RealVector singular_values(const RealMatrix& J);
 
 [[nodiscard]] RealMatrix inverse(const RealMatrix& A);
+[[nodiscard]] Real determinant(const RealMatrix& A);
 
 /// Eigenvalues of a symmetric matrix, the least first.
 [[nodiscard]] RealVector eigenvalues(const RealMatrix& A);

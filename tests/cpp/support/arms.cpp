@@ -1,0 +1,25 @@
+#include "support/arms.hpp"
+
+namespace fpbm::test {
+
+Chain<> panda_on_rail() {
+  Chain<> chain = presets::panda();
+  Joint<> rail;
+  rail.type = JointType::kPrismatic;
+  rail.axis = Vector<3>::UnitY();
+  rail.bounds = {-1.0, 1.0, 1.0, 5.0};
+  chain.joints.insert(chain.joints.begin(), rail);
+  return chain;
+}
+
+Chain<> coupled_panda() {
+  Chain<> chain = panda_on_rail();
+  chain.joints.back().mimic = {1, -0.7, 0.3};
+  return chain;
+}
+
+PlanarArm<4> OwnArm::make_planar() {
+  return PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4));
+}
+
+}  // namespace fpbm::test
