@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fpbm/any/any_scheme.hpp"
-#include "fpbm/any/make_arm.hpp"
+#include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
@@ -68,7 +68,7 @@ template <typename Scheme>
 void expect_none_in(const Scheme& scheme, const std::string& name) {
   const AnyScheme<Scheme::kLevel, Position<2>> any(scheme);
   const Vector<kOpen> q0 = paper_start().q;
-  expect_none(watched_rollout(make_planar_arm(Vector<4>::Ones()), paper_circle(), any, q0, [] {}), name);
+  expect_none(watched_rollout(any_planar_arm(Vector<4>::Ones()), paper_circle(), any, q0, [] {}), name);
 }
 
 template <int N>
@@ -112,7 +112,7 @@ void expect_none_in_any_wrapper(const Arm& arm) {
 }
 TEST(NoAllocation, in_secondary_objectives) {
   expect_none_in_any_wrapper(paper_arm());
-  expect_none_in_any_wrapper(make_planar_arm(Vector<4>::Ones()));
+  expect_none_in_any_wrapper(any_planar_arm(Vector<4>::Ones()));
 }
 
 [[nodiscard]] Vector<kOpen> panda_ready() {
@@ -134,7 +134,7 @@ TEST(NoAllocation, in_space) {
   chain.joints.insert(chain.joints.begin(), Joint<>{JointType::kPrismatic});
   chain.joints[0].mimic = {1, 0.1, 0.0};
   const Accelerations open(FPBM<kOpen>(0.6, Vector<kOpen>(Vector<7>::Ones()), 10.0, 25.0));
-  expect_none(watched_rollout(make_arm(chain), path, open, panda_ready(), [] {}), "Panda, coupled");
+  expect_none(watched_rollout(any_arm(chain), path, open, panda_ready(), [] {}), "Panda, coupled");
 }
 
 TEST(NoAllocation, in_a_gaze) {
@@ -184,7 +184,7 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
 
 TEST(NoAllocation, in_a_control_loop) {
   const SerialArm<7> fixed(presets::panda());
-  const AnyArm<Position<3>> open = make_arm(presets::panda());
+  const AnyArm<Position<3>> open = any_arm(presets::panda());
   const auto fpbm = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
   expect_none_in_a_loop<Pose>(fixed, ManipulabilityAscent(fpbm, fixed, 0.1));
   expect_none_in_a_loop<Pose>(open, AnyScheme<Level::kAcceleration, Pose>(fpbm));

@@ -78,7 +78,7 @@ TEST(AnyArm, is_made_of_a_chain_or_of_lengths) {
     const Vector<kOpen> lengths = Random(1).uniform(dof, 0.5, 1.5);
     expect_same_arm(make_planar_arm(lengths), PlanarArm<kOpen>(lengths));
   }
-  expect_same_arm(make_arm(presets::panda()), SerialArm<kOpen>(presets::panda()));
+  expect_same_arm(make_arm(presets::panda()), SerialArm<7>(presets::panda()));
   expect_same_arm(make_arm(panda_on_rail()), SerialArm<kOpen>(panda_on_rail()));
   expect_same_arm(make_arm(coupled_panda()), CoupledArm<kOpen>(coupled_panda()));
   EXPECT_NE(complaint([] { (void)make_planar_arm(Vector<kOpen>::Constant(4, -1.0)); }).find("lengths[0] = -1"),

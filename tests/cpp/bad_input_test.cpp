@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fpbm/any/any_scheme.hpp"
-#include "fpbm/any/make_arm.hpp"
+#include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
@@ -165,7 +165,7 @@ void expect_rollout_refusal(const Scheme& scheme, const State<Eigen::Dynamic>& s
   int recorded = 0;
   expect_refusal(
       [&] {
-        rollout(make_planar_arm(Open::Ones(4)), paper_circle(), any, start, grid, [&](const auto&) { ++recorded; });
+        rollout(any_planar_arm(Open::Ones(4)), paper_circle(), any, start, grid, [&](const auto&) { ++recorded; });
       },
       words);
   EXPECT_EQ(recorded, 0);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fpbm/any/any_scheme.hpp"
-#include "fpbm/any/make_arm.hpp"
+#include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/random.hpp"
 #include "support/recording.hpp"
@@ -41,7 +41,7 @@ Ending run(const Task& task, const AnyScheme<kLevel, Position<2>>& scheme) {
   const AnyPath<Position<2>> path(Path(Line<2>(task.way), task.duration));
   const State<kOpen> start{task.q0, Vector<kOpen>::Zero(task.q0.size())};
   const TimeGrid<> grid(task.duration, task.dt);
-  const auto motion = recorded(make_planar_arm(task.lengths), path, scheme, start, grid);
+  const auto motion = recorded(any_planar_arm(task.lengths), path, scheme, start, grid);
   const bool finite = std::all_of(motion.samples.begin(), motion.samples.end(), [](const auto& sample) {
     return sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite() && sample.error.allFinite();
   });

@@ -151,7 +151,7 @@ TEST(Limits, hold_on_the_panda) {
   roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), trials(500));
 }
 TEST(Limits, hold_on_a_rail) {
-  const AnyArm<Position<3>> rail = make_arm(panda_on_rail());
+  const AnyArm<Position<3>> rail = any_arm(panda_on_rail());
   roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
 }
 

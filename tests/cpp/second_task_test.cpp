@@ -73,8 +73,8 @@ TEST(Gaze, is_a_chart_of_directions) {
     }
   };
   check(SerialArm<7>(presets::panda()));
-  check(make_arm(panda_on_rail()));
-  check(make_arm(coupled_panda()));
+  check(any_arm(panda_on_rail()));
+  check(any_arm(coupled_panda()));
 }
 
 TEST(Gaze, is_finite_even_in_the_opposite_direction) {
@@ -170,20 +170,20 @@ TEST(SecondTask, comes_strictly_second) {
   const Position<3> spatial;
   const PlanarArm<2> planar_elbow(Vector<2>(1.0, 0.8));
   const AnyArm<Position<2>> any_planar_elbow(planar_elbow);
-  const AnyArm<Position<3>> elbow = make_arm(first_joints(panda_on_rail(), 5));
+  const AnyArm<Position<3>> elbow = any_arm(first_joints(panda_on_rail(), 5));
   int met = at_both_levels(flat, flat, OwnArm{}, planar_elbow);
   for (const Vector<kOpen>& lengths :
        {Vector<kOpen>(Vector<4>(1.0, 0.8, 0.6, 0.4)), Vector<kOpen>(Vector<6>::Ones())}) {
-    met += at_both_levels(flat, flat, make_planar_arm(lengths), any_planar_elbow);
+    met += at_both_levels(flat, flat, any_planar_arm(lengths), any_planar_elbow);
   }
-  met += at_both_levels(spatial, spatial, make_arm(panda_on_rail()), elbow);
-  met += at_both_levels(spatial, spatial, make_arm(coupled_panda()), elbow);
+  met += at_both_levels(spatial, spatial, any_arm(panda_on_rail()), elbow);
+  met += at_both_levels(spatial, spatial, any_arm(coupled_panda()), elbow);
   EXPECT_GE(met, 60) << "of 100";
   // The second task has more rows than the first leaves joints for: it is met as well as can be, and the tip is still
   // not disturbed.
   const SerialArm<4> panda_elbow(first_joints(presets::panda(), 4));
   EXPECT_EQ(at_both_levels(Pose{}, spatial, SerialArm<7>(presets::panda()), panda_elbow), 0);
-  EXPECT_EQ(at_both_levels(PlanarPose{}, flat, make_planar_arm(Vector<4>::Ones()), any_planar_elbow), 0);
+  EXPECT_EQ(at_both_levels(PlanarPose{}, flat, any_planar_arm(Vector<4>::Ones()), any_planar_elbow), 0);
   EXPECT_EQ(at_both_levels(flat, flat, PlanarArm<2>(Vector<2>(1.0, 0.8)), planar_elbow), 0);
 }
 

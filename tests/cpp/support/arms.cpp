@@ -18,6 +18,14 @@ Chain<> coupled_panda() {
   return chain;
 }
 
+AnyArm<Position<3>> any_arm(const Chain<>& chain) {
+  return make_arm(chain);
+}
+
+AnyArm<Position<2>> any_planar_arm(const Vector<Eigen::Dynamic>& lengths) {
+  return make_planar_arm(lengths);
+}
+
 PlanarArm<4> OwnArm::make_planar() {
   return PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4));
 }

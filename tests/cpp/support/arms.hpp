@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <cstdint>
 #include <stdexcept>
@@ -19,6 +21,10 @@ namespace fpbm::test {
 
 /// The same, its last joint geared to the first of the Panda's.
 [[nodiscard]] Chain<> coupled_panda();
+
+/// make_arm() and make_planar_arm(), compiled once.
+[[nodiscard]] AnyArm<Position<3>> any_arm(const Chain<>& chain);
+[[nodiscard]] AnyArm<Position<2>> any_planar_arm(const Vector<Eigen::Dynamic>& lengths);
 
 /// An arm of a user's own: it has kinematics and nothing else.
 struct OwnArm {
@@ -66,8 +72,8 @@ void on_every_arm(Check&& check) {
   const std::vector<std::pair<std::string, Chain<>>> chains = {
       {"panda", presets::panda()}, {"rail", panda_on_rail()}, {"coupled", coupled_panda()}};
   for (const auto& [name, chain] : chains) {
-    in_states(ArmCase<Spatial, Position<3>>{name, make_arm(chain)});
-    in_states(ArmCase<Spatial, Pose>{name + " pose", make_arm(chain)});
+    in_states(ArmCase<Spatial, Position<3>>{name, any_arm(chain)});
+    in_states(ArmCase<Spatial, Pose>{name + " pose", any_arm(chain)});
   }
   in_states(ArmCase<OwnArm, Position<2>>{"own", OwnArm{}});
   in_states(ArmCase<SerialArm<7>, Pose>{"panda pose, of fixed size", SerialArm<7>(presets::panda())});
