@@ -1,32 +1,19 @@
-#include <array>
+#include <pybind11/typing.h>
+
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include <pybind11/typing.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "fpbm/any/any_time_law.hpp"
-#include "fpbm/task/in_plane.hpp"
-#include "fpbm/task/path.hpp"
-#include "fpbm/task/sequence.hpp"
-#include "fpbm/task/waypoints.hpp"
-#include "fpbm/task/with_rotation.hpp"
 #include "path.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
 using Array = py::array_t<double>;
-
-/// A shape run through under a time law.
-template <typename Shape>
-Path make_path(const Shape& shape, double duration, const std::string& law) {
-  return {AnyPath<typename Shape::Space>(fpbm::Path(shape, duration, AnyTimeLaw(law)))};
-}
 
 /// One finite number.
 double number(const ArrayLike& argument, const char* name) {
@@ -35,108 +22,75 @@ double number(const ArrayLike& argument, const char* name) {
   return value;
 }
 
-Path lissajous(const ArrayLike& amplitude, double duration, const ArrayLike& frequencies, double phase,
-               const std::string& law) {
-  const auto any = py::array::ensure(amplitude);
+int dimensions(const ArrayLike& argument) {
+  const auto any = py::array::ensure(argument);
   PyErr_Clear();
-  const bool one = any && any.ndim() == 0;
-  const Vector<2> both =
-      one ? Vector<2>(Vector<2>::Constant(number(amplitude, "amplitude"))) : fixed_vector<2>(amplitude, "amplitude");
-  const Vector<2, int> whole = fixed_vector<2>(frequencies, "frequencies").cast<int>();
-  return make_path(Lissajous<double>(both, whole, phase), duration, law);
+  return any ? static_cast<int>(any.ndim()) : -1;
 }
 
-Path line(const ArrayLike& displacement, double duration, const std::string& law) {
-  if (real_array(displacement, "displacement", 1).size() == 3) {
-    return make_path(Line<3>(fixed_vector<3>(displacement, "displacement")), duration, law);
-  }
-  return make_path(Line<2>(fixed_vector<2>(displacement, "displacement")), duration, law);
+Path python_lissajous(const ArrayLike& amplitude, double duration, const ArrayLike& frequencies, double phase,
+                      const std::string& law) {
+  const Vector<2> both = dimensions(amplitude) == 0 ? Vector<2>(Vector<2>::Constant(number(amplitude, "amplitude")))
+                                                    : fixed_vector<2>(amplitude, "amplitude");
+  return lissajous(both, duration, fixed_vector<2>(frequencies, "frequencies").cast<int>(), phase, law);
 }
 
-Path in_plane(const Path& path, const ArrayLike& axes) {
+Path python_line(const ArrayLike& displacement, double duration, const std::string& law) {
+  const bool spatial = real_array(displacement, "displacement", 1).size() == 3;
+  if (spatial) return line(fixed_vector<3>(displacement, "displacement"), duration, law);
+  return line(fixed_vector<2>(displacement, "displacement"), duration, law);
+}
+
+Path python_in_plane(const Path& path, const ArrayLike& axes) {
   const Eigen::MatrixXd rows = matrix(axes, "plane", 2, 3);
-  const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any);
-  if (flat == nullptr) validation::reject("in_plane", ": the path must be one of positions in a plane");
-  return {AnyPath<Position<3>>(InPlane(*flat, rows.row(0).transpose(), rows.row(1).transpose()))};
+  return in_plane(path, rows.row(0).transpose(), rows.row(1).transpose());
 }
 
-Path with_rotation(const Path& path, const ArrayLike& rotation, const std::string& law) {
-  const AnyTimeLaw time_law(law);
+Path python_with_rotation(const Path& path, const ArrayLike& rotation, const std::string& law) {
   if (const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any)) {
-    const Vector<1> angle{number(rotation, "rotation")};
-    return {AnyPath<PlanarPose>(WithRotation(*flat, angle, time_law))};
+    return with_rotation(*flat, number(rotation, "rotation"), law);
   }
-  if (const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any)) {
-    return {AnyPath<Pose>(WithRotation(*spatial, fixed_vector<3>(rotation, "rotation"), time_law))};
-  }
-  validation::reject("with_rotation", ": the path turns the tip already");
+  const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any);
+  if (spatial == nullptr) validation::reject("with_rotation", ": the path turns the tip already");
+  return with_rotation(*spatial, fixed_vector<3>(rotation, "rotation"), law);
 }
 
-/// Paths in [begin, end) one after another, as a balanced tree of pairs: a sample goes through few of them.
-template <typename Space>
-AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
-  if (end - begin == 1) return (*begin)->as<Space>();
-  const auto* const middle = begin + (end - begin) / 2;
-  return AnyPath<Space>(Sequence(sequence_in<Space>(begin, middle), sequence_in<Space>(middle, end)));
-}
-
-/// In the smallest of the spaces that has room for all.
-Path sequence(const std::vector<const Path*>& paths) {
-  if (paths.empty()) validation::reject("paths", ": must be one at least");
-  const auto in = [&](auto space) {
-    return Path{sequence_in<decltype(space)>(paths.data(), paths.data() + paths.size())};
-  };
-  const auto has = [&](std::size_t kind) {
-    return std::any_of(paths.begin(), paths.end(), [&](const Path* path) { return path->any.index() == kind; });
-  };
-  if (has(3)) return in(Pose{});
-  if (has(2)) return in(Position<3>{});
-  if (has(1)) return in(PlanarPose{});
-  return in(Position<2>{});
-}
-
-/// Waypoints in one of the three ways of timing them.
-template <typename Space>
-Path make_waypoints(const std::vector<typename Space::template Point<double>>& points,
-                    const std::optional<double>& duration, const OptionalArray& times, const TipBounds<>& bounds) {
-  if (duration) return {AnyPath<Space>(Waypoints<Space>::lasting(points, *duration))};
-  if (!times) return {AnyPath<Space>(Waypoints<Space>::within(points, bounds))};
-  const auto array = real_array(*times, "times", 1);
-  return {AnyPath<Space>(Waypoints<Space>(points, std::vector<double>(array.data(), array.data() + array.size())))};
-}
-
-Path waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
-               const std::optional<double>& velocity, const std::optional<double>& acceleration,
-               const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration) {
+Path python_waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
+                      const std::optional<double>& velocity, const std::optional<double>& acceleration,
+                      const std::optional<double>& angular_velocity,
+                      const std::optional<double>& angular_acceleration) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration;
-  const TipBounds<> bounds{velocity.value_or(kNone), acceleration.value_or(kNone), angular_velocity.value_or(kNone),
-                           angular_acceleration.value_or(kNone)};
   if (duration.has_value() + times.has_value() + bounded != 1) {
     validation::reject("duration", ", times or bounds of velocity: must be given, one of the three");
   }
-  const auto any = py::array::ensure(points);
-  PyErr_Clear();
-  if (any && any.ndim() == 3) {
+  Timing timing = TipBounds<>{velocity.value_or(kNone), acceleration.value_or(kNone), angular_velocity.value_or(kNone),
+                              angular_acceleration.value_or(kNone)};
+  if (duration) timing = *duration;
+  if (times) {
+    const auto array = real_array(*times, "times", 1);
+    timing = std::vector<double>(array.data(), array.data() + array.size());
+  }
+  if (dimensions(points) == 3) {
     const auto array = real_array(points, "points", 3);
     std::vector<Transform<>> poses;
     for (py::ssize_t i = 0; i < array.shape(0); ++i) {
       const std::string name = validation::element("points", i).text;
       poses.push_back(transform(ArrayLike(py::object(array[py::int_(i)])), name.c_str()));
     }
-    return make_waypoints<Pose>(poses, duration, times, bounds);
+    return waypoints(poses, timing);
   }
   const auto array = real_array(points, "points", 2);
-  const auto rows = [&](auto space) {
-    using Space = decltype(space);
-    std::vector<Vector<Space::kRows>> result;
+  const auto rows = [&](auto row) {
+    std::vector<decltype(row)> result;
     for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-      result.push_back(Eigen::Map<const Vector<Space::kRows>>(array.data(i, 0)));
+      for (py::ssize_t j = 0; j < array.shape(1); ++j) row(j) = array.at(i, j);
+      result.push_back(row);
     }
-    return make_waypoints<Space>(result, duration, times, bounds);
+    return waypoints(result, timing);
   };
-  if (array.shape(1) == 2) return rows(Position<2>{});
-  if (array.shape(1) == 3) return rows(Position<3>{});
+  if (array.shape(1) == 2) return rows(Vector<2>{});
+  if (array.shape(1) == 3) return rows(Vector<3>{});
   validation::reject("points", ": must have shape (k, 2), (k, 3) or (k, 4, 4), got " +
                                    py::cast<std::string>(py::str(array.attr("shape"))));
 }
@@ -167,20 +121,14 @@ shape (m,), linear rows first, then angular. At rest on the path's ends outside 
 
   const auto duration = py::arg("duration");
   const auto law = py::arg("time_law");
-  m.def(
-      "circle",
-      [](double radius, double T, const std::string& name) { return make_path(Circle<double>(radius), T, name); },
-      py::arg("radius"), duration, law);
-  m.def("lissajous", &lissajous, py::arg("amplitude"), duration, py::arg("frequencies"), py::arg("phase"), law);
-  m.def(
-      "tricuspid",
-      [](double size, double T, const std::string& name) { return make_path(Tricuspid<double>(size), T, name); },
-      py::arg("size"), duration, law);
-  m.def("line", &line, py::arg("displacement"), duration, law);
-  m.def("waypoints", &waypoints, py::arg("points"), duration, py::arg("times"), py::arg("velocity"),
+  m.def("circle", &circle, py::arg("radius"), duration, law);
+  m.def("lissajous", &python_lissajous, py::arg("amplitude"), duration, py::arg("frequencies"), py::arg("phase"), law);
+  m.def("tricuspid", &tricuspid, py::arg("size"), duration, law);
+  m.def("line", &python_line, py::arg("displacement"), duration, law);
+  m.def("waypoints", &python_waypoints, py::arg("points"), duration, py::arg("times"), py::arg("velocity"),
         py::arg("acceleration"), py::arg("angular_velocity"), py::arg("angular_acceleration"));
-  m.def("in_plane", &in_plane, py::arg("path"), py::arg("axes"));
-  m.def("with_rotation", &with_rotation, py::arg("path"), py::arg("rotation"), law);
+  m.def("in_plane", &python_in_plane, py::arg("path"), py::arg("axes"));
+  m.def("with_rotation", &python_with_rotation, py::arg("path"), py::arg("rotation"), law);
   m.def("sequence", &sequence, py::arg("paths"));
 }
 

@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "path.hpp"
+#include "scheme.hpp"
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
@@ -32,13 +33,12 @@ PyTick python_tick(const Tick<Space, kDynamic>& tick) {
 }
 
 struct PyFollower {
-  std::variant<Follower<Position<2>>, Follower<PlanarPose>, Follower<Position<3>>, Follower<Pose>> any;
+  std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
 };
 
 /// A tracker with any task.
 class PyTracker {
-  using Any =
-      std::variant<AnyTracker<Position<2>>, AnyTracker<PlanarPose>, AnyTracker<Position<3>>, AnyTracker<Pose>>;
+  using Any = std::variant<AnyTracker<Position<2>>, AnyTracker<PlanarPose>, AnyTracker<Position<3>>, AnyTracker<Pose>>;
 
   template <typename Tracker>
   using SpaceOf = typename std::decay_t<Tracker>::Space;
@@ -56,8 +56,8 @@ class PyTracker {
           State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
           if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
           require_enough_joints<Space>(dof_);
-          return Any(AnyTracker<Space>(any, scheme, start, options,
-                                       limits.is_none() ? arm.limits() : joint_limits(limits)));
+          return Any(
+              AnyTracker<Space>(any, scheme, start, options, limits.is_none() ? arm.limits() : joint_limits(limits)));
         })) {}
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
@@ -66,7 +66,7 @@ class PyTracker {
 
   [[nodiscard]] PyTick tick(PyFollower& follower) {
     return visit([&](auto& tracker) {
-      auto* same = std::get_if<Follower<SpaceOf<decltype(tracker)>>>(&follower.any);
+      auto* same = std::get_if<AnyFollower<SpaceOf<decltype(tracker)>>>(&follower.any);
       if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
       return python_tick(tracker.tick(*same));
     });
@@ -83,7 +83,7 @@ class PyTracker {
   [[nodiscard]] PyFollower follow(const Path& path, double ramp) {
     return visit([&](auto& tracker) -> PyFollower {
       using Space = SpaceOf<decltype(tracker)>;
-      return {Follower<Space>(path.as<Space>(), tracker.tip(), ramp)};
+      return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
     });
   }
 
@@ -131,9 +131,7 @@ void bind_tick(py::module_& m) {
 }
 
 void bind_follower(py::module_& m) {
-  const auto visit = [](auto visitor) {
-    return [visitor](PyFollower& self) { return std::visit(visitor, self.any); };
-  };
+  const auto visit = [](auto visitor) { return [visitor](PyFollower& self) { return std::visit(visitor, self.any); }; };
   py::class_<PyFollower>(m, "PathFollower",
                          "A path laid out from a tip, with a clock that can pause and resume; made by Tracker.follow.")
       .def("pause", visit([](auto& follower) { follower.pause(); }), "Comes to rest on the path, within the ramp.")

@@ -27,7 +27,7 @@ RolloutResult<kDynamic> Motion<Space>::simulate(const Output<Space>& output) con
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
   AnyTracker<Space> tracker = tracker_of(*this, limited);
-  Follower<Space> follower(path, tracker.tip());
+  AnyFollower<Space> follower(path, tracker.tip());
   Recorder<Space> record(output, Level::kAcceleration);
   const auto result = fpbm::track(tracker, follower, grid, record);
   record.finish();

@@ -40,17 +40,21 @@ class Spline {
     const Knot& b = knots_[i + 1];
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
-    // Differences at b from the Taylor polynomial at a.
-    const Point x = b.x - (a.x + h * (a.xd + h / 2 * a.xdd));
-    const Point xd = h * (b.xd - (a.xd + h * a.xdd));
-    const Point xdd = h * h * (b.xdd - a.xdd);
-    const Point c3 = 10 * x - 4 * xd + xdd / 2;
-    const Point c4 = -15 * x + 7 * xd - xdd;
-    const Point c5 = 6 * x - 3 * xd + xdd / 2;
     const Scalar s = u * h;
-    return {a.x + s * (a.xd + s / 2 * a.xdd) + u * u * u * (c3 + u * (c4 + u * c5)),
-            a.xd + s * a.xdd + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5))),
-            a.xdd + u / (h * h) * (6 * c3 + u * (12 * c4 + u * (20 * c5)))};
+    Sample sample;
+    for (int j = 0; j < M; ++j) {  // Number by number, which compiles in a third of the time that vectors take.
+      // Differences at b from the Taylor polynomial at a.
+      const Scalar x = b.x(j) - (a.x(j) + h * (a.xd(j) + h / 2 * a.xdd(j)));
+      const Scalar xd = h * (b.xd(j) - (a.xd(j) + h * a.xdd(j)));
+      const Scalar xdd = h * h * (b.xdd(j) - a.xdd(j));
+      const Scalar c3 = 10 * x - 4 * xd + xdd / 2;
+      const Scalar c4 = -15 * x + 7 * xd - xdd;
+      const Scalar c5 = 6 * x - 3 * xd + xdd / 2;
+      sample.x(j) = a.x(j) + s * (a.xd(j) + s / 2 * a.xdd(j)) + u * u * u * (c3 + u * (c4 + u * c5));
+      sample.xd(j) = a.xd(j) + s * a.xdd(j) + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5)));
+      sample.xdd(j) = a.xdd(j) + u / (h * h) * (6 * c3 + u * (12 * c4 + u * (20 * c5)));
+    }
+    return sample;
   }
 
  private:
