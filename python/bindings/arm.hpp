@@ -13,6 +13,14 @@ namespace fpbm::bindings {
 inline constexpr int kDynamic = Eigen::Dynamic;
 using JointVector = Vector<kDynamic>;
 
+/// Tip, J and Jd in any task space, from an arm or from elsewhere.
+struct AnyKinematics {
+  std::variant<Kinematics<Position<2>, kDynamic>, Kinematics<PlanarPose, kDynamic>, Kinematics<Position<3>, kDynamic>,
+               Kinematics<Pose, kDynamic>>
+      value;
+  bool has_rate = true;  ///< Whether Jd is known.
+};
+
 /// Throws std::invalid_argument where a task in Space has more rows than the arm has joints.
 template <typename Space>
 void require_enough_joints(Eigen::Index dof) {

@@ -10,7 +10,6 @@
 #include "bindings.hpp"
 #include "fpbm/model/dh.hpp"
 #include "fpbm/model/presets.hpp"
-#include "kinematics.hpp"
 
 namespace fpbm::bindings {
 namespace {

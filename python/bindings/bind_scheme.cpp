@@ -6,7 +6,6 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "kinematics.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {

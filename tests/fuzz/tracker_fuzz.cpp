@@ -1,6 +1,6 @@
 // Makes states, references, options and limits of arbitrary bytes, and checks what the tracker and the schemes promise:
-// no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same input, and
-// a good tick again as soon as the reference is good again.
+// no crash, no NaN or infinity in a result, no bound violated from a viable start, the same bits for the same input,
+// and a good tick again as soon as the reference is good again.
 
 #include <cmath>
 #include <cstdio>
