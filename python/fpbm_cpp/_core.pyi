@@ -11,90 +11,40 @@ import typing
 
 __all__: list[str] = [
     "Arm",
-    "Balanced",
-    "Circle",
-    "PathFollower",
-    "FPBM",
-    "Gaze",
-    "JointLimits",
     "Kinematics",
-    "Line",
-    "Lissajous",
-    "MAN",
     "MAX_DOF",
-    "MVN",
+    "PRESETS",
     "Path",
-    "PlanarArm",
+    "PathFollower",
     "Scheme",
-    "SecondTask",
-    "SerialArm",
     "Status",
     "Stop",
+    "TIME_LAWS",
     "Tick",
     "Tracker",
-    "Tricuspid",
-    "WMVN",
-    "WMVNAcceleration",
-    "Waypoints",
     "advice",
     "check_sweep",
+    "circle",
     "dh",
     "failed",
+    "in_plane",
+    "line",
+    "lissajous",
     "message",
     "not_run",
     "preset",
     "processor_kinds",
     "rotation",
     "rotation_vector",
+    "sequence",
     "simulate",
     "sweep_chunk",
+    "track",
+    "tricuspid",
     "use_lanes",
+    "waypoints",
+    "with_rotation",
 ]
-
-class JointLimits:
-    """
-    Bounds of each joint's motion, infinite where there is none.
-
-    Parameters
-    ----------
-    lower, upper, velocity, acceleration : array_like, shape (n,)
-        Bounds on positions [rad], velocities either way [rad/s] and accelerations either way [rad/s^2]; [m] and so on for
-        prismatic joints.
-
-    Raises
-    ------
-    ValueError
-        Where one is not a number, or has another length.
-    """
-    def __init__(
-        self,
-        *,
-        lower: numpy.typing.ArrayLike,
-        upper: numpy.typing.ArrayLike,
-        velocity: numpy.typing.ArrayLike,
-        acceleration: numpy.typing.ArrayLike,
-    ) -> None: ...
-    def __repr__(self) -> str: ...
-    @property
-    def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Highest joint accelerations [rad/s^2] or [m/s^2], shape (n,).
-        """
-    @property
-    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Lowest joint positions [rad] or [m], shape (n,).
-        """
-    @property
-    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Highest joint positions [rad] or [m], shape (n,).
-        """
-    @property
-    def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Highest joint speeds [rad/s] or [m/s], shape (n,).
-        """
 
 class Kinematics:
     """
@@ -115,7 +65,7 @@ class Kinematics:
 
     Raises
     ------
-    ValueError
+    ParameterError
         Where a number is not finite, or shapes do not fit.
     """
     def __init__(
@@ -127,12 +77,12 @@ class Kinematics:
         task: str = "position",
     ) -> None: ...
     @property
-    def J(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def J(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Task Jacobian, shape (m, n).
         """
     @property
-    def Jd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def Jd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         dJ/dt along qd, shape (m, n).
         """
@@ -144,18 +94,36 @@ class Kinematics:
 
 class Arm:
     """
-    A robot arm: what all kinds of it can do.
+    The compiled part of an arm: in the plane, of link lengths, or in space, of joints.
     """
-    def jacobian(
-        self, q: numpy.typing.ArrayLike, *, task: str = "position"
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    @typing.overload
+    def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
+    @typing.overload
+    def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
+    def bounds(
+        self,
+    ) -> tuple[
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+    ]:
+        """
+        (lower, upper, velocity, acceleration) of the joints, shape (n,) each; infinite where there is no bound.
+        """
+    def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous
+        matrix, shape (4, 4), of one in space. q: shape (n,) [rad].
+        """
+    def jacobian(self, q: numpy.typing.ArrayLike, *, task: str = "position") -> numpy.typing.NDArray[numpy.float64]:
         """
         Task Jacobian J(q), shape (m, n): tip velocity is J qd. q: shape (n,) [rad]. task: 'position' or 'pose', whose rows are linear first, then
         angular, along the base frame's axes.
         """
     def jacobian_dot(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    ) -> numpy.typing.NDArray[numpy.float64]:
         """
         dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s]. task: 'position' or 'pose', whose rows are linear first, then
         angular, along the base frame's axes.
@@ -177,75 +145,13 @@ class Arm:
         """
         Names of the joints, from the base on.
         """
-    @property
-    def limits(self) -> JointLimits:
-        """
-        Bounds of the joints' motion.
-        """
-
-class PlanarArm(Arm):
-    """
-    Planar arm of n revolute joints.
-
-    f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first
-    from the base frame's x axis. Its pose is (x, y, th_n).
-
-    Parameters
-    ----------
-    lengths : array_like, shape (n,)
-        Link lengths [m], 2 to MAX_DOF of them, positive. Up to 8 joints run in code made for just that number.
-
-    Raises
-    ------
-    ValueError
-        Where a length is not positive and finite, or there are too few or too many.
-    """
-    def __eq__(self, arg0: typing.Any) -> bool: ...
-    def __getstate__(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
-    def __hash__(self) -> int: ...
-    def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
-    def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Tip position f(q) in the base frame [m], shape (2,). q: shape (n,) [rad].
-        """
-    @property
-    def lengths(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Link lengths [m], shape (n,).
-        """
-
-class SerialArm(Arm):
-    """
-    The compiled part of fpbm_cpp.SerialArm.
-    """
-    def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
-    def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Tip pose f(q) in the base frame as a homogeneous matrix [m], shape (4, 4). q: shape (n,) [rad].
-        """
 
 class Path:
     """
-    Where the tip is to be, over T seconds, from rest to rest; then held.
-
-    A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
-    unless in_plane() lays them elsewhere; paths of positions leave the tip's orientation free under task='position' and
-    hold it under task='pose', unless with_rotation() turns it.
-
-    The time laws give the fraction done, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose acceleration
-    steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there; 'constant_speed', tau.
+    The compiled part of a path.
     """
-    def __reduce__(self) -> tuple[typing.Any, ...]: ...
-    def __repr__(self) -> str: ...
-    def in_plane(self, plane: typing.Any) -> Path:
-        """
-        This path of the plane laid into a plane of space.
-
-        plane: the base frame's axes that its x and y run along, as in 'yz', or any two directions at right angles,
-        shape (2, 3).
-        """
+    def __init__(self, path: Path) -> None: ...
+    def _duration(self) -> float: ...
     def sample(
         self, t: typing.SupportsFloat | typing.SupportsIndex
     ) -> tuple[
@@ -257,175 +163,6 @@ class Path:
         x has shape (2,) or (3,), or (4, 4) where the path turns the tip in space (in the plane: x, y, angle); xd and xdd have
         shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.
         """
-    def then(self, path: Path) -> Path:
-        """
-        This path, and from its end another.
-        """
-    def with_rotation(self, turn: numpy.typing.ArrayLike, *, time_law: str = "quintic") -> Path:
-        """
-        This path of positions with the tip turned on the way, from rest to rest over its whole duration.
-
-        turn: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the orientation that
-        the tip starts in. To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the orientation.
-        """
-    @property
-    def duration(self) -> float:
-        """
-        T [s].
-        """
-
-class Circle(Path):
-    """
-    Circle, counter-clockwise from its rightmost point.
-
-    r (cos phi - 1, sin phi), phi = 2 pi s.
-
-    Parameters
-    ----------
-    radius : float
-        r [m], positive.
-    duration : float
-        T [s], positive.
-    time_law : str
-        'sin_squared', 'quintic' or 'constant_speed'.
-
-    Raises
-    ------
-    ValueError
-        Where a number is not positive and finite, or the time law is unknown.
-    """
-    def __init__(
-        self,
-        radius: typing.SupportsFloat | typing.SupportsIndex,
-        duration: typing.SupportsFloat | typing.SupportsIndex,
-        *,
-        time_law: str = "sin_squared",
-    ) -> None: ...
-
-class Lissajous(Path):
-    """
-    Lissajous figure.
-
-    (a_x (cos(f_x phi + delta) - cos delta), a_y (sin(f_y phi + delta) - sin delta)), phi = 2 pi s.
-
-    Parameters
-    ----------
-    amplitude : float or (float, float)
-        a [m], one for both axes or one each, positive.
-    duration : float
-        T [s], positive.
-    frequencies : (int, int)
-        f, whole and positive, so that the figure closes.
-    phase : float
-        delta [rad].
-    time_law : str
-        'sin_squared', 'quintic' or 'constant_speed'.
-
-    Raises
-    ------
-    ValueError
-        Where a number is out of range or not finite, or the time law is unknown.
-    """
-    def __init__(
-        self,
-        amplitude: numpy.typing.ArrayLike,
-        duration: typing.SupportsFloat | typing.SupportsIndex,
-        *,
-        frequencies: typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[2, 1]"] = ...,
-        phase: typing.SupportsFloat | typing.SupportsIndex = 0.5235987755982988,
-        time_law: str = "sin_squared",
-    ) -> None: ...
-
-class Tricuspid(Path):
-    """
-    Tricuspid (deltoid), from its rightmost cusp.
-
-    a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s.
-
-    Parameters
-    ----------
-    size : float
-        a [m], positive.
-    duration : float
-        T [s], positive.
-    time_law : str
-        'sin_squared', 'quintic' or 'constant_speed'.
-
-    Raises
-    ------
-    ValueError
-        Where a number is not positive and finite, or the time law is unknown.
-    """
-    def __init__(
-        self,
-        size: typing.SupportsFloat | typing.SupportsIndex,
-        duration: typing.SupportsFloat | typing.SupportsIndex,
-        *,
-        time_law: str = "sin_squared",
-    ) -> None: ...
-
-class Line(Path):
-    """
-    Straight line.
-
-    Parameters
-    ----------
-    displacement : array_like, shape (2,) or (3,)
-        From the start of the line to its end [m].
-    duration : float
-        T [s], positive.
-    time_law : str
-        'sin_squared', 'quintic' or 'constant_speed'.
-
-    Raises
-    ------
-    ValueError
-        Where a number is not finite, the duration not positive, or the time law unknown.
-    """
-    def __init__(
-        self,
-        displacement: numpy.typing.ArrayLike,
-        duration: typing.SupportsFloat | typing.SupportsIndex,
-        *,
-        time_law: str = "sin_squared",
-    ) -> None: ...
-
-class Waypoints(Path):
-    """
-    A smooth path through points, from rest to rest.
-
-    A quintic spline: of all curves through the points at those times, the one of least jerk. Acceleration is continuous
-    everywhere, the ends included. Orientations are splines of quaternions, and turn by the shorter way.
-
-    Parameters
-    ----------
-    points : array_like, shape (k, 2), (k, 3) or (k, 4, 4)
-        Positions [m] or poses, two at least. Only differences from the first matter, since a path starts where the tip is:
-        coordinates in the base frame do as well as displacements.
-    duration : float
-        T [s]; each piece gets its share by its length.
-    times : array_like, shape (k,)
-        When each point is passed [s], the first at 0.
-    speed, acceleration, angular_velocity, angular_acceleration : float
-        As fast as these bounds of the tip's motion allow [m/s, m/s^2, rad/s, rad/s^2], to 1 %; T is rounded up to 0.01 s.
-
-    Raises
-    ------
-    ValueError
-        Where not just one of duration, times and bounds is given, a number is out of range or not finite, or two points
-        that follow each other are one.
-    """
-    def __init__(
-        self,
-        points: numpy.typing.ArrayLike,
-        *,
-        duration: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        times: numpy.typing.ArrayLike | None = None,
-        speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None = None,
-        angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
-    ) -> None: ...
 
 class Status(enum.Enum):
     """
@@ -441,10 +178,9 @@ class Status(enum.Enum):
 
 class Scheme:
     """
-    A redundancy resolution scheme: what all of them can do.
+    The compiled part of a scheme: the law of a level with its parameters.
     """
-    def __reduce__(self) -> tuple[typing.Any, ...]: ...
-    def __repr__(self) -> str: ...
+    def __init__(self, level: str, parameters: dict[str, typing.Any]) -> None: ...
     @typing.overload
     def resolve(
         self,
@@ -456,7 +192,7 @@ class Scheme:
         xdd: numpy.typing.ArrayLike | None = None,
         *,
         task: str = "position",
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    ) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint motion that the scheme asks for in one state.
 
@@ -480,7 +216,7 @@ class Scheme:
 
         Raises
         ------
-        ValueError
+        ParameterError
             Where an argument is not finite or of the wrong shape.
         ResolutionError
             Where the posture is singular or the result not finite.
@@ -494,381 +230,14 @@ class Scheme:
         x: numpy.typing.ArrayLike,
         xd: numpy.typing.ArrayLike,
         xdd: numpy.typing.ArrayLike | None = None,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    ) -> numpy.typing.NDArray[numpy.float64]:
         """
         The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.
         """
-    @property
-    def level(self) -> str:
-        """
-        'velocity' where resolve returns qd, 'acceleration' where it returns qdd.
-        """
-
-class SecondTask:
-    """
-    A point for a second arm's tip, in the null space of the first task.
-
-    The second arm is of the first joints of the first one: its tip an elbow, say. The first task comes strictly first.
-
-    Parameters
-    ----------
-    arm : Arm
-        The second arm: PlanarArm(lengths[:k]), or SerialArm.from_joints(joints[:k]).
-    x : array_like, shape (2,) or (3,)
-        Where its tip is to be, in the base frame [m].
-    k1, k2 : float
-        Feedback gains on velocity [1/s], which velocity-level schemes do without, and position [1/s^2], or [1/s] at
-        velocity level; not negative.
-
-    Raises
-    ------
-    ValueError
-        Where an argument is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        arm: Arm,
-        x: numpy.typing.ArrayLike,
-        *,
-        k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-        k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
-    ) -> None: ...
-    def __reduce__(self) -> tuple[typing.Any, ...]: ...
-    def __repr__(self) -> str: ...
-
-class Gaze:
-    """
-    A direction for the tip's z axis, in the null space of the first task.
-
-    Of an arm in space; the axis may still turn about itself. The first task comes strictly first.
-
-    Parameters
-    ----------
-    direction : array_like, shape (3,)
-        Where the axis is to point, in the base frame; its length does not matter.
-    k1, k2 : float
-        Feedback gains on velocity [1/s], which velocity-level schemes do without, and direction [1/s^2], or [1/s] at
-        velocity level; not negative.
-
-    Raises
-    ------
-    ValueError
-        Where an argument is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        direction: numpy.typing.ArrayLike,
-        *,
-        k1: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-        k2: typing.SupportsFloat | typing.SupportsIndex = 25.0,
-    ) -> None: ...
-    def __reduce__(self) -> tuple[typing.Any, ...]: ...
-    def __repr__(self) -> str: ...
-
-class MVN(Scheme):
-    """
-    Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3).
-
-    Parameters
-    ----------
-    k : float
-        Position feedback gain [1/s]: xd + k (x - f(q)) in place of xd.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s].
-    c : array_like, shape (n,)
-        The free choice in the general solution (3) [rad/s].
-    joint_centring : float
-        Gain [rad^2/s] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985).
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        *,
-        k: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
-
-class WMVN(Scheme):
-    """
-    Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd.
-
-    Parameters
-    ----------
-    weights : array_like, shape (n,) or (n, n)
-        Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
-    k : float
-        Position feedback gain [1/s]: xd + k (x - f(q)) in place of xd.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s].
-    c : array_like, shape (n,)
-        The free choice in the general solution (3) [rad/s].
-    joint_centring : float
-        Gain [rad^2/s] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985).
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        weights: numpy.typing.ArrayLike,
-        *,
-        k: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
-
-class MAN(Scheme):
-    """
-    Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5).
-
-    Parameters
-    ----------
-    null_damping : float
-        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
-    c : array_like, shape (n,)
-        The free choice in the general solution (5) [rad/s^2].
-    joint_centring : float
-        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
-        null_damping, without which it swings for ever.
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        *,
-        null_damping: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
-
-class WMVNAcceleration(Scheme):
-    """
-    Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated.
-
-    qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.
-
-    Parameters
-    ----------
-    weights : array_like, shape (n,) or (n, n)
-        Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
-    null_damping : float
-        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
-    c : array_like, shape (n,)
-        The free choice in the general solution (5) [rad/s^2].
-    joint_centring : float
-        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
-        null_damping, without which it swings for ever.
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        weights: numpy.typing.ArrayLike,
-        *,
-        null_damping: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
-
-class Balanced(Scheme):
-    """
-    Balance of MAN and WMVN without feedback, (16): (1 - alpha) MAN (8) + alpha WMVN (9).
-
-    Parameters
-    ----------
-    alpha : float
-        Share of WMVN, in [0, 1]; MAN has the rest.
-    weights : array_like, shape (n,) or (n, n)
-        Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
-    null_damping : float
-        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
-    c : array_like, shape (n,)
-        The free choice in the general solution (5) [rad/s^2].
-    joint_centring : float
-        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
-        null_damping, without which it swings for ever.
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        alpha: typing.SupportsFloat | typing.SupportsIndex,
-        weights: numpy.typing.ArrayLike,
-        *,
-        null_damping: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
-
-class FPBM(Scheme):
-    """
-    Feedback-added pseudoinverse-type balanced minimisation, (13).
-
-    The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so
-    that the tip error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.
-
-    Parameters
-    ----------
-    alpha : float
-        Share of WMVN, in [0, 1]; MAN has the rest.
-    weights : array_like, shape (n,) or (n, n)
-        Diagonal of W, all positive, or W itself, symmetric positive definite. Only ratios matter.
-    k1, k2 : float
-        Feedback gains on velocity [1/s] and position [1/s^2], not negative.
-    null_damping : float
-        Damping of the self-motion [1/s], which nothing in the paper's schemes damps.
-    rest_posture, null_stiffness : array_like, shape (n,), and float
-        Posture [rad] that the null space is drawn to, and how strongly [1/s^2].
-    c : array_like, shape (n,)
-        The free choice in the general solution (5) [rad/s^2].
-    joint_centring : float
-        Gain [rad^2/s^2] down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the
-        arm's limits bound both ways (Liegeois, 1977).
-    manipulability_gain : float
-        Gain [rad^2/s^2] up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). Wants
-        null_damping, without which it swings for ever.
-    second_task : SecondTask or Gaze
-        What the null space does before all else: the rest of these options have what it leaves.
-    singular_radius, singular_brake : float
-        Damping where a singular value of J falls below singular_radius times the norm of J, in [0, 1]. A radius of 0 is
-        none, and refuses singular postures; 0.02 is a good one. The brake damps the null space there [1/s].
-
-    manipulability_gain and second_task run in code of run-time size, which is slower; they and joint_centring need an arm,
-    and cannot be resolved from a Kinematics.
-
-    Raises
-    ------
-    ValueError
-        Where a parameter is out of range, not finite, or of the wrong shape.
-    """
-    def __init__(
-        self,
-        alpha: typing.SupportsFloat | typing.SupportsIndex,
-        weights: numpy.typing.ArrayLike,
-        k1: typing.SupportsFloat | typing.SupportsIndex,
-        k2: typing.SupportsFloat | typing.SupportsIndex,
-        *,
-        null_damping: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        rest_posture: numpy.typing.ArrayLike | None = None,
-        null_stiffness: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        c: numpy.typing.ArrayLike | None = None,
-        joint_centring: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        manipulability_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        second_task: SecondTask | Gaze | None = None,
-        singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
-    ) -> None: ...
 
 class Stop:
     """
-    A word to all motions of a sweep in this process: set() ends them within a sample.
+    Ends all motions of a sweep in this process, within a sample.
     """
     def __init__(self) -> None: ...
     def set(self) -> None:
@@ -881,22 +250,22 @@ class Tick:
     What one tick of a control loop did.
     """
     @property
-    def error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         x - f(q) at the tick's start [m, rad], shape (m,).
         """
     @property
-    def q(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).
         """
     @property
-    def qd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def qd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Its velocity [rad/s], shape (n,).
         """
     @property
-    def qdd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Mean acceleration over the tick [rad/s^2], shape (n,).
         """
@@ -913,7 +282,7 @@ class Tick:
     @property
     def sigma(self) -> float:
         """
-        Lower bound on the least singular value of J at the tick's start, sqrt(m) times too low at most.
+        Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).
         """
     @property
     def status(self) -> Status:
@@ -923,11 +292,11 @@ class Tick:
 
 class PathFollower:
     """
-    A path laid out from a tip, with a clock that can pause and resume; made by Tracker.course.
+    A path laid out from a tip, with a clock that can pause and resume; made by Tracker.follow.
     """
     def pause(self) -> None:
         """
-        Comes to rest on the path, within the course's ramp.
+        Comes to rest on the path, within the ramp.
         """
     def resume(self) -> None:
         """
@@ -966,8 +335,8 @@ class Tracker:
         Length of a tick [s].
     limits : JointLimits, optional
         The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
-    pull : float
-        How far away the target may seem at most [m, rad]: a farther one pulls no harder.
+    max_error : float
+        Largest tip error that the feedback acts on [m, rad]: a larger one counts as this.
     integral_gain, integral_bound : float
         Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
         [m/s^2] or [m/s]. Stable below k1 k2.
@@ -976,7 +345,7 @@ class Tracker:
 
     Raises
     ------
-    ValueError
+    ParameterError
         Where an argument is out of range, a limit is missing, or the start breaks one.
     """
     def __init__(
@@ -988,20 +357,16 @@ class Tracker:
         qd0: numpy.typing.ArrayLike | None = None,
         task: str = "position",
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
-        limits: JointLimits | None = None,
-        pull: typing.SupportsFloat | typing.SupportsIndex = 0.1,
+        limits: typing.Any = None,
+        max_error: typing.SupportsFloat | typing.SupportsIndex = 0.1,
         integral_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         integral_bound: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...
-    def course(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
+    def follow(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
         """
         A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
-        """
-    def resume(self) -> None:
-        """
-        Follows references again.
         """
     def resolve_measured(
         self,
@@ -1014,14 +379,18 @@ class Tracker:
         """
         The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.
         """
+    def resume(self) -> None:
+        """
+        Follows references again.
+        """
     def stop(self) -> None:
         """
         Brings every joint to rest as fast as the limits allow, until resume.
         """
     @typing.overload
-    def tick(self, course: PathFollower) -> Tick:
+    def tick(self, follower: PathFollower) -> Tick:
         """
-        One tick along a course, whose clock goes on with it.
+        One tick along a path, whose clock advances with it.
         """
     @typing.overload
     def tick(
@@ -1037,12 +406,12 @@ class Tracker:
         where no motion can be found the arm brakes, and the tick's status says why.
         """
     @property
-    def q(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint positions of its own state [rad].
         """
     @property
-    def qd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def qd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint velocities of its own state [rad/s].
         """
@@ -1065,7 +434,21 @@ def check_sweep(
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
+    limited: tuple[
+        typing.Any,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+    ]
+    | None = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
+def circle(
+    radius: typing.SupportsFloat | typing.SupportsIndex,
+    duration: typing.SupportsFloat | typing.SupportsIndex,
+    time_law: str,
+) -> Path: ...
 def dh(
     table: numpy.typing.ArrayLike, convention: str, types: collections.abc.Sequence[str]
 ) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
@@ -1074,6 +457,17 @@ def failed(status: Status) -> bool:
     Whether there is no result.
     """
 
+def in_plane(path: Path, axes: numpy.typing.ArrayLike) -> Path: ...
+def line(
+    displacement: numpy.typing.ArrayLike, duration: typing.SupportsFloat | typing.SupportsIndex, time_law: str
+) -> Path: ...
+def lissajous(
+    amplitude: numpy.typing.ArrayLike,
+    duration: typing.SupportsFloat | typing.SupportsIndex,
+    frequencies: numpy.typing.ArrayLike,
+    phase: typing.SupportsFloat | typing.SupportsIndex,
+    time_law: str,
+) -> Path: ...
 def message(status: Status) -> str:
     """
     One sentence: what happened.
@@ -1082,16 +476,17 @@ def message(status: Status) -> str:
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def processor_kinds() -> list[str]: ...
-def rotation(r: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.
     """
 
-def rotation_vector(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+def rotation_vector(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Rotation vector of a rotation matrix, shape (3,), of length at most pi [rad].
     """
 
+def sequence(paths: collections.abc.Sequence[Path]) -> Path: ...
 def simulate(
     arm: Arm,
     path: Path,
@@ -1125,22 +520,66 @@ def sweep_chunk(
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
     motions: bool,
+    limited: tuple[
+        typing.Any,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+    ]
+    | None,
     stop: Stop,
+) -> tuple[numpy.ndarray, list[tuple[numpy.typing.NDArray[numpy.float64], ...]]]: ...
+def track(
+    arm: Arm,
+    path: Path,
+    scheme: Scheme,
+    q0: numpy.typing.ArrayLike,
+    qd0: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    hold: typing.SupportsFloat | typing.SupportsIndex,
+    task: str,
+    limits: typing.Any,
+    max_error: typing.SupportsFloat | typing.SupportsIndex,
+    integral_gain: typing.SupportsFloat | typing.SupportsIndex,
+    integral_bound: typing.SupportsFloat | typing.SupportsIndex,
+    singular_radius: typing.SupportsFloat | typing.SupportsIndex,
+    singular_brake: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[
-    numpy.ndarray,
-    list[
-        tuple[
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-            numpy.typing.NDArray[numpy.float64],
-        ]
+    Status,
+    float,
+    int,
+    tuple[
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
     ],
+    numpy.typing.NDArray[numpy.float64],
+    numpy.typing.NDArray[numpy.bool],
 ]: ...
+def tricuspid(
+    size: typing.SupportsFloat | typing.SupportsIndex,
+    duration: typing.SupportsFloat | typing.SupportsIndex,
+    time_law: str,
+) -> Path: ...
 def use_lanes(code: typing.Any) -> int: ...
+def waypoints(
+    points: numpy.typing.ArrayLike,
+    duration: typing.SupportsFloat | typing.SupportsIndex | None,
+    times: numpy.typing.ArrayLike | None,
+    velocity: typing.SupportsFloat | typing.SupportsIndex | None,
+    acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
+    angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None,
+    angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None,
+) -> Path: ...
+def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 
 MAX_DOF: int = 32
+PRESETS: tuple = ("panda", "iiwa14", "gen3")
+TIME_LAWS: tuple = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"
