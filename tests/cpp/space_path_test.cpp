@@ -254,7 +254,7 @@ TEST(SpacePaths, bad_ones_are_refused) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const Path circle(Circle(0.3), 5.0);
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, 0, 0), Vector<3>(0, 0, 0)); }),
-            "u and v: must both point somewhere");
+            "u and v: must both be nonzero");
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, 0, 0), Vector<3>(1, 0, 1)); }).substr(0, 25),
             "u v / |u| |v| = 0.7071067");
   EXPECT_EQ(refusal([&] { return InPlane(circle, Vector<3>(1, kInf, 0), Vector<3>(1, 0, 1)); }),
@@ -273,7 +273,7 @@ TEST(SpacePaths, bad_ones_are_refused) {
   EXPECT_EQ(refusal([&] { return Way({{0, 0}, {1, kInf}}, {0.0, 1.0}); }), "points[1][1] = inf: must be finite");
   EXPECT_EQ(refusal([&] { return Way::lasting(points, -1.0); }), "duration = -1: must be positive and finite");
   EXPECT_EQ(refusal([&] { return Way::lasting({{0, 0}, {0, 0}}, 1.0); }), "points[1]: must differ from the one before");
-  EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must hold the tip back");
+  EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must limit the tip");
   EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");
 }
 
