@@ -127,7 +127,7 @@ TEST(NoAllocation, in_space) {
   const AnyPath<Pose> path(
       Sequence(WithRotation(circle, Vector<3>(0.1, 0.2, 0.3)), Waypoints<Pose>::lasting(points, 5.0)));
   const Accelerations fixed(FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 10.0, 25.0));
-  const AnyArm<Position<3>> panda(SerialArm<7>(presets::panda()));
+  const AnyArm<Position<3>> panda{SerialArm<7>(presets::panda())};
   expect_none(watched_rollout(panda, path, fixed, panda_ready(), [] {}), "Panda");
 
   Chain<> chain = presets::panda();
