@@ -342,7 +342,7 @@ RealMatrix with_singular_values(Random& random, const RealVector& sigma, Eigen::
 template <int M, int N, typename Scalar, typename Weights>
 RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>& damping,
                           const Matrix<M, N, Scalar>& J) {
-  const Matrix<N, M, Scalar> WinvJt = weights.solve_Jt(J);
+  const Matrix<N, M, Scalar> WinvJt = weights.solve_transpose(J);
   DampedGram<M, N, Scalar> gram(damping, J);
   EXPECT_FALSE(failed(gram.factor(WinvJt, weights.template inverse_bound<Scalar>())));
   Matrix<M, M, Scalar> inverse;

@@ -84,7 +84,7 @@ class AnyArm {
 
   template <typename Arm>
   struct Held final : Holder {
-    explicit Held(const Arm& arm_) : arm(arm_) {}
+    explicit Held(const Arm& arm) : arm_(arm) {}
 
     void kinematics(const Vector<kDof>& q, const Vector<kDof>* qd,
                     Kinematics<Positions, kDof>& out) const noexcept override {
@@ -101,22 +101,22 @@ class AnyArm {
       constexpr int N = Arm::kDof;
       if constexpr (N == kDof) {
         if (qd != nullptr) {
-          arm.kinematics(q, *qd, out);
+          arm_.kinematics(q, *qd, out);
         } else {
-          arm.kinematics(q, out);
+          arm_.kinematics(q, out);
         }
       } else {
         Kinematics<Space, N> sized;
         if (qd != nullptr) {
-          arm.kinematics(Vector<N>(q), Vector<N>(*qd), sized);
+          arm_.kinematics(Vector<N>(q), Vector<N>(*qd), sized);
         } else {
-          arm.kinematics(Vector<N>(q), sized);
+          arm_.kinematics(Vector<N>(q), sized);
         }
         copy(sized, qd != nullptr, out);
       }
     }
 
-    Arm arm;
+    Arm arm_;
   };
 
   template <int N>

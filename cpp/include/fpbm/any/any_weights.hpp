@@ -25,14 +25,17 @@ class AnyWeights {
     return std::visit([](const auto& weights) { return weights.template inverse_bound<Scalar>(); }, weights_);
   }
 
-  // Calls, so that the large functions that use them stay small.
+  // Calls, so that the large functions that use them stay small. The variant is never empty, so no visit throws.
+  // NOLINTBEGIN(bugprone-exception-escape)
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> solve(const Vector<Eigen::Dynamic>& a) const noexcept {
     return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.solve(a); }, weights_);
   }
 
   template <int M>
-  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> solve_Jt(const Matrix<M, Eigen::Dynamic>& J) const noexcept {
-    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.solve_Jt(J); }, weights_);
+  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> solve_transpose(
+      const Matrix<M, Eigen::Dynamic>& J) const noexcept {
+    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.solve_transpose(J); },
+                      weights_);
   }
 
   template <int M>
@@ -40,6 +43,7 @@ class AnyWeights {
       const Matrix<M, Eigen::Dynamic>& J) const noexcept {
     return std::visit([&](const auto& weights) { return weights.with_unit(J); }, weights_);
   }
+  // NOLINTEND(bugprone-exception-escape)
 
  private:
   std::variant<UnitWeights, DiagonalWeights<Eigen::Dynamic>, DenseWeights<Eigen::Dynamic>> weights_;

@@ -41,8 +41,8 @@ namespace fpbm::validation {
 struct Argument {
   Argument(const char* argument) : Argument(std::string(argument)) {}
   Argument(const std::string& argument) : name(argument), text(argument) {}
-  Argument(const std::string& argument, Eigen::Index i, const std::string& label)
-      : name(argument), index(static_cast<int>(i)), text(label) {}
+  Argument(std::string argument, Eigen::Index i, std::string label)
+      : name(std::move(argument)), index(static_cast<int>(i)), text(std::move(label)) {}
 
   std::string name;
   int index = -1;

@@ -24,7 +24,7 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
-  const auto WinvJt = weights.solve_Jt(J);
+  const auto WinvJt = weights.solve_transpose(J);
   DampedGram<M, N, Scalar> gram(damping, J);
   const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
   if (failed(status)) return status;

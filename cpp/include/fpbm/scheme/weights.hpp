@@ -8,12 +8,12 @@
 ///
 /// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
 /// too small. Each has the same functions:
-///   solve(a)         W⁻¹a of a vector
-///   solve_Jt(J)      W⁻¹Jᵀ
-///   with_unit(J)     Jᵀ and W⁻¹Jᵀ side by side
-///   inverse_bound()  a bound on the largest eigenvalue of W⁻¹
-///   is_unit()        whether W = I
-///   require_dof(n)   throws std::invalid_argument where W is for another number of joints
+///   solve(a)            W⁻¹a of a vector
+///   solve_transpose(J)  W⁻¹Jᵀ
+///   with_unit(J)        Jᵀ and W⁻¹Jᵀ side by side
+///   inverse_bound()     a bound on the largest eigenvalue of W⁻¹
+///   is_unit()           whether W = I
+///   require_dof(n)      throws std::invalid_argument where W is for another number of joints
 namespace fpbm {
 
 /// W = I.
@@ -32,7 +32,7 @@ struct UnitWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve_Jt(const Eigen::MatrixBase<Derived>& J) const noexcept {
+  [[nodiscard]] auto solve_transpose(const Eigen::MatrixBase<Derived>& J) const noexcept {
     return J.derived().transpose();
   }
 
@@ -79,7 +79,7 @@ class DiagonalWeights {
   }
 
   template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_Jt(const Matrix<M, N, Scalar>& J) const noexcept {
+  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
     return solve(J.transpose());
   }
 
@@ -136,13 +136,13 @@ class DenseWeights {
   }
 
   template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_Jt(const Matrix<M, N, Scalar>& J) const noexcept {
+  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
     return solve(J.transpose());
   }
 
   template <int M>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    return side_by_side<N, M, Scalar>(J.transpose(), solve_Jt(J));
+    return side_by_side<N, M, Scalar>(J.transpose(), solve_transpose(J));
   }
 
  private:

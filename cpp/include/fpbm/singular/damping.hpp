@@ -63,15 +63,15 @@ class DampedGram {
   /// Factorises JW⁻¹Jᵀ + Δ, given W⁻¹Jᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
   /// Returns kDamped where Δ is not zero, or why there is no factor.
   template <typename Derived>
-  [[nodiscard]] Status factor(const Eigen::MatrixBase<Derived>& WinvJt, Scalar inverse_bound) noexcept {
+  [[nodiscard]] Status factor(const Eigen::MatrixBase<Derived>& weighted, Scalar inverse_bound) noexcept {
     Matrix<M, M, Value> gram;  // Its lower triangle.
     const auto rows = extent<M>(J_.rows());
     const auto columns = extent<N>(J_.cols());
     constexpr Constant<0> kFirst{};
     each(kFirst, rows, [&](auto i) {
       each(kFirst, next(i), [&](auto j) {
-        Value sum = Value(J_.coeff(i, 0)) * WinvJt.derived().coeff(0, j);
-        each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * WinvJt.derived().coeff(k, j); });
+        Value sum = Value(J_.coeff(i, 0)) * weighted.derived().coeff(0, j);
+        each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * weighted.derived().coeff(k, j); });
         gram.coeffRef(i, j) = sum;
       });
     });
