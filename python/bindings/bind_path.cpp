@@ -51,7 +51,7 @@ Path python_with_rotation(const Path& path, const ArrayLike& rotation, const std
     return with_rotation(*flat, number(rotation, "rotation"), law);
   }
   const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any);
-  if (spatial == nullptr) validation::reject("with_rotation", ": the path turns the tip already");
+  if (spatial == nullptr) validation::reject("with_rotation", ": the path rotates the tip already");
   return with_rotation(*spatial, fixed_vector<3>(rotation, "rotation"), law);
 }
 
@@ -116,7 +116,7 @@ void bind_path(py::module_& m) {
       .def("sample", &sample, py::arg("t"),
            R"((x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
 
-x has shape (2,) or (3,), or (4, 4) where the path turns the tip in space (in the plane: x, y, angle); xd and xdd have
+x has shape (2,) or (3,), or (4, 4) where the path rotates the tip in space (in the plane: x, y, angle); xd and xdd have
 shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.)");
 
   const auto duration = py::arg("duration");

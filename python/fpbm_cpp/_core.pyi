@@ -160,7 +160,7 @@ class Path:
         """
         (x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
 
-        x has shape (2,) or (3,), or (4, 4) where the path turns the tip in space (in the plane: x, y, angle); xd and xdd have
+        x has shape (2,) or (3,), or (4, 4) where the path rotates the tip in space (in the plane: x, y, angle); xd and xdd have
         shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.
         """
 

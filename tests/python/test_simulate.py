@@ -142,7 +142,7 @@ def test_a_singular_start_keeps_nothing(arm, circle):
         ({"qd0": [0, 0]}, "qd0 has 2 entries: must have 4"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
         ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
-        ({"path": fp.Line([1, 2], 1.0).with_rotation(0.5)}, "path: it turns the tip, which needs task='pose'"),
+        ({"path": fp.Line([1, 2], 1.0).with_rotation(0.5)}, "path: it rotates the tip, which needs task='pose'"),
         ({"path": fp.Line([1, 2, 3], 1.0).with_rotation([0, 0, 1]), "task": "pose"}, "which needs another kind of arm"),
         ({"scheme": fp.WMVN([1, 2, 3])}, "weights has 3 entries: must have 4"),
         ({"scheme": fp.MAN(c=[0, 0])}, "c has 2 entries: must have 4"),

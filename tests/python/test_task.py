@@ -134,9 +134,9 @@ def test_repr_says_how_it_was_made():
         (lambda: fp.Line([1, 2], 1.0).with_rotation(np.nan), "rotation = nan: must be finite"),
         (
             lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).with_rotation(1.0),
-            "with_rotation: the path turns the tip already",
+            "with_rotation: the path rotates the tip already",
         ),
-        (lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: it turns the tip"),
+        (lambda: fp.Line([1, 2], 1.0).with_rotation(1.0).then(fp.Line([1, 2, 3], 1.0)), "path: it rotates the tip"),
         (
             lambda: fp.Waypoints([[0, 0], [1, 1]]),
             "duration, times or bounds of velocity: must be given, one of the three",

@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// The space of tip positions of the arms that have tasks in Space.
+/// Space of tip positions that belongs to a task space: Position<2> to PlanarPose, Position<3> to Pose.
 template <typename Space>
 struct PositionsUnder {
   using type = Space;
@@ -31,18 +31,10 @@ class AnyArm;
 template <typename Space>
 using AnyArmFor = AnyArm<typename PositionsUnder<Space>::type>;
 
-/// Kinematics of any number of joints, from those of a fixed number.
-template <typename Space, int N>
-void copy(const Kinematics<Space, N>& from, bool with_rate, Kinematics<Space, Eigen::Dynamic>& to) noexcept {
-  to.tip = from.tip;
-  to.J = from.J;
-  if (with_rate) to.Jd = from.Jd;
-}
-
 /// Any arm behind one type: in the plane where Positions is Position<2>, in space where it is Position<3>.
 ///
 /// For programs that learn their arm at run time. Is an arm itself, of run-time size: every evaluation is one virtual
-/// call into the code of the arm that it holds, be that of fixed size. Immutable; copies share what they hold.
+/// call into the code of the arm that it holds, which may be of fixed size. Immutable; copies share what they hold.
 template <typename Positions>
 class AnyArm {
  public:
@@ -63,14 +55,14 @@ class AnyArm {
     held_->kinematics(q, &qd, out);
   }
 
-  /// Tip and J at q; leaves Jd alone.
+  /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<kDof>& q, Kinematics<Space, kDof>& out) const noexcept {
     held_->kinematics(q, nullptr, out);
   }
 
  private:
-  /// qd: null where Jd is not wanted.
+  /// qd: null where Jd is not needed.
   struct Holder {
     Holder() = default;
     Holder(const Holder&) = delete;
@@ -112,7 +104,9 @@ class AnyArm {
         } else {
           arm_.kinematics(Vector<N>(q), sized);
         }
-        copy(sized, qd != nullptr, out);
+        out.tip = sized.tip;
+        out.J = sized.J;
+        if (qd != nullptr) out.Jd = sized.Jd;
       }
     }
 

@@ -14,8 +14,8 @@ namespace fpbm {
 /// Any scheme of one level for tasks in Space, behind one type.
 ///
 /// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size:
-/// every evaluation is one virtual call into the code of the scheme that it holds, be that of fixed size. Immutable;
-/// copies share what they hold.
+/// every evaluation is one virtual call into the code of the scheme that it holds, which may be of fixed size.
+/// Immutable; copies share what they hold.
 template <Level kLevel_, typename Space>
 class AnyScheme {
  public:
@@ -67,7 +67,7 @@ class AnyScheme {
         if constexpr (kLevel == Level::kAcceleration) {
           sized.Jd = kinematics.Jd;
           sized_state.qd = state.qd;
-        }
+        }  // Velocity-level schemes read neither.
         Vector<N> sized_u;
         const Status status = scheme.resolve(sized, reference, sized_state, sized_u);
         if (!failed(status)) u = sized_u;

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// A time law by its name: for programs that learn it at run time, and one type for all in paths.
+/// Any time law behind one type, by its name. For programs that learn it at run time.
 class AnyTimeLaw {
  public:
   static constexpr const char* kNames[] = {"sin_squared", "quintic", "constant_speed"};

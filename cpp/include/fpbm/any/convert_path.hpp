@@ -11,9 +11,8 @@
 
 namespace fpbm {
 
-/// The path for a task in the space To. A path of the plane lies in the xy plane of space; a path of positions holds
-/// the tip's orientation where To is a space of poses. Throws std::invalid_argument where a task in To cannot follow
-/// the path.
+/// Path for a task in the space To. A planar path is placed in the xy plane of space; a path of positions holds the
+/// tip's orientation where To is a space of poses. Throws ParameterError where a task in To cannot follow the path.
 template <typename To, typename From>
 [[nodiscard]] AnyPath<To> convert_path(const AnyPath<From>& path) {
   constexpr bool kFlat = std::is_same_v<To, Position<2>> || std::is_same_v<To, PlanarPose>;
@@ -21,7 +20,7 @@ template <typename To, typename From>
     return path;
   } else if constexpr (std::is_same_v<From, PlanarPose> || std::is_same_v<From, Pose>) {
     constexpr bool kPoseWillDo = kFlat == std::is_same_v<From, PlanarPose>;
-    validation::reject("path", std::string(": it turns the tip, which needs ") +
+    validation::reject("path", std::string(": it rotates the tip, which needs ") +
                                    (kPoseWillDo ? "task='pose'" : "another kind of arm"));
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
     validation::reject("path", ": it lies in space, and the arm in a plane");

@@ -57,7 +57,7 @@ struct AccelerationScheme {
   }
 
  private:
-  /// Compiled once for each number of rows, whatever the task space.
+  /// resolve() for a commanded b. Compiled once per number of rows, not per task space.
   template <int M>
   [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
                              const Vector<M, Scalar>& xd, const State<N, Scalar>& state,
@@ -71,7 +71,7 @@ struct AccelerationScheme {
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
         const Status status = unweighted(b, J, state, result);
-        // The brake near a singular posture is a motion for N_W to project.
+        // Near a singular posture the brake is a motion for N_W to project: fall through to both factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
           if (!failed(status)) qdd = result;
           return status;

@@ -9,15 +9,15 @@
 
 namespace fpbm {
 
-/// For laws without a drift.
+/// Drift of a law that has none.
 struct NoDrift {};
 
 /// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
 ///
 ///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
 ///
-/// drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ, or NoDrift.
-/// Damped near singular postures, and then kDamped. Leaves u unchanged where it fails. Flattened, since a large
+/// u: velocities or accelerations by level. drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ,
+/// or NoDrift. Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large
 /// translation unit may not inline small calls.
 template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Drift>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Drift& drift,
