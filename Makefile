@@ -11,6 +11,8 @@ WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
 GTEST := /usr/include/gtest/gtest.h:libgtest-dev
+# The part of clang++'s runtime for that sanitizer, which Debian has in a package of its own.
+clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):libclang-rt-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
@@ -45,7 +47,8 @@ clang: preset = clang
 sanitize: preset = sanitize
 nightly: preset = nightly
 test-cpp clang sanitize nightly:
-	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang,$(preset)),clang++:clang)
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang sanitize,$(preset)),clang++:clang)
+	$(if $(filter sanitize,$(preset)),tools/need.sh $(call clang_library,asan))
 	cmake --preset $(preset)
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	ctest --preset $(preset) --parallel $(JOBS)
@@ -61,7 +64,7 @@ soak:
 # The corpus stays in build/fuzz, so that the next run goes on from it.
 fuzz:
 	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
-	tools/need.sh $$(clang++ -print-file-name=libclang_rt.fuzzer-$$(uname -m).a):libclang-rt-dev
+	tools/need.sh $(call clang_library,fuzzer)
 	cmake --preset fuzz
 	cmake --build --preset fuzz --parallel $(JOBS)
 	mkdir -p build/fuzz/corpus
