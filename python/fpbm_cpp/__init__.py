@@ -24,10 +24,9 @@ from .io.run_file import load
 from .motion.lanes import LANES
 from .motion.run import Run
 from .motion.run_status import RunStatus
-from .motion.simulation import simulate
+from .motion.simulation import simulate, track
 from .motion.sweep_result import Sweep
 from .motion.sweeping import sweep
-from .motion.tracking import track
 from .paths import *
 from .schemes import *
 from .tuning import Tuning, tune

@@ -1,4 +1,4 @@
-"""Positions and axes of an arm's base, joints and tip, for drawing."""
+"""What is shown of an arm: positions and axes of base, joints and tip, and what the joints are called."""
 
 from __future__ import annotations
 
@@ -6,6 +6,18 @@ import numpy as np
 
 from ._types import Array
 from .arms import Arm, PlanarArm, SerialArm
+
+
+def joint_labels(arm: Arm) -> list[str]:
+    """Names of the joints for people to read; in the plane, where they have none, their numbers."""
+    return list(arm.joint_names) if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
+
+
+def joint_units(arm: Arm) -> list[str]:
+    """Unit of each joint's position."""
+    if not isinstance(arm, SerialArm):
+        return ["rad"] * arm.dof
+    return ["m" if joint.type == "prismatic" else "rad" for joint in arm.joints if joint.mimic is None]
 
 
 def joint_points(arm: Arm, q: Array) -> Array:

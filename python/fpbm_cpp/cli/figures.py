@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
-from ..joint_text import joint_labels, joint_units
 from ..motion.run import Run
+from ..skeleton import joint_labels, joint_units
 from .plain import WIDTH
 
 # The figures of a motion that a sweep has, as the head of their column and its unit.

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from numpy.typing import NDArray
 
 from .._types import Array
-from ..joint_text import joint_units
 from ..motion.run import Run
+from ..skeleton import joint_units
 from .orientation import quaternions
 from .write_whole import write_whole
 

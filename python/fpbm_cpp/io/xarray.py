@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from ..joint_text import joint_units
 from ..motion.run import Run
+from ..skeleton import joint_units
 from .orientation import quaternions
 
 if TYPE_CHECKING:

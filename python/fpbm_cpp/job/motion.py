@@ -14,8 +14,7 @@ from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import ParameterError
 from ..motion.run import Run
-from ..motion.simulation import simulate
-from ..motion.tracking import track
+from ..motion.simulation import simulate, track
 from ..paths import Path
 from ..schemes import Scheme
 from ..table import to_table

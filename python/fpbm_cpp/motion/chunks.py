@@ -12,7 +12,7 @@ from ..arms import Arm
 from ..paths import Path
 from ..schemes import Scheme
 from .interruption import interrupted_at_checks
-from .tracking import LimitOptions
+from .simulation import LimitOptions
 
 # Outcomes, one for each motion, and the arrays of each if the whole motions are wanted.
 Result = tuple[Any, list[Any]]

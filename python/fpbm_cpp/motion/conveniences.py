@@ -44,8 +44,7 @@ class Conveniences:
         Equal to this run to the last bit in the same build on a processor of the same kind; another compiler, C library
         or kind of processor may round differently. Raises ValueError where the options do not say how it was made.
         """
-        from .simulation import simulate
-        from .tracking import track
+        from .simulation import simulate, track
 
         run = self._run
         if "dt" not in run.options:

@@ -12,9 +12,8 @@ from ..arms import Arm
 from ..paths import Path
 from ..schemes import Scheme
 from .chunks import Chunk
-from .simulation import make_run, motion_options
+from .simulation import LimitOptions, make_run, motion_options
 from .sweep_result import Sweep
-from .tracking import LimitOptions
 
 # A chunk's motions are a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks, for many
 # workers to share, of at most SAMPLES samples each, some tenths of a second of work. The number of workers plays no

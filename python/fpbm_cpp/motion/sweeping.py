@@ -1,8 +1,9 @@
 """Many motions at once: every scheme from every start."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
-from typing import Any
+from contextlib import contextmanager
+from typing import Any, TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -13,9 +14,10 @@ from ..paths import Path
 from ..schemes import Scheme
 from .chunks import Result, run_chunks
 from .plan import Plan
-from .progress import Progress, reporting
+from .simulation import LimitOptions
 from .sweep_result import Sweep
-from .tracking import LimitOptions
+
+Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
 
 def sweep(
@@ -115,3 +117,23 @@ def sweep(
     except KeyboardInterrupt:
         raise SweepInterrupted(plan.result(outcomes, arrays)) from None
     return plan.result(outcomes, arrays)
+
+
+@contextmanager
+def reporting(progress: Progress, total: int) -> Iterator[Callable[[int], object]]:
+    """A function to call with how many of the total are done.
+
+    progress: True for a bar on the terminal or in a notebook, or what to call with (done, total). Raises ImportError,
+    with what to install, where the bar's library is missing.
+    """
+    if callable(progress):
+        yield lambda done: progress(done, total)
+    elif progress:
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            raise ImportError('progress=True needs tqdm: pip install "fpbm_cpp[progress]"') from None
+        with tqdm(total=total, unit="motion") as bar:
+            yield lambda done: bar.update(done - bar.n)
+    else:
+        yield lambda done: None

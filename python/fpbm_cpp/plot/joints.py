@@ -7,8 +7,8 @@ import numpy as np
 
 from .._types import Array
 from ..arms import Arm
-from ..joint_text import joint_labels, joint_units
 from ..motion.run import Run
+from ..skeleton import joint_labels, joint_units
 from .legends import side_legend
 from .lines import draw_lines
 from .theme import LIGHT, Theme

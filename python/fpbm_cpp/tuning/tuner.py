@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
-from ..motion.progress import Progress, reporting
-from ..motion.sweeping import sweep
+from ..motion.sweeping import Progress, reporting, sweep
 from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM

@@ -7,7 +7,7 @@ import numpy as np
 from viser import GuiApi
 
 from .._types import Array
-from ..joint_text import joint_labels, joint_units
+from ..skeleton import joint_labels, joint_units
 from .playback import Playback
 
 # Okabe and Ito's colours, as in the figures.

@@ -8,7 +8,7 @@ from viser import GuiApi
 
 from .._core import message
 from .._types import Array
-from ..joint_text import joint_labels, joint_units
+from ..skeleton import joint_labels, joint_units
 from .playback import Playback
 
 GOOD, BAD = "#009E73", "#D55E00"

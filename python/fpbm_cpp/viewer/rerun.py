@@ -3,8 +3,7 @@
 import numpy as np
 
 from ..motion.run import Run
-from ..motion.simulation import simulate
-from ..motion.tracking import track
+from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 
 

@@ -18,9 +18,9 @@ try:
 except ModuleNotFoundError as missing:
     raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
 
-from ..joint_text import joint_labels
 from ..motion.run import Run
 from ..schemes import Scheme
+from ..skeleton import joint_labels
 from .chart import Chart
 from .controls import Controls
 from .meshes import Meshes
