@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 import fpbm_cpp as fp
 from fpbm_cpp.tuning import objectives, search
+from fpbm_cpp.tuning.result import Trials, changes
 from fpbm_cpp.tuning.search import pareto_front
-from fpbm_cpp.tuning.sensitivity import changes, neighbours
-from fpbm_cpp.tuning.trials import Trials
+from fpbm_cpp.tuning.space import neighbours
 
 pytest.importorskip("cmaes")
 

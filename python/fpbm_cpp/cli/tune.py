@@ -8,7 +8,7 @@ import click
 from ..errors import TuneInterrupted
 from ..schemes import FPBM
 from ..tuning import tune as search
-from ..tuning.objectives import KEY_FIGURES, OF_RUNS
+from ..tuning.objectives import MEASURES
 from .options import Word
 from .out import dark_option, make_folder, out_option, picture, write_files
 from .plain import progress
@@ -23,7 +23,7 @@ from .request import Request, motion_command, workers_option
     fpbm-cpp track --job tuned/job.toml""",
     kind=False,
 )
-@click.option("--objective", type=Word([*KEY_FIGURES, *OF_RUNS]), default="peak_velocity", help="What is to be small.")
+@click.option("--objective", type=Word(list(MEASURES)), default="peak_velocity", help="What is to be small.")
 @click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
 @workers_option

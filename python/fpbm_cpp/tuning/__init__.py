@@ -1,10 +1,9 @@
 """Tuning: the parameters of FPBM that suit an arm and a path best.
 
-Imports go one way: space (schemes) → search (which to try) → trials (their motions) → result.
+Imports go one way: space (schemes), search (which to try), objectives (what for) → result → tuner.
 """
 
-from .result import Tuning
-from .trials import Trials
+from .result import Trials, Tuning
 from .tuner import tune
 
 __all__ = ["Trials", "Tuning", "tune"]

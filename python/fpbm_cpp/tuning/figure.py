@@ -11,8 +11,7 @@ from ..plot.theme import OKABE_ITO, Theme, dress, sheet, theme_of
 # Without matplotlib, the line before says what to install.
 from matplotlib.figure import Figure  # isort: skip
 
-from .result import Tuning
-from .trials import Trials
+from .result import Trials, Tuning
 
 SIZE = 12.6, 4.25  # [in]
 BEST = OKABE_ITO[5]

@@ -1,7 +1,7 @@
 """What a scheme can be tuned for: a number of its motion, to be made small."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,6 @@ from ..motion.run import Run
 from ..motion.sweep_result import Sweep
 
 Objective = str | Callable[[Run], float]
-
-# Key figures that a sweep has without whole motions, which is faster.
-KEY_FIGURES = {"peak_velocity": "rad/s", "peak_acceleration": "rad/s²", "final_velocity": "rad/s"}
 
 
 def energy(run: Run) -> float:
@@ -38,21 +35,14 @@ def _bounded(limits: JointLimits) -> NDArray[np.bool_]:
     return np.isfinite(limits.lower) & np.isfinite(limits.upper) & (limits.lower < limits.upper)
 
 
-OF_RUNS: dict[str, tuple[Callable[[Run], float], str]] = {
-    "energy": (energy, "rad²/s"),
-    "limit_distance": (limit_distance, "of the range"),
-}
-
-
-@dataclass(frozen=True)
-class Measure:
-    """An objective: its name, its unit, and its function of a Run; None for a key figure of a sweep."""
+class Measure(NamedTuple):
+    """An objective: name, unit, and its function of a Run; None for a key figure of a sweep, which is faster."""
 
     name: str
     unit: str
-    of_run: Callable[[Run], float] | None
+    of_run: Callable[[Run], float] | None = None
 
-    def __call__(self, sweep: Sweep) -> Array:
+    def of_sweep(self, sweep: Sweep) -> Array:
         """The objective of each scheme of a sweep from one start; NaN if the motion stopped early."""
         if self.of_run is None:
             values = getattr(sweep, self.name)[:, 0]
@@ -62,16 +52,22 @@ class Measure:
         return np.where(sweep.ok[:, 0], values, np.nan)
 
 
+MEASURES = {
+    "peak_velocity": Measure("peak_velocity", "rad/s"),
+    "peak_acceleration": Measure("peak_acceleration", "rad/s²"),
+    "final_velocity": Measure("final_velocity", "rad/s"),
+    "energy": Measure("energy", "rad²/s", energy),
+    "limit_distance": Measure("limit_distance", "of the range", limit_distance),
+}
+
+
 def measure(objective: Objective, limits: JointLimits) -> Measure:
     """The measure of an objective. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
     if callable(objective):
         return Measure(getattr(objective, "__name__", type(objective).__name__), "", objective)
-    if objective in KEY_FIGURES:
-        return Measure(objective, KEY_FIGURES[objective], None)
-    if objective not in OF_RUNS:
-        names = ", ".join(map(repr, (*KEY_FIGURES, *OF_RUNS)))
+    if objective not in MEASURES:
+        names = ", ".join(map(repr, MEASURES))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
     if objective == "limit_distance" and not np.any(_bounded(limits)):
         raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
-    function, unit = OF_RUNS[objective]
-    return Measure(objective, unit, function)
+    return MEASURES[objective]

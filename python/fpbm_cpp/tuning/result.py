@@ -1,21 +1,97 @@
-"""The result of a tuning."""
+"""The result of a tuning: all that was tried, and the best of it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._types import Array
 from ..arms import Arm
+from ..motion.sweep_result import Sweep
 from ..paths import Path
 from ..schemes import FPBM
-from .space import numbers, tunable
-from .trials import Trials
+from .objectives import Measure
+from .search import pareto_front
+from .space import TUNABLE, numbers, tunable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Trials:
+    """T schemes and the results of their motions: arrays of shape (T,), in the order in which they were tried.
+
+    value is the objective, NaN if the motion stopped early; peak_velocity [rad/s] and peak_acceleration [rad/s^2] are
+    those of the fastest joint; error is the largest position error of the tip [m] or, where it is a larger number, its
+    largest orientation error [rad]. A trial is feasible if its motion is complete, its objective finite, and its error
+    within the tolerance.
+    """
+
+    schemes: NDArray[Any]
+    value: Array
+    peak_velocity: Array
+    peak_acceleration: Array
+    error: Array
+    feasible: NDArray[np.bool_]
+
+    @property
+    def parameters(self) -> dict[str, Array]:
+        """The schemes' parameters by name: arrays of shape (T,), and (T, n) for the weights."""
+        return {name: np.array([getattr(scheme, name) for scheme in self.schemes]) for name in TUNABLE}
+
+    def scores(self) -> Array:
+        """The value of each; NaN if it is infeasible."""
+        return np.where(self.feasible, self.value, np.nan)
+
+    def peaks(self) -> Array:
+        """Peak velocity and peak acceleration of each, shape (T, 2); NaN if it is infeasible."""
+        pairs = np.column_stack([self.peak_velocity, self.peak_acceleration])
+        return np.where(self.feasible[:, None], pairs, np.nan)
+
+    def best(self) -> int:
+        """Index of the first feasible trial of the least value; there must be a feasible one."""
+        return int(np.nanargmin(self.scores()))
+
+    def front(self) -> Trials:
+        """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
+        return self[pareto_front(*self.peaks().T)]
+
+    def __getitem__(self, which: Any) -> Trials:
+        """Some of the trials: a slice, a mask, or an array of indices."""
+        return Trials(*(getattr(self, field.name)[which] for field in fields(self)))
+
+    def __len__(self) -> int:
+        return len(self.schemes)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} trials, {int(self.feasible.sum())} feasible>"
+
+
+def trials_of(sweep: Sweep, measure: Measure, tolerance: float) -> Trials:
+    """The trials of a sweep's schemes from one start."""
+    value, schemes = measure.of_sweep(sweep), np.empty(len(sweep.schemes), dtype=object)
+    schemes[:] = sweep.schemes
+    error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
+    feasible = sweep.ok[:, 0] & np.isfinite(value) & (error <= tolerance)
+    return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)
+
+
+def joined(parts: Sequence[Trials]) -> Trials:
+    """All trials, one part after another."""
+    return Trials(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Trials)))
+
+
+def changes(
+    scheme: FPBM, value: float, around: Mapping[tuple[str, int], FPBM], trials: Trials
+) -> dict[str, tuple[float, float]]:
+    """What each step adds to a scheme's value, from the trials of its neighbours in order; see Tuning.sensitivity."""
+    added = dict(zip(around, np.where(trials.feasible, trials.value - value, np.inf).tolist()))
+    return {name: (added.get((name, -1), np.nan), added.get((name, 1), np.nan)) for name in numbers(scheme)}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -109,16 +185,15 @@ class Tuning:
             lines += ["", f"-10 %, +10 %: change of {self.objective} when one parameter changes so (alpha by 0.05)"]
         return "\n".join(lines)
 
+    def __repr__(self) -> str:
+        return f"<Tuning of {self.objective}: {self.value:.5g}, {self._against()}; {self.scheme!r}>"
+
     def _against(self) -> str:
         if np.isnan(self.baseline_value):
             return "where the baseline is infeasible"
         share = f"{100 * self.improvement:.3g} % below " if self.baseline_value else "against "
         return f"{share}the baseline's {self.baseline_value:.5g}"
 
-    def __repr__(self) -> str:
-        return f"<Tuning of {self.objective}: {self.value:.5g}, {self._against()}; {self.scheme!r}>"
-
 
 def _change(step: float) -> str:
-    """A change of the objective, for the table."""
     return "-" if np.isnan(step) else "infeasible" if np.isinf(step) else f"{step:+.2e}"

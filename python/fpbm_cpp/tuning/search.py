@@ -19,27 +19,25 @@ ALIKE = 1e-3  # A search starts again elsewhere when a generation's scores diffe
 WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Of two scores: how many, the least weight of one, the sum's share.
 
 
-def require_cmaes() -> None:
-    """Raise ImportError, with what to install, if the searches' library is missing."""
+def require_cmaes() -> Any:
+    """The searches' library. Raises ImportError, with what to install, if it is missing."""
     try:
-        import cmaes  # noqa: F401
+        import cmaes
     except ImportError:
         raise ImportError('tuning needs cmaes: pip install "fpbm_cpp[tune]"') from None
+    return cmaes
 
 
 def least(size: int, seed: int) -> Search:
     """Search for the least score, first from the cube's middle, then from random points."""
     random = np.random.default_rng(seed)
-    middle = np.full(size, 0.5)
+    search = _begin(np.full(size, 0.5), 2 * LANES, random)
     while True:
-        search = _begin(middle, 2 * LANES, random)
-        alike = False
-        while not alike:
-            points = _ask(search)
-            scores = yield points
-            _tell(search, points, scores)
-            alike = bool(np.ptp(scores) <= ALIKE * np.max(np.abs(scores)))
-        middle = random.uniform(size=size)
+        points = _ask(search)
+        scores = yield points
+        _tell(search, points, scores)
+        if np.ptp(scores) <= ALIKE * np.max(np.abs(scores)):
+            search = _begin(random.uniform(size=size), 2 * LANES, random)
 
 
 def front(size: int, seed: int) -> Search:
@@ -79,10 +77,8 @@ def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
 
 def _begin(middle: Array, count: int, random: np.random.Generator) -> Any:
     """A search around a point, in generations of so many points."""
-    from cmaes import CMA
-
-    cube = np.tile([0.0, 1.0], (len(middle), 1))
-    return CMA(middle, DEVIATION, bounds=cube, seed=int(random.integers(2**31)), population_size=count)
+    cube, seed = np.tile([0.0, 1.0], (len(middle), 1)), int(random.integers(2**31))
+    return require_cmaes().CMA(middle, DEVIATION, bounds=cube, seed=seed, population_size=count)
 
 
 def _ask(search: Any) -> Array:

@@ -1,11 +1,11 @@
-"""The parameters that a search varies, and their ranges: each point of the unit cube stands for a scheme."""
+"""The schemes that a search tries, one for each point of the unit cube, and those one step from a scheme."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .._types import Array
 from ..parameter import parameters
@@ -15,11 +15,7 @@ TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 
 # k1 and k2 act on the tip's error alone, which is zero without disturbances.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
-
-
-def paper_choice(dof: int) -> FPBM:
-    """The paper's choice, with W = diag(1, 2, 3, 4) continued for arms of more joints."""
-    return FPBM(0.6, np.arange(1.0, dof + 1), k1=1.0, k2=1.0)
+ALPHA_STEP, STEP = 0.05, 0.1
 
 
 def tunable(scheme: FPBM) -> dict[str, Any]:
@@ -38,52 +34,43 @@ def numbers(scheme: FPBM) -> dict[str, float]:
 
 def with_numbers(scheme: FPBM, changes: Mapping[str, float]) -> FPBM:
     """The scheme with other numbers, by these names."""
-    values = {name: np.array(value) for name, value in tunable(scheme).items()}
+    values: dict[str, Any] = {name: np.array(value) for name, value in tunable(scheme).items()}
     for name, number in changes.items():
         parameter, _, index = name.rstrip("]").partition("[")
         values[parameter][int(index) if index else ()] = number
-    changed: dict[str, Any] = values
-    return replace(scheme, **changed)
+    return replace(scheme, **values)
 
 
-@dataclass(frozen=True)
 class Space:
     """The schemes that differ from a baseline in some numbers, one for each point of the unit cube.
 
-    names holds the number of each coordinate; low and high are its range, that of the logarithm where log is true.
+    names holds the number of each coordinate. Raises ValueError for what cannot be searched.
     """
 
-    baseline: FPBM
-    names: tuple[str, ...]
-    low: Array
-    high: Array
-    log: NDArray[np.bool_]
+    def __init__(self, search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> None:
+        if np.shape(baseline.weights) != (dof,):
+            raise ValueError(f"baseline = {baseline!r}: W must be diagonal, of {dof} weights")
+        self.baseline = baseline
+        self.names: list[str] = []
+        ranges: list[Array] = []
+        for name, given in (SEARCH if search is None else search).items():
+            if name not in TUNABLE:
+                raise ValueError(f"search: {name!r} must be one of {', '.join(map(repr, TUNABLE))}")
+            own = [f"weights[{i}]" for i in range(1, dof)] if name == "weights" else [name]
+            self.names += own
+            ranges.append(_ranges(name, given, len(own)))
+        if not self.names:
+            raise ValueError("search: must name at least one parameter")
+        self._log, limits = np.array([not _bounded(name) for name in self.names]), np.concatenate(ranges)
+        limits[self._log] = np.log(limits[self._log])
+        self._low, self._high = limits.T
 
     def scheme(self, point: Array) -> FPBM:
         """The scheme of a point."""
-        values = np.clip(self.low + point * (self.high - self.low), self.low, self.high)
-        values[self.log] = np.exp(values[self.log])
+        values = np.clip(self._low + point * (self._high - self._low), self._low, self._high)
+        values[self._log] = np.exp(values[self._log])
         first = {"weights[0]": 1.0} if "weights[1]" in self.names else {}  # Only ratios of weights matter.
         return with_numbers(self.baseline, {**first, **dict(zip(self.names, values.tolist()))})
-
-
-def make_space(search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> Space:
-    """The space of a search. Raises ValueError for what cannot be searched."""
-    if np.shape(baseline.weights) != (dof,):
-        raise ValueError(f"baseline = {baseline!r}: W must be diagonal, of {dof} weights")
-    names: list[str] = []
-    ranges: list[Array] = []
-    for name, given in (SEARCH if search is None else search).items():
-        if name not in TUNABLE:
-            raise ValueError(f"search: {name!r} must be one of {', '.join(map(repr, TUNABLE))}")
-        own = [f"weights[{i}]" for i in range(1, dof)] if name == "weights" else [name]
-        names += own
-        ranges.append(_ranges(name, given, len(own)))
-    if not names:
-        raise ValueError("search: must name at least one parameter")
-    log, limits = np.array([not _bounded(name) for name in names]), np.concatenate(ranges)
-    limits[log] = np.log(limits[log])
-    return Space(baseline, tuple(names), limits[:, 0], limits[:, 1], log)
 
 
 def _bounded(name: str) -> bool:
@@ -108,3 +95,18 @@ def _ranges(name: str, given: ArrayLike, count: int) -> Array:
     if not _bounded(name) and not np.all(ranges > 0.0):
         raise ValueError(f"{what}: must be positive, since it is searched on a logarithmic scale")
     return np.array(np.broadcast_to(ranges, (count, 2)))
+
+
+def neighbours(scheme: FPBM) -> dict[tuple[str, int], FPBM]:
+    """The schemes one step away, by the number that steps and the step's sign; a number that cannot step has none.
+
+    A step is ALPHA_STEP for alpha, within [0, 1], and the share STEP of the value for all others.
+    """
+    around: dict[tuple[str, int], FPBM] = {}
+    for name, value in numbers(scheme).items():
+        for sign in (-1, 1):
+            alpha = min(max(value + sign * ALPHA_STEP, 0.0), 1.0)
+            stepped = alpha if name == "alpha" else value * (1.0 + sign * STEP)
+            if stepped != value:
+                around[name, sign] = with_numbers(scheme, {name: stepped})
+    return around

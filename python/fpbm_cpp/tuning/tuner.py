@@ -16,11 +16,9 @@ from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Objective, measure
-from .result import Tuning
+from .result import Trials, Tuning, changes, joined, trials_of
 from .search import Search, front, least, require_cmaes
-from .sensitivity import changes, neighbours
-from .space import Space, make_space, numbers, paper_choice
-from .trials import Trials, joined, trials_of
+from .space import Space, neighbours, numbers
 
 
 def tune(
@@ -46,8 +44,8 @@ def tune(
     """Find the parameters of FPBM that minimise an objective, for an arm on a path.
 
     One half of the trials searches for the least objective, by CMA-ES, the other half for the Pareto front of peak
-    velocity and peak acceleration. Both run on sweep(), in batches; the result is the best of all trials, the first of
-    which is the baseline. The same seed gives the same result to the last bit, with any executor.
+    velocity and peak acceleration. The result is the best of all trials, the first of which is the baseline. The same
+    seed gives the same result to the last bit, with any executor.
 
     Parameters
     ----------
@@ -79,11 +77,6 @@ def tune(
     **tracking : float
         With limits, the other options of track(): max_error, integral_gain and so on.
 
-    Returns
-    -------
-    Tuning
-        The best scheme, the front, the sensitivity, and all that was tried.
-
     Raises
     ------
     ValueError
@@ -101,21 +94,21 @@ def tune(
     count = Parameter("trials", int, low=1, whole=True).check(trials)
     seed = Parameter("seed", int, low=0, whole=True).check(seed)
     tolerance = Parameter("tolerance", float, low=0.0, open_low=True).check(tolerance)
-    first = paper_choice(arm.dof) if baseline is None else baseline
+    first = FPBM(0.6, np.arange(1.0, arm.dof + 1), k1=1.0, k2=1.0) if baseline is None else baseline
     if not isinstance(first, FPBM):
         raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
-    space, objective_of = make_space(search, first, arm.dof), measure(objective, limits or arm.limits)
+    space, wanted = Space(search, first, arm.dof), measure(objective, limits or arm.limits)
     require_cmaes()
     tried: list[Trials] = []
-    whole = objective_of.of_run is not None
 
     def run(schemes: Sequence[FPBM]) -> Trials:
         how: dict[str, Any] = {"hold": hold, "task": task, "limits": limits, **tracking}
+        whole = wanted.of_run is not None
         done = sweep(arm, path, schemes, start, dt, executor=executor, workers=workers, motions=whole, **how)
-        return trials_of(done, objective_of, tolerance)
+        return trials_of(done, wanted, tolerance)
 
     def tuning(sensitivity: dict[str, tuple[float, float]]) -> Tuning:
-        return Tuning(joined(tried), sensitivity, objective_of.name, objective_of.unit, arm, path, start, task)
+        return Tuning(joined(tried), sensitivity, wanted.name, wanted.unit, arm, path, start, task)
 
     halves = (
         _half(least(len(space.names), seed), Trials.scores, count - count // 2, space, run),
@@ -141,11 +134,7 @@ def tune(
 
 
 def _half(
-    search: Search,
-    score: Callable[[Trials], Array],
-    count: int,
-    space: Space,
-    run: Callable[[Sequence[FPBM]], Trials],
+    search: Search, score: Callable[[Trials], Array], count: int, space: Space, run: Callable[[Sequence[FPBM]], Trials]
 ) -> Iterator[Trials]:
     """So many trials of a search, in batches as large as it asks for; the last may be smaller."""
     points = next(search)
