@@ -22,8 +22,7 @@ from .arms import *
 from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted
 from .io.run_file import load
 from .motion.lanes import LANES
-from .motion.run import Run
-from .motion.run_status import RunStatus
+from .motion.run import Run, RunStatus
 from .motion.simulation import simulate, track
 from .motion.sweep_result import Sweep
 from .motion.sweeping import sweep

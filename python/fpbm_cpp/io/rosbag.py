@@ -12,14 +12,10 @@ import numpy as np
 from .._types import Array
 from ..arms import PlanarArm
 from ..motion.run import Run
-from .orientation import quaternions
-
-# (topic, time [ns], message)
-Stamped = tuple[str, int, Any]
+from .tables import quaternions
 
 
 def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
-    """Write a run as a bag, whole or not at all."""
     try:
         from rosbags.rosbag2 import Writer
         from rosbags.typesys import Stores, get_typestore
@@ -47,39 +43,31 @@ def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajector
         shutil.rmtree(part, ignore_errors=True)
 
 
-def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[Stamped]:
-    """All messages of a run, in order of time."""
-    header, time = types["std_msgs/msg/Header"], types["builtin_interfaces/msg/Time"]
-    joint_state = types["sensor_msgs/msg/JointState"]
+def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tuple[str, int, Any]]:
+    """Topic, time [ns] and message of all messages of a run, in order of time."""
+
+    def clock(kind: str, t: int) -> Any:
+        return types[f"builtin_interfaces/msg/{kind}"](*divmod(t, 10**9))
+
+    def header(t: int) -> Any:
+        return types["std_msgs/msg/Header"](clock("Time", t), frame)
+
+    def pose(t: int, position: Array, quaternion: Array) -> Any:
+        place = types["geometry_msgs/msg/Point"](*position.tolist())
+        turn = types["geometry_msgs/msg/Quaternion"](*quaternion.tolist())
+        return types["geometry_msgs/msg/PoseStamped"](header(t), types["geometry_msgs/msg/Pose"](place, turn))
+
+    joints, times, nothing = run.arm.joint_names, np.rint(run.t * 1e9).astype(np.int64).tolist(), np.zeros(0)
     if trajectory:
-        yield "/joint_trajectory", 0, _trajectory(run, types, header(time(0, 0), frame))
+        point = types["trajectory_msgs/msg/JointTrajectoryPoint"]
+        rows = zip(run.q, run.qd, run.qdd, times)
+        points = [point(q, qd, qdd, nothing, clock("Duration", t)) for q, qd, qdd, t in rows]
+        yield "/joint_trajectory", 0, types["trajectory_msgs/msg/JointTrajectory"](header(0), joints, points)
     tips = zip(*_poses(run, run.x), *_poses(run, run.x_ref, reference=True))
-    nothing = np.zeros(0)
-    for t, q, qd, (p, r, p_ref, r_ref) in zip(_nanoseconds(run.t), run.q, run.qd, tips):
-        stamp = header(time(*divmod(t, 10**9)), frame)
-        yield "/joint_states", t, joint_state(stamp, run.arm.joint_names, q, qd, nothing)
-        yield "/tip", t, _pose(types, stamp, p, r)
-        yield "/tip_reference", t, _pose(types, stamp, p_ref, r_ref)
-
-
-def _pose(types: Any, header: Any, position: Array, quaternion: Array) -> Any:
-    point, orientation = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
-    pose = types["geometry_msgs/msg/Pose"](point(*position.tolist()), orientation(*quaternion.tolist()))
-    return types["geometry_msgs/msg/PoseStamped"](header, pose)
-
-
-def _trajectory(run: Run, types: Any, header: Any) -> Any:
-    point, duration = types["trajectory_msgs/msg/JointTrajectoryPoint"], types["builtin_interfaces/msg/Duration"]
-    points = [
-        point(q, qd, qdd, np.zeros(0), duration(*divmod(t, 10**9)))
-        for t, q, qd, qdd in zip(_nanoseconds(run.t), run.q, run.qd, run.qdd)
-    ]
-    return types["trajectory_msgs/msg/JointTrajectory"](header, run.arm.joint_names, points)
-
-
-def _nanoseconds(t: Array) -> list[int]:
-    whole: list[int] = np.rint(t * 1e9).astype(np.int64).tolist()
-    return whole
+    for t, q, qd, (p, r, p_ref, r_ref) in zip(times, run.q, run.qd, tips):
+        yield "/joint_states", t, types["sensor_msgs/msg/JointState"](header(t), joints, q, qd, nothing)
+        yield "/tip", t, pose(t, p, r)
+        yield "/tip_reference", t, pose(t, p_ref, r_ref)
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
@@ -95,5 +83,4 @@ def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])
     if reference:
         return x, np.tile([0.0, 0.0, 0.0, 1.0], (len(x), 1))
-    rotations = [run.arm.forward(q)[:3, :3] for q in run.q]
-    return x, quaternions(np.array(rotations).reshape(-1, 3, 3))
+    return x, quaternions(np.array([run.arm.forward(q)[:3, :3] for q in run.q]))

@@ -14,8 +14,7 @@ import numpy as np
 
 from .._core import Status, __version__, processor_kinds
 from ..arms import ARMS
-from ..motion.run import ARRAYS, LIMITED, Run
-from ..motion.run_status import RunStatus
+from ..motion.run import ARRAYS, LIMITED, Run, RunStatus
 from ..schemes import SCHEMES
 from ..table import EVERY_PATH, Makers, from_table, to_table
 from .write_whole import write_whole

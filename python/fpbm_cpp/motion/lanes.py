@@ -1,11 +1,11 @@
 """The code that sweeps run in: for the lanes of this processor, or for any processor."""
 
 import os
+from contextlib import suppress
 from importlib import import_module
 
 from .._core import processor_kinds, use_lanes
 
-CHOICE = "FPBM_LANES"
 KINDS = ("avx512", "avx2")
 
 
@@ -14,19 +14,14 @@ def choose() -> int:
 
     The environment variable FPBM_LANES narrows the choice to one kind, 'avx512' or 'avx2', or to 'none' of them.
     """
-    choice = os.environ.get(CHOICE, "")
+    choice = os.environ.get("FPBM_LANES", "")
     if choice not in ("", "none", *KINDS):
-        raise ValueError(
-            f"{CHOICE} is {choice!r}, but must be one of {', '.join(map(repr, (*KINDS, 'none')))}, or unset"
-        )
+        words = ", ".join(map(repr, (*KINDS, "none")))
+        raise ValueError(f"FPBM_LANES is {choice!r}, but must be one of {words}, or unset")
     for kind in processor_kinds():
-        if choice not in ("", kind):
-            continue
-        try:
-            code = import_module(f".._lanes_{kind}", __package__).code
-        except ImportError:  # Left out of this build.
-            continue
-        return use_lanes(code)
+        if choice in ("", kind):
+            with suppress(ImportError):  # Left out of this build.
+                return use_lanes(import_module(f".._lanes_{kind}", __package__).code)
     return use_lanes(None)
 
 

@@ -1,24 +1,64 @@
-"""A finished motion, as data."""
+"""A finished motion, as data, and what users call on it: figures, the viewer, files."""
 
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .._core import Status, advice, failed, message
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..paths import Path
 from ..schemes import Scheme
-from .conveniences import Conveniences
-from .run_status import RunStatus
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
 
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
 LIMITED = ("scale", "saturated")  # Of runs that kept the joints' limits.
 
 
+@dataclass(frozen=True)
+class RunStatus:
+    """How a motion ended: why (code), when (time of the last sample [s]) and where (q [rad], shape (n,)).
+
+    The code is OK, DAMPED or SLOWED where the whole motion is done, and the status true.
+    """
+
+    code: Status
+    time: float
+    q: Array
+
+    @property
+    def ok(self) -> bool:
+        """Whether the whole motion is done."""
+        return not failed(self.code)
+
+    @property
+    def advice(self) -> str:
+        """What to do about it; empty if all is well."""
+        return advice(self.code)
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def __str__(self) -> str:
+        if self.ok:
+            remark = "" if self.code is Status.OK else f"; at times, {message(self.code)}. {self.advice}"
+            return f"complete, t = {self.time:g} s{remark}"
+        where = np.array2string(self.q, precision=4, separator=", ")
+        return f"stopped after t = {self.time:g} s at q = {where}: {message(self.code)}. {self.advice}"
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class Run(Conveniences):
+class Run:
     """A motion, one row per sample: N samples of n joints.
 
     Two runs are equal (==) if they are of the same things and all arrays are the same to the last bit.
@@ -28,9 +68,9 @@ class Run(Conveniences):
     t : numpy.ndarray, shape (N,)
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
-        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic.
-        Velocity-level schemes give no accelerations: there simulate() puts finite differences of qd. In a run of
-        track(), qdd is the mean over the tick that begins at the sample.
+        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. At
+        velocity level, qdd of simulate() is finite differences of qd. qdd of track() is the mean over the tick that
+        begins at the sample.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
         The tip and its reference in the base frame [m]. Poses are (x, y, angle) in the plane, homogeneous matrices in
         space.
@@ -38,10 +78,8 @@ class Run(Conveniences):
         x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
     status : RunStatus
         How the motion ended.
-    arm, path, scheme, task
-        What it was made of.
-    options : dict
-        The other keyword arguments that it was made with: dt, hold, qd0, and those of track().
+    arm, path, scheme, task, options
+        What it was made of; options are the other keyword arguments: dt, hold, qd0, and those of track().
     scale : numpy.ndarray, shape (N,), or None
         Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it).
     saturated : numpy.ndarray of bool, shape (N, n), or None
@@ -103,8 +141,7 @@ class Run(Conveniences):
     @property
     def limits(self) -> JointLimits:
         """The joints' limits that track() was given; otherwise the arm's own."""
-        given: JointLimits | None = self.options.get("limits")
-        return self.arm.limits if given is None else given
+        return self.options.get("limits") or self.arm.limits
 
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the task, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
@@ -116,23 +153,105 @@ class Run(Conveniences):
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
-    def _things(self) -> tuple[Any, ...]:
-        """All but the arrays, to be compared."""
-        status = self.status.code, self.status.time, self.status.q.tobytes()
-        return self.arm, self.path, self.scheme, self.task, self.options, status
+    def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
+        """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
+
+        panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
+        for an unknown name, and ImportError, with what to install, where matplotlib is missing.
+        """
+        from ..plot import plot_run
+
+        return plot_run(self, panels=panels, dark=dark)
+
+    def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
+        """Show the motion in the browser until Ctrl-C; urdf, host, port and open_browser as for view().
+
+        Raises ImportError, with what to install, where viser is missing.
+        """
+        from ..viewer import Viewer
+
+        Viewer(self, urdf=urdf, **{"open_browser": True, **how}).wait()
+
+    def replay(self) -> Run:
+        """Make the motion again from arm, path, scheme and options, by simulate() or track().
+
+        Equal to this run to the last bit in the same build on a processor of the same kind; another compiler, C library
+        or kind of processor may round differently. Raises ValueError where the options do not say how it was made.
+        """
+        from .simulation import simulate, track
+
+        if "dt" not in self.options:
+            raise ValueError(f"options = {self.options}: must hold the arguments that the run was made with")
+        q0 = self.q[0] if len(self.q) else self.status.q
+        if self.scale is not None:
+            return track(self.arm, self.path, self.scheme, q0, task=self.task, **self.options)
+        return simulate(self.arm, self.path, self.scheme, q0, task=self.task, partial=True, **self.options)
+
+    def save(
+        self, file: str | os.PathLike[str], *, note: str | None = None, seed: int | Sequence[int] | None = None
+    ) -> None:
+        """Write the run to an .npz file, for fp.load. An existing file is replaced, whole or not at all.
+
+        numpy.load reads the arrays; arm, path, scheme, options, status and provenance are JSON text, in 'meta'. Nothing
+        is pickled. The provenance keeps the note, any text, and the seed of the random numbers behind the run.
+        """
+        from ..io.run_file import save
+
+        save(self, file, note, seed)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Data frame of a row for each sample.
+
+        Columns t, q_<joint>, qd_<joint>, qdd_<joint>, the tip as x, y, z with qx, qy, qz, qw or angle for its
+        orientation, its reference as x_ref and so on, error_x and so on, orientation_error_x and so on; scale and
+        saturated_<joint> where the limits were kept. The units are in frame.attrs["units"]. Needs the extra 'data'.
+        """
+        from ..io.tables import to_pandas
+
+        return to_pandas(self)
+
+    def to_csv(self, file: str | os.PathLike[str]) -> None:
+        """Write the columns of to_pandas() as CSV, with heads like 'qd_joint_1 [rad/s]'. Needs no extra.
+
+        Numbers are exact: read back, they are the same to the last bit. An existing file is replaced, whole or not at
+        all.
+        """
+        from ..io.tables import to_csv
+
+        to_csv(self, file)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over time, joint and axis, with units as attributes.
+
+        Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
+        orientation_error; scale and saturated where the limits were kept. Needs the extra 'data'.
+        """
+        from ..io.tables import to_xarray
+
+        return to_xarray(self)
+
+    def to_rosbag(
+        self, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
+    ) -> None:
+        """Write a ROS 2 bag, whole or not at all, stamped with the run's time from 0. Needs the extra 'ros', no ROS.
+
+        Topics /joint_states (sensor_msgs/JointState), /tip and /tip_reference (geometry_msgs/PoseStamped) in the base
+        frame of that name; with trajectory also /joint_trajectory (trajectory_msgs/JointTrajectory), the whole motion
+        as one message. Where the task leaves the orientation free, the tip's is the arm's and the reference has none
+        (the identity). Raises FileExistsError where there is something of the bag's name.
+        """
+        from ..io.rosbag import to_rosbag
+
+        to_rosbag(self, directory, frame, trajectory)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Run):
-            return NotImplemented
-        here, there = self.arrays(), other.arrays()
-        return (
-            here.keys() == there.keys()
-            and self._things() == other._things()
-            and all(
-                (one.shape, one.dtype, one.tobytes()) == (there[name].shape, there[name].dtype, there[name].tobytes())
-                for name, one in here.items()
-            )
-        )
+        return isinstance(other, Run) and self._key() == other._key()
+
+    def _key(self) -> tuple[Any, ...]:
+        """What is compared."""
+        arrays = {name: (array.shape, array.dtype, array.tobytes()) for name, array in self.arrays().items()}
+        status = self.status.code, self.status.time, self.status.q.tobytes()
+        return self.arm, self.path, self.scheme, self.task, self.options, status, arrays
 
     def __repr__(self) -> str:
         return (

@@ -12,8 +12,7 @@ from ..arms import Arm, JointLimits
 from ..errors import ResolutionError
 from ..paths import Path
 from ..schemes import Scheme
-from .run import Run
-from .run_status import RunStatus
+from .run import Run, RunStatus
 
 
 class LimitOptions(NamedTuple):
@@ -42,7 +41,7 @@ def simulate(
     """Move an arm along a path under a scheme, by RK4 at fixed steps.
 
     The path is a displacement from where the tip starts, f(q0). Velocity-level schemes integrate q, acceleration-level
-    schemes q and qd. Runs without the interpreter's lock.
+    schemes q and qd. Runs without the interpreter's lock. The run's status says how it ended.
 
     Parameters
     ----------
@@ -61,11 +60,6 @@ def simulate(
     partial : bool
         If the motion must stop early, return what was done instead of raising.
 
-    Returns
-    -------
-    Run
-        The motion; run.status says how it ended.
-
     Raises
     ------
     ValueError
@@ -75,7 +69,7 @@ def simulate(
     """
     options = motion_options(arm, dt, hold, qd0)
     outcome = simulated(arm, path, scheme, q0, options["qd0"], dt, hold, task)
-    run = make_run(*outcome, q0, arm, path, scheme, task, options)
+    run = make_run(outcome, q0, arm, path, scheme, task, options)
     if failed(run.status.code) and not partial:
         raise ResolutionError(run.status.code, str(run.status), run)
     return run
@@ -101,11 +95,11 @@ def track(
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
     The motion is a Tracker's, where simulate() has the plain law's: the path is the same, sampled at the same times,
-    but every joint keeps its bounds, the motion is damped near singular postures, and nothing makes it stop early. The
-    run's scale and saturated say what the limits did. Runs without the interpreter's lock.
+    but every joint keeps its bounds, the motion is damped near singular postures, and nothing makes it stop early.
 
     Sample k is the state at t_k, the tip's error there, and the tick that begins there: its mean acceleration, its
-    scale, and which joints it had on a bound.
+    scale, and which joints it had on a bound. The run's status is the worst of all ticks: OK, DAMPED or SLOWED; without
+    damping it may be SINGULAR, where the arm braked.
 
     Parameters
     ----------
@@ -122,25 +116,16 @@ def track(
     singular_radius, singular_brake : float
         Damping near singular postures for a scheme that has none; 0 switches it off.
 
-    Returns
-    -------
-    Run
-        The motion; run.status is the worst of all ticks: OK, DAMPED or SLOWED. Without damping it may be SINGULAR:
-        there the arm braked.
-
     Raises
     ------
     ValueError
-        If an argument is out of range, not finite, or of the wrong shape, a limit is missing, or the start breaks one;
-        nothing is run.
+        As simulate() does, and if a limit is missing or the start breaks one; nothing is run.
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
-    code, time, samples, arrays, scale, saturated = tracked(
-        arm, path, scheme, q0, options["qd0"], dt, hold, task, *limited
-    )
-    made_of = q0, arm, path, scheme, task, {**options, **limited._asdict()}
-    return make_run(code, time, samples, (*arrays, scale, saturated), *made_of)
+    *outcome, arrays, scale, saturated = tracked(arm, path, scheme, q0, options["qd0"], dt, hold, task, *limited)
+    outcome.append((*arrays, scale, saturated))
+    return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})
 
 
 def motion_options(arm: Arm, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
@@ -150,24 +135,15 @@ def motion_options(arm: Arm, dt: float, hold: float, qd0: ArrayLike | None = Non
 
 
 def make_run(
-    code: Any,
-    time: float,
-    samples: int,
-    arrays: tuple[Any, ...],
-    q0: ArrayLike,
-    arm: Arm,
-    path: Path,
-    scheme: Scheme,
-    task: str,
-    options: dict[str, Any],
+    outcome: Any, q0: ArrayLike, arm: Arm, path: Path, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
-    """A run of what the compiled part gives: arrays of which the first `samples` rows are filled.
+    """A run of what the compiled part gives: status, time, number of samples, and arrays that many rows are filled of.
 
-    The last two arrays, scale and saturated, are there only if the motion kept its joints' limits.
+    Where the motion kept its joints' limits, the last two arrays are scale and saturated.
     """
-    t, q, qd, qdd, x, x_ref, error, *limited = (
-        array if samples == len(array) else array[:samples].copy() for array in arrays
-    )
+    code, time, samples, arrays = outcome
+    arrays = [array if samples == len(array) else array[:samples].copy() for array in arrays]
+    t, q, qd, qdd, x, x_ref, error, *limited = arrays
     if scheme.level == "velocity" and samples > 1 and not limited:
         qdd = np.gradient(qd, t, axis=0)
     status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))

@@ -70,18 +70,17 @@ class Sweep:
 
     def __str__(self) -> str:
         """One line for each scheme: how many motions are complete, and the worst of those."""
-        return "\n".join([repr(self), *map(self._row, range(len(self.schemes)))])
-
-    def _row(self, i: int) -> str:
-        scheme, ok = repr(self.schemes[i]), self.ok[i]
-        text = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
-        if not ok.any():
-            return text
-        return (
-            f"{text}; tip error up to {self.max_error[i, ok].max():.1e} m,"
-            f" joints up to {self.peak_velocity[i, ok].max():.3g} rad/s,"
-            f" manipulability down to {self.manipulability[i, ok].min():.3g}"
-        )
+        lines = [repr(self)]
+        for i, (scheme, ok) in enumerate(zip(map(repr, self.schemes), self.ok)):
+            line = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
+            if ok.any():
+                line += (
+                    f"; tip error up to {self.max_error[i, ok].max():.1e} m,"
+                    f" joints up to {self.peak_velocity[i, ok].max():.3g} rad/s,"
+                    f" manipulability down to {self.manipulability[i, ok].min():.3g}"
+                )
+            lines.append(line)
+        return "\n".join(lines)
 
     def __repr__(self) -> str:
         counts = {"complete": self.ok, "stopped early": self.done & ~self.ok, "not run": ~self.done}

@@ -5,19 +5,27 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from typing import Any, TypeAlias
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import check_sweep, not_run
+from .._core import Status, check_sweep, not_run
 from ..arms import Arm, JointLimits
 from ..errors import ParameterError, SweepInterrupted
 from ..paths import Path
 from ..schemes import Scheme
-from .chunks import Result, run_chunks
-from .plan import Plan
-from .simulation import LimitOptions
+from .simulation import LimitOptions, make_run, motion_options
 from .sweep_result import Sweep
+from .workers import run_chunks
 
 Progress: TypeAlias = bool | Callable[[int, int], object] | None
+
+# A chunk's motions are a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks, for many
+# workers to share, of at most SAMPLES samples each, some tenths of a second of work. The number of workers plays no
+# part, so that the results do not depend on it.
+GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
+
+# By their numbers in the compiled part; the last, at -1, is that of a motion that was not run.
+STATUSES = np.array([*Status, None], dtype=object)
 
 
 def sweep(
@@ -68,11 +76,6 @@ def sweep(
     motions : bool
         Keep the whole motions as well, in the result's motions: 8 bytes for each number of simulate()'s arrays.
 
-    Returns
-    -------
-    Sweep
-        Arrays of shape (S, K), also where S or K is 1.
-
     Raises
     ------
     ValueError
@@ -101,22 +104,52 @@ def sweep(
         raise ParameterError("limits", None, None, text)
     kept = None if limits is None else limited
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
-    plan = Plan(arm, path, laws, starts, float(dt), float(hold), task, kept, motions, samples)
-    parts = plan.parts()
-    outcomes = not_run(len(plan))
-    arrays: list[Any] = [None] * len(plan)
+    shape, total = (len(laws), len(starts)), len(laws) * len(starts)
+    parts = _parts(total, len(starts), samples)
+    options = {**motion_options(arm, dt, hold), **(kept._asdict() if kept else {})}
+    outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
+    # Its arrays are views of these, which fill as the chunks arrive.
+    result = Sweep(
+        status=status.reshape(shape),
+        time=outcomes["time"].reshape(shape),
+        motions=runs.reshape(shape) if motions else None,
+        arm=arm,
+        path=path,
+        schemes=laws,
+        q0s=starts,
+        task=task,
+        **{name: outcomes["summary"][name].reshape(shape) for name in outcomes["summary"].dtype.names or ()},
+    )
 
-    def take(i: int, result: Result) -> None:
-        outcomes[parts[i]] = result[0]
-        if motions:
-            arrays[parts[i]] = result[1]
+    def chunk(part: slice) -> tuple[Any, ...]:
+        """What a worker needs: motion i is of laws[i // K] from starts[i % K], with K starts."""
+        law, start = np.divmod(np.arange(part.start, part.stop), len(starts))
+        few = list(laws[law[0] : law[-1] + 1])
+        return arm, path, few, (law - law[0]).tolist(), starts[start], float(dt), float(hold), task, motions, kept
+
+    def take(part: slice, figures: Any, arrays: list[Any]) -> None:
+        outcomes[part] = figures
+        status[part] = STATUSES[figures["status"]]
+        for i, rows in zip(range(total)[part], arrays):
+            if status[i] is not None:
+                law, start = laws[i // len(starts)], starts[i % len(starts)]
+                outcome = status[i], float(outcomes["time"][i]), int(outcomes["samples"][i]), rows
+                runs[i] = make_run(outcome, start, arm, path, law, task, options)
 
     try:
-        with reporting(progress, len(plan)) as report:
-            run_chunks(map(plan.chunk, parts), executor, workers, take, report)
+        with reporting(progress, total) as report:
+            run_chunks(((part, chunk(part)) for part in parts), executor, workers, take, report)
     except KeyboardInterrupt:
-        raise SweepInterrupted(plan.result(outcomes, arrays)) from None
-    return plan.result(outcomes, arrays)
+        raise SweepInterrupted(result) from None
+    return result
+
+
+def _parts(total: int, starts: int, samples: int) -> list[slice]:
+    """The motions of each chunk, of one scheme unless its motions are too few to fill a chunk."""
+    size = min(-(-total // CHUNKS), max(1, SAMPLES // samples))
+    size = GROUP * -(-size // GROUP)
+    row = total if starts < size else starts
+    return [slice(i, min(i + size, end)) for end in range(row, total + 1, row) for i in range(end - row, end, size)]
 
 
 @contextmanager

@@ -1,0 +1,105 @@
+"""Running a sweep's chunks: in threads of our own or in any executor, until Ctrl-C."""
+
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
+from signal import SIGINT, default_int_handler, getsignal, signal
+from typing import Any
+
+from .._core import Stop, sweep_chunk
+
+Result = tuple[Any, list[Any]]  # Outcomes, one for each motion, and the arrays of each if these are wanted.
+POLL = 0.05  # How often to look for Ctrl-C [s].
+
+
+def run_chunk(chunk: tuple[Any, ...], stop: Stop | None) -> Result:
+    """Run a chunk, in whichever process this is. Motions that stop cuts short are marked as not run."""
+    arguments = (*chunk, stop or Stop())
+    return sweep_chunk(*arguments)
+
+
+def run_chunks(
+    chunks: Iterable[tuple[slice, tuple[Any, ...]]],
+    executor: Executor | None,
+    workers: int | None,
+    take: Callable[[slice, Any, list[Any]], object],
+    report: Callable[[int], object],
+) -> None:
+    """Run chunks: which motions these are, and what sweep_chunk() takes.
+
+    In this thread, take(which, *result) receives each as it arrives, report(n) the number of motions done so far.
+
+    On an exception, chunks that have not begun are cancelled, those in this process stop within a sample, and those in
+    other processes are left to them. On KeyboardInterrupt, all that is finished is still taken.
+    """
+    if executor is None:
+        with ThreadPoolExecutor(workers or os.cpu_count()) as threads:
+            return run_chunks(chunks, threads, None, take, report)
+    stop = Stop() if isinstance(executor, ThreadPoolExecutor) else None
+    pending: dict[Future[Result], slice] = {}
+    arrived: SimpleQueue[Future[Result]] = SimpleQueue()
+    done = 0
+    with interrupted_at_checks() as check:
+        try:
+            for which, chunk in chunks:
+                future = executor.submit(run_chunk, chunk, stop)
+                pending[future] = which
+                future.add_done_callback(arrived.put)
+                check()
+            while pending:
+                check()
+                try:
+                    future = arrived.get(timeout=POLL)
+                except Empty:
+                    continue
+                outcomes, arrays = future.result()
+                take(pending.pop(future), outcomes, arrays)
+                done += len(outcomes)
+                report(done)
+        except BaseException as error:
+            if stop is not None:
+                stop.set()
+            begun = {future: which for future, which in pending.items() if not future.cancel()}
+            if stop is not None:
+                wait(begun)
+            if isinstance(error, KeyboardInterrupt):
+                for future, which in begun.items():
+                    if future.done() and future.exception() is None:
+                        take(which, *future.result())
+            raise
+
+
+@contextmanager
+def interrupted_at_checks() -> Iterator[Callable[[], None]]:
+    """A function to call at safe points: there, and nowhere between, a Ctrl-C raises KeyboardInterrupt.
+
+    Raised while one of Python's own locks is taken, KeyboardInterrupt leaves it locked, and the next thread that wants
+    it waits for ever. Does nothing outside the main thread, or where the program has a handler of its own for Ctrl-C.
+    """
+    pressed = False
+    process = os.getpid()
+
+    def handle(number: int, frame: Any) -> None:
+        nonlocal pressed
+        if os.getpid() != process:  # A worker that was forked in the meantime.
+            default_int_handler(number, frame)
+        pressed = True
+
+    def check() -> None:
+        nonlocal pressed
+        if pressed:
+            pressed = False
+            raise KeyboardInterrupt
+
+    if threading.current_thread() is not threading.main_thread() or getsignal(SIGINT) is not default_int_handler:
+        yield check
+        return
+    signal(SIGINT, handle)
+    try:
+        yield check
+    finally:
+        signal(SIGINT, default_int_handler)
+    check()
