@@ -28,9 +28,9 @@ from fpbm_cpp.parameter import parameters
 from fpbm_cpp.skeleton import joint_points
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
-from fpbm_cpp.viewer.links import Links, along
 from fpbm_cpp.viewer.meshes import Meshes
 from fpbm_cpp.viewer.playback import FRAMES, Playback
+from fpbm_cpp.viewer.scene import Links, along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 Q0 = np.pi / np.array([12, 12, 15, 15])
@@ -543,28 +543,25 @@ def test_it_serves_until_it_is_closed():
 SCRIPT = """
 import signal
 import fpbm_cpp as fp
-from fpbm_cpp.viewer import Viewer
 signal.signal(signal.SIGINT, signal.default_int_handler)
-run = fp.simulate(fp.PlanarArm([1, 1, 1]), fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.4, 0.5], dt=0.01)
-wait = Viewer.wait
-Viewer.wait = lambda viewer: print("at", viewer.url) or wait(viewer)
-run.view(port=0, open_browser=False)
+arm, path, scheme, q0 = fp.PlanarArm([1, 1, 1]), fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.4, 0.5]
+{call}
 print("closed")
 """
 
 
-def test_ctrl_c_closes_it():
-    command = [sys.executable, "-u", "-c", SCRIPT]
+@pytest.mark.parametrize("call", ["fp.view(arm, path, scheme, q0, ", "fp.simulate(arm, path, scheme, q0).view("])
+def test_it_prints_its_address_and_ctrl_c_closes_it(call):
+    command = [sys.executable, "-c", SCRIPT.format(call=f"{call}port=0, open_browser=False)")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
-        said = ""
-        while "at http://127.0.0.1:" not in said:
-            line = child.stdout.readline()
-            assert line, child.stderr.read()
-            said += line
-        time.sleep(1.0)
+        said = child.stdout.readline()
+        assert said, child.stderr.read()
+        url = said.removesuffix(": Ctrl-C ends it.\n")
+        with urllib.request.urlopen(url) as page:
+            assert b"<html" in page.read()
         child.send_signal(signal.SIGINT)
         rest, errors = child.communicate(timeout=30)
-    assert "closed" in rest
+    assert rest == "closed\n"
     assert "Traceback" not in errors
     assert child.returncode == 0
 

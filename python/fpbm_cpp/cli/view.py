@@ -28,9 +28,7 @@ def view(request: Request, port: int, browser: bool) -> None:
         import_undisturbed("viser", "viser.extras")
         from ..viewer import Viewer
 
-        with Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser) as viewer:
-            click.echo(f"{viewer.url}: Ctrl-C ends it.")
-            viewer.wait()
+        Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser).wait()
     except OSError as error:
         raise click.ClickException(error.strerror or str(error)) from None
     except KeyboardInterrupt:

@@ -1,7 +1,7 @@
 """The viewer: a page in the browser with the arm, the time and the scheme's parameters. Needs the extra 'view'.
 
-Data flows one way. The page asks for a scheme (controls) and a time (player); the motion is made again under the
-scheme (rerun) and prepared for drawing (playback); the scene, the chart and the readout draw it.
+Data flows one way. The page asks for a scheme (controls) and a time (player); the viewer makes the motion again under
+the scheme and prepares it for drawing (playback); scene and readout draw it.
 """
 
 import os
@@ -45,8 +45,8 @@ def view(
 ) -> None:
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
-    The motion is simulated again whenever the scheme or a parameter is changed on the page; a motion that stops early
-    is shown as far as it went. fpbm_cpp.viewer.Viewer does the same without waiting.
+    Prints the page's address. The motion is simulated again whenever the scheme or a parameter is changed on the page;
+    a motion that stops early is shown as far as it went. fpbm_cpp.viewer.Viewer does the same without waiting.
 
     Parameters
     ----------

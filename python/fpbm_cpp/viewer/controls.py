@@ -11,10 +11,9 @@ from ..parameter import Parameter, parameters
 from ..schemes import SCHEMES, Scheme
 
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
-LEAST_WEIGHT, MOST_WEIGHT = 0.1, 10.0
 
 
-def own_numbers() -> dict[str, Parameter]:
+def _own_numbers() -> dict[str, Parameter]:
     """The numbers that some schemes have and others have not; a slider is made for each."""
     return {
         name: known
@@ -45,14 +44,13 @@ class Controls:
         self._on_change = on_change
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
-            own = own_numbers()
+            own = _own_numbers()
             self._initial = {name: known.usual if known.required else known.default for name, known in own.items()}
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in own.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
                 self._weights = [
-                    gui.add_slider(name, min=LEAST_WEIGHT, max=MOST_WEIGHT, step=0.1, initial_value=1.0)
-                    for name in joints
+                    gui.add_slider(name, min=0.1, max=10.0, step=0.1, initial_value=1.0) for name in joints
                 ]
             self._limited = gui.add_checkbox(
                 "keep joint limits", bool(limited), visible=limited is not None, hint="The bounds of every joint"
@@ -89,7 +87,6 @@ class Controls:
         self._show_sliders()
 
     def _show_sliders(self) -> None:
-        """Show the sliders of the chosen scheme alone."""
         known = parameters(KINDS[self._kind.value])
         for name, slider in self._sliders.items():
             slider.visible = name in known

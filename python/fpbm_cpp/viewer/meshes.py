@@ -72,9 +72,9 @@ class Meshes:
         finally:
             log.setLevel(level)
         if missing:
-            names = list(dict.fromkeys(missing))
-            which = "1 mesh is not found:" if len(names) == 1 else f"{len(names)} meshes are not found, the first is"
-            warnings.warn(f"{self.file}: {which} {names[0]}", stacklevel=4)
+            count = len(set(missing))
+            which = "1 mesh is not found:" if count == 1 else f"{count} meshes are not found, the first is"
+            warnings.warn(f"{self.file}: {which} {missing[0]}", stacklevel=4)
         return robot
 
     def _find(self, fname: str, missing: list[str]) -> str:
@@ -100,10 +100,8 @@ class Meshes:
         distances = np.linalg.norm(there - joint_points(self._arm, q)[1:-1], axis=1)
         worst = int(distances.argmax())
         if distances[worst] > TOLERANCE:
-            name = self._arm.joints[worst].name
-            raise self._error(
-                f"is another arm's: its joint {name!r} is {distances[worst]:.3g} m from where this arm has it"
-            )
+            joint = f"its joint {self._arm.joints[worst].name!r} is {distances[worst]:.3g} m from where this arm has it"
+            raise self._error(f"is another arm's: {joint}")
 
     def _error(self, text: str) -> ValueError:
         return ValueError(f"urdf = {str(self.file)!r}: {text}")

@@ -12,20 +12,10 @@ FRAMES = 500
 
 
 class Playback:
-    """A run prepared for drawing.
+    """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
 
-    Attributes
-    ----------
-    run : Run
-        The run; one that stopped before its first sample has its start as the only sample.
-    frames : numpy.ndarray of int, shape (F,)
-        The samples that curves are drawn through.
-    tip, target : numpy.ndarray, shape (F, 3)
-        Positions of the tip and its reference at the frames [m].
-    manipulability : numpy.ndarray, shape (F,)
-        sqrt(det(J J')) at the frames (Yoshikawa, 1985).
-    tip_error, orientation_error : numpy.ndarray, shape (N,)
-        Norms of the errors at every sample [m], [rad]; the latter is 0 where the task leaves the orientation free.
+    Curves are drawn through F frames: some of the samples, or all. The tip and its target, shape (F, 3) [m], and the
+    manipulability, shape (F,), are those at the frames, the errors' norms those at all samples, shape (N,) [m], [rad].
     """
 
     def __init__(self, run: Run) -> None:
@@ -64,5 +54,4 @@ def _at_start(run: Run) -> Run:
 
 def in_space(points: Array) -> Array:
     """Points with three coordinates; z is 0 for points in the plane."""
-    missing = 3 - points.shape[-1]
-    return np.concatenate([points, np.zeros((*points.shape[:-1], missing))], axis=-1)
+    return np.pad(points, [(0, 0)] * (points.ndim - 1) + [(0, 3 - points.shape[-1])])

@@ -15,18 +15,15 @@ class Player:
     """Calls `moved` with the time to show, whenever somebody on the page or the clock changes it."""
 
     def __init__(self, gui: GuiApi, duration: float, moved: Callable[[float], None]) -> None:
-        self._moved = moved
-        self.end = duration
+        self._moved, self._time, self.end = moved, 0.0, duration
         with gui.add_folder("Time"):
-            self._slider = gui.add_slider(
-                "t [s]", min=0.0, max=duration, step=min(0.01, duration / 100), initial_value=0.0
-            )
+            step = min(0.01, duration / 100)
+            self._slider = gui.add_slider("t [s]", min=0.0, max=duration, step=step, initial_value=0.0)
             self._button = gui.add_button("play", icon=Icon.PLAYER_PLAY)
             self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1 ×")
             self._loop = gui.add_checkbox("loop", True)
         self._slider.on_update(self._on_slider)
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
-        self._time = 0.0
         self._lock = threading.RLock()  # Taken before any lock that `moved` takes.
         self._running = threading.Event()
         self._closed = False

@@ -1,7 +1,8 @@
-"""A run in words and numbers: how it ended, and figures of the sample shown and of the whole motion."""
+"""A run in words, numbers and curves: how it ended, figures of the sample shown, and one quantity over time."""
 
 import html
-from collections.abc import Iterable
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from viser import GuiApi
@@ -13,6 +14,11 @@ from .playback import Playback
 
 GOOD, BAD = "#009E73", "#D55E00"
 CELL = "padding:0.15em 0.6em 0.15em 0"
+TABLE = "font-size:0.8em;margin:0.3em 0.9em;text-align:left;font-variant-numeric:tabular-nums"
+# Okabe and Ito's colours, as in the figures.
+LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#F0E442")
+NOW = "#888888"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Readout:
@@ -24,10 +30,9 @@ class Readout:
 
     def show(self, playback: Playback) -> None:
         """Say how a run ended."""
-        self._playback, run = playback, playback.run
-        self._names, self._units = joint_labels(run.arm), joint_units(run.arm)
-        stopped = f"stopped after t = {run.status.time:g} s: {message(run.status.code)}. {run.status.advice}"
-        self._say(str(run.status) if run.status else stopped, GOOD if run.status else BAD)
+        self._playback, status = playback, playback.run.status
+        stopped = f"stopped after t = {status.time:g} s: {message(status.code)}. {status.advice}"
+        self._say(str(status) if status else stopped, GOOD if status else BAD)
 
     def refuse(self, reason: str) -> None:
         """Say why the motion asked for cannot be run."""
@@ -35,16 +40,24 @@ class Readout:
 
     def at(self, sample: int) -> None:
         """Show the figures of a sample."""
-        playback = self._playback
-        qd, w = playback.run.qd, playback.manipulability
+        playback, run = self._playback, self._playback.run
+        w, errors = playback.manipulability, {"tip error": (playback.tip_error, "m")}
+        if run.task == "pose":
+            errors["orientation error"] = playback.orientation_error, "rad"
+        names, units = joint_labels(run.arm), joint_units(run.arm)
+
+        def fastest(qd: Array) -> str:
+            joint = np.unravel_index(np.abs(qd).argmax(), qd.shape)[1]
+            return f"{np.abs(qd).max():.3g} {units[joint]}/s ({names[joint]})"
+
         rows = [
-            ("tip error", *_now_and_worst(playback.tip_error, sample, "m")),
-            ("fastest joint", self._fastest(qd[sample : sample + 1]), self._fastest(qd)),
-            ("manipulability", f"{w[playback.frame(sample)]:.3g}", f"{w.min():.3g}"),
+            ("th", "", "now", "at worst"),
+            *(("td", name, f"{e[sample]:.3g} {unit}", f"{e.max():.3g} {unit}") for name, (e, unit) in errors.items()),
+            ("td", "fastest joint", fastest(run.qd[sample : sample + 1]), fastest(run.qd)),
+            ("td", "manipulability", f"{w[playback.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
-        if playback.run.task == "pose":
-            rows.insert(1, ("orientation error", *_now_and_worst(playback.orientation_error, sample, "rad")))
-        self._table.content = _table(("", "now", "at worst"), rows)
+        lines = ("".join(f'<{tag} style="{CELL}">{html.escape(cell)}</{tag}>' for cell in row) for tag, *row in rows)
+        self._table.content = f'<table style="{TABLE}">{"".join(f"<tr>{line}</tr>" for line in lines)}</table>'
 
     @property
     def text(self) -> str:
@@ -55,20 +68,84 @@ class Readout:
         style = f"padding:0.4em 0.9em 0;font-size:0.85em;font-weight:600;color:{colour}"
         self._status.content = f'<div style="{style}">{html.escape(text)}</div>'
 
-    def _fastest(self, qd: Array) -> str:
-        joint = np.unravel_index(np.abs(qd).argmax(), qd.shape)[1]
-        return f"{np.abs(qd).max():.3g} {self._units[joint]}/s ({self._names[joint]})"
+
+class Quantity(NamedTuple):
+    """Values at the frames, and their unit; a quantity of the joints has the joints' unit and this."""
+
+    values: Callable[[Playback], Array]
+    unit: str
+    of_joints: bool = False
 
 
-def _now_and_worst(errors: Array, sample: int, unit: str) -> tuple[str, str]:
-    return f"{errors[sample]:.3g} {unit}", f"{errors.max():.3g} {unit}"
+QUANTITIES = {
+    "joint velocities": Quantity(lambda playback: playback.run.qd[playback.frames], "/s", of_joints=True),
+    "joint accelerations": Quantity(lambda playback: playback.run.qdd[playback.frames], "/s²", of_joints=True),
+    "joint positions": Quantity(lambda playback: playback.run.q[playback.frames], "", of_joints=True),
+    "tip error": Quantity(lambda playback: playback.tip_error[playback.frames], "m"),
+    "orientation error": Quantity(lambda playback: playback.orientation_error[playback.frames], "rad"),
+    "manipulability": Quantity(lambda playback: playback.manipulability, ""),
+}
 
 
-def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    lines = [_line("th", head), *(_line("td", row) for row in rows)]
-    style = "font-size:0.8em;margin:0.3em 0.9em;text-align:left;font-variant-numeric:tabular-nums"
-    return f'<table style="{style}">{"".join(lines)}</table>'
+class Chart:
+    """A chart of the quantity chosen on the page, over the planned duration, with a line at the time shown."""
+
+    def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
+        self._playback, self._duration, self._sample = playback, duration, 0
+        names = [name for name in QUANTITIES if name != "orientation error" or playback.run.task == "pose"]
+        with gui.add_folder("Over time"):
+            self._quantity = gui.add_dropdown("quantity", tuple(names))
+            axes = ({"size": 32}, {"size": 44})
+            self._plot = gui.add_uplot(
+                (np.zeros(1), np.zeros(1)), ({"label": ""}, {"label": ""}), axes=axes, height=220, padding=(8, 16, 0, 0)
+            )
+        self._quantity.on_update(lambda _: self.show(self._playback))
+
+    def show(self, playback: Playback) -> None:
+        """Draw a run."""
+        self._playback = playback
+        labels, values, self._plot.title = self._curves()
+        self._range = _range(values)
+        lines = [
+            {"label": label, "stroke": LINES[i % len(LINES)], "width": 1.6, "dash": [] if i < len(LINES) else [6, 3]}
+            for i, label in enumerate(labels)
+        ]
+        now = {"label": "now", "stroke": NOW, "width": 1.5}
+        self._plot.series = ({"label": "t [s]"}, *({**line, "points": {"show": False}} for line in (*lines, now)))
+        self._plot.scales = {"x": {"time": False, "range": (0.0, self._duration)}, "y": {"range": self._range}}
+        self._plot.data = (playback.run.t[playback.frames], *values.T, self._now())
+
+    def at(self, sample: int) -> None:
+        """Move the line to a sample."""
+        self._sample = sample
+        self._plot.data = (*self._plot.data[:-1], self._now())
+
+    def _curves(self) -> tuple[list[str], Array, str]:
+        """Labels, a column for each, and a title with unit and power of ten."""
+        name, arm = self._quantity.value, self._playback.run.arm
+        quantity = QUANTITIES[name]
+        values = quantity.values(self._playback)
+        if quantity.of_joints:
+            units = sorted(set(joint_units(arm)), reverse=True)
+            return joint_labels(arm), values, f"{name} [{', '.join(unit + quantity.unit for unit in units)}]"
+        largest = float(values.max())
+        exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
+        exponent = exponent if exponent < -2 else 0
+        power = f"10{str(exponent).translate(SUPERSCRIPTS)} " if exponent else ""
+        unit = f"{power}{quantity.unit}".strip()
+        return [name], values[:, None] / 10.0**exponent, f"{name} [{unit}]" if unit else name
+
+    def _now(self) -> Array:
+        """A vertical line between two neighbouring frames."""
+        line = np.full(len(self._playback.frames), np.nan)
+        first = min(self._playback.frame(self._sample), max(len(line) - 2, 0))
+        line[first : first + 2] = self._range[: len(line)]
+        return line
 
 
-def _line(tag: str, cells: tuple[str, ...]) -> str:
-    return "<tr>" + "".join(f'<{tag} style="{CELL}">{html.escape(cell)}</{tag}>' for cell in cells) + "</tr>"
+def _range(values: Array) -> tuple[float, float]:
+    """A range with a little more than all values; it starts near 0 where the values do."""
+    low, high = float(values.min()), float(values.max())
+    low, high = (0.0, high) if 0.0 <= low < high / 2 else (low, high)
+    room = 0.05 * (high - low) or 1.0
+    return low - room, high + room

@@ -1,17 +1,18 @@
 """The scene: ground, arm, tip and paths, and the camera."""
 
 import numpy as np
-from viser import ClientHandle, SceneApi, ViserServer
+from viser import ClientHandle, SceneApi, SceneNodeHandle, ViserServer
 from viser.transforms import SO3
 
 from .._types import Array
-from ..arms import PlanarArm
-from ..skeleton import joint_points
-from .links import Links
+from ..arms import Arm, PlanarArm, SerialArm
+from ..skeleton import joint_axes, joint_points
 from .meshes import Meshes
 from .playback import Playback, in_space
 
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
+LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
+RADIUS = 0.019  # Of links, as a share of the arm's length.
 FIELD = 0.7  # Vertical field of view [rad].
 
 
@@ -19,18 +20,19 @@ class Scene:
     """An arm on its path: show() draws a run, at() moves the arm to a sample of the run."""
 
     def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
-        self._server = server
-        run = playback.run
-        self._planar = isinstance(run.arm, PlanarArm)
+        run, self._server = playback.run, server
+        planar = isinstance(run.arm, PlanarArm)
         self._arm: Links | Meshes
         if meshes is not None and meshes.found:
             meshes.show(server)
             self._arm = meshes
         else:
             self._arm = Links(server.scene, run.arm, run.q[0])
-        centre, radius = _bounding_ball(playback)
-        self._add_ground(server.scene, radius)
-        self._place_camera(server, centre, radius)
+        points = np.vstack([in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3), playback.target])
+        centre = (points.min(axis=0) + points.max(axis=0)) / 2
+        radius = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-3)
+        _add_ground(server.scene, radius, planar)
+        _place_camera(server, centre, radius, planar)
         size = 0.16 * radius
         self._tip = server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
@@ -57,48 +59,81 @@ class Scene:
             passed = playback.tip[: playback.frame(sample) + 1]
             self._path.points = _segments(np.vstack([passed, pose[None, :3, 3]]))
 
-    def _add_ground(self, scene: SceneApi, radius: float) -> None:
-        cell = 10.0 ** np.floor(np.log10(radius))
-        cell = cell / 2 if radius / cell < 3 else cell
-        scene.add_grid(
-            "/ground",
-            width=40 * cell,
-            height=40 * cell,
-            plane="xy",
-            cell_size=cell / 2,
-            section_size=2 * cell,
-            position=(0.0, 0.0, -(0.1 if self._planar else 0.002) * radius),  # Under the joints.
-            shadow_opacity=0.15,
-        )
-
-    def _place_camera(self, server: ViserServer, centre: Array, radius: float) -> None:
-        """Look from above at a planar arm, from the side and above at one in space, with the whole motion in view."""
-        server.scene.set_up_direction("+y" if self._planar else "+z")
-        offset = np.array([0.0, 0.0, 1.0] if self._planar else [1.0, -1.3, 0.7])
-        room = 1.1 if self._planar else 0.95  # Seen from the side, the ball about an arm is emptier.
-        offset *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(offset)
-        camera = server.initial_camera
-        camera.fov = FIELD
-        camera.position, camera.look_at = centre + offset, centre
-        camera.up = (0.0, 1.0, 0.0) if self._planar else (0.0, 0.0, 1.0)
-
-        def step_back(client: ClientHandle) -> None:
-            if client.camera.aspect < 1.0:  # On a narrow screen the vertical field of view is not the smaller one.
-                client.camera.position = centre + offset / client.camera.aspect
-
-        server.on_client_connect(step_back)
-
-
-def _bounding_ball(playback: Playback) -> tuple[Array, float]:
-    """Centre and radius of a ball about the arm in all its postures and its targets."""
-    run = playback.run
-    postures = in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3)
-    points = np.vstack([postures, playback.target])
-    centre = (points.min(axis=0) + points.max(axis=0)) / 2
-    return centre, max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-3)
-
 
 def _segments(points: Array) -> Array:
     """The segments of a line through points."""
-    segments: Array = np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
-    return segments
+    return np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
+
+
+def _add_ground(scene: SceneApi, radius: float, planar: bool) -> None:
+    """A grid under the arm, whose cells suit a motion within a ball of this radius."""
+    cell = 10.0 ** np.floor(np.log10(radius))
+    cell = cell / 2 if radius / cell < 3 else cell
+    scene.add_grid(
+        "/ground",
+        width=40 * cell,
+        height=40 * cell,
+        plane="xy",
+        cell_size=cell / 2,
+        section_size=2 * cell,
+        position=(0.0, 0.0, -(0.1 if planar else 0.002) * radius),  # Under the joints.
+        shadow_opacity=0.15,
+    )
+
+
+def _place_camera(server: ViserServer, centre: Array, radius: float, planar: bool) -> None:
+    """Look from above at a planar arm, from the side and above at one in space, with the whole ball in view."""
+    server.scene.set_up_direction("+y" if planar else "+z")
+    offset = np.array([0.0, 0.0, 1.0] if planar else [1.0, -1.3, 0.7])
+    room = 1.1 if planar else 0.95  # Seen from the side, the ball about an arm is emptier.
+    offset *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(offset)
+    camera = server.initial_camera
+    camera.fov = FIELD
+    camera.position, camera.look_at = centre + offset, centre
+    camera.up = (0.0, 1.0, 0.0) if planar else (0.0, 0.0, 1.0)
+
+    def step_back(client: ClientHandle) -> None:
+        if client.camera.aspect < 1.0:  # On a narrow screen the vertical field of view is not the smaller one.
+            client.camera.position = centre + offset / client.camera.aspect
+
+    server.on_client_connect(step_back)
+
+
+class Links:
+    """A rod for each link, a cylinder along the axis of each revolute joint, and a box along each prismatic joint."""
+
+    def __init__(self, scene: SceneApi, arm: Arm, q: Array) -> None:
+        self._arm = arm
+        spans = np.diff(joint_points(arm, q), axis=0)
+        r = RADIUS * max(float(np.linalg.norm(spans, axis=1).sum()), 1e-3)
+        scene.add_cylinder("/arm/base", 2.6 * r, 0.8 * r, BASE)
+        self._links = [scene.add_cylinder(f"/arm/link_{i}", r, 1.0, LINK) for i in range(len(spans))]
+        types = [joint.type for joint in arm.joints] if isinstance(arm, SerialArm) else ["revolute"] * arm.dof
+        self._joints: list[SceneNodeHandle] = [
+            scene.add_box(f"/arm/joint_{i}", JOINT, (3.0 * r, 3.0 * r, 3.4 * r))
+            if kind == "prismatic"
+            else scene.add_cylinder(f"/arm/joint_{i}", 1.5 * r, 3.4 * r, JOINT)
+            for i, kind in enumerate(types)
+        ]
+        self.pose(q)
+
+    def pose(self, q: Array) -> None:
+        """Move the arm to a posture."""
+        points = in_space(joint_points(self._arm, q))
+        for link, start, end in zip(self._links, points, points[1:]):
+            length = float(np.linalg.norm(end - start))
+            link.visible = length > 1e-9
+            if link.visible:
+                link.scale = (1.0, 1.0, length)
+                link.position, link.wxyz = (start + end) / 2, along(end - start)
+        for joint, point, axis in zip(self._joints, points[-len(self._joints) - 1 :], joint_axes(self._arm, q)):
+            joint.position, joint.wxyz = point, along(axis)
+
+
+def along(direction: Array) -> Array:
+    """Quaternion (w, x, y, z) of a rotation that takes the z axis to a direction."""
+    x, y, z = direction / np.linalg.norm(direction)
+    if z < -1.0 + 1e-12:
+        return np.array([0.0, 1.0, 0.0, 0.0])
+    quaternion = np.array([1.0 + z, -y, x, 0.0])
+    return np.asarray(quaternion / np.linalg.norm(quaternion))

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import os
+import socket
 import threading
 import time
 import webbrowser
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
+
+import numpy as np
 
 try:
     import rich
@@ -19,42 +23,23 @@ except ModuleNotFoundError as missing:
     raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
 
 from ..motion.run import Run
+from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 from ..skeleton import joint_labels
-from .chart import Chart
 from .controls import Controls
 from .meshes import Meshes
 from .playback import Playback
 from .player import Player
-from .port import require_free
-from .readout import Readout
-from .rerun import has_limits, rerun
+from .readout import Chart, Readout
 from .scene import Scene
 
 
 class Viewer:
     """A page in the browser with a run, which is simulated again whenever a parameter is changed on the page.
 
-    Serves from another thread until it is closed, or until the end of a with block.
-
-    Parameters
-    ----------
-    run : Run
-        What to show first; all later runs have its arm, path, start, task and limits.
-    urdf, host, port
-        As for fpbm_cpp.view().
-    open_browser : bool
-        Open the page in the browser.
-
-    Attributes
-    ----------
-    url : str
-        Address of the page.
-
-    Raises
-    ------
-    ValueError, OSError
-        As fpbm_cpp.view().
+    Serves from another thread until it is closed, or until the end of a with block; url is the page's address. All
+    later runs have the first one's arm, path, start, task and limits. The other parameters are those of
+    fpbm_cpp.view(), and so are the errors.
     """
 
     def __init__(
@@ -68,7 +53,7 @@ class Viewer:
     ) -> None:
         playback = Playback(run)
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
-        require_free(host, port)
+        _require_free(host, port)
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
         self._lock = threading.RLock()
@@ -87,10 +72,12 @@ class Viewer:
         gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         gui.main_panel.dock_right()
         duration = run.path.duration + run.options.get("hold", 0.0)
-        limited = run.scale is not None if has_limits(run) else None
+        limits = run.limits
+        limited = np.isfinite([limits.lower, limits.upper, limits.velocity, limits.acceleration]).any()
         self._readout = Readout(gui)
         self._player = Player(gui, duration, self._draw)
-        self._controls = Controls(gui, run.scheme, joint_labels(run.arm), limited, self._on_change)
+        keep_limits = run.scale is not None if limited else None
+        self._controls = Controls(gui, run.scheme, joint_labels(run.arm), keep_limits, self._on_change)
         self._chart = Chart(gui, playback, duration)
         self._scene = Scene(self._server, playback, meshes)
         self._show(run)
@@ -130,13 +117,11 @@ class Viewer:
         self._player.pause()
 
     def wait(self) -> None:
-        """Serve until Ctrl-C, then close."""
-        with self:
-            try:
-                while True:
-                    time.sleep(3600.0)
-            except KeyboardInterrupt:
-                pass
+        """Print the address, serve until Ctrl-C, then close."""
+        with self, suppress(KeyboardInterrupt):
+            print(f"{self.url}: Ctrl-C ends it.", flush=True)
+            while True:
+                time.sleep(3600.0)
 
     def close(self) -> None:
         """Stop serving. Closing twice does no harm."""
@@ -180,6 +165,35 @@ class Viewer:
             sample = self._playback.sample(seconds)
             for part in (self._scene, self._readout, self._chart):
                 part.at(sample)
+
+
+def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
+    """The motion of a run under another scheme, as far as it goes; within the run's limits, or the arm's, if limited.
+
+    Raises ValueError if the scheme does not suit the arm, or the limits cannot be kept.
+    """
+    q0 = run.q[0] if len(run.q) else run.status.q
+    if limited:
+        return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
+    options = {name: run.options[name] for name in ("dt", "hold", "qd0") if name in run.options}
+    return simulate(run.arm, run.path, scheme, q0, task=run.task, partial=True, **options)
+
+
+def _require_free(host: str, port: int) -> None:
+    """Raise OSError if the port cannot be served at; viser would silently take another one."""
+    if not 0 <= port <= 65535:
+        raise ValueError(f"port = {port}: must be 0 to 65535")
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except socket.gaierror as error:
+            raise ValueError(f"host = {host!r}: {error.strerror}") from None
+        except OSError as error:
+            text = f"cannot serve at {host}, port {port}: {error.strerror}"
+            if error.errno == errno.EADDRINUSE:
+                text = f"port {port} is in use: choose another one, or 0 for one that is free"
+            raise OSError(error.errno, text) from None
 
 
 @contextmanager
