@@ -6,8 +6,7 @@ run = prepare(read_job("job.toml")).run()
 A job is a table of plain data, as TOML has it: arm, path, scheme, run, limits.
 """
 
-from .file import read_job, write_job
-from .make import JobError
-from .motion import Motion, prepare
+from .motion import Motion, prepare, read_job, write_job
+from .sections import JobError
 
 __all__ = ["JobError", "Motion", "prepare", "read_job", "write_job"]

@@ -1,52 +1,42 @@
-"""A job made real: its blanks filled, its arm, path and scheme built, ready to run."""
+"""A job made real: read, its blanks filled, its arm, path and scheme built, ready to run."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
 
 from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import ParameterError
+from ..io.write_whole import write_whole
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..paths import Path
 from ..schemes import Scheme
 from ..table import to_table
-from .file import write_job
 from .fill import filled, taken
-from .make import JobError, job_errors, make, require_sound
-from .sections import SECTIONS, RunOptions, Table, in_order
+from .sections import SECTIONS, JobError, RunOptions, Table, in_order, job_errors, make, require_sound
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion to be run.
+    """A motion to be run."""
 
-    Attributes
-    ----------
-    job : dict
-        What was asked for, with every blank filled.
-    taken : list of str
-        What was filled in, as in 'k1 = 10'.
-    arm, path, scheme, limits
-        What moves, along what, how, and within what; limits is None where they are not kept.
-    options : RunOptions
-        From where, and how it is run.
-    """
-
-    job: Table
-    taken: list[str]
+    job: Table  # What was asked for, with every blank filled.
+    taken: list[str]  # What was filled in, as in 'k1 = 10'.
     arm: Arm
     path: Path
     scheme: Scheme
     options: RunOptions
-    limits: JointLimits | None
+    limits: JointLimits | None  # None where they are not kept.
 
     @property
     def q0(self) -> Array:
@@ -94,6 +84,7 @@ def prepare(job: Table) -> Motion:
     require_sound(job)
     arm = make("arm", job["arm"])
     full = filled(job, arm)
+    full = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
     path, scheme, options = (make(section, full[section], arm) for section in ("path", "scheme", "run"))
     limits = make("limits", job["limits"], arm) if "limits" in job else None
     if limits is not None and "acceleration" not in job["limits"]:
@@ -101,12 +92,38 @@ def prepare(job: Table) -> Motion:
         if np.any(bounded & np.isinf(limits.acceleration)):
             text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(ParameterError("limits.acceleration", None, None, text))
-    motion = Motion({}, [], arm, path, scheme, options, limits)
+    motion = Motion(full, list(taken(job, full)), arm, path, scheme, options, limits)
     with job_errors():
         try:
             check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
         except ValueError:
             motion.run()  # Refuses the same, by the names that a job has for it.
             raise
-    whole = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
-    return replace(motion, job=whole, taken=list(taken(job, whole)))
+    return motion
+
+
+def read_job(file: str | os.PathLike[str]) -> Table:
+    """What a TOML file says, as yet unchecked. Raises JobError where it is no TOML, or OSError.
+
+    Files that it names are seen from its folder.
+    """
+    try:
+        table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
+    except (TOMLKitError, UnicodeDecodeError) as error:
+        raise JobError(ParameterError("", None, None, f"no TOML: {error}")) from None
+    arm = table.get("arm")
+    if isinstance(arm, dict) and isinstance(arm.get("file"), str):
+        arm["file"] = os.path.normpath(FilePath(file).parent / arm["file"])
+    return table
+
+
+def write_job(job: Table, file: str | os.PathLike[str]) -> None:
+    """Write a job that is sound to a file, whole or not at all; read_job reads it back. Raises OSError."""
+    place = FilePath(file).resolve()
+    table = {section: in_order(section, job[section]) for section in SECTIONS if section in job}
+    if "file" in table["arm"]:
+        try:
+            table["arm"]["file"] = FilePath(os.path.relpath(table["arm"]["file"], place.parent)).as_posix()
+        except ValueError:  # On another drive.
+            table["arm"]["file"] = str(FilePath(table["arm"]["file"]).resolve())
+    write_whole(place, f"# fpbm-cpp track --job {place.name}\n\n{tomlkit.dumps(table)}".encode())

@@ -1,15 +1,19 @@
-"""What a job may say: sections, the kinds of each, and their keys, as they are declared."""
+"""What a job may say, what its sections stand for, and what is wrong with them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import inf
 from typing import Any, ClassVar
 
 from .._types import OptionalArrayField
-from ..arms import ARMS, JointLimits
-from ..parameter import Data, Parameter, data, parameter
+from ..arms import ARMS, Arm, JointLimits
+from ..errors import ParameterError, suggestion
+from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..schemes import SCHEMES
-from ..table import Makers, keys
+from ..table import Makers, from_table, keys, problems
 
 Table = dict[str, Any]
 
@@ -19,11 +23,11 @@ class RunOptions(Data):
     """How a motion is run."""
 
     kind: ClassVar[str] = "run"
-    task: str = parameter(default="position", choices=("position", "pose"), help="What the tip keeps to.")
-    q0: OptionalArrayField = parameter(default=None, shape="(n,)", unit="rad", help="Joint positions at the start.")
-    qd0: OptionalArrayField = parameter(default=None, shape="(n,)", unit="rad/s", help="Joint velocities at the start.")
-    dt: float = parameter(default=1e-3, unit="s", low=0.0, open_low=True, help="Step.")
-    hold: float = parameter(default=0.0, unit="s", low=0.0, help="How long to stay on the path's end.")
+    task: str = parameter("What the tip keeps to.", default="position", choices=("position", "pose"))
+    q0: OptionalArrayField = parameter("Joint positions at the start.", default=None, shape="(n,)", unit="rad")
+    qd0: OptionalArrayField = parameter("Joint velocities at the start.", default=None, shape="(n,)", unit="rad/s")
+    dt: float = parameter("Step.", POSITIVE, default=1e-3, unit="s")
+    hold: float = parameter("How long to stay on the path's end.", NOT_NEGATIVE, default=0.0, unit="s")
 
 
 # What each section may be. Of runs and limits there is but one kind, which no file says.
@@ -43,8 +47,73 @@ def known(section: str, kind: object = None) -> dict[str, Parameter]:
     return keys(maker) if maker else {}
 
 
+# The section of a key that the library names without one.
+OWNERS = {
+    key: section
+    for section in ("arm", "path", "limits", "scheme", "run")
+    for kind in SECTIONS[section]
+    for key in known(section, kind)
+}
+
+
 def in_order(section: str, said: Any) -> Any:
     """A section with its keys in the order of their declarations."""
     if isinstance(said, list):
         return [in_order(section, each) for each in said]
     return {key: said[key] for key in ("kind", *known(section, said.get("kind"))) if key in said}
+
+
+class JobError(ValueError):
+    """A job that cannot be run. errors: everything that is wrong with it, by its keys, as 'path.radius'."""
+
+    def __init__(self, *errors: ParameterError) -> None:
+        super().__init__("\n".join(map(str, errors)))
+        self.errors = errors
+
+
+@contextmanager
+def job_errors() -> Iterator[None]:
+    """Say by a job's keys what the library refuses: raise JobError for ParameterError."""
+    try:
+        yield
+    except ParameterError as error:
+        named = error.name.partition(".")[0] in SECTIONS
+        raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
+
+
+def require_sound(job: Table) -> None:
+    """Raise JobError with all keys and values that are wrong, whatever is made of them."""
+    wrong: list[ParameterError] = []
+    for key in job:
+        if key not in SECTIONS:
+            text = f"{key}: a job has no such key: must be one of {', '.join(SECTIONS)}{suggestion(key, SECTIONS)}"
+            wrong.append(ParameterError(key, None, job[key], text))
+    if "arm" not in job:
+        wrong.append(ParameterError("arm", None, None, "arm: is missing"))
+    for section in SECTIONS:
+        if section in job:
+            wrong += problems(_whole(section, job[section]), SECTIONS[section], section, usual=True)
+    if wrong:
+        raise JobError(*wrong)
+
+
+def make(section: str, said: Table, arm: Arm | None = None) -> Any:
+    """What a section stands for, for this arm. Raises JobError."""
+    with job_errors():
+        return from_table(_whole(section, said, arm), SECTIONS[section], section, arm=arm)
+
+
+def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
+    """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
+    if not isinstance(said, dict):
+        return said
+    if said.get("kind") == "urdf":
+        return {"tip": "", **said}  # Which is refused with what links there are.
+    if section == "limits":
+        own = {name: getattr(arm.limits, name).tolist() if arm else [inf] for name in known(section)}
+        joints = arm.dof if arm else 1
+        every = {key: [value] * joints for key, value in said.items() if isinstance(value, (int, float))}
+        said = {**own, **said, **every}
+    if section == "scheme" and "weights" in known(section, said.get("kind")):
+        return {"weights": [1.0], **said}  # Which are filled in for the arm.
+    return {"kind": section, **said} if section in SECTIONS[section] else said
