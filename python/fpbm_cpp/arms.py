@@ -86,10 +86,11 @@ class Arm(Data, CoreArm):
         if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 0 < joints < self.dof:
             text = f"joints = {joints!r}: must be from 1 to {self.dof - 1}, the arm's first so many"
             raise ParameterError("joints", None, joints, text)
-        return self._first(int(joints))
-
-    def _first(self, joints: int) -> Arm:
-        raise NotImplementedError
+        if isinstance(self, PlanarArm):
+            return PlanarArm(self.lengths[:joints])
+        assert isinstance(self, SerialArm)
+        driven = [i for i, joint in enumerate(self.joints) if joint.mimic is None]
+        return SerialArm(self.joints[: driven[joints - 1] + 1])
 
 
 @data
@@ -107,9 +108,6 @@ class PlanarArm(Arm):
 
     def _finish(self) -> None:
         CoreArm.__init__(self, self.lengths)
-
-    def _first(self, joints: int) -> PlanarArm:
-        return PlanarArm(self.lengths[:joints])
 
 
 @data
@@ -135,9 +133,6 @@ class SerialArm(Arm):
         named = tuple(j if j.name else replace(j, name=f"joint_{i}") for i, j in enumerate(self.joints, 1))
         object.__setattr__(self, "joints", named)
         CoreArm.__init__(self, list(named), self.tip)
-
-    def _first(self, joints: int) -> SerialArm:
-        return SerialArm(self.joints[:joints])
 
     def __str__(self) -> str:
         return f"<SerialArm of {self.dof} joints, {self.joints[0].name} to {self.joints[-1].name}>"
@@ -174,45 +169,33 @@ class SerialArm(Arm):
             the joint is prismatic.
         convention : str
             'classic' or 'modified'.
-        types : sequence of str, optional
-            'revolute' (unless given), 'continuous' or 'prismatic'.
-        lower, upper, velocity, acceleration : array_like, shape (n,), optional
-            Bounds of each joint's motion.
-        names : sequence of str, optional
-            The joints'.
+        types, lower, upper, velocity, acceleration, names : array_like, shape (n,), optional
+            As for each Joint: 'revolute' (unless given), 'continuous' or 'prismatic', bounds of its motion, its name.
         base, tip : array_like, shape (4, 4), optional
             Frame 0 in the base frame, and the tip's frame seen from frame n.
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
-        columns = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "names": names}
-        for name, values in columns.items():
-            if values is None:
-                continue
-            entries: Any = values if name == "names" else replace(BOUND, name=name).check(values)
-            require_length(name, entries, len(rows))
-            for joint, entry in zip(joints, entries):
-                joint["name" if name == "names" else name] = entry
+        bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration}
+        columns = {name: replace(BOUND, name=name, default=None).check(values) for name, values in bounds.items()}
+        for name, values in {**columns, "names": names}.items():
+            if values is not None:
+                require_length(name, values, len(rows))
+                for joint, value in zip(joints, values):
+                    joint["name" if name == "names" else name] = value
         if base is not None and joints:
-            joints[0]["placement"] = Parameter(name="base", shape="(4, 4)").check(base) @ joints[0]["placement"]
-        return cls(_joints(joints), end if tip is None else end @ Parameter(name="tip", shape="(4, 4)").check(tip))
+            joints[0]["placement"] = _frame("base", base) @ joints[0]["placement"]
+        return cls([Joint(**joint) for joint in joints], end if tip is None else end @ _frame("tip", tip))
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], tip: str, base: str | None = None) -> SerialArm:
-        """Arm between two links of a URDF file.
+        """Arm between two links, base (the root unless given) and tip, of a URDF file; xacro must be expanded first.
 
         Fixed joints become part of the frames; bounds and names are kept; mimic joints follow. A joint that mimics one
         that does not move between base and tip is held where that one's zero puts it, with a UserWarning.
 
         Raises ValueError where the file is no sound URDF or has no chain between these links, OSError where it cannot
         be read.
-
-        Parameters
-        ----------
-        path : path
-            The file; xacro files must be expanded first.
-        tip, base : str
-            Names of links; base is the root link unless given.
         """
         from .io.urdf import read_urdf
 
@@ -224,7 +207,7 @@ class SerialArm(Arm):
         if name not in PRESETS:
             raise not_one_of("name", name, PRESETS)
         joints, tip = preset(name)
-        return cls(_joints(joints), tip)
+        return cls([Joint(**joint) for joint in joints], tip)
 
 
 def require_length(name: str, values: Sized, dof: int) -> None:
@@ -234,8 +217,8 @@ def require_length(name: str, values: Sized, dof: int) -> None:
         raise ParameterError(name, None, values, text)
 
 
-def _joints(fields: list[dict[str, Any]]) -> list[Joint]:
-    return [Joint(**joint) for joint in fields]
+def _frame(name: str, value: ArrayLike) -> Any:
+    return Parameter(name=name, shape="(4, 4)").check(value)
 
 
 def _from_urdf(file: str, tip: str, base: str | None = None) -> SerialArm:

@@ -272,3 +272,13 @@ def resolve(arm, **options):
     q = np.full(arm.dof, 0.3)
     known = arm.kinematics(q, q)
     return fp.MVN(**options).resolve(arm, q, q, known.tip, 0 * known.tip)
+
+
+def test_the_first_joints_of_an_arm_are_those_with_a_drive():
+    """A joint that mimics another is not counted, and goes with it."""
+    joints = list(PANDA.joints)
+    joints[2] = fp.Joint(placement=joints[2].placement, axis=joints[2].axis, mimic=(1, 0.5, 0.1))
+    coupled = fp.SerialArm(joints, PANDA.tip)
+    assert coupled.first(3) == fp.SerialArm(joints[:4])
+    assert coupled.first(3).dof == 3
+    assert PANDA.first(4) == ELBOW
