@@ -17,7 +17,7 @@ from PIL import Image
 from plot_runs import a_run, a_run_in_space, a_run_within_limits
 
 import fpbm_cpp as fp
-from fpbm_cpp.plot import animate, animation_file
+from fpbm_cpp.plot import animate, animation
 from fpbm_cpp.plot.theme import LIGHT
 
 SMALL: dict[str, Any] = {"dpi": 60}
@@ -108,7 +108,7 @@ def test_missing_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
 def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(animation_file, "_ffmpeg", lambda: shutil.which("cat"))
+    monkeypatch.setattr(animation, "_ffmpeg", lambda: shutil.which("cat"))
     file = tmp_path / f"a{suffix}"
     file.write_text("old")
 
@@ -117,13 +117,13 @@ def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkey
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        animation_file.animation_writer(file, 25.0)(broken())
+        animation.animation_writer(file, 25.0)(broken())
     assert file.read_text() == "old"
     assert [file.name for file in tmp_path.iterdir()] == [file.name]
 
 
 def test_errors_of_ffmpeg_are_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(animation_file, "_ffmpeg", lambda: shutil.which("cat"))
+    monkeypatch.setattr(animation, "_ffmpeg", lambda: shutil.which("cat"))
     with pytest.raises(OSError, match=r"^ffmpeg: .*cat: "):
-        animation_file.animation_writer(tmp_path / "a.mp4", 25.0)(np.zeros((3, 2, 2, 3), np.uint8))
+        animation.animation_writer(tmp_path / "a.mp4", 25.0)(np.zeros((3, 2, 2, 3), np.uint8))
     assert not list(tmp_path.iterdir())

@@ -5,7 +5,7 @@ function of axes and run, for figures of your own. Nothing here uses matplotlib.
 without global state, and work without a display and in several threads. Show one with IPython's display(run.plot()),
 or write it with run.plot().savefig("run.pdf").
 
-Imports go one way: theme ← lines ← panels (arm, errors, joints, limits, measures) ← run_figure, comparison, animation.
+Imports go one way: theme ← lines ← arm ← panels ← figures ← animation.
 """
 
 try:
@@ -16,13 +16,23 @@ except ModuleNotFoundError as missing:
 from ..skeleton import joint_points
 from .animation import animate
 from .arm import arm_panel
-from .comparison import compare
-from .errors import error_panel, orientation_error_panel, tip_error_panel
-from .joints import acceleration_panel, position_panel, velocity_panel
-from .limits import saturation_panel, scale_panel
-from .measures import manipulability_panel, min_singular_values, null_space_panel, null_space_velocities
-from .panels import OVERVIEW, PANELS
-from .run_figure import plot_run
+from .figures import compare, plot_run
+from .panels import (
+    OVERVIEW,
+    PANELS,
+    acceleration_panel,
+    error_panel,
+    manipulability_panel,
+    min_singular_values,
+    null_space_panel,
+    null_space_velocities,
+    orientation_error_panel,
+    position_panel,
+    saturation_panel,
+    scale_panel,
+    tip_error_panel,
+    velocity_panel,
+)
 from .theme import DARK, DASHES, LIGHT, OKABE_ITO, Theme
 
 __all__ = [

@@ -1,24 +1,33 @@
-"""Animation of one motion: the arm and the trail of its tip, beside panels with a time cursor."""
+"""Animation of one motion, and its file: .mp4 by ffmpeg, .gif by Pillow, which comes with matplotlib."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import shutil
+import subprocess
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import NDArray
+from PIL import Image
 
 from .._types import Array
+from ..io.write_whole import write_whole
 from ..motion.run import Run
 from ..parameter import Parameter
 from ..skeleton import joint_points
-from .animation_file import animation_writer
 from .arm import LINK, draw_base, draw_target, frame_arm
-from .legends import head_legend
-from .panels import PANELS, Panel, choose
-from .run_figure import lay_out
+from .figures import lay_out
+from .lines import head_legend
+from .panels import Panel, choose
 from .theme import TEXT, Theme, theme_of
+
+Frame = NDArray[np.uint8]
+FASTEST_GIF = 50.0  # Frames per second; many programs play faster files slowly.
 
 
 def animate(
@@ -35,11 +44,9 @@ def animate(
 
     Parameters
     ----------
-    run : Run
-        The motion.
     file : path
-        The file, replaced if it exists: .mp4, which needs ffmpeg or the extra 'animation', or .gif. It is written
-        whole or not at all.
+        The file: .mp4, which needs ffmpeg or the extra 'animation', or .gif. An existing one is replaced, whole or not
+        at all.
     fps : float
         Frames per second.
     speed : float
@@ -64,27 +71,42 @@ def animate(
         Parameter(name, float, low=0.0, open_low=True).check(value)
     if not len(run.t):
         raise ValueError("run: has no samples to animate")
-    shown = {name: PANELS[name] for name in choose(run, panels) if name != "arm"}
+    shown = {name: panel for name, panel in choose(run, panels).items() if name != "arm"}
     write = animation_writer(Path(file), fps)
     times = np.append(np.arange(run.t[0], run.t[-1], speed / fps), run.t[-1])
     samples = np.searchsorted(run.t, times).clip(max=len(run.t) - 1)
     write(_frames(run, samples, {"arm": Panel("", _draw_background), **shown}, theme_of(dark), dpi))
 
 
-def _frames(
-    run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float
-) -> Iterator[NDArray[np.uint8]]:
+def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float) -> Iterator[Frame]:
     """Frames of the samples, shape (height, width, 3); what does not move is drawn once."""
     figure, drawn = lay_out(run, "", panels, theme, lettered=False)
     figure.set_dpi(dpi)
     canvas: Any = FigureCanvasAgg(figure)
-    moving = _MovingParts(run, drawn, theme)
+    axes = drawn.pop("arm")
+    nowhere = np.full((run.positions.shape[1], 1), np.nan)
+    (trail,) = axes.plot(*nowhere, color=theme.tip, lw=2.4, animated=True)
+    (arm,) = axes.plot(*nowhere, color=theme.fade(1.0), mec=theme.paper, animated=True, **{**LINK, "lw": 2.6})
+    style = {"textcoords": "offset points", "fontsize": TEXT, "fontweight": "bold", "color": theme.ink}
+    clock = axes.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), animated=True, **style)
+    cursors = [panel.axvline(run.t[0], color=theme.ink, lw=0.9, animated=True) for panel in drawn.values()]
     canvas.draw()
     background = canvas.copy_from_bbox(figure.bbox)
     for sample in samples:
         canvas.restore_region(background)
-        moving.draw(sample)
+        _set_points(trail, run.positions[: sample + 1])
+        _set_points(arm, joint_points(run.arm, run.q[sample]))
+        clock.set_text(f"t = {run.t[sample]:.2f} s")
+        for cursor in cursors:
+            cursor.set_xdata([run.t[sample]])
+        for artist in (trail, arm, clock, *cursors):
+            artist.axes.draw_artist(artist)
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _set_points(line: Any, points: Array) -> None:
+    """Move a line in the plane or in space."""
+    (line.set_data if points.shape[1] == 2 else line.set_data_3d)(*points.T)
 
 
 def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
@@ -99,31 +121,64 @@ def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
     head_legend(axes, theme, [trail, *target])
 
 
-class _MovingParts:
-    """What is drawn anew in each frame: trail, arm, time and cursors."""
+def animation_writer(file: Path, fps: float) -> Callable[[Iterable[Frame]], None]:
+    """A function that writes frames, all of one shape (height, width, 3), to a file: whole, or not at all.
 
-    def __init__(self, run: Run, drawn: Mapping[str, Any], theme: Theme) -> None:
-        axes = drawn["arm"]
-        style = {"textcoords": "offset points", "fontsize": TEXT, "fontweight": "bold", "color": theme.ink}
-        nowhere = np.full((run.positions.shape[1], 1), np.nan)
-        self.run = run
-        (self.trail,) = axes.plot(*nowhere, color=theme.tip, lw=2.4, animated=True)
-        (self.arm,) = axes.plot(*nowhere, color=theme.fade(1.0), mec=theme.paper, animated=True, **{**LINK, "lw": 2.6})
-        self.clock = axes.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), animated=True, **style)
-        panels = [other for other in drawn.values() if other is not axes]
-        self.cursors = [panel.axvline(run.t[0], color=theme.ink, lw=0.9, animated=True) for panel in panels]
+    Raises at once, before anything is drawn: ValueError for another suffix than .mp4 and .gif, OSError if the folder
+    does not exist, ImportError if ffmpeg is missing.
+    """
+    suffix = file.suffix.lower()
+    if suffix not in (".mp4", ".gif"):
+        raise ValueError(f"file = {str(file)!r}: must end in .mp4 or .gif")
+    if suffix == ".gif" and fps > FASTEST_GIF:
+        raise ValueError(f"fps = {fps:g}: must be at most {FASTEST_GIF:g} in a .gif")
+    if not file.parent.is_dir():
+        raise FileNotFoundError(f"file = {str(file)!r}: there is no folder {str(file.parent)!r}")
+    ffmpeg = _ffmpeg() if suffix == ".mp4" else ""
 
-    def draw(self, sample: int) -> None:
-        run = self.run
-        _set_points(self.trail, run.positions[: sample + 1])
-        _set_points(self.arm, joint_points(run.arm, run.q[sample]))
-        self.clock.set_text(f"t = {run.t[sample]:.2f} s")
-        for cursor in self.cursors:
-            cursor.set_xdata([run.t[sample]])
-        for artist in (self.trail, self.arm, self.clock, *self.cursors):
-            artist.axes.draw_artist(artist)
+    def write(frames: Iterable[Frame]) -> None:
+        rest = iter(frames)
+        first = next(rest)
+        with TemporaryDirectory() as folder:
+            part = Path(folder, "animation" + suffix)
+            if ffmpeg:
+                _write_mp4(part, first, chain([first], rest), fps, ffmpeg)
+            else:
+                _write_gif(part, first, chain([first], rest), fps)
+            write_whole(file, part.read_bytes())
+
+    return write
 
 
-def _set_points(line: Any, points: Array) -> None:
-    """Move a line in the plane or in space."""
-    (line.set_data if points.shape[1] == 2 else line.set_data_3d)(*points.T)
+def _ffmpeg() -> str:
+    """The machine's ffmpeg, or imageio-ffmpeg's."""
+    if found := shutil.which("ffmpeg"):
+        return found
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ModuleNotFoundError, RuntimeError) as missing:
+        raise ImportError('a .mp4 needs ffmpeg: pip install "fpbm_cpp[animation]", or write a .gif') from missing
+
+
+def _write_mp4(file: Path, first: Frame, frames: Iterable[Frame], fps: float, ffmpeg: str) -> None:
+    height, width = (side // 2 * 2 for side in first.shape[:2])  # yuv420p stores one colour for 2 × 2 pixels.
+    source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}", "-i", "-"]
+    command = [ffmpeg, "-loglevel", "error", *source, "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(file)]
+    with TemporaryFile() as errors:
+        with suppress(BrokenPipeError), subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as process:
+            assert process.stdin is not None
+            for frame in frames:
+                process.stdin.write(frame[:height, :width].tobytes())
+        if process.returncode:
+            errors.seek(0)
+            raise OSError(f"ffmpeg: {errors.read().decode(errors='replace').strip()}")
+
+
+def _write_gif(file: Path, first: Frame, frames: Iterable[Frame], fps: float) -> None:
+    colours = Image.fromarray(first).quantize(kmeans=1)  # One palette, so that what does not move is stored once.
+    images = [Image.fromarray(frame).quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
+    ends = np.round(np.arange(len(images) + 1) * 100.0 / fps)
+    durations = (10 * np.diff(ends)).astype(int).tolist()  # [ms]; a .gif counts in steps of 10 ms.
+    images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0)

@@ -11,11 +11,12 @@ from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
 from ..skeleton import joint_points, tip_axes
-from .legends import head_legend
+from .lines import head_legend
 from .theme import LIGHT, TEXT, Theme
 
 SNAPSHOTS = 11
-LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, "solid_capstyle": "round"}
+ROUND = {"solid_capstyle": "round"}
+LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
 
 
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
@@ -31,9 +32,17 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     draw_base(axes, run.arm, q[-1], theme)
     tip = axes.plot(*run.positions.T, color=theme.tip, lw=2.4, label="tip")
     target = draw_target(axes, run, theme)
-    _draw_tip_axes(axes, run.arm, q[-1], theme)
+    last = joint_points(run.arm, q[-1])
+    length = 0.12 * np.ptp(last, axis=0).max()
+    for axis, colour in zip(tip_axes(run.arm, q[-1]).T, theme.axes):
+        axes.plot(*np.stack([last[-1], last[-1] + length * axis]).T, color=colour, lw=1.6, zorder=3, **ROUND)
     frame_arm(axes, theme)
-    _draw_time_scale(axes, ScalarMappable(time, theme.fade), theme)
+    pad = 0.13 if axes.name == "3d" else 0.02
+    times = ScalarMappable(time, theme.fade)
+    bar = axes.figure.colorbar(times, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=pad)
+    bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
+    bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
+    bar.outline.set(edgecolor=theme.ink, linewidth=0.7)
     head_legend(axes, theme, [*tip, *target])
 
 
@@ -52,15 +61,6 @@ def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
     """Draw the path that the tip is to follow."""
     style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
     return list(axes.plot(*run.reference_positions.T, **style))
-
-
-def _draw_tip_axes(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
-    """Draw the tip's axes in posture q: x, y and z in red, green and blue."""
-    points = joint_points(arm, q)
-    length = 0.12 * np.ptp(points, axis=0).max()
-    for axis, colour in zip(tip_axes(arm, q).T, theme.axes):
-        ends = np.stack([points[-1], points[-1] + length * axis])
-        axes.plot(*ends.T, color=colour, lw=1.6, solid_capstyle="round", zorder=3)
 
 
 def frame_arm(axes: Any, theme: Theme) -> None:
@@ -89,12 +89,3 @@ def frame_arm(axes: Any, theme: Theme) -> None:
         axis.line.set_color(theme.ink)
         axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space offer no other way.
         axis.labelpad = -5.0
-
-
-def _draw_time_scale(axes: Any, colours: ScalarMappable, theme: Theme) -> None:
-    """Draw the colour bar of the postures' times."""
-    pad = 0.13 if axes.name == "3d" else 0.02
-    bar = axes.figure.colorbar(colours, ax=axes, location="bottom", aspect=45, fraction=0.06, pad=pad)
-    bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
-    bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
-    bar.outline.set(edgecolor=theme.ink, linewidth=0.7)

@@ -1,20 +1,168 @@
-"""The panels that a figure of a motion may have, by name."""
+"""The panels of a motion over time, each a function of axes and run, and by name all that a figure may have."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from math import ceil
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from .._types import Array
+from ..arms import Arm
 from ..motion.run import Run
+from ..skeleton import joint_labels, joint_units
 from .arm import arm_panel
-from .errors import error_panel, orientation_error_panel, tip_error_panel
-from .joints import acceleration_panel, position_panel, velocity_panel
-from .limits import saturation_panel, scale_panel
-from .measures import manipulability_panel, null_space_panel
-from .theme import Theme
+from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
+from .theme import LIGHT, LINE, Theme, dress
+
+NEAR = 0.1  # Of the distance between a joint's bounds.
 
 
-@dataclass(frozen=True)
-class Panel:
+def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Norm of the position error and, where the task is a pose, of the orientation error, on a logarithmic axis."""
+    parts = {"[m]": run.position_error, "[rad]": run.orientation_error}
+    for (name, rows), (colour, dash) in zip(parts.items(), theme.styles()):
+        if rows.shape[1]:
+            axes.plot(*envelope(run.t, np.linalg.norm(rows, axis=1)), color=colour, ls=dash, lw=LINE, label=name)
+    over_time(axes, r"$\|e\|$" if run.task == "pose" else r"$\|e\|$ [m]")
+    in_decades(axes)
+    if run.task == "pose":
+        head_legend(axes, theme)
+
+
+def error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Position error along each axis, in units of a power of ten."""
+    _components(axes, run, theme, run.position_error, ["x", "y", "z"], "m")
+
+
+def orientation_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Orientation error about each axis, in units of a power of ten."""
+    error = run.orientation_error
+    _components(axes, run, theme, error, ["angle"] if error.shape[1] == 1 else ["about x", "y", "z"], "rad")
+
+
+def _components(axes: Any, run: Run, theme: Theme, error: Array, names: Sequence[str], unit: str) -> None:
+    largest = float(np.abs(error).max(initial=0.0))
+    exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
+    scale = f"[$10^{{{exponent}}}$ {unit}]" if exponent else f"[{unit}]"
+    draw_lines(axes, theme, run.t, error / 10.0**exponent, names, f"error {scale}")
+    head_legend(axes, theme)
+
+
+def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Joint positions, and the bounds that a joint comes near."""
+    _joint_lines(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
+
+
+def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Joint velocities, and the bounds that a joint comes near."""
+    _joint_lines(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity)
+
+
+def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Joint accelerations, and the bounds that a joint comes near."""
+    _joint_lines(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
+
+
+def joint_names(arm: Arm) -> list[str]:
+    """The joints' names for a legend; prismatic joints are marked where there are revolute ones too."""
+    names, units = joint_labels(arm), joint_units(arm)
+    return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
+
+
+def unit_of(runs: Sequence[Run], per: str) -> str:
+    """Unit of a quantity of all joints: 'rad/s', or 'rad/s, m/s' where some are prismatic."""
+    units = sorted({unit for run in runs for unit in joint_units(run.arm)}, reverse=True)
+    return ", ".join(unit + per for unit in units)
+
+
+def _joint_lines(
+    axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array
+) -> None:
+    """A line for each joint, and at each bound that one comes near: in its colour, or in ink where several share it."""
+    draw_lines(axes, theme, run.t, values, joint_names(run.arm), f"{symbol} [{unit_of([run], per)}]")
+    span = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
+    colours = [colour for (colour, _), _ in zip(theme.styles(), lower)]
+    label = "bound"
+    for bounds, gaps in ((lower, values - lower), (upper, upper - values)):
+        near = gaps.min(axis=0, initial=np.inf) < NEAR * span
+        for bound in np.unique(bounds[near]):
+            owners = np.flatnonzero(near & (bounds == bound))
+            colour = colours[owners[0]] if len(owners) == 1 else theme.ink
+            axes.axhline(bound, color=colour, lw=0.8, ls=(0, (1, 1)), label=label, zorder=1.5)
+            label = "_bound"
+    side_legend(axes, theme)
+
+
+def scale_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Task scale: the share of the commanded motion that the limits allowed, from 0 to 1."""
+    assert run.scale is not None
+    axes.plot(run.t, run.scale, color=theme.lines[0], lw=LINE)
+    axes.fill_between(run.t, run.scale, color=theme.lines[0], alpha=0.15, lw=0)
+    over_time(axes, "task scale")
+    axes.set(ylim=(0.0, 1.05), yticks=(0.0, 0.5, 1.0))
+
+
+def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """A bar for each time that a joint was on a bound."""
+    assert run.saturated is not None
+    n = run.arm.dof
+    ends = np.append(run.t, run.t[-1:])
+    for joint, on, (colour, _) in zip(range(1, n + 1), run.saturated.T, theme.styles()):
+        edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
+        spans = [(ends[a], ends[b] - ends[a]) for a, b in zip(edges[::2], edges[1::2])]
+        axes.broken_barh(spans, (joint - 0.4, 0.8), color=colour, lw=0)
+    over_time(axes, "joint")
+    axes.set(ylim=(n + 0.6, 0.4), yticks=range(1, n + 1, ceil(n / 8)))
+    axes.grid(False, axis="y")
+    axes.set_xlim(*(run.t[[0, -1]] if len(run.t) > 1 else (0.0, 1.0)))
+
+
+def manipulability_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """√det(JJᵀ), which is 0 in a singular posture (Yoshikawa, 1985), and on its own scale J's least singular value."""
+    right = axes.twinx()
+    dress(right, theme, "")
+    right.grid(False)
+    right.spines["left"].set_visible(False)
+    right.spines["right"].set_visible(True)
+    lines = (
+        (axes, "left", "√det(JJᵀ)  —", run.manipulability(), theme.lines[0], "-"),
+        (right, "right", r"$\sigma_\mathrm{min}(J)$  - -", min_singular_values(run), theme.lines[5], "--"),
+    )
+    for side, spine, label, values, colour, dash in lines:
+        side.plot(run.t, values, color=colour, ls=dash, lw=LINE)
+        over_time(side, label)
+        from_zero(side)
+        side.yaxis.label.set_color(colour)
+        side.tick_params(axis="y", colors=colour)
+        side.spines[spine].set_color(colour)
+
+
+def null_space_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Norm of the joint velocity that does not move the tip: ‖(I − J⁺J) qd‖."""
+    axes.plot(run.t, null_space_velocities(run), color=theme.lines[0], lw=LINE)
+    over_time(axes, rf"$\|\dot q_N\|$ [{unit_of([run], '/s')}]")
+    from_zero(axes)
+
+
+def min_singular_values(run: Run) -> Array:
+    """Least singular value of the task's Jacobian at each sample, shape (N,)."""
+    return np.asarray(np.linalg.svd(_jacobians(run), compute_uv=False)[:, -1])
+
+
+def null_space_velocities(run: Run) -> Array:
+    """‖(I − J⁺J) qd‖ at each sample, shape (N,)."""
+    _, s, Vt = np.linalg.svd(_jacobians(run), full_matrices=False)
+    row_space = (s > 1e-12 * s[:, :1])[..., None] * Vt  # J's rank is less than m in a singular posture.
+    return np.asarray(np.linalg.norm(run.qd - np.einsum("kmi,kmj,kj->ki", row_space, Vt, run.qd), axis=1))
+
+
+def _jacobians(run: Run) -> Array:
+    """J at each sample, shape (N, m, n)."""
+    m = run.error.shape[1]
+    return np.array([run.arm.jacobian(q, task=run.task) for q in run.q]).reshape(-1, m, run.arm.dof)
+
+
+class Panel(NamedTuple):
     """A panel: its heading, its function, whether it has a line for each joint, and whether a run has data for it."""
 
     heading: str
@@ -41,7 +189,7 @@ PANELS = {
 OVERVIEW = tuple(name for name in PANELS if not name.startswith("axis"))
 
 
-def choose(run: Run, panels: str | Sequence[str] | None) -> list[str]:
+def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
     """The panels asked for, or OVERVIEW, without those that the run has no data for. Raises ValueError."""
     asked = OVERVIEW if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
     for name in asked:
@@ -49,7 +197,7 @@ def choose(run: Run, panels: str | Sequence[str] | None) -> list[str]:
             raise ValueError(f"panels: {name!r} must be one of {', '.join(PANELS)}")
         if asked.count(name) > 1:
             raise ValueError(f"panels: {name!r} is given twice")
-    names = [name for name in asked if PANELS[name].suits(run)]
-    if not names:
+    chosen = {name: PANELS[name] for name in asked if PANELS[name].suits(run)}
+    if not chosen:
         raise ValueError(f"panels: {asked} leave nothing to draw of this run")
-    return names
+    return chosen

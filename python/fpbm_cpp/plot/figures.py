@@ -1,0 +1,150 @@
+"""Figures of one motion and of several, laid out on a column or a page of a paper."""
+
+import re
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from math import ceil
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .._types import Array
+from ..motion.run import Run
+from .lines import envelope, foot_height, foot_legend, from_zero, in_decades, label_time_below, over_time
+from .panels import Panel, choose, joint_names, unit_of
+from .theme import COLUMN, PAGE, TITLE_ROW, Theme, dress, sheet, theme_of
+
+ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
+
+
+def plot_run(
+    run: Run, title: str | None = None, panels: str | Sequence[str] | None = None, *, dark: bool = False
+) -> Figure:
+    """Figure of a run, as far as it went: the arm on the left, the first panels beside it, the others below it.
+
+    Its text is 9 points high. It is two columns of a paper wide, or one column where there are few panels and no arm.
+    title is by default the scheme and the path. panels are names from PANELS, by default all but the components of the
+    error; those that the run has no data for are left out: 'scale' and 'saturation' without joint limits,
+    'axis_orientation_errors' where the task is a position. dark draws on black. Raises ValueError if a panel is unknown
+    or given twice, or no panel is left.
+    """
+    chosen = choose(run, panels)
+    if title is None:
+        title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42)
+    return lay_out(run, title, chosen, theme_of(dark), lettered=len(chosen) > 1)[0]
+
+
+def _title(run: Run, width: int) -> str:
+    """Scheme and path, in lines of so many characters, and when the motion stopped if it stopped early."""
+
+    def short(part: object) -> str:
+        return re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4g}", repr(part))
+
+    whole = f"{short(run.scheme)} along {short(run.path)}"
+    lines = [whole] if len(whole) <= width else [short(run.scheme), f"along {short(run.path)}"]
+    if not run.status:
+        lines.append(f"stopped after t = {run.status.time:g} s")
+    return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …"))
+
+
+def lay_out(
+    run: Run, title: str, panels: Mapping[str, Panel], theme: Theme, lettered: bool
+) -> tuple[Figure, dict[str, Any]]:
+    """Figure of these panels, and the axes of each."""
+    columns, rows = _columns(panels)
+    width = PAGE if len(columns) > 1 else COLUMN
+    foot = foot_height(joint_names(run.arm) if any(panel.of_joints for panel in panels.values()) else [], width)
+    # Up to three panels beside the arm fill a slide of 16:9.
+    slide = SLIDE - foot - (TITLE_ROW * (title.count("\n") + 1) if title else 0.0)
+    body = slide if "arm" in panels and rows <= 3 else ROW * rows + 0.25
+    figure, (upper, *lower) = sheet(width, [body, foot] if foot else [body], title, theme)
+    drawn: dict[str, Any] = {}
+    for side, column in zip(upper.subfigures(1, len(columns), squeeze=False)[0], columns):
+        heights = [rows - len(column) + 1 if name == "arm" else 1 for name in column]
+        for name, cell in zip(column, side.add_gridspec(len(column), 1, height_ratios=heights)):
+            space = name == "arm" and run.positions.shape[1] == 3
+            drawn[name] = side.add_subplot(cell, projection="3d" if space else None)
+    for letter, (name, axes) in zip("abcdefghijkl", drawn.items()):
+        dress(axes, theme, f"({letter}) {panels[name].heading}" if lettered else panels[name].heading)
+        panels[name].draw(axes, run, theme)
+    for column in columns:
+        label_time_below([drawn[name] for name in column if name != "arm"])
+    for part in lower:
+        foot_legend(part, theme, [axes for name, axes in drawn.items() if panels[name].of_joints], width)
+    return figure, drawn
+
+
+def _columns(panels: Mapping[str, Panel]) -> tuple[list[list[str]], int]:
+    """The panels of each column, and the number of rows; the arm takes the rows that its column has left."""
+    rest = [name for name in panels if name != "arm"]
+    if "arm" in panels:
+        rows = ceil(len(rest) / 2) + 1
+        columns = [["arm", *rest[rows:]], rest[:rows]]
+    else:
+        rows = len(rest) if len(rest) <= 3 else ceil(len(rest) / 2)
+        columns = [rest[:rows], rest[rows:]]
+    return [column for column in columns if column], rows
+
+
+class Quantity(NamedTuple):
+    """What a panel of a comparison shows: the norm of each row of an array of the run."""
+
+    heading: str
+    rows: Callable[[Run], Array]
+    symbol: str
+    per: str | None = None  # A quantity of the joints, whose unit is the joints' and this.
+    log: bool = False
+
+
+VELOCITIES = Quantity("Joint velocities", lambda run: run.qd, r"$\|\dot q\|$", "/s")
+ACCELERATIONS = Quantity("Joint accelerations", lambda run: run.qdd, r"$\|\ddot q\|$", "/s²")
+MANIPULABILITY = Quantity("Manipulability", lambda run: run.manipulability()[:, None], "√det(JJᵀ)")
+TIP_ERROR = Quantity("Tip error", lambda run: run.position_error, r"$\|e\|$ [m]", log=True)
+POSITION_TASK = (VELOCITIES, ACCELERATIONS, TIP_ERROR, MANIPULABILITY)
+POSE_TASK = (
+    VELOCITIES,
+    ACCELERATIONS,
+    Quantity("Distance from the first posture", lambda run: run.q - run.q[:1], r"$\|q - q(0)\|$", ""),
+    TIP_ERROR._replace(heading="Position error"),
+    Quantity("Orientation error", lambda run: run.orientation_error, r"$\|e\|$ [rad]", log=True),
+    MANIPULABILITY,
+)
+
+
+def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: bool = False) -> Figure:
+    """Figure of several runs, with one line for each; runs without names are named after their schemes.
+
+    Its panels show joint velocities, joint accelerations, tip error and manipulability over time; where the task is a
+    pose, also the orientation error and the distance of the joints from where they began. dark draws on black. Raises
+    ValueError if there is no run.
+    """
+    named = dict(runs) if isinstance(runs, Mapping) else _named(runs)
+    if not named:
+        raise ValueError("runs: must hold at least one run")
+    theme, shown = theme_of(dark), list(named.values())
+    quantities = POSE_TASK if any(run.task == "pose" for run in shown) else POSITION_TASK
+    rows = len(quantities) // 2
+    figure, (upper, lower) = sheet(PAGE, [COMPARED_ROW * rows, foot_height(list(named), PAGE)], title, theme)
+    grid = upper.subplots(rows, 2)
+    for letter, axes, (heading, rows_of, symbol, per, log) in zip("abcdef", grid.T.flat, quantities):
+        dress(axes, theme, f"({letter}) {heading}")
+        # The first line is widest, so that lines which coincide are all seen.
+        for run, (colour, dash), width in zip(shown, theme.styles(), np.linspace(3.0, 1.4, len(shown))):
+            t, norms = run.t, np.linalg.norm(rows_of(run), axis=1)
+            axes.plot(*(envelope(t, norms) if log else (t, norms)), color=colour, ls=dash, lw=width)
+        over_time(axes, symbol if per is None else f"{symbol} [{unit_of(shown, per)}]")
+        in_decades(axes) if log else from_zero(axes)
+    for column in grid.T:
+        label_time_below(list(column))
+    foot_legend(lower, theme, [grid[0, 0]], PAGE, list(named))
+    return figure
+
+
+def _named(runs: Sequence[Run]) -> dict[str, Run]:
+    """Runs by the names of their schemes, numbered where several have the same name."""
+    names = [type(run.scheme).__name__ for run in runs]
+    return {
+        name if names.count(name) == 1 else f"{name} {names[: i + 1].count(name)}": run
+        for i, (name, run) in enumerate(zip(names, runs))
+    }
