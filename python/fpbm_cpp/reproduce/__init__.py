@@ -1,6 +1,6 @@
 """The paper's results from beginning to end: 18 motions, figures, tables, errata and claims.
 
-Imports go one way: paper.json → cases (runs) → tables, figures, claims → report.
+Imports go one way: paper.json → cases (runs) → claims → report (figures and tables).
 """
 
 from collections.abc import Callable
@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..io.write_whole import write_whole
-from .cases import Result, load, run_all
+from .cases import Result, load, of_figures, run_all
 from .claims import Claim, check_claims
-from .figures import make_figure, rendered
-from .report import TOLERANCE, make_report, summary
-from .tables import Table, make_tables
+from .report import TOLERANCE, Table, make_figure, make_report, make_tables, rendered, summary
 
 __all__ = ["Reproduction", "reproduce"]
 
@@ -34,28 +32,17 @@ class Reproduction:
 
 
 def reproduce(out: Path, say: Callable[[str], None] = lambda step: None) -> Reproduction:
-    """Run all of the paper's cases, and write report.md, fig1.png … fig8.png and fig1.pdf … fig8.pdf.
+    """Run all of the paper's cases, and write report.md, fig1.png … fig8.png and fig1.pdf … fig8.pdf to a folder.
 
-    Parameters
-    ----------
-    out : pathlib.Path
-        Folder to write to, created if it does not exist. Only these 17 files in it are touched; each is written whole
-        or not at all.
-    say : callable
-        Called with a few words at each step.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
+    The folder is made where it is missing. Only these 17 files in it are touched; each is written whole or not at all.
+    say is called with a few words at each step. Raises OSError if a file cannot be written.
     """
-    out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     paper = load()
     say(f"running {len(paper.cases)} cases")
     results = run_all(paper)
     files = []
-    for result in sorted((r for r in results if r.case.figure), key=lambda r: r.case.figure):
+    for result in of_figures(results):
         say(f"drawing Fig. {result.case.figure}")
         drawn = make_figure(result)
         for kind in ("png", "pdf"):

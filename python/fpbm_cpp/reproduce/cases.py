@@ -22,33 +22,18 @@ NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tric
 
 @dataclass(frozen=True)
 class Case:
-    """One motion of the paper.
+    """One motion of the paper: where and what is printed of it, and an independent solution's last sample."""
 
-    Attributes
-    ----------
-    path : str
-        'circle', 'lissajous' or 'tricuspid'.
-    reference_q, reference_qd : sequence of n floats
-        Final joint positions [rad] and velocities [rad/s] of an independent solution.
-    fpbm : mapping
-        Parameters of FPBM; empty for MAN.
-    table, row, figure
-        Where the paper has it: '1' or '2, 3', the name of the row, the figure's number.
-    printed_qd, printed_error, misprinted_joint
-        Printed final joint velocities [rad/s] and largest tip error [m], None if not printed, and the joint (1 to n)
-        whose velocity is a misprint.
-    """
-
-    path: str
-    reference_q: Sequence[float]
-    reference_qd: Sequence[float]
-    fpbm: Mapping[str, Any] = field(default_factory=dict)
-    table: str | None = None
+    path: str  # 'circle', 'lissajous' or 'tricuspid'.
+    reference_q: Sequence[float]  # [rad]
+    reference_qd: Sequence[float]  # [rad/s]
+    fpbm: Mapping[str, Any] = field(default_factory=dict)  # Parameters of FPBM; empty for MAN.
+    table: str | None = None  # '1' or '2, 3'.
     row: str | None = None
     figure: int = 0
-    printed_qd: Sequence[float] | None = None
-    printed_error: float | None = None
-    misprinted_joint: int = 0
+    printed_qd: Sequence[float] | None = None  # At the end [rad/s].
+    printed_error: float | None = None  # The largest [m].
+    misprinted_joint: int = 0  # Whose velocity is a misprint, 1 to n.
 
     @property
     def scheme(self) -> Scheme:
@@ -128,3 +113,8 @@ def load() -> Paper:
 def run_all(paper: Paper) -> list[Result]:
     """Simulate every case."""
     return [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
+
+
+def of_figures(results: Sequence[Result]) -> list[Result]:
+    """The results that have a figure, in the figures' order."""
+    return sorted((result for result in results if result.case.figure), key=lambda result: result.case.figure)

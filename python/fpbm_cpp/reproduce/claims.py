@@ -10,7 +10,7 @@ import numpy as np
 from .._types import Array
 from ..motion.run import Run
 from ..schemes import FPBM, MAN, Balanced, Scheme
-from .cases import DT, NAMES, Paper, Result
+from .cases import DT, NAMES, Paper, Result, of_figures
 
 COARSE = 0.2  # Step of the coarse runs [s]: 50 steps over a path.
 HOLD = 30.0  # [s]
@@ -180,7 +180,7 @@ def _fpbm(paper: Paper, **more: Any) -> FPBM:
 
 def _against_man(results: Sequence[Result], measure: Callable[[Run], float]) -> tuple[dict[str, float], str]:
     """Ratio of FPBM's largest measure to MAN's for each path of the figures, and a sentence of all measures."""
-    shown = sorted((r for r in results if r.case.figure), key=lambda r: r.case.figure)
+    shown = of_figures(results)
     ratios, words = {}, []
     for man in (r for r in shown if not r.case.fpbm):
         path = man.case.path

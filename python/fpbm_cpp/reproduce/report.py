@@ -1,18 +1,110 @@
 """The report: settings, figures, tables, errata, claims."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from io import BytesIO
+from itertools import zip_longest
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from .._core import __version__
 from ..paths import Circle
-from .cases import DT, Erratum, Paper, Result
+from ..plot import plot_run
+from .cases import DT, NAMES, Case, Erratum, Paper, Result, of_figures
 from .claims import Claim
-from .figures import caption
-from .tables import Table
 
 TOLERANCE = 1e-9  # Between our runs and the independent solution [rad, rad/s].
+PANELS = ("arm", "axis_errors", "velocities", "accelerations")
+COLUMNS = "Final joint velocities [rad/s] and largest tip error [m]"
+
+
+def caption(case: Case) -> str:
+    """Path, scheme and parameters in words."""
+    if not case.fpbm:
+        return f"{NAMES[case.path]} under MAN: minimum acceleration norm, no feedback"
+    p = case.fpbm
+    gains = f"k₁ = {p['k1']:g} s⁻¹, k₂ = {p['k2']:g} s⁻²"
+    return f"{NAMES[case.path]} under FPBM: α = {p['alpha']}, W = {case.weights}, {gains}"
+
+
+def make_figure(result: Result) -> Figure:
+    """The figure of a case; the paper's figures of the tricuspid have no accelerations."""
+    title = f"Fig. {result.case.figure}   {caption(result.case)}"
+    return plot_run(result.run, title, PANELS[:3] if result.case.path == "tricuspid" else PANELS)
+
+
+def rendered(drawn: Figure, kind: str) -> bytes:
+    """The figure as 'png' or 'pdf': the same bytes every time."""
+    file = BytesIO()
+    drawn.savefig(file, format=kind, metadata={"CreationDate": None} if kind == "pdf" else None)
+    drawn.set_layout_engine("none")  # The second file takes the layout of the first.
+    return file.getvalue()
+
+
+@dataclass(frozen=True)
+class Table:
+    """A title, a header and rows of text; the first two columns are words, the others numbers."""
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    def text(self) -> str:
+        """The table for a terminal."""
+        widths = [max(map(len, column)) for column in zip(self.header, *self.rows)]
+        lines = [
+            "  ".join(f"{cell:{'<' if i < 2 else '>'}{width}}" for i, (cell, width) in enumerate(zip(row, widths)))
+            for row in (self.header, tuple("-" * width for width in widths), *self.rows)
+        ]
+        return "\n".join([self.title, COLUMNS, *(line.rstrip() for line in lines)])
+
+    def markdown(self) -> str:
+        """The table for report.md."""
+        rule = (":--",) * 2 + ("--:",) * (len(self.header) - 2)
+        lines = ["| " + " | ".join(row) + " |" for row in (self.header, rule, *self.rows)]
+        return "\n".join([f"### {self.title}\n\n{COLUMNS}.\n", *lines]).replace("*", r"\*")
+
+
+def make_tables(results: Sequence[Result]) -> list[Table]:
+    """Table 1, Tables 2 and 3, and the numbers in the text about the figures."""
+    return [
+        _table(
+            "Table 1. Circle, FPBM, W = diag(1, 2, 3, 4), k1 = k2 = 1",
+            [r for r in results if r.case.table == "1"],
+            lambda case: (f"alpha = {case.fpbm['alpha']}", ""),
+        ),
+        _table(
+            "Tables 2 and 3. Circle, FPBM, alpha = 0.6, k1 = k2 = 1",
+            [r for r in results if r.case.table == "2, 3"],
+            lambda case: (f"{case.row} =", case.weights),
+        ),
+        _table(
+            "Text about Figs. 1 to 8. FPBM with alpha = 0.6, k1 = k2 = 1; * marks a misprint",
+            of_figures(results),
+            lambda case: (f"Fig. {case.figure}, {NAMES[case.path]}", f"W = {case.weights}" if case.fpbm else "MAN"),
+        ),
+    ]
+
+
+def _table(title: str, results: Sequence[Result], label: Callable[[Case], tuple[str, str]]) -> Table:
+    joints = range(1, results[0].run.arm.dof + 1)
+    header = ("case", "", *(f"joint {i}" for i in joints), "tip error")
+    return Table(title, header, tuple(row for result in results for row in _rows(result, label(result.case))))
+
+
+def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
+    """Printed values, our values and their differences; only ours where nothing was printed."""
+    case, ours, error = result.case, result.run.qd[-1], result.run.max_error()
+    rows = [("ours", *(f"{v:.6f}" for v in ours), f"{error:.1e}")]
+    if case.printed_qd is not None:
+        marks = ["*" if i == case.misprinted_joint else "" for i in range(1, len(ours) + 1)]
+        printed = case.printed_error
+        errors = ("", "") if printed is None else (f"{printed:.3e}", f"{error - printed:.3e}")
+        rows.insert(0, ("printed", *(f"{v:.6f}{mark}" for v, mark in zip(case.printed_qd, marks)), errors[0]))
+        rows.append(("difference", *(f"{d:.1e}" for d in ours - case.printed_qd), errors[1]))
+    blank = ("",) * len(rows[0])
+    return [(word or "", *(row or blank)) for word, row in zip_longest(label, rows)]
 
 
 def summary(results: Sequence[Result]) -> list[str]:
@@ -33,7 +125,7 @@ def summary(results: Sequence[Result]) -> list[str]:
 def make_report(paper: Paper, results: Sequence[Result], tables: Sequence[Table], claims: Sequence[Claim]) -> str:
     """The whole report as Markdown; its figures are fig1.png and so on in the same folder."""
     posture = ", ".join(f"{angle:g}°" for angle in np.rad2deg(paper.q0).round(9))
-    figures = sorted((r.case.figure, caption(r.case)) for r in results if r.case.figure)
+    figures = [(r.case.figure, caption(r.case)) for r in of_figures(results)]
     errata = [
         *(f"{erratum.text} {_both_ways(paper, erratum)}" for erratum in paper.errata),
         *(_misprint(r) for r in results if r.case.misprinted_joint),
