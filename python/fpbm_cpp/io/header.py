@@ -12,8 +12,6 @@ from numpy.typing import ArrayLike
 from ..arms import Joint
 from ..errors import ParameterError
 
-TYPES = {"revolute": "kRevolute", "continuous": "kContinuous", "prismatic": "kPrismatic"}
-
 # Names that a namespace cannot have: C++'s keywords, and namespaces of others.
 TAKEN = """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
 co_await co_return co_yield compl concept const consteval constexpr constinit const_cast continue decltype default
@@ -26,37 +24,22 @@ typedef typeid typename union unsigned using virtual void volatile wchar_t while
 def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source: str = "") -> str:
     """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
 
-    Numbers keep all their digits. The header includes this library's headers alone.
-
-    Parameters
-    ----------
-    joints
-        The joints from base to tip. The arm is an fpbm::CoupledArm where one mimics another, else an fpbm::SerialArm.
-    tip : array_like, shape (4, 4)
-        The tip's frame, seen from the last joint [m].
-    name : str
-        The namespace, 'my_arm' or 'my::arm'.
-    source : str
-        Where the arm comes from, for a comment.
-
-    Returns
-    -------
-    str
-        The header, with kDof, kJointNames, chain() and arm() in the namespace.
-
-    Raises
-    ------
-    ParameterError
-        Where a namespace cannot have that name.
+    The joints go from base to tip, whose frame, shape (4, 4) [m], is seen from the last of them. The header includes
+    this library's headers alone, and has kDof, kJointNames, chain() and arm() in the namespace of that name, as in
+    'my::arm'. The arm is an fpbm::CoupledArm where one joint mimics another, else an fpbm::SerialArm. Numbers keep all
+    their digits. source: where the arm comes from, for a comment. Raises ParameterError where a namespace cannot have
+    that name.
     """
     if not all(_is_identifier(part) for part in name.split("::")):
         raise ParameterError("name", None, name, f"name = {name!r}: must be a C++ identifier that is not taken")
-    drives = [joint.name or f"joint_{i}" for i, joint in enumerate(joints, 1) if joint.mimic is None]
+    drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
+    width = max(map(len, drives), default=0)
+    names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
     kind = "SerialArm" if len(drives) == len(joints) else "CoupledArm"
     parts = [_joint_lines(i, joint) for i, joint in enumerate(joints)] + [_transform_lines("  chain.tip", tip)]
     chain = "\n\n".join("\n".join(lines) for lines in parts if lines)
     none = "  constexpr double kNone = fpbm::JointBounds<>::kNone;\n" if "kNone" in chain else ""
-    origin = f" from {_printable(source)}" if source else ""
+    origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
     return f"""\
 // Written by fpbm-cpp export-header{origin}. Do not edit: write it again.
 #pragma once
@@ -69,7 +52,7 @@ namespace {name} {{
 inline constexpr int kDof = {len(drives)};
 
 inline constexpr std::array<const char*, kDof> kJointNames = {{
-{_names(drives)}
+{names}
 }};
 
 /// The joints from base to tip, each placed as seen from the one before [m].
@@ -97,12 +80,6 @@ def namespace_of(stem: str) -> str:
     return f"{name}_arm" if name in TAKEN.split() else name
 
 
-def _names(drives: Sequence[str]) -> str:
-    literals = [f"{_literal(name)}," for name in drives]
-    width = max(map(len, literals), default=0)
-    return "\n".join(f"    {literal:{width}}  // q({i})" for i, literal in enumerate(literals))
-
-
 def _is_identifier(name: str) -> bool:
     # Two underscores in a row, or one at the beginning, are reserved for the compiler.
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
@@ -112,7 +89,7 @@ def _joint_lines(i: int, joint: Joint) -> list[str]:
     member = f"  chain.joints[{i}]"
     lines = [
         f"{member}.name = {_literal(joint.name)};",
-        f"{member}.type = fpbm::JointType::{TYPES[joint.type]};",
+        f"{member}.type = fpbm::JointType::k{joint.type.capitalize()};",
         *_transform_lines(f"{member}.placement", joint.placement),
         f"{member}.axis = {_braced(joint.axis)};",
     ]
@@ -149,14 +126,6 @@ def _number(value: float) -> str:
 
 def _literal(text: str) -> str:
     """A C++ string literal of the text in UTF-8; bytes beyond ASCII are written in octal."""
-
-    def escaped(byte: int) -> str:
-        if not 32 <= byte < 127:
-            return f"\\{byte:03o}"
-        return f"\\{byte:c}" if byte in b'\\"?' else f"{byte:c}"  # Of ?, since ??/ was once a backslash.
-
-    return '"' + "".join(map(escaped, text.encode())) + '"'
-
-
-def _printable(text: str) -> str:
-    return "".join(c if c.isprintable() else "?" for c in text)
+    special = {byte: f"\\{byte:c}" for byte in b'\\"?'}  # Of ?, since ??/ was once a backslash.
+    escaped = (special.get(byte, f"{byte:c}" if 32 <= byte < 127 else f"\\{byte:03o}") for byte in text.encode())
+    return '"' + "".join(escaped) + '"'

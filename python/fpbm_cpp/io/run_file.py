@@ -29,9 +29,7 @@ def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
     meta = {
         "format": FORMAT,
         "version": VERSION,
-        "arm": to_table(run.arm),
-        "path": to_table(run.path),
-        "scheme": to_table(run.scheme),
+        **{name: to_table(getattr(run, name)) for name in KINDS},
         "task": run.task,
         "options": {name: to_table(value) for name, value in run.options.items()},
         "status": {"code": run.status.code.name, "time": run.status.time, "q": run.status.q.tolist()},
@@ -45,24 +43,11 @@ def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
 def load(file: str | os.PathLike[str]) -> Run:
     """Read a run that Run.save wrote: arrays, arm, path, scheme and all, equal to the last bit.
 
-    Nothing in a file is executed: arm, path and scheme are made from numbers by this package's own classes.
+    Nothing in a file is executed: arm, path and scheme are made from numbers by this package's own classes. The run's
+    provenance says when, where and by which versions it was made, with its note and seed.
 
-    Parameters
-    ----------
-    file : path
-        The file.
-
-    Returns
-    -------
-    Run
-        The run; its provenance says when, where and by which versions it was made, with its note and seed.
-
-    Raises
-    ------
-    ValueError
-        If the file is no run, is damaged, names anything outside this package, or has a newer format.
-    OSError
-        If it cannot be read.
+    Raises ValueError if the file is no run, is damaged, names anything outside this package, or has a newer format, and
+    OSError if it cannot be read.
     """
     content = FilePath(file).read_bytes()
     # Readers of damaged files raise exceptions of every kind.
@@ -81,17 +66,15 @@ def load(file: str | os.PathLike[str]) -> Run:
         raise ValueError(f"{file}: holds no run: {error}") from error
 
 
-def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
-    """The table; ValueError if another file would be read for it."""
-    if table.get("kind") == "urdf":
-        raise ValueError("kind = 'urdf': a run's file must not name another file")
-    return table
-
-
 def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
     """Where a run comes from: as its file says, or from here and now."""
     if note is not None and not isinstance(note, str):
         raise ValueError(f"note = {note!r}: must be text")
+    if seed is not None:
+        try:
+            seed = [operator.index(one) for one in seed] if isinstance(seed, Iterable) else operator.index(seed)
+        except TypeError:
+            raise ValueError(f"seed = {seed!r}: must be a whole number, or several") from None
     origin = run.provenance or {
         "date": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "fpbm_cpp": __version__,
@@ -100,15 +83,15 @@ def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
         "system": platform.system(),
         "processor": [platform.machine(), *processor_kinds()],
     }
-    given = {"note": note, "seed": None if seed is None else _whole_numbers(seed)}
+    given = {"note": note, "seed": seed}
     return {**origin, **{name: value for name, value in given.items() if value is not None}}
 
 
-def _whole_numbers(seed: Any) -> int | list[int]:
-    try:
-        return [operator.index(one) for one in seed] if isinstance(seed, Iterable) else operator.index(seed)
-    except TypeError:
-        raise ValueError(f"seed = {seed!r}: must be a whole number, or several") from None
+def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
+    """The table; ValueError if another file would be read for it."""
+    if table.get("kind") == "urdf":
+        raise ValueError("kind = 'urdf': a run's file must not name another file")
+    return table
 
 
 def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -124,7 +107,8 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
-    arm, path, scheme = (from_table(meta[name], KINDS[name], name) for name in KINDS)
+    made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
+    arm = made_of["arm"]
     known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
     rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
     shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": ()}
@@ -135,13 +119,6 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     status, options = meta["status"], dict(meta["options"])
     if options.get("limits") is not None:
         options["limits"] = from_table(options["limits"], name="limits")
-    return Run(
-        **arrays,
-        status=RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float)),
-        arm=arm,
-        path=path,
-        scheme=scheme,
-        task=meta["task"],
-        options=options,
-        provenance=dict(meta["provenance"]),
-    )
+    ended = RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float))
+    how = {"task": meta["task"], "options": options, "provenance": dict(meta["provenance"])}
+    return Run(**arrays, **made_of, **how, status=ended)
