@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from itertools import chain
@@ -12,7 +11,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
+from . import _core
+from ._core import TIME_LAWS
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
@@ -36,8 +36,7 @@ class Path(Data, CorePath):
     'constant_speed', tau.
     """
 
-    kind: ClassVar[str]
-    core: ClassVar[Callable[..., CorePath]]  # Makes what is compiled, of the parameters in their order.
+    kind: ClassVar[str]  # The compiled part calls by it what makes a path of the parameters in their order.
 
     @cached_property
     def duration(self) -> float:
@@ -66,7 +65,7 @@ class Path(Data, CorePath):
         return Sequence((self, path))
 
     def _finish(self) -> None:
-        CorePath.__init__(self, self.core(*self._values().values()))
+        CorePath.__init__(self, getattr(_core, self.kind)(*self._values().values()))
 
 
 @data
@@ -77,7 +76,6 @@ class Circle(Path):
     """
 
     kind = "circle"
-    core = staticmethod(circle)
     radius: float = parameter("Radius r.", POSITIVE, unit="m", usual=0.1)
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
@@ -92,22 +90,13 @@ class Lissajous(Path):
     """
 
     kind = "lissajous"
-    core = staticmethod(lissajous)
     amplitude: ArrayField = parameter(
-        "Amplitude a: one for both axes or one each.",
-        POSITIVE,
-        shape="() or (2,)",
-        unit="m",
-        usual=0.1,
+        "Amplitude a: one for both axes or one each.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
     )
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     frequencies: ArrayField = parameter(
-        "Frequencies f: whole, so that the figure closes.",
-        default=(2, 1),
-        shape="(2,)",
-        whole=True,
-        low=1.0,
+        "Frequencies f: whole, so that the figure closes.", default=(2, 1), shape="(2,)", whole=True, low=1.0
     )
     phase: float = parameter("Phase delta.", default=pi / 6, unit="rad")
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
@@ -121,7 +110,6 @@ class Tricuspid(Path):
     """
 
     kind = "tricuspid"
-    core = staticmethod(tricuspid)
     size: float = parameter("Size a.", POSITIVE, unit="m", usual=0.05)
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
@@ -133,7 +121,6 @@ class Line(Path):
     """Straight line."""
 
     kind = "line"
-    core = staticmethod(line)
     displacement: ArrayField = parameter(
         "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
     )
@@ -158,7 +145,6 @@ class Waypoints(Path):
     """
 
     kind = "waypoints"
-    core = staticmethod(waypoints)
     points: ArrayField = parameter(
         "Positions or poses, two at least. Only differences from the first matter, since a path starts where the tip "
         "is: coordinates in the base frame do as well as displacements.",
@@ -195,6 +181,7 @@ class Waypoints(Path):
 class InPlane(Path):
     """A path of the plane, laid into a plane of space: path.in_plane(plane)."""
 
+    kind = "in_plane"
     path: Path = parameter("A path of positions in the plane.")
     plane: ArrayField = parameter(
         "The base frame's axes that the path's x and y run along, or two directions at right angles.",
@@ -204,14 +191,14 @@ class InPlane(Path):
 
     def _finish(self) -> None:
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
-        CorePath.__init__(self, in_plane(self.path, axes))
+        CorePath.__init__(self, _core.in_plane(self.path, axes))
 
 
 @data
 class WithRotation(Path):
     """A path of positions, with the tip rotated on the way: path.with_rotation(rotation, time_law=...)."""
 
-    core = staticmethod(with_rotation)
+    kind = "with_rotation"
     path: Path = parameter("A path of positions.")
     rotation: ArrayField = parameter(
         "Rotation vector along the base frame's axes, or an angle in the plane, from the orientation at the start.",
@@ -227,7 +214,6 @@ class Sequence(Path):
     """Paths one after another: path.then(next). Sequences among them are replaced by their paths."""
 
     kind = "sequence"
-    core = staticmethod(sequence)
     paths: tuple[Path, ...] = parameter("In their order, one at least.")
 
     def _finish(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
 from .arms import Arm
 from .errors import ParameterError
-from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter, parameters
+from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
 
@@ -49,9 +49,6 @@ class SecondTask(Data):
         if len(self.x) != rows:
             raise ParameterError("x", None, self.x, f"x has {len(self.x)} entries: must have {rows}")
 
-    def _compiled(self) -> tuple[Any, ...]:
-        return "point", self.arm, self.x, self.k1, self.k2
-
 
 @data
 class Gaze(Data):
@@ -71,9 +68,6 @@ class Gaze(Data):
     def _finish(self) -> None:
         if not np.any(self.direction):
             raise ParameterError("direction", None, self.direction, "direction = 0: must point somewhere")
-
-    def _compiled(self) -> tuple[Any, ...]:
-        return "direction", self.direction, self.k1, self.k2
 
 
 @data
@@ -128,12 +122,13 @@ class Scheme(Data, CoreScheme):
     singular_brake: float = parameter("Damping of the null space there.", NOT_NEGATIVE, default=10.0, unit="1/s")
 
     def _finish(self) -> None:
-        values = {name: getattr(self, name) for name in parameters(type(self))}
-        if self.second_task is not None:
-            if not isinstance(self.second_task, (SecondTask, Gaze)):
-                text = f"second_task = {self.second_task!r:.80}: must be a SecondTask or a Gaze"
-                raise ParameterError("second_task", None, self.second_task, text)
-            values["second_task"] = self.second_task._compiled()
+        values, second = self._values(), self.second_task
+        if second is not None:
+            if not isinstance(second, (SecondTask, Gaze)):
+                text = f"second_task = {second!r:.80}: must be a SecondTask or a Gaze"
+                raise ParameterError("second_task", None, second, text)
+            what = "point" if isinstance(second, SecondTask) else "direction"
+            values["second_task"] = (what, *second._values().values())
         CoreScheme.__init__(self, self.level, {**self.fixed, **values})
 
 

@@ -9,7 +9,7 @@ in_plane, with_rotation, rotation_time_law. Several paths, one after another, ar
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -57,25 +57,12 @@ def to_table(thing: Any) -> Any:
 
 
 def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None) -> Any:
-    """The thing that a table stands for.
+    """The thing that a table stands for, or a list of those of paths; what is made already may stand in one.
 
-    Parameters
-    ----------
-    table
-        The table, or a list of those of paths. What is no table but made already may stand in one.
-    kinds : mapping
-        What may stand there: ARMS, PATHS, SCHEMES or SECOND_TASKS, say; anything unless given.
-    name : str
-        What errors call the table.
-    arm : Arm, optional
-        Of which second tasks may say the first `joints`, in place of an arm of their own.
+    kinds: what may stand there, ARMS, PATHS, SCHEMES or SECOND_TASKS, say. name: what errors call the table. arm: of
+    which second tasks may say the first `joints`, in place of an arm of their own.
 
-    Raises
-    ------
-    ParameterError
-        Of the first thing that is wrong.
-    OSError
-        Where a file that the table names cannot be read.
+    Raises ParameterError of the first thing that is wrong, OSError where a file that it names cannot be read.
     """
     reader = _Reader(arm)
     thing = reader.read(table, kinds, name)
@@ -85,9 +72,9 @@ def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | 
 
 
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
-    """All that is wrong with the keys of a table and with each of its values, before anything is made of it.
+    """All that is wrong with the keys of a table and with each of its values, for an arm that is yet to come.
 
-    As from_table() has it, for an arm that is yet to come. usual: whether what has a usual value may be missing.
+    usual: whether what has a usual value may be missing.
     """
     reader = _Reader(None, usual, make=False)
     reader.read(table, kinds, name)
@@ -118,7 +105,12 @@ class _Reader:
         if isinstance(table, Data):
             return table
         if isinstance(table, (list, tuple)) and kinds in (PATHS, EVERY_PATH, KINDS):
-            return self._paths(table, kinds, name)
+            if len(table) == 1:
+                return self.read(table[0], kinds, name)
+            if not table:
+                return self._wrong(name, table, " = []: must be one at least")
+            paths = self._each(table, kinds, name)
+            return None if None in paths else self._checked(lambda: PathSequence(paths), name)
         if not isinstance(table, Mapping):
             return self._wrong(name, table, f" = {table!r:.60}: must be a table")
         if not isinstance(kinds, Mapping):
@@ -142,9 +134,8 @@ class _Reader:
         for key, parameter in known.items():
             if parameter.required and key not in table and not (self.usual and parameter.usual is not REQUIRED):
                 self._wrong(_join(name, key), None, ": is missing")
-        if len(self.problems) > wrong or not self.make:
-            return None
-        return self._checked(lambda: self._made(maker, values), name)
+        if self.make and len(self.problems) == wrong:
+            return self._checked(lambda: self._made(maker, values), name)
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
         if "joints" in values and maker is SecondTask and self.arm is not None:
@@ -169,14 +160,6 @@ class _Reader:
             return self._wrong(name, tables, f" = {tables!r:.60}: must be a list")
         return tuple(self.read(table, kinds, f"{name}[{i}]") for i, table in enumerate(tables))
 
-    def _paths(self, tables: Sequence[Any], kinds: Any, name: str) -> Any:
-        if len(tables) == 1:
-            return self.read(tables[0], kinds, name)
-        if not tables:
-            return self._wrong(name, tables, " = []: must be one at least")
-        paths = self._each(tables, kinds, name)
-        return None if None in paths else self._checked(lambda: PathSequence(paths), name)
-
     def _checked(self, make: Callable[[], Any], name: str) -> Any:
         """What make() gives; where it refuses, a problem of the table of this name."""
         try:
@@ -185,7 +168,6 @@ class _Reader:
             self.problems.append(error.within(name) if name else error)
         except (TypeError, ValueError) as error:
             self._wrong(name, None, f": {error}")
-        return None
 
     def _wrong(self, name: str, value: object, what: str) -> None:
         self.problems.append(ParameterError(name, None, value, name + what))
