@@ -31,7 +31,7 @@ from click.testing import CliRunner, Result
 
 from fpbm_cpp import viewer
 from fpbm_cpp.cli import command
-from fpbm_cpp.cli.figures import summary
+from fpbm_cpp.cli.text import summary
 from fpbm_cpp.job import prepare, read_job, write_job
 from fpbm_cpp.job.sections import FREE, SECTIONS, known
 

@@ -1,17 +1,11 @@
-"""The command line: fpbm-cpp, built on click; one command a file."""
+"""The command line: fpbm-cpp, built on click; in three modules by what they do."""
 
 import click
 
 from .._core import __version__
-from .bench import bench
-from .compare import compare
-from .completion import completion
-from .export_header import export_header
-from .reproduce import reproduce
-from .sweep import sweep
-from .track import track
-from .tune import tune
-from .view import view
+from .motions import compare, track, view
+from .studies import sweep, tune
+from .tools import bench, completion, export_header, reproduce
 
 __all__ = ["command"]
 

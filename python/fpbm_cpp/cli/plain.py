@@ -1,17 +1,24 @@
-"""Commands that say in one plain line what went wrong, and never with a traceback."""
+"""Commands that say in one plain line what went wrong, and write each file whole or not at all."""
 
 import importlib
+import io
 import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..io.write_whole import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 WIDTH = 100
+Writer = Callable[[Path], Any]
 
 
 class Plain(click.Command):
@@ -63,6 +70,45 @@ def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
         reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
         where = place or error.filename2 or error.filename
         raise click.ClickException(f"cannot {doing} {where}: {reason}") from None
+
+
+out_option = file_option(
+    "--out", metavar="DIR", help="Folder to write to, made where missing; other files in it are left alone."
+)
+workers_option = click.option(
+    "--workers", type=click.IntRange(1), help="Threads; as many as there are processors unless given."
+)
+dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
+
+
+def make_folder(out: Path) -> None:
+    """Make a folder, at once where work would be lost otherwise."""
+    with file_errors("write to", out):
+        out.mkdir(parents=True, exist_ok=True)
+
+
+def write_files(out: Path, files: dict[str, Writer]) -> None:
+    """Write to a folder what each name's function writes to the file that it is given, and say so."""
+    for name, write in files.items():
+        with file_errors("write to", out / name):
+            out.mkdir(parents=True, exist_ok=True)
+            try:
+                write(out / name)
+            except ValueError as error:  # A motion without a sample has no animation.
+                raise click.ClickException(f"cannot write {name}: {error}") from None
+    click.echo(f"\nWritten to {out}: {', '.join(files)}")
+
+
+def content(content: str | bytes) -> Writer:
+    """Write this."""
+    return lambda file: write_whole(file.resolve(), content.encode() if isinstance(content, str) else content)
+
+
+def picture(figure: "Figure") -> Writer:
+    """Write a figure as PNG."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    return content(buffer.getvalue())
 
 
 @contextmanager

@@ -15,10 +15,6 @@ from ..job.sections import FREE, SECTIONS, Table, known
 from .options import JobOption, job_options
 from .plain import WIDTH, Plain, file_errors, file_option
 
-workers_option = click.option(
-    "--workers", type=click.IntRange(1), help="Threads; as many as there are processors unless given."
-)
-
 
 def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Callable[[Callable[..., None]], Plain]:
     """A command with ARM, --job, --save-job and the options of a job, all or without the kind of scheme.

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from .._types import Array
 from ..motion.run import Run
@@ -28,9 +27,8 @@ def columns(*rows: Sequence[str]) -> str:
     """Rows of cells as aligned columns, the first to the left; rows may be shorter than the first."""
     whole = [[*row, *[""] * (len(rows[0]) - len(row))] for row in rows]
     widths = [max(map(len, column)) for column in zip(*whole)]
-    return "\n".join(
-        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in whole
-    )
+    lines = ("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in whole)
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
@@ -60,6 +58,7 @@ def summary(run: Run) -> str:
 
 def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     """Name, value, unit and remark."""
+    names, units, limits = joint_labels(run.arm), joint_units(run.arm), run.arm.limits
 
     def at(k: np.intp, name: str, values: Array, unit: str = "") -> tuple[str, str, str, str]:
         return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
@@ -68,7 +67,6 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     yield at(position.argmax(), "largest tip error", position, "m")
     if run.task == "pose":
         yield at(orientation.argmax(), "largest orientation error", orientation, "rad")
-    names, units = joint_labels(run.arm), joint_units(run.arm)
     for name, values, per in (("velocity", run.qd, "/s"), ("acceleration", run.qdd, "/s^2")):
         size = np.abs(values)
         k, i = np.unravel_index(size.argmax(), size.shape)
@@ -79,24 +77,11 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     yield at(manipulability.argmin(), "least manipulability", manipulability)
     if run.scale is not None:
         yield at(run.scale.argmin(), "least task scale", run.scale)
+    outside = (run.q < limits.lower) | (run.q > limits.upper)
+    too_fast = (np.abs(run.qd) > limits.velocity) | (np.abs(run.qdd) > limits.acceleration)
+    flags = outside | too_fast if run.saturated is None else run.saturated
+    joints = [name for name, flag in zip(names, np.any(flags, axis=0)) if flag]
     if run.saturated is not None:
-        held = _named(run, run.saturated)
-        yield "joints on a bound", str(len(held)), "", ", ".join(held)
-    elif beyond := _named(run, _beyond(run)):
-        yield "joints beyond a bound", str(len(beyond)), "", f"{', '.join(beyond)}: --limits keeps them"
-
-
-def _beyond(run: Run) -> NDArray[np.bool_]:
-    """Which joints are beyond a bound of the arm's, at each sample."""
-    limits = run.arm.limits
-    return np.asarray(
-        (run.q < limits.lower)
-        | (run.q > limits.upper)
-        | (np.abs(run.qd) > limits.velocity)
-        | (np.abs(run.qdd) > limits.acceleration)
-    )
-
-
-def _named(run: Run, flags: NDArray[np.bool_]) -> list[str]:
-    """The joints that are flagged at any sample."""
-    return [name for name, flag in zip(joint_labels(run.arm), np.any(flags, axis=0).tolist()) if flag]
+        yield "joints on a bound", str(len(joints)), "", ", ".join(joints)
+    elif joints:
+        yield "joints beyond a bound", str(len(joints)), "", f"{', '.join(joints)}: --limits keeps them"

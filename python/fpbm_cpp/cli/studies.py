@@ -1,21 +1,28 @@
-"""fpbm-cpp sweep."""
+"""Commands that make many motions: sweep, tune."""
 
 import csv
 import io
 import itertools
 from pathlib import Path
+from typing import cast
 
 import click
 import numpy as np
 
 from .._core import Status, advice, message
-from ..errors import SweepInterrupted
+from ..errors import SweepInterrupted, TuneInterrupted
 from ..motion.sweep_result import Sweep
 from ..motion.sweeping import sweep as run_sweep
-from .figures import FIGURES, Row, figure_table, number
-from .out import content, make_folder, out_option, write_files
-from .plain import progress
-from .request import Request, motion_command, workers_option
+from ..schemes import FPBM
+from ..tuning import Tuning
+from ..tuning import tune as search
+from ..tuning.objectives import MEASURES
+from .options import Word
+from .plain import content, dark_option, make_folder, out_option, picture, progress, workers_option, write_files
+from .request import Request, motion_command
+from .text import FIGURES, Row, figure_table, number
+
+Cases = list[tuple[float, ...]]
 
 
 @motion_command(
@@ -62,17 +69,19 @@ def sweep(
     if out is not None:
         make_folder(out)
     request.say(motion)
-    interruption = None
+
+    def show(done: Sweep) -> None:
+        click.echo(_table(done, keys, cases))
+        if out is not None:
+            write_files(out, {"sweep.csv": content(_csv(done, keys, cases)), "job.toml": motion.save})
+
     try:
         with progress("motions") as report, request.plain():
             done = run_sweep(motion.arm, motion.path, schemes, q0s, workers=workers, progress=report, **motion.keywords)
     except SweepInterrupted as interrupted:
-        done, interruption = interrupted.sweep, interrupted
-    click.echo(_table(done, keys, cases))
-    if out is not None:
-        write_files(out, {"sweep.csv": content(_csv(done, keys, cases)), "job.toml": motion.save})
-    if interruption is not None:
-        raise interruption
+        show(interrupted.sweep)
+        raise
+    show(done)
     if not done.ok.any():
         raise click.ClickException("no motion is complete")
 
@@ -89,7 +98,7 @@ def _values(vary: str) -> list[float]:
         raise click.ClickException(f"--vary {vary}: must be as alpha=0,0.6,1 or alpha=0:1:11") from None
 
 
-def _table(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
+def _table(done: Sweep, keys: list[str], cases: Cases) -> str:
     """A row for each scheme, with the worst figure of its complete motions, and what became of others."""
     rows: list[Row] = []
     for i, (case, ok) in enumerate(zip(cases, done.ok)):
@@ -104,7 +113,7 @@ def _table(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
     return figure_table(keys, done.task, rows, remarks)
 
 
-def _csv(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
+def _csv(done: Sweep, keys: list[str], cases: Cases) -> str:
     """A row for each motion that was run."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -114,3 +123,50 @@ def _csv(done: Sweep, keys: list[str], cases: list[tuple[float, ...]]) -> str:
         figures = [repr(float(getattr(done, name)[i, k])) for name in ("time", *FIGURES)]
         rows.writerow([*cases[i], k, *map(repr, done.q0s[k].tolist()), done.status[i, k].name, *figures])
     return text.getvalue()
+
+
+@motion_command(
+    "Find the parameters of FPBM that suit best.",
+    """
+    fpbm-cpp tune planar:1,1,1,1 --radius 0.45
+    fpbm-cpp tune panda --task pose --objective peak_acceleration --trials 200 --out tuned
+    fpbm-cpp track --job tuned/job.toml""",
+    kind=False,
+)
+@click.option("--objective", type=Word(list(MEASURES)), default="peak_velocity", help="What is to be small.")
+@click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
+@click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
+@workers_option
+@out_option
+@dark_option
+def tune(
+    request: Request, objective: str, trials: int, seed: int, workers: int | None, out: Path | None, dark: bool
+) -> None:
+    """Find the parameters of FPBM that suit an arm and a path best.
+
+    ARM and the options are those of track; what is found is compared with the FPBM that they ask for.
+    With --out, the folder gets tune.png and job.toml, the job with the scheme that was found. Ctrl-C keeps the best so
+    far.
+    """
+    motion = request.motion("fpbm", at_rest=True)
+    if out is not None:
+        make_folder(out)
+    request.say(motion)
+
+    def show(found: Tuning) -> None:
+        click.echo(str(found))
+        if out is not None:
+            best = motion.with_scheme(found.parameters)
+            write_files(out, {"tune.png": picture(found.plot(dark=dark)), "job.toml": best.save})
+
+    how = {"baseline": cast(FPBM, motion.scheme), "trials": trials, "seed": seed, "workers": workers, **motion.keywords}
+    try:
+        with progress("trying schemes") as report:
+            found = search(motion.arm, motion.path, motion.q0, objective, progress=report, **how)
+    except (ValueError, RuntimeError) as error:  # The latter where nothing that was tried keeps to the path.
+        raise click.ClickException(str(error)) from None
+    except TuneInterrupted as interrupted:
+        if interrupted.tuning is not None:
+            show(interrupted.tuning)
+        raise
+    show(found)

@@ -1,0 +1,149 @@
+"""Commands that make a motion: track, compare, view."""
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from .._core import Status
+from ..errors import not_one_of
+from ..motion.run import Run
+from ..schemes import SCHEMES
+from .plain import Writer, dark_option, import_undisturbed, out_option, picture, write_files
+from .request import Request, motion_command
+from .text import Row, figure_table, summary
+
+
+@motion_command(
+    "Move an arm along a path.",
+    """
+    fpbm-cpp track panda
+    fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
+    fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
+    fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
+)
+@out_option
+@dark_option
+@click.option(
+    "--also",
+    multiple=True,
+    type=click.Choice(["csv", "rosbag", "gif", "mp4"]),
+    help="Write this to the folder, too; may be said again.",
+)
+def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
+    """Move an arm along a path, and say how it went.
+
+    ARM is panda, iiwa14 or gen3, planar: and lengths of links as in planar:1,1,1,1, or a URDF file with --tip.
+    Everything else has a default, and what was taken is printed. Several numbers go between commas.
+
+    With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
+    Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.
+    """
+    if also and out is None:
+        raise click.UsageError("--also needs --out DIR.")
+    motion = request.motion()
+    with request.plain():
+        run = motion.run()
+    request.say(motion)
+    click.echo(summary(run))
+    if out is not None:
+        from ..plot import animate
+
+        files: dict[str, Writer] = {"run.png": picture(run.plot(dark=dark))}
+        writers: dict[str, Writer] = {"csv": run.to_csv, "rosbag": run.to_rosbag}
+        for kind in also:
+            name = kind if kind == "rosbag" else f"run.{kind}"
+            files[name] = writers.get(kind, lambda file: animate(run, file, dark=dark))
+        write_files(out, {**files, "run.npz": run.save, "job.toml": motion.save})
+    if not run.status:
+        raise click.ClickException("the motion is not complete")
+
+
+@motion_command(
+    "Several schemes on one path, side by side.",
+    """
+    fpbm-cpp compare panda --hold 5
+    fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --schemes mvn,man,fpbm --out circle
+    fpbm-cpp compare --job job.toml --null-damping 0""",
+    kind=False,
+)
+@click.option("--schemes", metavar="NAMES", help=f"Which, between commas; all unless given: {', '.join(SCHEMES)}.")
+@out_option
+@dark_option
+def compare(request: Request, schemes: str | None, out: Path | None, dark: bool) -> None:
+    """Move an arm along a path under several schemes, side by side.
+
+    Each scheme takes those of the options that it has. ARM and the options are those of track.
+
+    Prints a row of figures for each scheme: the largest errors of the tip, peak and final joint velocities and
+    accelerations, the least manipulability, and how it ended. With --out, the folder gets compare.png, a saved run for
+    each scheme, and job.toml.
+    """
+    kinds = [name.strip() for name in schemes.split(",")] if schemes else list(SCHEMES)
+    for kind in kinds:
+        if kind not in SCHEMES:
+            raise click.ClickException(str(not_one_of("--schemes", kind, SCHEMES)))
+    motions = {kind: request.motion(kind) for kind in kinds}
+    with request.plain():
+        runs = {kind: motion.run() for kind, motion in motions.items()}
+    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Has every option that any of them has, as a rule.
+    request.say(chosen, scheme=False)
+    remarks: dict[str, list[str]] = {}
+    for kind, run in runs.items():
+        if run.status.code is not Status.OK:
+            remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
+    rows = [_row(kind, run) for kind, run in runs.items()]
+    texts = [f"{', '.join(kinds)}: {text}" for text, kinds in remarks.items()]
+    click.echo(figure_table(["scheme"], run.task, rows, texts))
+    if out is not None:
+        from ..plot import compare as figure
+
+        saved: dict[str, Writer] = {f"{kind}.npz": run.save for kind, run in runs.items()}
+        write_files(out, {"compare.png": picture(figure(runs, dark=dark)), **saved, "job.toml": chosen.save})
+    if not any(run.status for run in runs.values()):
+        raise click.ClickException("no motion is complete")
+
+
+def _row(kind: str, run: Run) -> Row:
+    if not len(run.t):
+        return [kind], "", {}
+    speed, acceleration = np.abs(run.qd).max(axis=1), np.abs(run.qdd).max(axis=1)
+    figures = {
+        "max_error": run.max_error(),
+        "max_orientation_error": run.max_orientation_error(),
+        "peak_velocity": speed.max(),
+        "final_velocity": speed[-1],
+        "peak_acceleration": acceleration.max(),
+        "final_acceleration": acceleration[-1],
+        "manipulability": run.manipulability().min(),
+    }
+    return [kind], "yes" if run.status else f"to {run.status.time:.3g} s", figures
+
+
+@motion_command(
+    "Show an arm on its path in the browser.",
+    """
+    fpbm-cpp view panda --task pose
+    fpbm-cpp view my_arm.urdf --tip tool0 --path lissajous --port 9000
+    fpbm-cpp view --job job.toml --no-browser""",
+)
+@click.option("--port", type=click.IntRange(0, 65535), default=8080, help="Port to serve at; 0 takes one that is free.")
+@click.option("--browser/--no-browser", default=True, help="Open the page in the browser, or not.")
+def view(request: Request, port: int, browser: bool) -> None:
+    """Show an arm on its path in the browser, with the scheme and its gains at hand.
+
+    A URDF file is shown with its meshes. Ctrl-C ends it. ARM and the options are those of track.
+    """
+    motion = request.motion()
+    with request.plain():
+        run = motion.run()
+    try:
+        request.say(motion)
+        import_undisturbed("viser", "viser.extras")
+        from ..viewer import Viewer
+
+        Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser).wait()
+    except OSError as error:
+        raise click.ClickException(error.strerror or str(error)) from None
+    except KeyboardInterrupt:
+        return

@@ -1,0 +1,176 @@
+"""Commands beside motions: bench, reproduce, export-header, completion."""
+
+import os
+import platform
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+import numpy as np
+from click.shell_completion import get_completion_class
+
+from .._core import __version__
+from ..job import Motion, prepare
+from ..job.sections import Table
+from ..motion.lanes import LANES
+from ..motion.sweeping import sweep
+from ..schemes import SCHEMES
+from .plain import WIDTH, Plain, file_errors, file_option
+from .text import columns
+
+EVALUATIONS = 4000  # Of a scheme, by RK4, on a path of 1 s at 1 kHz.
+PROCESSORS = os.cpu_count() or 1
+MOTIONS = 4 * PROCESSORS * LANES  # Of a sweep.
+HOW = (
+    "Microseconds an evaluation of a scheme: the median time of fp.simulate() for a circle of 1 s at 1 kHz, by the "
+    f"{EVALUATIONS} evaluations that RK4 makes there. An evaluation is kinematics, reference and scheme; integrating "
+    "and recording are in it. Below, motions of the same kind that fp.sweep() ran in a second with FPBM, "
+    f"{MOTIONS} at a time, on all processors."
+)
+PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
+CASES: dict[str, Table] = {
+    "4 links, position": {"arm": PLANAR},
+    "Panda, position": {"arm": PANDA},
+    "Panda, pose": {"arm": PANDA, "run": {"task": "pose"}},
+}
+
+
+@click.command("bench", short_help="Time this machine.", cls=Plain, epilog="Example: fpbm-cpp bench --seconds 1")
+@click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="How long each is timed.")
+def bench(seconds: float) -> None:
+    """Time this machine: what a scheme costs an evaluation, and how many motions a second a sweep runs.
+
+    As called from Python, on whatever else the machine has to do. The source's bench folder times single steps in C++,
+    and other libraries.
+    """
+    lanes = f"{LANES} lanes" if LANES > 1 else "no lanes"
+    machine = f"{platform.system()} {platform.machine()}, {PROCESSORS} processors, {lanes}"
+    click.echo(f"fpbm_cpp {__version__}, Python {platform.python_version()}, NumPy {np.__version__}, {machine}")
+    click.echo(f"{click.wrap_text(HOW, WIDTH)}\n")
+    rows = []
+    for kind, scheme in SCHEMES.items():
+        times = [_median(_motion(case, kind).run, seconds) / EVALUATIONS for case in CASES]
+        rows.append([scheme.__name__, *(f"{1e6 * each:.3f}" for each in times)])
+    rates = [f"{_rate(_motion(case, 'fpbm'), seconds):.0f}" for case in CASES]
+    click.echo(columns(["", *CASES], *rows, [""], ["motions a second", *rates]))
+
+
+def _motion(case: str, kind: str) -> Motion:
+    return prepare({**CASES[case], "path": {"kind": "circle", "duration": 1.0}, "scheme": {"kind": kind}})
+
+
+def _rate(motion: Motion, seconds: float) -> float:
+    """Motions a second."""
+    q0s = motion.q0 + np.random.default_rng(0).normal(0.0, 0.02, (MOTIONS, motion.arm.dof))
+    return MOTIONS / _median(lambda: sweep(motion.arm, motion.path, motion.scheme, q0s, **motion.keywords), seconds)
+
+
+def _median(run: Callable[[], object], seconds: float) -> float:
+    """Median time of a run, of as many as there is time for, three at least, after one that does not count [s]."""
+    run()
+    times: list[float] = []
+    while len(times) < 3 or sum(times) < seconds:
+        begin = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - begin)
+    return float(np.median(times))
+
+
+@click.command(
+    "reproduce",
+    short_help="Reproduce the FPBM paper.",
+    cls=Plain,
+    epilog="Example: fpbm-cpp reproduce --out reproduction",
+)
+@file_option(
+    "--out",
+    metavar="DIR",
+    default="reproduction",
+    help="Directory to write to, made where missing; other files in it are left alone.",
+)
+def reproduce(out: Path) -> None:
+    """Reproduce the FPBM paper: figures, tables, errata and claims.
+
+    Runs the paper's 18 motions, compares them with the printed numbers and with an independent solution, and writes
+    Figs. 1 to 8 (fig1.png, fig1.pdf and so on) and report.md. Takes about a quarter of a minute. Exits with 1 where a
+    motion differs from the independent solution by more than 1e-9.
+    """
+    start = time.perf_counter()
+    try:
+        from .. import reproduce as paper
+
+        with file_errors("write to"):
+            done = paper.reproduce(out, say=lambda step: click.echo(f"{step} ...", err=True))
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt("interrupted; every file written so far is whole") from None
+    for table in done.tables:
+        click.echo(f"\n{table.text()}")
+    click.echo("\nClaims, with the numbers in report.md")
+    for i, claim in enumerate(done.claims, 1):
+        click.echo(f"{i}. {claim.statement}: {claim.verdict}")
+    for line in done.summary:
+        click.echo("\n" + click.wrap_text(line, width=WIDTH))
+    click.echo(f"\n{len(done.files)} files in {out}{os.sep}, {time.perf_counter() - start:.0f} s")
+    if not done.agrees:
+        raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
+
+
+@click.command(
+    "export-header",
+    short_help="Write the arm of a URDF file in C++.",
+    cls=Plain,
+    epilog="Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp",
+)
+@click.argument("urdf", metavar="ARM.urdf", type=click.Path(path_type=Path))
+@click.option("--tip", metavar="LINK", required=True, help="Link to move.")
+@click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
+@file_option(
+    "-o",
+    "--out",
+    metavar="FILE.hpp",
+    required=True,
+    help="Header to write, whole or not at all; - is the standard output.",
+)
+@click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
+def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str | None) -> None:
+    """Write the arm of a URDF file as a C++ header.
+
+    The header constructs the arm from base to tip, with neither parser nor file when the program runs.
+    """
+    from ..io.header import export_header, namespace_of
+    from ..io.urdf import read_urdf
+    from ..io.write_whole import write_whole
+
+    to_stdout = str(out) == "-"
+    source = f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"
+    try:
+        with file_errors("read", urdf):
+            joints, frame = read_urdf(urdf, tip, base)
+        name = name or namespace_of((urdf if to_stdout else out).stem)
+        header = export_header(joints, frame, name=name, source=source)
+    except ValueError as error:
+        raise click.ClickException(str(error)) from None
+    if to_stdout:
+        click.echo(header, nl=False)
+        return
+    with file_errors("write to", out):
+        write_whole(out.resolve(), header.encode())
+
+
+@click.command(
+    "completion",
+    short_help="Make a shell complete these commands.",
+    epilog="""\b
+Examples:
+  eval "$(fpbm-cpp completion bash)"      # in ~/.bashrc
+  eval "$(fpbm-cpp completion zsh)"       # in ~/.zshrc
+  fpbm-cpp completion fish > ~/.config/fish/completions/fpbm-cpp.fish""",
+)
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.pass_context
+def completion(context: click.Context, shell: str) -> None:
+    """Print what makes a shell complete fpbm-cpp's commands and options."""
+    kind = get_completion_class(shell)
+    assert kind is not None
+    click.echo(kind(context.find_root().command, {}, "fpbm-cpp", "_FPBM_CPP_COMPLETE").source())
