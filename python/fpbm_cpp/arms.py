@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
 from ._types import ArrayField
-from .errors import ParameterError, not_one_of
+from .errors import ParameterError, not_one_of, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
@@ -84,8 +84,7 @@ class Arm(Data, CoreArm):
     def first(self, joints: int) -> Arm:
         """The arm of the first so many joints: of an elbow, say. Raises ParameterError."""
         if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 0 < joints < self.dof:
-            text = f"joints = {joints!r}: must be from 1 to {self.dof - 1}, the arm's first so many"
-            raise ParameterError("joints", None, joints, text)
+            raise wrong("joints", joints, f" = {joints!r}: must be from 1 to {self.dof - 1}, the arm's first so many")
         if isinstance(self, PlanarArm):
             return PlanarArm(self.lengths[:joints])
         assert isinstance(self, SerialArm)
@@ -213,8 +212,7 @@ class SerialArm(Arm):
 def require_length(name: str, values: Sized, dof: int) -> None:
     """Raise ParameterError where there is not one value a joint."""
     if len(values) != dof:
-        text = f"{name} has {len(values)} entries: must have {dof}, one per joint"
-        raise ParameterError(name, None, values, text)
+        raise wrong(name, values, f" has {len(values)} entries: must have {dof}, one per joint")
 
 
 def _frame(name: str, value: ArrayLike) -> Any:

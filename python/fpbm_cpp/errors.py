@@ -33,14 +33,19 @@ class ParameterError(ValueError):
 
     def within(self, table: str) -> ParameterError:
         """The same error of an argument in that table."""
-        return ParameterError(f"{table}.{self.name}", self.index, self.value, f"{table}.{self.name}{self.problem}")
+        name = f"{table}.{self.name}"
+        return ParameterError(name, self.index, self.value, name + self.problem)
+
+
+def wrong(name: str, value: object, problem: str) -> ParameterError:
+    """The error of an argument and its problem, which follows the name: ' = -1: must be positive'."""
+    return ParameterError(name, None, value, name + problem)
 
 
 def not_one_of(name: str, value: object, choices: Iterable[str]) -> ParameterError:
     """The error of a word that is none of these; it suggests the one that was probably meant."""
     words = list(choices)
-    text = f"{name} = {value!r}: must be one of {', '.join(words)}{suggestion(value, words)}"
-    return ParameterError(name, None, value, text)
+    return wrong(name, value, f" = {value!r}: must be one of {', '.join(words)}{suggestion(value, words)}")
 
 
 def suggestion(word: object, words: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
 from .arms import Arm
-from .errors import ParameterError
+from .errors import wrong
 from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
@@ -44,10 +44,10 @@ class SecondTask(Data):
 
     def _finish(self) -> None:
         if not isinstance(self.arm, Arm):
-            raise ParameterError("arm", None, self.arm, f"arm = {self.arm!r:.80}: must be an arm")
+            raise wrong("arm", self.arm, f" = {self.arm!r:.80}: must be an arm")
         rows = len(self.arm.jacobian(np.zeros(self.arm.dof)))
         if len(self.x) != rows:
-            raise ParameterError("x", None, self.x, f"x has {len(self.x)} entries: must have {rows}")
+            raise wrong("x", self.x, f" has {len(self.x)} entries: must have {rows}")
 
 
 @data
@@ -67,7 +67,7 @@ class Gaze(Data):
 
     def _finish(self) -> None:
         if not np.any(self.direction):
-            raise ParameterError("direction", None, self.direction, "direction = 0: must point somewhere")
+            raise wrong("direction", self.direction, " = 0: must point somewhere")
 
 
 @data
@@ -125,8 +125,7 @@ class Scheme(Data, CoreScheme):
         values, second = self._values(), self.second_task
         if second is not None:
             if not isinstance(second, (SecondTask, Gaze)):
-                text = f"second_task = {second!r:.80}: must be a SecondTask or a Gaze"
-                raise ParameterError("second_task", None, second, text)
+                raise wrong("second_task", second, f" = {second!r:.80}: must be a SecondTask or a Gaze")
             what = "point" if isinstance(second, SecondTask) else "direction"
             values["second_task"] = (what, *second._values().values())
         CoreScheme.__init__(self, self.level, {**self.fixed, **values})

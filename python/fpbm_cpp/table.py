@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .arms import ARMS, Arm, Joint, JointLimits, SerialArm
-from .errors import ParameterError, not_one_of, suggestion
+from .errors import ParameterError, not_one_of, suggestion, wrong
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
@@ -123,7 +123,7 @@ class _Reader:
         return self._thing(table, kinds[kind], name)
 
     def _thing(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
-        wrong, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
+        before, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
         values = {}
         for key, value in table.items():
             if key in known:
@@ -134,7 +134,7 @@ class _Reader:
         for key, parameter in known.items():
             if parameter.required and key not in table and not (self.usual and parameter.usual is not REQUIRED):
                 self._wrong(_join(name, key), None, ": is missing")
-        if self.make and len(self.problems) == wrong:
+        if self.make and len(self.problems) == before:
             return self._checked(lambda: self._made(maker, values), name)
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
@@ -169,8 +169,8 @@ class _Reader:
         except (TypeError, ValueError) as error:
             self._wrong(name, None, f": {error}")
 
-    def _wrong(self, name: str, value: object, what: str) -> None:
-        self.problems.append(ParameterError(name, None, value, name + what))
+    def _wrong(self, name: str, value: object, problem: str) -> None:
+        self.problems.append(wrong(name, value, problem))
 
 
 def _join(table: str, key: str) -> str:

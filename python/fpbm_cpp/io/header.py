@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arms import Joint
-from ..errors import ParameterError
+from ..errors import wrong
 
 # Names that a namespace cannot have: C++'s keywords, and namespaces of others.
 TAKEN = """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
@@ -31,7 +31,7 @@ def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source:
     that name.
     """
     if not all(_is_identifier(part) for part in name.split("::")):
-        raise ParameterError("name", None, name, f"name = {name!r}: must be a C++ identifier that is not taken")
+        raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
     drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
     width = max(map(len, drives), default=0)
     names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))

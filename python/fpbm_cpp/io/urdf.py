@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from .._core import MAX_DOF, rotation
 from .._types import Array
 from ..arms import Joint
-from ..errors import ParameterError
+from ..errors import ParameterError, wrong
 from .urdf_file import UrdfJoint, read_robot
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
@@ -109,7 +109,7 @@ def _moving(joints: Iterable[UrdfJoint]) -> int:
 
 def _to_root(above: Tree, role: str, link: str) -> list[UrdfJoint]:
     if link not in above:
-        raise ParameterError(role, None, link, f"{role} = {link!r}: must be a link{_hint(above, str(link))}")
+        raise wrong(role, link, f" = {link!r}: must be a link{_hint(above, str(link))}")
     joints = []
     while (joint := above[link]) is not None:
         joints.append(joint)

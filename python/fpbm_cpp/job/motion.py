@@ -15,7 +15,7 @@ from tomlkit.exceptions import TOMLKitError
 from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits
-from ..errors import ParameterError
+from ..errors import wrong
 from ..io.write_whole import write_whole
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
@@ -90,8 +90,8 @@ def prepare(job: Table) -> Motion:
     if limits is not None and "acceleration" not in job["limits"]:
         bounded = np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
         if np.any(bounded & np.isinf(limits.acceleration)):
-            text = "limits.acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
-            raise JobError(ParameterError("limits.acceleration", None, None, text))
+            missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+            raise JobError(wrong("limits.acceleration", None, missing))
     motion = Motion(full, list(taken(job, full)), arm, path, scheme, options, limits)
     with job_errors():
         try:
@@ -110,7 +110,7 @@ def read_job(file: str | os.PathLike[str]) -> Table:
     try:
         table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
     except (TOMLKitError, UnicodeDecodeError) as error:
-        raise JobError(ParameterError("", None, None, f"no TOML: {error}")) from None
+        raise JobError(wrong("", None, f"no TOML: {error}")) from None
     arm = table.get("arm")
     if isinstance(arm, dict) and isinstance(arm.get("file"), str):
         arm["file"] = os.path.normpath(FilePath(file).parent / arm["file"])

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from .._types import OptionalArrayField
 from ..arms import ARMS, Arm, JointLimits
-from ..errors import ParameterError, suggestion
+from ..errors import ParameterError, suggestion, wrong
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..schemes import SCHEMES
@@ -83,18 +83,15 @@ def job_errors() -> Iterator[None]:
 
 def require_sound(job: Table) -> None:
     """Raise JobError with all keys and values that are wrong, whatever is made of them."""
-    wrong: list[ParameterError] = []
-    for key in job:
-        if key not in SECTIONS:
-            text = f"{key}: a job has no such key: must be one of {', '.join(SECTIONS)}{suggestion(key, SECTIONS)}"
-            wrong.append(ParameterError(key, None, job[key], text))
+    no_key = f": a job has no such key: must be one of {', '.join(SECTIONS)}"
+    errors = [wrong(key, job[key], no_key + suggestion(key, SECTIONS)) for key in job if key not in SECTIONS]
     if "arm" not in job:
-        wrong.append(ParameterError("arm", None, None, "arm: is missing"))
+        errors.append(wrong("arm", None, ": is missing"))
     for section in SECTIONS:
         if section in job:
-            wrong += problems(_whole(section, job[section]), SECTIONS[section], section, usual=True)
-    if wrong:
-        raise JobError(*wrong)
+            errors += problems(_whole(section, job[section]), SECTIONS[section], section, usual=True)
+    if errors:
+        raise JobError(*errors)
 
 
 def make(section: str, said: Table, arm: Arm | None = None) -> Any:

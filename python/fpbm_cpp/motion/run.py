@@ -68,22 +68,18 @@ class Run:
     t : numpy.ndarray, shape (N,)
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
-        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. At
-        velocity level, qdd of simulate() is finite differences of qd. qdd of track() is the mean over the tick that
-        begins at the sample.
+        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. qdd of
+        track() is the mean over the tick that begins at the sample; at velocity level, simulate()'s is differences.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
         The tip and its reference in the base frame [m]. Poses are (x, y, angle) in the plane, homogeneous matrices in
         space.
     error : numpy.ndarray, shape (N, m)
         x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
-    status : RunStatus
-        How the motion ended.
-    arm, path, scheme, task, options
-        What it was made of; options are the other keyword arguments: dt, hold, qd0, and those of track().
-    scale : numpy.ndarray, shape (N,), or None
-        Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it).
-    saturated : numpy.ndarray of bool, shape (N, n), or None
-        Of track() alone: which joints were on a bound.
+    status, arm, path, scheme, task, options
+        How the motion ended, and what it was made of; options are the other keyword arguments: dt, hold, ...
+    scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
+        Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it), and
+        which joints were on a bound.
     provenance : dict
         Of a run from a file: when, where and by which versions it was made, with the note and seed saved with it.
     """
@@ -157,17 +153,14 @@ class Run:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
         panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
-        for an unknown name, and ImportError, with what to install, where matplotlib is missing.
+        for an unknown name, and ImportError where matplotlib is missing.
         """
         from ..plot import plot_run
 
         return plot_run(self, panels=panels, dark=dark)
 
     def view(self, *, urdf: str | os.PathLike[str] | None = None, **how: Any) -> None:
-        """Show the motion in the browser until Ctrl-C; urdf, host, port and open_browser as for view().
-
-        Raises ImportError, with what to install, where viser is missing.
-        """
+        """Show the motion in the browser until Ctrl-C; urdf, host, port, open_browser and errors as for view()."""
         from ..viewer import Viewer
 
         Viewer(self, urdf=urdf, **{"open_browser": True, **how}).wait()
@@ -213,8 +206,7 @@ class Run:
     def to_csv(self, file: str | os.PathLike[str]) -> None:
         """Write the columns of to_pandas() as CSV, with heads like 'qd_joint_1 [rad/s]'. Needs no extra.
 
-        Numbers are exact: read back, they are the same to the last bit. An existing file is replaced, whole or not at
-        all.
+        Numbers read back are the same to the last bit. An existing file is replaced, whole or not at all.
         """
         from ..io.tables import to_csv
 

@@ -94,12 +94,10 @@ def track(
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
-    The motion is a Tracker's, where simulate() has the plain law's: the path is the same, sampled at the same times,
-    but every joint keeps its bounds, the motion is damped near singular postures, and nothing makes it stop early.
-
-    Sample k is the state at t_k, the tip's error there, and the tick that begins there: its mean acceleration, its
-    scale, and which joints it had on a bound. The run's status is the worst of all ticks: OK, DAMPED or SLOWED; without
-    damping it may be SINGULAR, where the arm braked.
+    The motion is a Tracker's, where simulate() has the plain law's: every joint keeps its bounds, the motion is damped
+    near singular postures, and nothing makes it stop early. Sample k is the state at t_k, the tip's error there, and
+    the tick that begins there: its mean acceleration, its scale, and which joints it had on a bound. The run's status
+    is the worst of all ticks: OK, DAMPED or SLOWED; without damping it may be SINGULAR, where the arm braked.
 
     Parameters
     ----------

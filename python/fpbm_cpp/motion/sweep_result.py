@@ -22,21 +22,18 @@ class Sweep:
 
     Attributes
     ----------
-    status : numpy.ndarray of Status
-        How each motion ended; None where it was not run.
-    time : numpy.ndarray
-        Time of its last sample [s].
-    max_error, max_orientation_error : numpy.ndarray
+    status, time
+        How each motion ended, a Status, or None where it was not run; and the time of its last sample [s].
+    max_error, max_orientation_error
         Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
         which is 0 where the task leaves it free.
-    peak_velocity, final_velocity : numpy.ndarray
-        Of the joints [rad/s], or [m/s] where one is prismatic.
-    peak_acceleration, final_acceleration : numpy.ndarray
-        Of the joints [rad/s^2], [m/s^2]; at velocity level, finite differences of the velocities.
-    manipulability : numpy.ndarray
+    peak_velocity, final_velocity, peak_acceleration, final_acceleration
+        Of the joints [rad/s], [rad/s^2], m for rad where one is prismatic. At velocity level, accelerations are finite
+        differences of the velocities.
+    manipulability
         The least sqrt(det(J J')) of the task on the way (Yoshikawa, 1985).
-    motions : numpy.ndarray of Run, or None
-        The whole motions if they were asked for; None where one was not run.
+    motions
+        The whole motions, each a Run, if they were asked for; None where one was not run.
     arm, path, schemes, q0s, task
         What moved, along what, how, from where, and as what task: S schemes, and starts of shape (K, n).
     """
@@ -70,17 +67,16 @@ class Sweep:
 
     def __str__(self) -> str:
         """One line for each scheme: how many motions are complete, and the worst of those."""
-        lines = [repr(self)]
-        for i, (scheme, ok) in enumerate(zip(map(repr, self.schemes), self.ok)):
-            line = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
-            if ok.any():
-                line += (
-                    f"; tip error up to {self.max_error[i, ok].max():.1e} m,"
-                    f" joints up to {self.peak_velocity[i, ok].max():.3g} rad/s,"
-                    f" manipulability down to {self.manipulability[i, ok].min():.3g}"
-                )
-            lines.append(line)
-        return "\n".join(lines)
+        return "\n".join([repr(self), *map(self._row, range(len(self.schemes)))])
+
+    def _row(self, i: int) -> str:
+        scheme, ok = repr(self.schemes[i]), self.ok[i]
+        text = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
+        if not ok.any():
+            return text
+        error, velocity = self.max_error[i, ok].max(), self.peak_velocity[i, ok].max()
+        worst = f"tip error up to {error:.1e} m, joints up to {velocity:.3g} rad/s"
+        return f"{text}; {worst}, manipulability down to {self.manipulability[i, ok].min():.3g}"
 
     def __repr__(self) -> str:
         counts = {"complete": self.ok, "stopped early": self.done & ~self.ok, "not run": ~self.done}

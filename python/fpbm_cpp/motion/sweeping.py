@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike
 
 from .._core import Status, check_sweep, not_run
 from ..arms import Arm, JointLimits
-from ..errors import ParameterError, SweepInterrupted
+from ..errors import SweepInterrupted, wrong
 from ..paths import Path
 from ..schemes import Scheme
 from .simulation import LimitOptions, make_run, motion_options
 from .sweep_result import Sweep
 from .workers import run_chunks
 
+# True for a bar on the terminal or in a notebook, or what to call with (done, total).
 Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
 # A chunk's motions are a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks, for many
@@ -78,10 +79,8 @@ def sweep(
 
     Raises
     ------
-    ValueError
-        If an argument is out of range, not finite, or of the wrong shape; nothing is run.
-    TypeError
-        If one of the schemes is none.
+    ValueError, TypeError
+        If an argument is out of range, not finite, or of the wrong shape, or a scheme is none; nothing is run.
     SweepInterrupted
         On Ctrl-C: a KeyboardInterrupt whose sweep holds what is finished.
     ImportError
@@ -89,19 +88,17 @@ def sweep(
     """
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
-        raise ParameterError("schemes", None, schemes, "schemes: must be one at least")
+        raise wrong("schemes", schemes, ": must be one at least")
     for i, law in enumerate(laws):
         if not isinstance(law, Scheme):
             raise TypeError(f"schemes[{i}]: must be a Scheme, got {type(law).__name__}")
     if workers is not None and executor is not None:
-        text = "workers: must be left out where there is an executor, which has its own"
-        raise ParameterError("workers", None, workers, text)
+        raise wrong("workers", workers, ": must be left out where there is an executor, which has its own")
     if workers is not None and workers < 1:
-        raise ParameterError("workers", None, workers, f"workers = {workers}: must be 1 at least")
+        raise wrong("workers", workers, f" = {workers}: must be 1 at least")
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
     if limits is None and limited != LimitOptions():
-        text = "limits: must be given where max_error, an integral or a singular option is"
-        raise ParameterError("limits", None, None, text)
+        raise wrong("limits", None, ": must be given where max_error, an integral or a singular option is")
     kept = None if limits is None else limited
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)
@@ -154,11 +151,7 @@ def _parts(total: int, starts: int, samples: int) -> list[slice]:
 
 @contextmanager
 def reporting(progress: Progress, total: int) -> Iterator[Callable[[int], object]]:
-    """A function to call with how many of the total are done.
-
-    progress: True for a bar on the terminal or in a notebook, or what to call with (done, total). Raises ImportError,
-    with what to install, where the bar's library is missing.
-    """
+    """A function to call with how many of the total are done. Raises ImportError where the bar's library is missing."""
     if callable(progress):
         yield lambda done: progress(done, total)
     elif progress:
