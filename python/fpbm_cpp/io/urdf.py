@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,10 +31,8 @@ Follow = tuple[str, float, float]  # Leader, ratio, offset: a position is ratio 
 def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array]:
     """Read the joints that move from link base (the root unless given) to link tip, and the tip's frame.
 
-    Each joint is placed as seen from the one before [m]; the tip, shape (4, 4), as seen from the last. Fixed joints are
-    folded into these frames. A joint that mimics another keeps that one's index, ratio and offset, and the other's
-    bounds are narrowed so that both stay within theirs. Where the other does not move between base and tip, the joint
-    is held where the other's zero puts it, and a UserWarning says so.
+    As SerialArm.from_urdf() says. A joint that mimics another keeps that one's index, ratio and offset, and the other's
+    bounds are narrowed so that both stay within theirs.
 
     Raises an OSError where the file cannot be read, a ParameterError where tip or base is none of its links, and a
     ValueError that begins with the path where it is no sound URDF or has no such chain.
@@ -51,9 +50,9 @@ def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -
         raise ValueError(f"{name}: {error}") from None
     for joint in held:
         leader, _, offset = follows[joint.name]
-        position = f"{offset:g} {'m' if joint.type == 'prismatic' else 'rad'}"
+        held_at = f"joint {joint.name!r} is held at {offset:g} {'m' if joint.type == 'prismatic' else 'rad'}"
         reason = f"it mimics {leader!r}, which does not move between base and tip"
-        warnings.warn(f"{name}: joint {joint.name!r} is held at {position}: {reason}", stacklevel=3)
+        warnings.warn(f"{name}: {held_at}: {reason}", stacklevel=3)
     return joints, frame
 
 
@@ -87,8 +86,7 @@ def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
     """The joints from base to tip."""
     up = _to_root(above, "tip", tip)
     links = [tip, *(joint.parent for joint in up)]
-    if base is None:
-        base = links[-1]
+    base = links[-1] if base is None else base
     others = {base, *(joint.parent for joint in _to_root(above, "base", base))}
     if base not in links:
         fork = next(link for link in links if link in others)
@@ -174,33 +172,31 @@ def _chain(way: Iterable[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[lis
         else:
             held.append(joint)
             along = offset * np.array(joint.axis) / np.linalg.norm(joint.axis)
-            slides = joint.type == "prismatic"
-            frame = frame @ (_frame(along, np.eye(3)) if slides else _frame(np.zeros(3), rotation(along)))
+            frame = frame @ (_frame(p=along) if joint.type == "prismatic" else _frame(R=rotation(along)))
     if not joints:
         raise ValueError(f"no joints move but those that are held: {_listed(joint.name for joint in held)}")
     return joints, frame, held
 
 
-def _frame(p: ArrayLike, R: ArrayLike) -> Array:
+def _frame(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> Array:
     T = np.eye(4)
     T[:3, 3], T[:3, :3] = p, R
     return T
 
 
 def _joint(joint: UrdfJoint, placement: Array) -> Joint:
-    stated = joint.limit.get
-    lower, upper = stated("lower", 0.0), stated("upper", 0.0)  # The format's defaults.
-    velocity, acceleration = stated("velocity"), stated("acceleration", inf)
+    limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, **joint.limit}  # The format's defaults.
     if joint.type == "continuous":
-        lower, upper, velocity = -inf, inf, stated("velocity", inf)
-    if velocity is None:
+        limit = {"velocity": inf, **limit, "lower": -inf, "upper": inf}
+    if "velocity" not in limit:
         raise ValueError(f"joint {joint.name!r} is {joint.type} and has no <limit> with a velocity")
+    lower, upper = limit["lower"], limit["upper"]
     if lower >= upper:
         raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}")
-    for what, value in (("velocity", velocity), ("acceleration", acceleration)):
-        if value <= 0.0:
-            raise ValueError(f"joint {joint.name!r}: {what} = {value:g}: must be positive")
-    return Joint(str(joint.type), placement, joint.axis, lower, upper, velocity, acceleration, joint.name)
+    for what in ("velocity", "acceleration"):
+        if limit[what] <= 0.0:
+            raise ValueError(f"joint {joint.name!r}: {what} = {limit[what]:g}: must be positive")
+    return Joint(str(joint.type), placement, joint.axis, **limit, name=joint.name)
 
 
 def _coupled(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:

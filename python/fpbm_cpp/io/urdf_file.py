@@ -6,9 +6,7 @@ what a chain is made of. Meshes, masses, transmissions and simulators' extras ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import NoReturn
 from xml.parsers import expat
 
 MAX_BYTES = 16 * 2**20
@@ -53,74 +51,63 @@ def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
         xml = file.read(MAX_BYTES + 1)
     if len(xml) > MAX_BYTES:
         raise ValueError(f"has more than {MAX_BYTES >> 20} MiB")
-    scanner = _Scanner()
+    parser = expat.ParserCreate()
+    robot: dict[str, list[Parts]] = {"link": [], "joint": []}
+    opened: list[str] = []
+    count = 0
+
+    def require(sound: object, reason: str) -> None:
+        if not sound:
+            raise ValueError(f"line {parser.CurrentLineNumber}: {reason}")
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        require(count <= MAX_ELEMENTS, f"has more than {MAX_ELEMENTS} XML elements")
+        require(len(opened) < MAX_DEPTH, f"XML elements are nested more than {MAX_DEPTH} deep")
+        require(not tag.startswith("xacro:"), f"<{_cut(tag)}>: run xacro on the file first")
+        require(opened or tag == "robot", f"the root is <{_cut(tag)}>: must be <robot>")
+        keys = KEPT.get(tuple(opened), {}).get(tag, ())
+        kept = {key: attributes[key] for key in keys if key in attributes}
+        for key, text in kept.items():
+            what = f"{tag} {key} = {_cut(text)!r}"
+            require(len(text) <= MAX_TEXT, f"{what} has {len(text)} characters: must have at most {MAX_TEXT}")
+            require("${" not in text, f"{what}: run xacro on the file first")
+        opened.append(tag)
+        if tag in robot and keys:
+            robot[tag].append({tag: kept})
+        elif keys:
+            parts = robot["joint"][-1]
+            require(tag not in parts, f"joint {parts['joint'].get('name')!r} has a second <{tag}>: must have one")
+            parts[tag] = kept
+
+    parser.StartDoctypeDeclHandler = lambda *_: require(False, "has a DOCTYPE: must have none")
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: opened.pop()
     try:
-        scanner.parser.Parse(xml, True)
+        parser.Parse(xml, True)
     except expat.ExpatError as error:
         raise ValueError(f"line {error.lineno}: invalid XML: {expat.ErrorString(error.code)}") from None
     except LookupError as error:
         raise ValueError(f"line 1: invalid XML: {error}") from None
-    links, joints = scanner.elements["link"], scanner.elements["joint"]
-    return _names("link", links), [_joint(name, parts) for name, parts in zip(_names("joint", joints), joints)]
-
-
-class _Scanner:
-    def __init__(self) -> None:
-        self.elements: dict[str, list[Parts]] = {"link": [], "joint": []}
-        self.parser = expat.ParserCreate()
-        self.parser.StartDoctypeDeclHandler = lambda *_: self._refuse("has a DOCTYPE: must have none")
-        self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = lambda _: self._open.pop()
-        self._open: list[str] = []
-        self._count = 0
-
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        self._count += 1
-        if self._count > MAX_ELEMENTS:
-            self._refuse(f"has more than {MAX_ELEMENTS} XML elements")
-        if len(self._open) == MAX_DEPTH:
-            self._refuse(f"XML elements are nested more than {MAX_DEPTH} deep")
-        if tag.startswith("xacro:"):
-            self._refuse(f"<{_cut(tag)}>: run xacro on the file first")
-        if not self._open and tag != "robot":
-            self._refuse(f"the root is <{_cut(tag)}>: must be <robot>")
-        keys = KEPT.get(tuple(self._open[:3]), {}).get(tag, ())
-        if keys:
-            self._keep(tag, {key: attributes[key] for key in keys if key in attributes})
-        self._open.append(tag)
-
-    def _keep(self, tag: str, attributes: dict[str, str]) -> None:
-        for key, text in attributes.items():
-            if len(text) > MAX_TEXT:
-                self._refuse(f"{tag} {key} = {_cut(text)!r} has {len(text)} characters: must have at most {MAX_TEXT}")
-            if "${" in text:
-                self._refuse(f"{tag} {key} = {_cut(text)!r}: run xacro on the file first")
-        if tag in self.elements:
-            self.elements[tag].append({tag: attributes})
-            return
-        parts = self.elements["joint"][-1]
-        if tag in parts:
-            self._refuse(f"joint {parts['joint'].get('name')!r} has a second <{tag}>: must have one")
-        parts[tag] = attributes
-
-    def _refuse(self, reason: str) -> NoReturn:
-        raise ValueError(f"line {self.parser.CurrentLineNumber}: {reason}")
+    links, joints = _named("link", robot["link"]), _named("joint", robot["joint"])
+    return list(links), [_joint(name, parts) for name, parts in joints.items()]
 
 
 def _cut(text: str) -> str:
     return text if len(text) <= 40 else text[:40] + "..."
 
 
-def _names(tag: str, elements: Iterable[Parts]) -> list[str]:
-    names: dict[str, None] = {}
+def _named(tag: str, elements: list[Parts]) -> dict[str, Parts]:
+    named: dict[str, Parts] = {}
     for i, parts in enumerate(elements, 1):
         name = parts[tag].get("name")
         if not name:
             raise ValueError(f"<{tag}> number {i} has no name")
-        if name in names:
+        if name in named:
             raise ValueError(f"two {tag}s are named {name!r}")
-        names[name] = None
-    return list(names)
+        named[name] = parts
+    return named
 
 
 def _joint(name: str, parts: Parts) -> UrdfJoint:
