@@ -1,5 +1,6 @@
 #include <pybind11/typing.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -8,9 +9,26 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "fpbm/any/any_time_law.hpp"
+#include "fpbm/any/convert_path.hpp"
+#include "fpbm/task/in_plane.hpp"
+#include "fpbm/task/path.hpp"
+#include "fpbm/task/sequence.hpp"
+#include "fpbm/task/waypoints.hpp"
+#include "fpbm/task/with_rotation.hpp"
 #include "path.hpp"
 
 namespace fpbm::bindings {
+
+template <typename Space>
+AnyPath<Space> Path::as() const {
+  return std::visit([](const auto& path) { return convert_path<Space>(path); }, any);
+}
+
+template AnyPath<Position<2>> Path::as() const;
+template AnyPath<PlanarPose> Path::as() const;
+template AnyPath<Position<3>> Path::as() const;
+template AnyPath<Pose> Path::as() const;
+
 namespace {
 
 using Array = py::array_t<double>;
@@ -28,37 +46,98 @@ int dimensions(const ArrayLike& argument) {
   return any ? static_cast<int>(any.ndim()) : -1;
 }
 
-Path python_lissajous(const ArrayLike& amplitude, double duration, const ArrayLike& frequencies, double phase,
-                      const std::string& law) {
+/// A shape run through under the time law of that name.
+template <typename Shape>
+Path make_path(const Shape& shape, double duration, const std::string& law) {
+  return {AnyPath<typename Shape::Space>(fpbm::Path(shape, duration, AnyTimeLaw(law)))};
+}
+
+Path circle(double radius, double duration, const std::string& law) {
+  return make_path(Circle<double>(radius), duration, law);
+}
+
+Path lissajous(const ArrayLike& amplitude, double duration, const ArrayLike& frequencies, double phase,
+               const std::string& law) {
   const Vector<2> both = dimensions(amplitude) == 0 ? Vector<2>(Vector<2>::Constant(number(amplitude, "amplitude")))
                                                     : fixed_vector<2>(amplitude, "amplitude");
-  return lissajous(both, duration, fixed_vector<2>(frequencies, "frequencies").cast<int>(), phase, law);
+  return make_path(Lissajous<double>(both, fixed_vector<2>(frequencies, "frequencies").cast<int>(), phase), duration,
+                   law);
 }
 
-Path python_line(const ArrayLike& displacement, double duration, const std::string& law) {
+Path tricuspid(double size, double duration, const std::string& law) {
+  return make_path(Tricuspid<double>(size), duration, law);
+}
+
+Path line(const ArrayLike& displacement, double duration, const std::string& law) {
   const bool spatial = real_array(displacement, "displacement", 1).size() == 3;
-  if (spatial) return line(fixed_vector<3>(displacement, "displacement"), duration, law);
-  return line(fixed_vector<2>(displacement, "displacement"), duration, law);
+  if (spatial) return make_path(Line<3>(fixed_vector<3>(displacement, "displacement")), duration, law);
+  return make_path(Line<2>(fixed_vector<2>(displacement, "displacement")), duration, law);
 }
 
-Path python_in_plane(const Path& path, const ArrayLike& axes) {
-  const Eigen::MatrixXd rows = matrix(axes, "plane", 2, 3);
-  return in_plane(path, rows.row(0).transpose(), rows.row(1).transpose());
+Path in_plane(const Path& path, const ArrayLike& axes) {
+  const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any);
+  if (flat == nullptr) validation::reject("in_plane", ": the path must be one of positions in a plane");
+  const Matrix<2, 3> rows = matrix(axes, "plane", 2, 3);
+  return {AnyPath<Position<3>>(InPlane(*flat, Vector<3>(rows.row(0)), Vector<3>(rows.row(1))))};
 }
 
-Path python_with_rotation(const Path& path, const ArrayLike& rotation, const std::string& law) {
+Path with_rotation(const Path& path, const ArrayLike& rotation, const std::string& law) {
   if (const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any)) {
-    return with_rotation(*flat, number(rotation, "rotation"), law);
+    return {AnyPath<PlanarPose>(WithRotation(*flat, Vector<1>(number(rotation, "rotation")), AnyTimeLaw(law)))};
   }
   const auto* spatial = std::get_if<AnyPath<Position<3>>>(&path.any);
   if (spatial == nullptr) validation::reject("with_rotation", ": the path rotates the tip already");
-  return with_rotation(*spatial, fixed_vector<3>(rotation, "rotation"), law);
+  return {AnyPath<Pose>(WithRotation(*spatial, fixed_vector<3>(rotation, "rotation"), AnyTimeLaw(law)))};
 }
 
-Path python_waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
-                      const std::optional<double>& velocity, const std::optional<double>& acceleration,
-                      const std::optional<double>& angular_velocity,
-                      const std::optional<double>& angular_acceleration) {
+/// Paths in [begin, end) one after another, as a balanced tree of pairs: a sample goes through few of them.
+template <typename Space>
+AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
+  if (end - begin == 1) return (*begin)->as<Space>();
+  const auto* const middle = begin + (end - begin) / 2;
+  return AnyPath<Space>(Sequence(sequence_in<Space>(begin, middle), sequence_in<Space>(middle, end)));
+}
+
+/// Paths one after another, in the smallest of the spaces that has room for all.
+Path sequence(const std::vector<const Path*>& paths) {
+  if (paths.empty()) validation::reject("paths", ": must be one at least");
+  const auto in = [&](auto space) {
+    return Path{sequence_in<decltype(space)>(paths.data(), paths.data() + paths.size())};
+  };
+  const auto has = [&](std::size_t kind) {
+    return std::any_of(paths.begin(), paths.end(), [&](const Path* path) { return path->any.index() == kind; });
+  };
+  if (has(3)) return in(Pose{});
+  if (has(2)) return in(Position<3>{});
+  if (has(1)) return in(PlanarPose{});
+  return in(Position<2>{});
+}
+
+/// When waypoints are passed: a duration, a time for each, or bounds of the tip's motion.
+using Timing = std::variant<double, std::vector<double>, TipBounds<>>;
+
+template <typename Space>
+Path waypoints_in(const std::vector<typename Space::template Point<double>>& points, const Timing& timing) {
+  using Spline = Waypoints<Space>;
+  if (const auto* duration = std::get_if<double>(&timing)) return {AnyPath<Space>(Spline::lasting(points, *duration))};
+  if (const auto* bounds = std::get_if<TipBounds<>>(&timing)) return {AnyPath<Space>(Spline::within(points, *bounds))};
+  return {AnyPath<Space>(Spline(points, std::get<std::vector<double>>(timing)))};
+}
+
+/// The entries of an array of points.
+template <typename Space>
+std::vector<typename Space::template Point<double>> points_of(const Array& array) {
+  std::vector<typename Space::template Point<double>> points;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const std::string name = validation::element("points", i).text;
+    points.push_back(point<Space>(ArrayLike(py::object(array[py::int_(i)])), name.c_str()));
+  }
+  return points;
+}
+
+Path waypoints(const ArrayLike& points, const std::optional<double>& duration, const OptionalArray& times,
+               const std::optional<double>& velocity, const std::optional<double>& acceleration,
+               const std::optional<double>& angular_velocity, const std::optional<double>& angular_acceleration) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration;
   if (duration.has_value() + times.has_value() + bounded != 1) {
@@ -71,26 +150,11 @@ Path python_waypoints(const ArrayLike& points, const std::optional<double>& dura
     const auto array = real_array(*times, "times", 1);
     timing = std::vector<double>(array.data(), array.data() + array.size());
   }
-  if (dimensions(points) == 3) {
-    const auto array = real_array(points, "points", 3);
-    std::vector<Transform<>> poses;
-    for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-      const std::string name = validation::element("points", i).text;
-      poses.push_back(transform(ArrayLike(py::object(array[py::int_(i)])), name.c_str()));
-    }
-    return waypoints(poses, timing);
-  }
-  const auto array = real_array(points, "points", 2);
-  const auto rows = [&](auto row) {
-    std::vector<decltype(row)> result;
-    for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-      for (py::ssize_t j = 0; j < array.shape(1); ++j) row(j) = array.at(i, j);
-      result.push_back(row);
-    }
-    return waypoints(result, timing);
-  };
-  if (array.shape(1) == 2) return rows(Vector<2>{});
-  if (array.shape(1) == 3) return rows(Vector<3>{});
+  const bool poses = dimensions(points) == 3;
+  const Array array = real_array(points, "points", poses ? 3 : 2);
+  if (poses) return waypoints_in<Pose>(points_of<Pose>(array), timing);
+  if (array.shape(1) == 2) return waypoints_in<Position<2>>(points_of<Position<2>>(array), timing);
+  if (array.shape(1) == 3) return waypoints_in<Position<3>>(points_of<Position<3>>(array), timing);
   validation::reject("points", ": must have shape (k, 2), (k, 3) or (k, 4, 4), got " +
                                    py::cast<std::string>(py::str(array.attr("shape"))));
 }
@@ -122,13 +186,13 @@ shape (m,), linear rows first, then angular. At rest on the path's ends outside 
   const auto duration = py::arg("duration");
   const auto law = py::arg("time_law");
   m.def("circle", &circle, py::arg("radius"), duration, law);
-  m.def("lissajous", &python_lissajous, py::arg("amplitude"), duration, py::arg("frequencies"), py::arg("phase"), law);
+  m.def("lissajous", &lissajous, py::arg("amplitude"), duration, py::arg("frequencies"), py::arg("phase"), law);
   m.def("tricuspid", &tricuspid, py::arg("size"), duration, law);
-  m.def("line", &python_line, py::arg("displacement"), duration, law);
-  m.def("waypoints", &python_waypoints, py::arg("points"), duration, py::arg("times"), py::arg("velocity"),
+  m.def("line", &line, py::arg("displacement"), duration, law);
+  m.def("waypoints", &waypoints, py::arg("points"), duration, py::arg("times"), py::arg("velocity"),
         py::arg("acceleration"), py::arg("angular_velocity"), py::arg("angular_acceleration"));
-  m.def("in_plane", &python_in_plane, py::arg("path"), py::arg("axes"));
-  m.def("with_rotation", &python_with_rotation, py::arg("path"), py::arg("rotation"), law);
+  m.def("in_plane", &in_plane, py::arg("path"), py::arg("axes"));
+  m.def("with_rotation", &with_rotation, py::arg("path"), py::arg("rotation"), law);
   m.def("sequence", &sequence, py::arg("paths"));
 }
 

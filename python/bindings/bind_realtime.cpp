@@ -32,6 +32,11 @@ PyTick python_tick(const Tick<Space, kDynamic>& tick) {
           tick.scale,       saturated,         tick.sigma,         array_of(tick.error)};
 }
 
+template <typename Arm, typename Space, typename Scheme>
+Space space_of(const Tracker<Arm, Space, Scheme>&) {
+  return {};
+}
+
 struct PyFollower {
   std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
 };
@@ -40,12 +45,11 @@ struct PyFollower {
 class PyTracker {
   using Any = std::variant<AnyTracker<Position<2>>, AnyTracker<PlanarPose>, AnyTracker<Position<3>>, AnyTracker<Pose>>;
 
-  template <typename Tracker>
-  using SpaceOf = typename std::decay_t<Tracker>::Space;
-
+  /// Calls visitor(tracker, Space).
   template <typename Visitor>
   auto visit(Visitor&& visitor) {
-    return std::visit(visitor, any_);
+    const auto with_space = [&](auto& tracker) { return visitor(tracker, space_of(tracker)); };
+    return std::visit([&](auto& either) { return std::visit(with_space, either); }, any_);
   }
 
  public:
@@ -57,16 +61,17 @@ class PyTracker {
           if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
           require_enough_joints<Space>(dof_);
           return Any(
-              AnyTracker<Space>(any, scheme, start, options, limits.is_none() ? arm.limits() : joint_limits(limits)));
+              make_tracker<Space>(any, scheme, start, options, limits.is_none() ? arm.limits() : joint_limits(limits)));
         })) {}
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit([&](auto& tracker) { return python_tick(tracker.tick(reference(tracker, x, xd, xdd))); });
+    return visit(
+        [&](auto& tracker, auto space) { return python_tick(tracker.tick(reference<decltype(space)>(x, xd, xdd))); });
   }
 
   [[nodiscard]] PyTick tick(PyFollower& follower) {
-    return visit([&](auto& tracker) {
-      auto* same = std::get_if<AnyFollower<SpaceOf<decltype(tracker)>>>(&follower.any);
+    return visit([&](auto& tracker, auto space) {
+      auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
       if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
       return python_tick(tracker.tick(*same));
     });
@@ -74,39 +79,41 @@ class PyTracker {
 
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                                         const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit([&](auto& tracker) {
-      return python_tick(tracker.resolve_measured(joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_),
-                                                  reference(tracker, x, xd, xdd)));
+    return visit([&](auto& tracker, auto space) -> PyTick {
+      if constexpr (std::decay_t<decltype(tracker)>::kLevel == Level::kAcceleration) {
+        return python_tick(tracker.resolve_measured(joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_),
+                                                    reference<decltype(space)>(x, xd, xdd)));
+      }
+      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
     });
   }
 
   [[nodiscard]] PyFollower follow(const Path& path, double ramp) {
-    return visit([&](auto& tracker) -> PyFollower {
-      using Space = SpaceOf<decltype(tracker)>;
+    return visit([&](auto& tracker, auto space) -> PyFollower {
+      using Space = decltype(space);
       return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
     });
   }
 
   void stop() {
-    visit([](auto& tracker) { tracker.stop(); });
+    visit([](auto& tracker, auto) { tracker.stop(); });
   }
   void resume() {
-    visit([](auto& tracker) { tracker.resume(); });
+    visit([](auto& tracker, auto) { tracker.resume(); });
   }
   [[nodiscard]] Array q() {
-    return visit([](auto& tracker) { return array_of(tracker.state().q); });
+    return visit([](auto& tracker, auto) { return array_of(tracker.state().q); });
   }
   [[nodiscard]] Array qd() {
-    return visit([](auto& tracker) { return array_of(tracker.state().qd); });
+    return visit([](auto& tracker, auto) { return array_of(tracker.state().qd); });
   }
   [[nodiscard]] Array tip() {
-    return visit([](auto& tracker) { return array_of(tracker.tip()); });
+    return visit([](auto& tracker, auto) { return array_of(tracker.tip()); });
   }
 
  private:
   template <typename Space>
-  static Reference<Space> reference(const AnyTracker<Space>&, const ArrayLike& x, const OptionalArray& xd,
-                                    const OptionalArray& xdd) {
+  static Reference<Space> reference(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
     auto result = Reference<Space>::hold(point<Space>(x, "x"));
     if (xd) result.xd = fixed_vector<Space::kRows>(*xd, "xd");
     if (xdd) result.xdd = fixed_vector<Space::kRows>(*xdd, "xdd");

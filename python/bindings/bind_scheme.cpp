@@ -44,11 +44,7 @@ void check(const Scheme& scheme) {
   if (const auto* W = std::get_if<Scheme::Dense>(&scheme.weights)) dof = W->rows();
   validation::require_non_negative("manipulability_gain", scheme.manipulability_gain);
   const auto limits = JointLimits<kDynamic>::none(dof);
-  if (scheme.level == Level::kVelocity) {
-    (void)scheme.plain<Level::kVelocity, Position<2>>(limits);
-  } else {
-    (void)scheme.plain<Level::kAcceleration, Position<2>>(limits);
-  }
+  (void)scheme.plain<Position<2>>(limits);
 }
 
 Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py::object>& parameters) {
@@ -113,46 +109,31 @@ Reference<Space> reference_of(const Scheme& scheme, const ArrayLike& x, const Ar
   return reference;
 }
 
+/// What made(Space), the scheme for these joints, asks for in a state.
+template <typename Space, typename Made>
+py::array_t<double> resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
+                            const State<kDynamic>& state, const ArrayLike& x, const ArrayLike& xd,
+                            const OptionalArray& xdd, const Made& made) {
+  require_enough_joints<Space>(state.q.size());
+  const Reference<Space> reference = reference_of<Space>(scheme, x, xd, xdd);
+  JointVector u = JointVector::Zero(state.q.size());
+  const EitherScheme<Space> either = made(Space{});
+  const Status status =
+      std::visit([&](const auto& any) { return any.resolve(kinematics, reference, state, u); }, either);
+  if (failed(status)) raise(status);
+  return array_of(u);
+}
+
 py::array_t<double> resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, const ArrayLike& qd,
                                     const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
                                     const std::string& task) {
   const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
   return arm.visit(task, [&](const auto& any, auto space) {
     using Space = decltype(space);
-    require_enough_joints<Space>(arm.dof());
-    const Reference<Space> reference = reference_of<Space>(scheme, x, xd, xdd);
-    JointVector u = JointVector::Zero(arm.dof());
-    const Status status = scheme.visit<Space>(any, [&](const auto& made) {
-      Kinematics<Space, kDynamic> kinematics;
-      any.kinematics(state.q, state.qd, kinematics);
-      return made.resolve(kinematics, reference, state, u);
-    });
-    if (failed(status)) raise(status);
-    return array_of(u);
+    Kinematics<Space, kDynamic> kinematics;
+    any.kinematics(state.q, state.qd, kinematics);
+    return resolve(scheme, kinematics, state, x, xd, xdd, [&](auto) { return scheme.make<Space>(any); });
   });
-}
-
-template <typename Space>
-Status resolve_alone(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
-                     const Reference<Space>& reference, const State<kDynamic>& state, JointVector& u) {
-  const auto resolve = [&](const auto& made) { return made.resolve(kinematics, reference, state, u); };
-  if (scheme.level == Level::kVelocity) {
-    return resolve(scheme.make_without_arm<Level::kVelocity, Space>(u.size()));
-  }
-  return resolve(scheme.make_without_arm<Level::kAcceleration, Space>(u.size()));
-}
-
-template <typename Space>
-py::array_t<double> resolve_known(const Scheme& scheme, const Kinematics<Space, kDynamic>& known, const ArrayLike& q,
-                                  const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd,
-                                  const OptionalArray& xdd) {
-  const auto dof = static_cast<int>(known.J.cols());
-  const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
-  require_enough_joints<Space>(dof);
-  JointVector u = JointVector::Zero(dof);
-  const Status status = resolve_alone(scheme, known, reference_of<Space>(scheme, x, xd, xdd), state, u);
-  if (failed(status)) raise(status);
-  return array_of(u);
 }
 
 py::array_t<double> resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinematics, const ArrayLike& q,
@@ -161,8 +142,14 @@ py::array_t<double> resolve_for_kinematics(const Scheme& scheme, const AnyKinema
   if (!kinematics.has_rate && scheme.level == Level::kAcceleration) {
     validation::reject("Jd", ": an acceleration-level scheme needs it");
   }
-  return std::visit([&](const auto& known) { return resolve_known(scheme, known, q, qd, x, xd, xdd); },
-                    kinematics.value);
+  return std::visit(
+      [&](const auto& known) {
+        const auto dof = static_cast<int>(known.J.cols());
+        const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
+        const auto made = [&](auto space) { return scheme.make_without_arm<decltype(space)>(dof); };
+        return resolve(scheme, known, state, x, xd, xdd, made);
+      },
+      kinematics.value);
 }
 
 }  // namespace

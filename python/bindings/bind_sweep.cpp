@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
 #include <string>
 #include <vector>
 

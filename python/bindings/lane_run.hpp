@@ -44,57 +44,6 @@ template <int N>
           singular_of(laws)};
 }
 
-/// An arm whose kinematics are compiled once, and not into each stage of a step, which would be slow to build.
-template <typename Arm>
-struct ArmOnce {
-  using Scalar = typename Arm::Scalar;
-  static constexpr int kDof = Arm::kDof;
-
-  Arm arm;
-
-  [[nodiscard]] int dof() const noexcept { return arm.dof(); }
-
-  template <typename Space>
-  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd,
-                                    Kinematics<Space, kDof, Scalar>& out) const noexcept {
-    arm.kinematics(q, qd, out);
-  }
-  template <typename Space>
-  [[gnu::noinline]] void kinematics(const Vector<kDof, Scalar>& q,
-                                    Kinematics<Space, kDof, Scalar>& out) const noexcept {
-    arm.kinematics(q, out);
-  }
-};
-
-/// The same for a scheme.
-template <typename Law>
-struct SchemeOnce {
-  static constexpr Level kLevel = Law::kLevel;
-
-  Law law;
-
-  void require_dof(Eigen::Index dof) const { law.require_dof(dof); }
-
-  template <typename Space, int N, typename Scalar>
-  [[nodiscard, gnu::noinline]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
-                                              const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                                              Vector<N, Scalar>& u) const noexcept {
-    return law.resolve(kinematics, reference, state, u);
-  }
-};
-
-/// Sums up, and ends the motions once it is told to.
-template <typename Space, int N>
-struct LaneRecorder {
-  Summary<Space, N, InLanes> summary;
-  const std::atomic<bool>& stop;
-
-  [[gnu::noinline]] bool operator()(const Sample<Space, N, InLanes>& sample) noexcept {
-    summary(sample);
-    return !stop.load(std::memory_order_relaxed);
-  }
-};
-
 [[nodiscard]] inline MotionSummary<> lane_of(const MotionSummary<InLanes>& all, int lane) noexcept {
   const auto at = static_cast<std::size_t>(lane);
   return {all.max_error[at],         all.max_orientation_error[at], all.peak_velocity[at], all.final_velocity[at],
@@ -112,10 +61,13 @@ void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const T
   for (int i = 0; i < N; ++i) start.q(i) = InLanes([&](auto lane) { return starts[lane](i); });
 
   const auto in_lanes = arm.template cast<InLanes>();
-  LaneRecorder<Space, N> record{Summary<Space, N, InLanes>(Law::kLevel), stop};
-  const auto result = rollout(ArmOnce<std::decay_t<decltype(in_lanes)>>{in_lanes}, path,
-                              SchemeOnce<std::decay_t<decltype(scheme)>>{scheme}, start, grid, record);
-  const MotionSummary<InLanes> summary = record.summary.result();
+  Summary<Space, N, InLanes> summarise(Law::kLevel);
+  const auto record = [&](const Sample<Space, N, InLanes>& sample) noexcept {
+    summarise(sample);
+    return !stop.load(std::memory_order_relaxed);
+  };
+  const auto result = rollout(in_lanes, path, scheme, start, grid, record);
+  const MotionSummary<InLanes> summary = summarise.result();
   const auto regular = isfinite(result.last.q.sum()) && isfinite(result.last.qd.sum());
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool done = result.samples == grid.samples() && regular[static_cast<std::size_t>(lane)];

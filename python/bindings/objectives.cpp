@@ -31,40 +31,35 @@ template <Level kLevel, typename Space>
 
 }  // namespace
 
-template <Level kLevel, typename Space>
-AnyScheme<kLevel, Space> Scheme::make(const AnyArmFor<Space>& arm) const {
-  using Any = AnyScheme<kLevel, Space>;
-  Any result = plain<kLevel, Space>(arm.limits());
-  if (manipulability_gain != 0.0) result = Any(ManipulabilityAscent(result, arm, manipulability_gain));
-  if (second_task) result = with_second_task(result, *second_task, arm);
-  result.require_dof(arm.dof());
-  return result;
+template <typename Space>
+EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
+  return std::visit(
+      [&](auto scheme) -> EitherScheme<Space> {
+        using Any = decltype(scheme);
+        if (manipulability_gain != 0.0) scheme = Any(ManipulabilityAscent(scheme, arm, manipulability_gain));
+        if (second_task) scheme = with_second_task(scheme, *second_task, arm);
+        scheme.require_dof(arm.dof());
+        return scheme;
+      },
+      plain<Space>(arm.limits()));
 }
 
-template <Level kLevel, typename Space>
-AnyScheme<kLevel, Space> Scheme::make_without_arm(Eigen::Index dof) const {
+template <typename Space>
+EitherScheme<Space> Scheme::make_without_arm(Eigen::Index dof) const {
   if (!is_plain() || joint_centring != 0.0) {
     validation::reject("scheme",
                        ": joint_centring, manipulability_gain and second_task need an arm, and there is none here");
   }
-  return plain<kLevel, Space>(JointLimits<kDynamic>::none(dof));
+  return plain<Space>(JointLimits<kDynamic>::none(dof));
 }
 
-template AnyScheme<Level::kVelocity, Position<2>> Scheme::make(const AnyArm<Position<2>>&) const;
-template AnyScheme<Level::kVelocity, PlanarPose> Scheme::make(const AnyArm<Position<2>>&) const;
-template AnyScheme<Level::kVelocity, Position<3>> Scheme::make(const AnyArm<Position<3>>&) const;
-template AnyScheme<Level::kVelocity, Pose> Scheme::make(const AnyArm<Position<3>>&) const;
-template AnyScheme<Level::kAcceleration, Position<2>> Scheme::make(const AnyArm<Position<2>>&) const;
-template AnyScheme<Level::kAcceleration, PlanarPose> Scheme::make(const AnyArm<Position<2>>&) const;
-template AnyScheme<Level::kAcceleration, Position<3>> Scheme::make(const AnyArm<Position<3>>&) const;
-template AnyScheme<Level::kAcceleration, Pose> Scheme::make(const AnyArm<Position<3>>&) const;
-template AnyScheme<Level::kVelocity, Position<2>> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kVelocity, PlanarPose> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kVelocity, Position<3>> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kVelocity, Pose> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kAcceleration, Position<2>> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kAcceleration, PlanarPose> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kAcceleration, Position<3>> Scheme::make_without_arm(Eigen::Index) const;
-template AnyScheme<Level::kAcceleration, Pose> Scheme::make_without_arm(Eigen::Index) const;
+template EitherScheme<Position<2>> Scheme::make(const AnyArm<Position<2>>&) const;
+template EitherScheme<PlanarPose> Scheme::make(const AnyArm<Position<2>>&) const;
+template EitherScheme<Position<3>> Scheme::make(const AnyArm<Position<3>>&) const;
+template EitherScheme<Pose> Scheme::make(const AnyArm<Position<3>>&) const;
+template EitherScheme<Position<2>> Scheme::make_without_arm(Eigen::Index) const;
+template EitherScheme<PlanarPose> Scheme::make_without_arm(Eigen::Index) const;
+template EitherScheme<Position<3>> Scheme::make_without_arm(Eigen::Index) const;
+template EitherScheme<Pose> Scheme::make_without_arm(Eigen::Index) const;
 
 }  // namespace fpbm::bindings

@@ -4,8 +4,19 @@
 
 namespace fpbm::bindings {
 
-template <Level kLevel, typename Space>
-AnyScheme<kLevel, Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
+template <typename Space>
+EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
+  const auto with = [&](const auto& W, const auto& bounds) -> EitherScheme<Space> {
+    if (level == Level::kVelocity) return AnyScheme<Level::kVelocity, Space>(law<Level::kVelocity>(W, bounds));
+    return AnyScheme<Level::kAcceleration, Space>(law<Level::kAcceleration>(W, bounds));
+  };
+  const Eigen::Index dof = limits.lower.size();
+  if constexpr (std::is_same_v<Space, Position<2>>) {
+    // The paper's arm by code of its own size, which is a quarter faster.
+    if (dof == 4 && !std::holds_alternative<Dense>(weights))
+      return with(diagonal_weights<4>(dof),
+                  JointLimits<4>{limits.lower, limits.upper, limits.velocity, limits.acceleration});
+  }
   const AnyWeights W = std::visit(
       [](const auto& given) {
         using Given = std::decay_t<decltype(given)>;
@@ -14,17 +25,13 @@ AnyScheme<kLevel, Space> Scheme::plain(const JointLimits<kDynamic>& limits) cons
         if constexpr (std::is_same_v<Given, std::monostate>) return AnyWeights(UnitWeights{});
       },
       weights);
-  W.require_dof(limits.lower.size());
-  return AnyScheme<kLevel, Space>(law<kLevel>(W, limits));
+  W.require_dof(dof);
+  return with(W, limits);
 }
 
-template AnyScheme<Level::kVelocity, Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kVelocity, PlanarPose> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kVelocity, Position<3>> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kVelocity, Pose> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kAcceleration, Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kAcceleration, PlanarPose> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kAcceleration, Position<3>> Scheme::plain(const JointLimits<kDynamic>&) const;
-template AnyScheme<Level::kAcceleration, Pose> Scheme::plain(const JointLimits<kDynamic>&) const;
+template EitherScheme<Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;
+template EitherScheme<PlanarPose> Scheme::plain(const JointLimits<kDynamic>&) const;
+template EitherScheme<Position<3>> Scheme::plain(const JointLimits<kDynamic>&) const;
+template EitherScheme<Pose> Scheme::plain(const JointLimits<kDynamic>&) const;
 
 }  // namespace fpbm::bindings

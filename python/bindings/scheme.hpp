@@ -27,6 +27,10 @@ struct SecondTaskData {
   double k2;
 };
 
+/// A scheme of either level.
+template <typename Space>
+using EitherScheme = std::variant<AnyScheme<Level::kVelocity, Space>, AnyScheme<Level::kAcceleration, Space>>;
+
 /// The parameters of a scheme, before the number of joints is known. Missing ones are neutral.
 struct Scheme {
   using Diagonal = Vector<kDynamic>;
@@ -47,22 +51,15 @@ struct Scheme {
   std::optional<SecondTaskData> second_task = {};
   SingularDamping<> singular = SingularDamping<>::off();
 
-  /// The scheme for an arm, objectives and all. kLevel is the scheme's level.
+  /// The scheme for an arm, objectives and all.
   /// Throws std::invalid_argument where a parameter is out of range or does not fit the arm.
-  template <Level kLevel, typename Space>
-  [[nodiscard]] AnyScheme<kLevel, Space> make(const AnyArmFor<Space>& arm) const;
+  template <typename Space>
+  [[nodiscard]] EitherScheme<Space> make(const AnyArmFor<Space>& arm) const;
 
   /// The scheme for that many joints, without an arm.
   /// Throws std::invalid_argument as make() does, and where an objective needs an arm.
-  template <Level kLevel, typename Space>
-  [[nodiscard]] AnyScheme<kLevel, Space> make_without_arm(Eigen::Index dof) const;
-
-  /// Calls visitor(scheme) with what make() returns for this scheme's level.
-  template <typename Space, typename Visitor>
-  auto visit(const AnyArmFor<Space>& arm, Visitor&& visitor) const {
-    if (level == Level::kVelocity) return visitor(make<Level::kVelocity, Space>(arm));
-    return visitor(make<Level::kAcceleration, Space>(arm));
-  }
+  template <typename Space>
+  [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
 
   /// This scheme, with that damping near singular postures where it has none of its own.
   [[nodiscard]] Scheme with_default_damping(const SingularDamping<>& damping) const {
@@ -75,8 +72,8 @@ struct Scheme {
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
 
   /// The scheme without the objectives that wrap it, for joints of these limits. Compiled once, in scheme.cpp.
-  template <Level kLevel, typename Space>
-  [[nodiscard]] AnyScheme<kLevel, Space> plain(const JointLimits<kDynamic>& limits) const;
+  template <typename Space>
+  [[nodiscard]] EitherScheme<Space> plain(const JointLimits<kDynamic>& limits) const;
 
   /// The same, as the library's own type with given weights.
   template <Level kLevel, int N, typename Weights>

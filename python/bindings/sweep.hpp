@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "lanes.hpp"
@@ -17,6 +20,89 @@ struct Job {
   Output<Space> output = {};
 };
 
+/// Runs the motions of a sweep.
+template <typename Space>
+class Runner {
+ public:
+  Runner(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid, const std::atomic<bool>& stop)
+      : arm_(arm), any_(std::get<AnyArmFor<Space>>(arm.any)), path_(path), grid_(grid), stop_(stop) {}
+
+  [[nodiscard]] bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
+
+  /// One motion by itself.
+  [[nodiscard]] Outcome alone(const Job<Space>& job, const Limited* limited) const {
+    const Outcome nothing = Outcome::of_nothing();
+    MotionSummary<> summary = nothing.summary;
+    Output<Space> output = job.output;
+    output.summary = &summary;
+    output.stop = &stop_;
+    const State<kDynamic> start{job.q0, JointVector::Zero(job.q0.size())};
+    const Motion<Space> motion{any_, path_, *job.scheme, start, grid_};
+    const auto result = limited == nullptr ? motion.simulate(output) : motion.track(*limited, output);
+    if (!failed(result.status) && result.samples < grid_.samples()) return nothing;
+    if (result.samples == 0) summary = nothing.summary;
+    return {static_cast<int>(result.status), result.samples, result.time, summary};
+  }
+
+  /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
+  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, std::size_t lanes,
+                RunInLanes<Space> run, Outcome* outcomes) const {
+    using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
+    const ArmInLanes<Space> arm(std::get<Source>(arm_.source));
+    std::vector<Outcome> results(lanes, Outcome::of_nothing());
+    for (std::size_t first = 0; first < members.size() && !stopped(); first += lanes) {
+      const std::size_t last = std::min(first + lanes, members.size());
+      SchemesInLanes<Space> schemes;
+      std::vector<Vector<kDof>> starts;
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
+        const DiagonalWeights<kDof> weights = job.scheme->template diagonal_weights<kDof>(kDof);
+        if (job.scheme->level == Level::kVelocity) {
+          schemes.velocity.push_back(job.scheme->template law<Level::kVelocity>(weights, arm.limits()));
+        } else {
+          schemes.acceleration.push_back(job.scheme->template law<Level::kAcceleration>(weights, arm.limits()));
+        }
+        starts.emplace_back(job.q0);
+      }
+      run(arm, path_, grid_, schemes, starts, stop_, results.data());
+      for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
+    }
+  }
+
+ private:
+  static constexpr int kDof = ArmInLanes<Space>::kDof;
+
+  const Arm& arm_;
+  const AnyArmFor<Space>& any_;
+  const AnyPath<Space>& path_;
+  const TimeGrid<double>& grid_;
+  const std::atomic<bool>& stop_;
+};
+
+[[nodiscard]] inline bool runs_in_lanes(const Arm& arm) noexcept {
+  if (const auto* chain = std::get_if<Chain<>>(&arm.source)) {
+    return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
+  }
+  return arm.dof() == 4;
+}
+
+[[nodiscard]] inline bool runs_in_lanes(const Scheme& scheme) noexcept {
+  return scheme.is_plain() && !std::holds_alternative<Scheme::Dense>(scheme.weights);
+}
+
+/// The jobs of a level that can go side by side.
+template <typename Space>
+[[nodiscard]] std::vector<std::size_t> side_by_side(const std::vector<Job<Space>>& jobs, Level level) {
+  std::vector<std::size_t> members;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const Job<Space>& job = jobs[i];
+    if (job.scheme->level == level && runs_in_lanes(*job.scheme) && job.output.buffers.t == nullptr) {
+      members.push_back(i);
+    }
+  }
+  return members;
+}
+
 /// Runs each job on one arm along one path, as simulate() would or, where limited is not null, track(); and writes an
 /// outcome for each. Where code is not null, it runs motions side by side, with results that do not depend on which.
 /// Once stop is set, which is looked at in every sample, all that are not done yet are not run.
@@ -24,6 +110,20 @@ struct Job {
 template <typename Space>
 void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
            const std::vector<Job<Space>>& jobs, const Limited* limited, const LaneCode* code,
-           const std::atomic<bool>& stop, Outcome* outcomes);
+           const std::atomic<bool>& stop, Outcome* outcomes) {
+  const Runner<Space> runner(arm, path, grid, stop);
+  std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
+  if constexpr (!std::is_same_v<Space, PlanarPose>) {
+    if (code != nullptr && limited == nullptr && runs_in_lanes(arm)) {
+      for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
+        runner.in_lanes(jobs, side_by_side(jobs, level), static_cast<std::size_t>(code->lanes),
+                        std::get<RunInLanes<Space>>(code->run), outcomes);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < jobs.size() && !runner.stopped(); ++i) {
+    if (outcomes[i].status == Outcome::kNotRun) outcomes[i] = runner.alone(jobs[i], limited);
+  }
+}
 
 }  // namespace fpbm::bindings

@@ -1,0 +1,46 @@
+#include "fpbm/realtime/track.hpp"
+
+#include "motion.hpp"
+#include "tracker.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+template <typename Space>
+AnyTracker<Space> tracker_of(const Motion<Space>& motion, const Limited& limited) {
+  TrackerOptions<> options = limited.options;
+  options.dt = motion.grid.dt();
+  return make_tracker<Space>(motion.arm, motion.scheme, motion.start, options, limited.limits);
+}
+
+}  // namespace
+
+template <typename Space>
+RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
+  AnyTracker<Space> any = tracker_of(*this, limited);
+  Recorder<Space> record(output, Level::kAcceleration);
+  const auto result = std::visit(
+      [&](auto& tracker) {
+        AnyFollower<Space> follower(path, tracker.tip());
+        return fpbm::track(tracker, follower, grid, record);
+      },
+      any);
+  record.finish();
+  return result;
+}
+
+template <typename Space>
+void Motion<Space>::require(const Limited* limited) const {
+  if (limited != nullptr) {
+    (void)tracker_of(*this, *limited);
+  } else {
+    (void)scheme.make<Space>(arm);
+  }
+}
+
+template struct Motion<Position<2>>;
+template struct Motion<PlanarPose>;
+template struct Motion<Position<3>>;
+template struct Motion<Pose>;
+
+}  // namespace fpbm::bindings
