@@ -22,6 +22,7 @@ __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 
 IDENTITY = tuple(map(tuple, np.eye(4).tolist()))
 BOUND = Parameter(shape="(n,)", infinite=True)
+FRAME = Parameter(shape="(4, 4)", unit="m")
 
 
 @data
@@ -48,12 +49,8 @@ class Joint(Data):
     """One joint of a chain, prismatic joints with m for rad."""
 
     type: str = parameter("How it moves.", default="revolute", choices=("revolute", "continuous", "prismatic"))
-    placement: ArrayField = parameter(
-        "The joint's frame, seen from the joint before, both at zero.", default=IDENTITY, shape="(4, 4)", unit="m"
-    )
-    axis: ArrayField = parameter(
-        "In the joint's frame; its length does not matter.", default=(0.0, 0.0, 1.0), shape="(3,)"
-    )
+    placement: ArrayField = parameter("Its frame, seen from the joint before, both at zero.", FRAME, default=IDENTITY)
+    axis: ArrayField = parameter("In the joint's frame; its length does not matter.", default=(0, 0, 1), shape="(3,)")
     lower: float = parameter("Lowest position.", default=-inf, infinite=True, unit="rad")
     upper: float = parameter("Highest position.", default=inf, infinite=True, unit="rad")
     velocity: float = parameter("Highest velocity, either way.", default=inf, infinite=True, unit="rad/s")
@@ -121,9 +118,7 @@ class SerialArm(Arm):
 
     kind: ClassVar[str] = "joints"
     joints: Sequence[Joint] = parameter("From base to tip, 1 to MAX_DOF of them. Nameless ones are given names.")
-    tip: ArrayField = parameter(
-        "The tip's frame, seen from the last joint.", default=IDENTITY, shape="(4, 4)", unit="m"
-    )
+    tip: ArrayField = parameter("The tip's frame, seen from the last joint.", FRAME, default=IDENTITY)
 
     def _finish(self) -> None:
         for i, joint in enumerate(self.joints):
@@ -216,7 +211,7 @@ def require_length(name: str, values: Sized, dof: int) -> None:
 
 
 def _frame(name: str, value: ArrayLike) -> Any:
-    return Parameter(name=name, shape="(4, 4)").check(value)
+    return replace(FRAME, name=name).check(value)
 
 
 def _from_urdf(file: str, tip: str, base: str | None = None) -> SerialArm:

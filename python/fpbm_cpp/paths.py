@@ -146,21 +146,16 @@ class Waypoints(Path):
 
     kind = "waypoints"
     points: ArrayField = parameter(
-        "Positions or poses, two at least. Only differences from the first matter, since a path starts where the tip "
-        "is: coordinates in the base frame do as well as displacements.",
+        "Positions or poses, two at least, in the base frame say: only differences from the first matter.",
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
     _: KW_ONLY
     duration: DerivedField = parameter("Duration T of the path.", POSITIVE, type=float, default=None, unit="s")
-    times: OptionalArrayField = parameter(
-        "When each point is passed, the first at 0.", default=None, shape="(k,)", unit="s"
-    )
+    times: OptionalArrayField = parameter("When each is passed, the first at 0.", default=None, shape="(k,)", unit="s")
     velocity: float | None = parameter("Highest speed of the tip.", POSITIVE, default=None, unit="m/s")
     acceleration: float | None = parameter("Highest acceleration of the tip.", POSITIVE, default=None, unit="m/s^2")
-    angular_velocity: float | None = parameter(
-        "Highest angular velocity of the tip.", POSITIVE, default=None, unit="rad/s"
-    )
+    angular_velocity: float | None = parameter("Highest angular velocity.", POSITIVE, default=None, unit="rad/s")
     angular_acceleration: float | None = parameter(
         "Highest angular acceleration of the tip.", POSITIVE, default=None, unit="rad/s^2"
     )

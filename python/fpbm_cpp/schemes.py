@@ -25,6 +25,7 @@ WEIGHTS = replace(
 K = replace(NOT_NEGATIVE, help="Position feedback: xd + k (x - f(q)) in place of xd.", unit="1/s")
 K1 = replace(NOT_NEGATIVE, help="Feedback gain on velocity, which velocity-level schemes do without.", unit="1/s")
 K2 = replace(NOT_NEGATIVE, help="Feedback gain on position or direction.", unit="1/s^2, 1/s at velocity level")
+FREE = Parameter(shape="(n,)", unit="rad/s^2, rad/s at velocity level")
 SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
 
 
@@ -58,9 +59,7 @@ class Gaze(Data):
     """
 
     kind: ClassVar[str] = "gaze"
-    direction: ArrayField = parameter(
-        "Where the axis is to point, in the base frame; its length does not matter.", shape="(3,)"
-    )
+    direction: ArrayField = parameter("Of the axis, in the base frame; its length does not matter.", shape="(3,)")
     _: KW_ONLY
     k1: float = parameter(like=K1, default=10.0)
     k2: float = parameter(like=K2, default=25.0)
@@ -78,25 +77,12 @@ class Scheme(Data, CoreScheme):
     """
 
     kind: ClassVar[str]
-    level: ClassVar[str]
-    """'velocity' where resolve() returns qd, 'acceleration' where it returns qdd."""
-
-    # What the scheme fixes of the law of its level.
-    fixed: ClassVar[dict[str, float]] = {}
-
+    level: ClassVar[str]  #: 'velocity' where resolve() returns qd, 'acceleration' where it returns qdd.
+    fixed: ClassVar[dict[str, float]] = {}  # What the scheme fixes of the law of its level.
     _: KW_ONLY
-    rest_posture: OptionalArrayField = parameter(
-        "Posture that the null space is drawn to.", default=None, shape="(n,)", unit="rad"
-    )
-    null_stiffness: float = parameter(
-        "How strongly rest_posture draws it.", NOT_NEGATIVE, default=0.0, unit="1/s^2, 1/s at velocity level"
-    )
-    c: OptionalArrayField = parameter(
-        "The free choice in the general solution (5), (3) at velocity level.",
-        default=None,
-        shape="(n,)",
-        unit="rad/s^2, rad/s at velocity level",
-    )
+    rest_posture: OptionalArrayField = parameter("Where the null space rests.", default=None, shape="(n,)", unit="rad")
+    null_stiffness: float = parameter("How strongly rest_posture draws it.", K2, default=0.0)
+    c: OptionalArrayField = parameter("Free choice in the general solution (5) or (3).", FREE, default=None)
     joint_centring: float = parameter(
         "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
         "limits bound both ways (Liegeois, 1977).",
@@ -144,11 +130,7 @@ class AccelerationScheme(Scheme):
     level = "acceleration"
     _: KW_ONLY
     null_damping: float = parameter(
-        "Damping of the self-motion, which nothing in the paper's schemes damps.",
-        NOT_NEGATIVE,
-        default=0.0,
-        usual=2.0,
-        unit="1/s",
+        "Damping of the self-motion; the paper's schemes have none.", NOT_NEGATIVE, default=0.0, usual=2.0, unit="1/s"
     )
 
 
@@ -216,7 +198,5 @@ class FPBM(AccelerationScheme):
 
 
 # By the kind that a table has.
-SCHEMES: dict[str, type[Scheme]] = {
-    scheme.kind: scheme for scheme in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)
-}
+SCHEMES: dict[str, type[Scheme]] = {each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}
 SECOND_TASKS: dict[str, type[Data]] = {task.kind: task for task in (SecondTask, Gaze)}
