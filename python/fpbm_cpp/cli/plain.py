@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH = 100
+PLACE = click.Path(path_type=Path)  # A file or a folder.
 Writer = Callable[[Path], Any]
+
+OUT = "Folder to write to, made where missing; other files in it are left alone."
+WORKERS = "Threads; as many as there are processors unless given."
+out_option = click.option("--out", type=PLACE, metavar="DIR", help=OUT)
+workers_option = click.option("--workers", type=click.IntRange(1), help=WORKERS)
+dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
 
 
 class Plain(click.Command):
@@ -54,11 +61,6 @@ class Plain(click.Command):
                 formatter.write_dl(records)
 
 
-def file_option(*flags: str, metavar: str = "FILE", **attributes: Any) -> Callable[[Any], Any]:
-    """Give a command an option that names a file or a folder."""
-    return click.option(*flags, metavar=metavar, type=click.Path(path_type=Path), **attributes)
-
-
 @contextmanager
 def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
     """Say plainly that a place, the error's own unless given, cannot be read or written to."""
@@ -70,15 +72,6 @@ def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
         reason = "it is a file" if isinstance(error, FileExistsError) else error.strerror
         where = place or error.filename2 or error.filename
         raise click.ClickException(f"cannot {doing} {where}: {reason}") from None
-
-
-out_option = file_option(
-    "--out", metavar="DIR", help="Folder to write to, made where missing; other files in it are left alone."
-)
-workers_option = click.option(
-    "--workers", type=click.IntRange(1), help="Threads; as many as there are processors unless given."
-)
-dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
 
 
 def make_folder(out: Path) -> None:
@@ -99,13 +92,11 @@ def write_files(out: Path, files: dict[str, Writer]) -> None:
     click.echo(f"\nWritten to {out}: {', '.join(files)}")
 
 
-def content(content: str | bytes) -> Writer:
-    """Write this."""
-    return lambda file: write_whole(file.resolve(), content.encode() if isinstance(content, str) else content)
+def content(content: bytes) -> Writer:
+    return lambda file: write_whole(file.resolve(), content)
 
 
 def picture(figure: "Figure") -> Writer:
-    """Write a figure as PNG."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
     return content(buffer.getvalue())

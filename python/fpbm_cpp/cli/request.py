@@ -1,19 +1,102 @@
-"""What the command line asks for: a job's file, with the options over it."""
+"""What the command line asks for: a job's file, with an option over each of its keys."""
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
 from .._core import PRESETS
 from ..errors import not_one_of
 from ..job import JobError, Motion, prepare, read_job
 from ..job.sections import FREE, SECTIONS, Table, known
-from .options import JobOption, job_options
-from .plain import WIDTH, Plain, file_errors, file_option
+from ..parameter import REQUIRED, Parameter
+from .plain import PLACE, WIDTH, Plain, file_errors
+
+HEADINGS = {
+    "arm": "Arm and start",
+    "run": "Arm and start",
+    "path": "Path",
+    "scheme": "Scheme",
+    "limits": "Joint limits",
+}
+SAVED = "Write the job to a TOML file, with all that was taken by default."
+METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
+# What jobs take where nothing is given and the arm decides.
+TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
+
+
+class Value(click.ParamType):  # type: ignore[type-arg]
+    """A number, or several: '1,2; 3,4' has two rows. What is none stays text, which the job refuses."""
+
+    name = "value"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        try:
+            rows = [_row(row) for row in value.split(";")]
+        except ValueError:
+            return value
+        return rows if len(rows) > 1 else rows[0]
+
+
+def _row(text: str) -> Any:
+    """Numbers between commas; one number where there is no comma."""
+    numbers = [float(part) for part in text.split(",") if part.strip() or "," not in text]
+    return numbers if "," in text else numbers[0]
+
+
+class Word(click.Choice):  # type: ignore[type-arg]
+    """One of a few words, which shells complete. The job says what is wrong with another."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        return value
+
+
+class JobOption(click.Option):
+    """An option for a key of a job, listed under what it is about."""
+
+    def __init__(self, section: str, key: str, flag: str, **attributes: Any) -> None:
+        super().__init__([flag, f"{section}__{key}"], default=None, **attributes)
+        self.section, self.key, self.heading = section, key, HEADINGS[section]
+
+
+def _job_options(kind: bool) -> Iterator[JobOption]:
+    """The options of a job: all, or without the kind of scheme."""
+    urdf = known("arm", "urdf")
+    yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
+    yield _option("arm", "base", replace(urdf["base"], help="Link of a URDF file that stays."))
+    for key, declared in known("run").items():
+        yield _option("run", key, declared)
+    for section, usual in FREE.items():
+        keys = {each: known(section, each) for each in (usual, *SECTIONS[section])}
+        if kind or section != "scheme":
+            words = Word(list(SECTIONS[section]))
+            yield JobOption(section, "kind", f"--{section}", type=words, help=f"Which; {usual} unless given.")
+        for key in dict.fromkeys(key for each in keys for key in keys[each] if key != "second_task"):
+            having = [each for each in keys if key in keys[each]]
+            yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
+    text = "Keep them: the arm's, but for those below. Where it has no accelerations, give some: 10 rad/s^2 is usual."
+    yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
+    for key, declared in known("limits").items():
+        yield _option("limits", key, declared, prefix="limit-")
+
+
+def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
+    """The option for a key, of a few kinds only where these are named."""
+    several = bool(declared.shape)
+    kind: Any = Value() if several or declared.type in (float, int) else str
+    kind = Word(declared.choices) if declared.choices and not several else kind
+    metavar = None if isinstance(kind, Word) else METAVARS.get(key, "NUMBERS" if several else "NUMBER")
+    usual = [] if declared.usual in (REQUIRED, None) else np.ravel(declared.usual).tolist()
+    taken = TAKEN.get(key) or ",".join(f"{x:g}" if isinstance(x, float) else str(x) for x in usual)
+    extra = "; ".join(filter(None, [declared.unit, f"default: {taken}" if taken else ""]))
+    text = f"{', '.join(of)}: {declared.help}" if of else declared.help
+    flag = f"--{prefix}{key.replace('_', '-')}"
+    return JobOption(section, key, flag, type=kind, metavar=metavar, help=f"{text}  [{extra}]" if extra else text)
 
 
 def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Callable[[Callable[..., None]], Plain]:
@@ -23,11 +106,11 @@ def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Call
     """
 
     def make(function: Callable[..., None]) -> Plain:
-        ours = list(job_options(kind=kind))
+        ours = list(_job_options(kind))
 
         @click.argument("arm", required=False, metavar="ARM")
-        @file_option("--job", help="TOML file with what options do not say.")
-        @file_option("--save-job", help="Write the job to a TOML file, with all that was taken by default.")
+        @click.option("--job", type=PLACE, metavar="FILE", help="TOML file with what options do not say.")
+        @click.option("--save-job", type=PLACE, metavar="FILE", help=SAVED)
         @functools.wraps(function)
         def call(arm: str | None, job: Path | None, save_job: Path | None, **options: Any) -> None:
             values = {option: options.pop(str(option.name)) for option in ours}
@@ -48,7 +131,13 @@ class Request:
         if arm is None and file is None:
             raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
         self.file, self.copy = file, copy
-        self.table = _read(file) if file else {}
+        self.table: Table = {}
+        if file is not None:
+            try:
+                with file_errors("read", file):
+                    self.table = read_job(file)
+            except JobError as error:
+                raise click.ClickException(f"{file}: {error}") from None
         said = {f"{section}.{key}" for section, keys in self.table.items() if isinstance(keys, dict) for key in keys}
         if arm is not None:
             self.table["arm"] = _arm(arm)
@@ -119,14 +208,6 @@ class Request:
         if key == "kind" and value in SECTIONS[section]:
             there = _without_foreign(section, there, value)
         self.table[section] = {**there, key: value}
-
-
-def _read(file: Path) -> Table:
-    try:
-        with file_errors("read", file):
-            return read_job(file)
-    except JobError as error:
-        raise click.ClickException(f"{file}: {error}") from None
 
 
 def _arm(text: str) -> Table:

@@ -16,10 +16,9 @@ from ..motion.sweeping import sweep as run_sweep
 from ..schemes import FPBM
 from ..tuning import Tuning
 from ..tuning import tune as search
-from ..tuning.objectives import MEASURES
-from .options import Word
+from ..tuning.objectives import OBJECTIVES
 from .plain import content, dark_option, make_folder, out_option, picture, progress, workers_option, write_files
-from .request import Request, motion_command
+from .request import Request, Word, motion_command
 from .text import FIGURES, Row, figure_table, number
 
 Cases = list[tuple[float, ...]]
@@ -73,7 +72,7 @@ def sweep(
     def show(done: Sweep) -> None:
         click.echo(_table(done, keys, cases))
         if out is not None:
-            write_files(out, {"sweep.csv": content(_csv(done, keys, cases)), "job.toml": motion.save})
+            write_files(out, {"sweep.csv": content(_csv(done, keys, cases).encode()), "job.toml": motion.save})
 
     try:
         with progress("motions") as report, request.plain():
@@ -133,7 +132,7 @@ def _csv(done: Sweep, keys: list[str], cases: Cases) -> str:
     fpbm-cpp track --job tuned/job.toml""",
     kind=False,
 )
-@click.option("--objective", type=Word(list(MEASURES)), default="peak_velocity", help="What is to be small.")
+@click.option("--objective", type=Word(OBJECTIVES), default="peak_velocity", help="What is to be small.")
 @click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
 @workers_option

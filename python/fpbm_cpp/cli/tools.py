@@ -16,7 +16,7 @@ from ..job.sections import Table
 from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
 from ..schemes import SCHEMES
-from .plain import WIDTH, Plain, file_errors, file_option
+from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .text import columns
 
 EVALUATIONS = 4000  # Of a scheme, by RK4, on a path of 1 s at 1 kHz.
@@ -28,6 +28,7 @@ HOW = (
     "and recording are in it. Below, motions of the same kind that fp.sweep() ran in a second with FPBM, "
     f"{MOTIONS} at a time, on all processors."
 )
+HEADER = "Header to write, whole or not at all; - is the standard output."
 PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
 CASES: dict[str, Table] = {
     "4 links, position": {"arm": PLANAR},
@@ -61,7 +62,6 @@ def _motion(case: str, kind: str) -> Motion:
 
 
 def _rate(motion: Motion, seconds: float) -> float:
-    """Motions a second."""
     q0s = motion.q0 + np.random.default_rng(0).normal(0.0, 0.02, (MOTIONS, motion.arm.dof))
     return MOTIONS / _median(lambda: sweep(motion.arm, motion.path, motion.scheme, q0s, **motion.keywords), seconds)
 
@@ -83,12 +83,7 @@ def _median(run: Callable[[], object], seconds: float) -> float:
     cls=Plain,
     epilog="Example: fpbm-cpp reproduce --out reproduction",
 )
-@file_option(
-    "--out",
-    metavar="DIR",
-    default="reproduction",
-    help="Directory to write to, made where missing; other files in it are left alone.",
-)
+@click.option("--out", type=PLACE, metavar="DIR", default="reproduction", help=OUT)
 def reproduce(out: Path) -> None:
     """Reproduce the FPBM paper: figures, tables, errata and claims.
 
@@ -122,16 +117,10 @@ def reproduce(out: Path) -> None:
     cls=Plain,
     epilog="Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp",
 )
-@click.argument("urdf", metavar="ARM.urdf", type=click.Path(path_type=Path))
+@click.argument("urdf", metavar="ARM.urdf", type=PLACE)
 @click.option("--tip", metavar="LINK", required=True, help="Link to move.")
 @click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
-@file_option(
-    "-o",
-    "--out",
-    metavar="FILE.hpp",
-    required=True,
-    help="Header to write, whole or not at all; - is the standard output.",
-)
+@click.option("-o", "--out", type=PLACE, metavar="FILE.hpp", required=True, help=HEADER)
 @click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
 def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str | None) -> None:
     """Write the arm of a URDF file as a C++ header.

@@ -14,25 +14,11 @@ except ModuleNotFoundError as missing:
     raise ImportError('plotting needs matplotlib: pip install "fpbm_cpp[plot]"') from missing
 
 from ..skeleton import joint_points
+from . import panels
 from .animation import animate
 from .arm import arm_panel
 from .figures import compare, plot_run
-from .panels import (
-    OVERVIEW,
-    PANELS,
-    acceleration_panel,
-    error_panel,
-    manipulability_panel,
-    min_singular_values,
-    null_space_panel,
-    null_space_velocities,
-    orientation_error_panel,
-    position_panel,
-    saturation_panel,
-    scale_panel,
-    tip_error_panel,
-    velocity_panel,
-)
+from .panels import *
 from .theme import DARK, DASHES, LIGHT, OKABE_ITO, Theme
 
 __all__ = [
@@ -40,24 +26,11 @@ __all__ = [
     "DASHES",
     "LIGHT",
     "OKABE_ITO",
-    "OVERVIEW",
-    "PANELS",
     "Theme",
-    "acceleration_panel",
     "animate",
     "arm_panel",
     "compare",
-    "error_panel",
     "joint_points",
-    "manipulability_panel",
-    "min_singular_values",
-    "null_space_panel",
-    "null_space_velocities",
-    "orientation_error_panel",
     "plot_run",
-    "position_panel",
-    "saturation_panel",
-    "scale_panel",
-    "tip_error_panel",
-    "velocity_panel",
 ]
+__all__ += panels.__all__

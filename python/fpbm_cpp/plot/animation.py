@@ -24,7 +24,7 @@ from .arm import LINK, draw_base, draw_target, frame_arm
 from .figures import lay_out
 from .lines import head_legend
 from .panels import Panel, choose
-from .theme import TEXT, Theme, theme_of
+from .theme import DARK, LIGHT, TEXT, Theme
 
 Frame = NDArray[np.uint8]
 FASTEST_GIF = 50.0  # Frames per second; many programs play faster files slowly.
@@ -75,7 +75,7 @@ def animate(
     write = animation_writer(Path(file), fps)
     times = np.append(np.arange(run.t[0], run.t[-1], speed / fps), run.t[-1])
     samples = np.searchsorted(run.t, times).clip(max=len(run.t) - 1)
-    write(_frames(run, samples, {"arm": Panel("", _draw_background), **shown}, theme_of(dark), dpi))
+    write(_frames(run, samples, {"arm": Panel("", _draw_background), **shown}, DARK if dark else LIGHT, dpi))
 
 
 def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float) -> Iterator[Frame]:

@@ -58,7 +58,6 @@ def draw_base(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
 
 
 def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
-    """Draw the path that the tip is to follow."""
     style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
     return list(axes.plot(*run.reference_positions.T, **style))
 

@@ -13,7 +13,7 @@ from .._types import Array
 from ..motion.run import Run
 from .lines import envelope, foot_height, foot_legend, from_zero, in_decades, label_time_below, over_time
 from .panels import Panel, choose, joint_names, unit_of
-from .theme import COLUMN, PAGE, TITLE_ROW, Theme, dress, sheet, theme_of
+from .theme import COLUMN, DARK, LIGHT, PAGE, TITLE_ROW, Theme, dress, sheet
 
 ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
 
@@ -32,7 +32,7 @@ def plot_run(
     chosen = choose(run, panels)
     if title is None:
         title = _title(run, 85 if len(_columns(chosen)[0]) > 1 else 42)
-    return lay_out(run, title, chosen, theme_of(dark), lettered=len(chosen) > 1)[0]
+    return lay_out(run, title, chosen, DARK if dark else LIGHT, lettered=len(chosen) > 1)[0]
 
 
 def _title(run: Run, width: int) -> str:
@@ -122,7 +122,7 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     named = dict(runs) if isinstance(runs, Mapping) else _named(runs)
     if not named:
         raise ValueError("runs: must hold at least one run")
-    theme, shown = theme_of(dark), list(named.values())
+    theme, shown = DARK if dark else LIGHT, list(named.values())
     quantities = POSE_TASK if any(run.task == "pose" for run in shown) else POSITION_TASK
     rows = len(quantities) // 2
     figure, (upper, lower) = sheet(PAGE, [COMPARED_ROW * rows, foot_height(list(named), PAGE)], title, theme)

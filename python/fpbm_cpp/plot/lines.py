@@ -16,7 +16,6 @@ LEAST = float(np.finfo(float).eps)
 
 
 def draw_lines(axes: Any, theme: Theme, t: Array, values: Array, names: Sequence[str], label: str) -> None:
-    """Draw one line for each column."""
     for column, name, (colour, dash) in zip(values.T, names, theme.styles()):
         axes.plot(t, column, color=colour, ls=dash, lw=LINE, label=name)
     over_time(axes, label)
@@ -39,7 +38,6 @@ def label_time_below(column: Sequence[Any]) -> None:
 
 
 def from_zero(axes: Any) -> None:
-    """Start the y axis at zero."""
     axes.set_ylim(0.0, 1.05 * axes.get_ylim()[1])
     axes.locator_params(axis="y", nbins=4)
 

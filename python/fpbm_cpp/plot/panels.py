@@ -14,6 +14,23 @@ from .arm import arm_panel
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
 from .theme import LIGHT, LINE, Theme, dress
 
+__all__ = [
+    "OVERVIEW",
+    "PANELS",
+    "acceleration_panel",
+    "error_panel",
+    "manipulability_panel",
+    "min_singular_values",
+    "null_space_panel",
+    "null_space_velocities",
+    "orientation_error_panel",
+    "position_panel",
+    "saturation_panel",
+    "scale_panel",
+    "tip_error_panel",
+    "velocity_panel",
+]
+
 NEAR = 0.1  # Of the distance between a joint's bounds.
 
 
@@ -157,7 +174,6 @@ def null_space_velocities(run: Run) -> Array:
 
 
 def _jacobians(run: Run) -> Array:
-    """J at each sample, shape (N, m, n)."""
     m = run.error.shape[1]
     return np.array([run.arm.jacobian(q, task=run.task) for q in run.q]).reshape(-1, m, run.arm.dof)
 

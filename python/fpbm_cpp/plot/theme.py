@@ -62,11 +62,6 @@ DARK = Theme(
 )
 
 
-def theme_of(dark: bool) -> Theme:
-    """The dark theme or the light one."""
-    return DARK if dark else LIGHT
-
-
 def sheet(width: float, heights: Sequence[float], title: str, theme: Theme) -> tuple[Figure, list[Any]]:
     """An empty figure, and its parts one below the other, of these heights [in]."""
     head = TITLE_ROW * (title.count("\n") + 1) if title else 0.0

@@ -46,24 +46,13 @@ class Case:
         return f"diag({', '.join(map(str, self.fpbm['weights']))})" if self.fpbm else ""
 
 
-@dataclass(frozen=True)
-class Erratum:
-    """An error in the paper's set-up, with the posture [deg] or the circle's radius [m] that its text gives."""
-
-    text: str
-    q0_degrees: Sequence[float] | None = None
-    radius: float | None = None
-
-
 @dataclass(frozen=True, eq=False)
 class Paper:
-    """The set-up and all cases."""
-
     source: str
     arm: PlanarArm
     q0: Array
     paths: Mapping[str, Path]
-    errata: Sequence[Erratum]
+    errata: Sequence[Mapping[str, Any]]  # A text, with the posture [deg] or the circle's radius [m] that it is about.
     cases: Sequence[Case]
 
     def simulate(self, path: str, scheme: Scheme, **options: Any) -> Run:
@@ -105,13 +94,12 @@ def load() -> Paper:
         arm=PlanarArm(data["links"]),
         q0=np.deg2rad(data["q0_degrees"]),
         paths={kind: from_table({"kind": kind, **shape}, PATHS) for kind, shape in data["paths"].items()},
-        errata=[Erratum(**erratum) for erratum in data["errata"]],
+        errata=data["errata"],
         cases=[Case(**case) for case in data["cases"]],
     )
 
 
 def run_all(paper: Paper) -> list[Result]:
-    """Simulate every case."""
     return [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
 
 

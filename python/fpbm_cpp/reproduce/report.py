@@ -1,9 +1,10 @@
 """The report: settings, figures, tables, errata, claims."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import BytesIO
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 from .._core import __version__
 from ..paths import Circle
 from ..plot import plot_run
-from .cases import DT, NAMES, Case, Erratum, Paper, Result, of_figures
+from .cases import DT, NAMES, Case, Paper, Result, of_figures
 from .claims import Claim
 
 TOLERANCE = 1e-9  # Between our runs and the independent solution [rad, rad/s].
@@ -127,7 +128,7 @@ def make_report(paper: Paper, results: Sequence[Result], tables: Sequence[Table]
     posture = ", ".join(f"{angle:g}°" for angle in np.rad2deg(paper.q0).round(9))
     figures = [(r.case.figure, caption(r.case)) for r in of_figures(results)]
     errata = [
-        *(f"{erratum.text} {_both_ways(paper, erratum)}" for erratum in paper.errata),
+        *(f"{erratum['text']} {_both_ways(paper, erratum)}" for erratum in paper.errata),
         *(_misprint(r) for r in results if r.case.misprinted_joint),
         "Remark 2 and the printed tip errors: see the claims.",
     ]
@@ -162,14 +163,13 @@ def _misprint(result: Result) -> str:
     )
 
 
-def _both_ways(paper: Paper, erratum: Erratum) -> str:
+def _both_ways(paper: Paper, erratum: Mapping[str, Any]) -> str:
     """How far from the printed numbers the motion of Fig. 2 ends, with the text's value and with ours."""
     case, circle = paper.figure(2), paper.paths["circle"]
-    printed = replace(
-        paper,
-        q0=np.deg2rad(erratum.q0_degrees) if erratum.q0_degrees else paper.q0,
-        paths={"circle": Circle(erratum.radius, circle.duration) if erratum.radius else circle},
-    )
+    q0 = np.deg2rad(erratum["q0_degrees"]) if "q0_degrees" in erratum else paper.q0
+    if "radius" in erratum:
+        circle = Circle(erratum["radius"], circle.duration)
+    printed = replace(paper, q0=q0, paths={"circle": circle})
     text, ours = (Result(case, p.simulate(case.path, case.scheme)).from_printed for p in (printed, paper))
     return (
         f"Fig. 2's final joint velocities are {text:.0e} rad/s off with the text's value, {ours:.0e} rad/s with ours."

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Array
-from ..plot.theme import OKABE_ITO, Theme, dress, sheet, theme_of
+from ..plot.theme import DARK, LIGHT, OKABE_ITO, Theme, dress, sheet
 
 # Without matplotlib, the line before says what to install.
 from matplotlib.figure import Figure  # isort: skip
@@ -19,7 +19,7 @@ BEST = OKABE_ITO[5]
 
 def plot_tuning(tuning: Tuning, *, dark: bool = False) -> Figure:
     """The Pareto front with best and baseline, the change of the objective by a step, and the best value so far."""
-    theme = theme_of(dark)
+    theme = DARK if dark else LIGHT
     title = f"{tuning.objective} of {tuning.arm} along {tuning.path!r}"
     wrapped = "\n".join(textwrap.wrap(title, 120, max_lines=2, placeholder=" …"))
     figure, (part,) = sheet(SIZE[0], [SIZE[1]], wrapped, theme)
@@ -31,7 +31,6 @@ def plot_tuning(tuning: Tuning, *, dark: bool = False) -> Figure:
 
 
 def _front(axes: Any, tuning: Tuning, theme: Theme) -> None:
-    """All feasible trials, the front, the best and the baseline."""
     trials, front = tuning.trials, tuning.front
     best, baseline = trials[[trials.best()]], trials[:1]
     axes.plot(*_pair(trials[trials.feasible]), ".", color=theme.soft, alpha=0.6, mew=0, ms=5, label="tried")
@@ -47,7 +46,6 @@ def _front(axes: Any, tuning: Tuning, theme: Theme) -> None:
 
 
 def _sensitivity(axes: Any, tuning: Tuning, theme: Theme) -> None:
-    """Change of the objective by one step of each parameter."""
     names = list(tuning.sensitivity)
     for side, label in ((0, "−10 % (alpha −0.05)"), (1, "+10 % (alpha +0.05)")):
         steps = np.array([tuning.sensitivity[name][side] for name in names])
@@ -65,7 +63,6 @@ def _sensitivity(axes: Any, tuning: Tuning, theme: Theme) -> None:
 
 
 def _convergence(axes: Any, tuning: Tuning, theme: Theme) -> None:
-    """The best value so far, over the trials."""
     best = np.fmin.accumulate(tuning.trials.scores())
     axes.plot(np.arange(1, len(best) + 1), best, drawstyle="steps-post", color=theme.lines[0], label="best so far")
     if np.isfinite(tuning.baseline_value):

@@ -6,10 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._types import Array
 from ..arms import JointLimits
 from ..motion.run import Run
-from ..motion.sweep_result import Sweep
 
 Objective = str | Callable[[Run], float]
 
@@ -42,32 +40,24 @@ class Measure(NamedTuple):
     unit: str
     of_run: Callable[[Run], float] | None = None
 
-    def of_sweep(self, sweep: Sweep) -> Array:
-        """The objective of each scheme of a sweep from one start; NaN if the motion stopped early."""
-        if self.of_run is None:
-            values = getattr(sweep, self.name)[:, 0]
-        else:
-            pairs = zip(sweep.ok[:, 0], sweep.motions[:, 0]) if sweep.motions is not None else ()
-            values = [float(self.of_run(run)) if ok else np.nan for ok, run in pairs]
-        return np.where(sweep.ok[:, 0], values, np.nan)
 
-
-MEASURES = {
-    "peak_velocity": Measure("peak_velocity", "rad/s"),
-    "peak_acceleration": Measure("peak_acceleration", "rad/s²"),
-    "final_velocity": Measure("final_velocity", "rad/s"),
-    "energy": Measure("energy", "rad²/s", energy),
-    "limit_distance": Measure("limit_distance", "of the range", limit_distance),
-}
+MEASURES = (
+    Measure("peak_velocity", "rad/s"),
+    Measure("peak_acceleration", "rad/s²"),
+    Measure("final_velocity", "rad/s"),
+    Measure("energy", "rad²/s", energy),
+    Measure("limit_distance", "of the range", limit_distance),
+)
+OBJECTIVES = [measure.name for measure in MEASURES]
 
 
 def measure(objective: Objective, limits: JointLimits) -> Measure:
     """The measure of an objective. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
     if callable(objective):
         return Measure(getattr(objective, "__name__", type(objective).__name__), "", objective)
-    if objective not in MEASURES:
-        names = ", ".join(map(repr, MEASURES))
+    if objective not in OBJECTIVES:
+        names = ", ".join(map(repr, OBJECTIVES))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
     if objective == "limit_distance" and not np.any(_bounded(limits)):
         raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
-    return MEASURES[objective]
+    return MEASURES[OBJECTIVES.index(objective)]

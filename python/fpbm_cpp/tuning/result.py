@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,13 @@ from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Measure
 from .search import pareto_front
-from .space import TUNABLE, numbers, tunable
+from .space import TUNABLE, numbers, tunable, with_numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+ALPHA_STEP, STEP = 0.05, 0.1  # The latter as a share of the value.
+NOT_FINITE = {"+nan": "-", "+inf": "infeasible"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -74,10 +77,15 @@ class Trials:
 
 def trials_of(sweep: Sweep, measure: Measure, tolerance: float) -> Trials:
     """The trials of a sweep's schemes from one start."""
-    value, schemes = measure.of_sweep(sweep), np.empty(len(sweep.schemes), dtype=object)
+    ok, schemes = sweep.ok[:, 0], np.empty(len(sweep.schemes), dtype=object)
     schemes[:] = sweep.schemes
+    if measure.of_run is None:
+        value = np.where(ok, getattr(sweep, measure.name)[:, 0], np.nan)
+    else:
+        runs = sweep.motions[:, 0] if sweep.motions is not None else ()
+        value = np.array([float(measure.of_run(run)) if done else np.nan for done, run in zip(ok, runs)])
     error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
-    feasible = sweep.ok[:, 0] & np.isfinite(value) & (error <= tolerance)
+    feasible = ok & np.isfinite(value) & (error <= tolerance)
     return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)
 
 
@@ -86,11 +94,17 @@ def joined(parts: Sequence[Trials]) -> Trials:
     return Trials(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Trials)))
 
 
-def changes(
-    scheme: FPBM, value: float, around: Mapping[tuple[str, int], FPBM], trials: Trials
-) -> dict[str, tuple[float, float]]:
-    """What each step adds to a scheme's value, from the trials of its neighbours in order; see Tuning.sensitivity."""
-    added = dict(zip(around, np.where(trials.feasible, trials.value - value, np.inf).tolist()))
+def sensitivity(scheme: FPBM, value: float, run: Callable[[Sequence[FPBM]], Trials]) -> dict[str, tuple[float, float]]:
+    """What a step down and one up of each number add to a scheme's value; see Tuning.sensitivity."""
+    steps: dict[tuple[str, int], FPBM] = {}
+    for name, number in numbers(scheme).items():
+        for sign in (-1, 1):
+            alpha = min(max(number + sign * ALPHA_STEP, 0.0), 1.0)
+            stepped = alpha if name == "alpha" else number * (1.0 + sign * STEP)
+            if stepped != number:
+                steps[name, sign] = with_numbers(scheme, {name: stepped})
+    trials = run(list(steps.values()))
+    added = dict(zip(steps, np.where(trials.feasible, trials.value - value, np.inf).tolist()))
     return {name: (added.get((name, -1), np.nan), added.get((name, 1), np.nan)) for name in numbers(scheme)}
 
 
@@ -179,7 +193,8 @@ class Tuning:
         ]
         before = numbers(self.baseline)
         for name, value in numbers(self.scheme).items():
-            steps = "".join(f"{_change(step):>12}" for step in self.sensitivity.get(name, ()))
+            changes = (f"{step:+.2e}" for step in self.sensitivity.get(name, ()))
+            steps = "".join(f"{NOT_FINITE.get(change, change):>12}" for change in changes)
             lines.append(f"{name:14}{before[name]:12.4g}{value:12.4g}{steps}")
         if self.sensitivity:
             lines += ["", f"-10 %, +10 %: change of {self.objective} when one parameter changes so (alpha by 0.05)"]
@@ -193,7 +208,3 @@ class Tuning:
             return "where the baseline is infeasible"
         share = f"{100 * self.improvement:.3g} % below " if self.baseline_value else "against "
         return f"{share}the baseline's {self.baseline_value:.5g}"
-
-
-def _change(step: float) -> str:
-    return "-" if np.isnan(step) else "infeasible" if np.isinf(step) else f"{step:+.2e}"

@@ -1,4 +1,4 @@
-"""The schemes that a search tries, one for each point of the unit cube, and those one step from a scheme."""
+"""The schemes that a search tries, one for each point of the unit cube, and their numbers by name."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,7 +15,6 @@ TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 
 # k1 and k2 act on the tip's error alone, which is zero without disturbances.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
-ALPHA_STEP, STEP = 0.05, 0.1
 
 
 def tunable(scheme: FPBM) -> dict[str, Any]:
@@ -66,7 +65,6 @@ class Space:
         self._low, self._high = limits.T
 
     def scheme(self, point: Array) -> FPBM:
-        """The scheme of a point."""
         values = np.clip(self._low + point * (self._high - self._low), self._low, self._high)
         values[self._log] = np.exp(values[self._log])
         first = {"weights[0]": 1.0} if "weights[1]" in self.names else {}  # Only ratios of weights matter.
@@ -95,18 +93,3 @@ def _ranges(name: str, given: ArrayLike, count: int) -> Array:
     if not _bounded(name) and not np.all(ranges > 0.0):
         raise ValueError(f"{what}: must be positive, since it is searched on a logarithmic scale")
     return np.array(np.broadcast_to(ranges, (count, 2)))
-
-
-def neighbours(scheme: FPBM) -> dict[tuple[str, int], FPBM]:
-    """The schemes one step away, by the number that steps and the step's sign; a number that cannot step has none.
-
-    A step is ALPHA_STEP for alpha, within [0, 1], and the share STEP of the value for all others.
-    """
-    around: dict[tuple[str, int], FPBM] = {}
-    for name, value in numbers(scheme).items():
-        for sign in (-1, 1):
-            alpha = min(max(value + sign * ALPHA_STEP, 0.0), 1.0)
-            stepped = alpha if name == "alpha" else value * (1.0 + sign * STEP)
-            if stepped != value:
-                around[name, sign] = with_numbers(scheme, {name: stepped})
-    return around

@@ -16,9 +16,9 @@ from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Objective, measure
-from .result import Trials, Tuning, changes, joined, trials_of
+from .result import Trials, Tuning, joined, sensitivity, trials_of
 from .search import Search, front, least, require_cmaes
-from .space import Space, neighbours, numbers
+from .space import Space, numbers
 
 
 def tune(
@@ -56,8 +56,8 @@ def tune(
         'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest share of its range that a joint uses,
         0 in the middle and 1 on a bound; or a function of a Run that returns a number. The last three need whole
         motions, and are slower.
-    limits : JointLimits, optional
-        Limits that every motion keeps, as track() does; without them none are kept.
+    limits, **tracking
+        Limits that every motion keeps, and the other options of track() then; without them none are kept.
     search : mapping of str to (low, high), optional
         The parameters to vary, of 'alpha', 'weights', 'k1', 'k2' and 'null_damping', and their ranges; the others stay
         as in the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only ratios matter;
@@ -68,21 +68,15 @@ def tune(
         choice: alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1.
     tolerance : float
         Largest position error of the tip [m], and of its orientation [rad] under 'pose', of a feasible motion.
-    trials : int
-        Number of schemes to try.
-    seed : int
-        Seed of the random numbers, not negative.
+    trials, seed : int
+        How many schemes to try, and the seed of the random numbers.
     executor, workers, progress
         As for sweep().
-    **tracking : float
-        With limits, the other options of track(): max_error, integral_gain and so on.
 
     Raises
     ------
-    ValueError
-        If an argument is out of range, not finite, unknown, or of the wrong shape; nothing is run.
-    TypeError
-        If the baseline is no FPBM.
+    ValueError, TypeError
+        If an argument is out of range, not finite, unknown, or of the wrong shape or type; nothing is run.
     RuntimeError
         If no trial is feasible.
     TuneInterrupted
@@ -107,8 +101,8 @@ def tune(
         done = sweep(arm, path, schemes, start, dt, executor=executor, workers=workers, motions=whole, **how)
         return trials_of(done, wanted, tolerance)
 
-    def tuning(sensitivity: dict[str, tuple[float, float]]) -> Tuning:
-        return Tuning(joined(tried), sensitivity, wanted.name, wanted.unit, arm, path, start, task)
+    def tuning(steps: dict[str, tuple[float, float]]) -> Tuning:
+        return Tuning(joined(tried), steps, wanted.name, wanted.unit, arm, path, start, task)
 
     halves = (
         _half(least(len(space.names), seed), Trials.scores, count - count // 2, space, run),
@@ -124,13 +118,12 @@ def tune(
             if not any(batch.feasible.any() for batch in tried):
                 raise RuntimeError(_why_none(joined(tried), tolerance))
             found = tuning({})
-            around = neighbours(found.scheme)
-            sensitivity = changes(found.scheme, found.value, around, run(list(around.values())))
+            steps = sensitivity(found.scheme, found.value, run)
             report(total)
     except KeyboardInterrupt:
         feasible = any(batch.feasible.any() for batch in tried)
         raise TuneInterrupted(tuning({}) if feasible else None, sum(map(len, tried))) from None
-    return tuning(sensitivity)
+    return tuning(steps)
 
 
 def _half(
@@ -147,7 +140,6 @@ def _half(
 
 
 def _why_none(tried: Trials, tolerance: float) -> str:
-    """Why no trial is feasible."""
     complete = np.isfinite(tried.value)
     text = f"none of {len(tried)} schemes is feasible: {np.sum(~complete)} stopped early or have no objective"
     if not complete.any():

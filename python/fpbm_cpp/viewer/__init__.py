@@ -53,12 +53,11 @@ def view(
     arm, path, scheme, q0, dt, hold, task
         As for simulate().
     urdf : path, optional
-        The arm's URDF file, whose meshes are drawn; without it the arm is drawn as rods and cylinders. Joints of the
-        file that are not the arm's stay at zero.
-    host : str
-        Address to serve at: only this machine can open the page, unless it is '0.0.0.0' or an address on a network.
-    port : int
-        Port to serve at; 0 takes a free one.
+        The arm's URDF file, whose meshes are drawn, with the joints that are not the arm's at zero; without it the arm
+        is drawn as rods and cylinders.
+    host, port
+        Address to serve at, and port, where 0 takes a free one. Only this machine can open the page, unless host is
+        '0.0.0.0' or an address on a network.
     open_browser : bool
         Open the page in the browser.
 
@@ -66,10 +65,8 @@ def view(
     ------
     ValueError
         If an argument is out of range, or the URDF file is not that of the arm; nothing is served.
-    OSError
-        If the port is in use, or the URDF file cannot be read.
-    ImportError
-        If the extra 'view' is missing.
+    OSError, ImportError
+        If the port is in use, or the URDF file cannot be read; if the extra 'view' is missing.
     """
     from .viewer import Viewer
 

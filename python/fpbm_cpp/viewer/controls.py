@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiSliderHandle
 
+from ..motion.run import Run
 from ..parameter import Parameter, parameters
 from ..schemes import SCHEMES, Scheme
+from ..skeleton import joint_labels
 
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
 
@@ -38,10 +40,10 @@ class Controls:
     Calls `on_change` when somebody on the page changes one.
     """
 
-    def __init__(
-        self, gui: GuiApi, scheme: Scheme, joints: list[str], limited: bool | None, on_change: Callable[[], None]
-    ) -> None:
+    def __init__(self, gui: GuiApi, run: Run, on_change: Callable[[], None]) -> None:
         self._on_change = on_change
+        limits = run.limits
+        bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
             own = _own_numbers()
@@ -50,16 +52,18 @@ class Controls:
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
                 self._weights = [
-                    gui.add_slider(name, min=0.1, max=10.0, step=0.1, initial_value=1.0) for name in joints
+                    gui.add_slider(name, min=0.1, max=10.0, step=0.1, initial_value=1.0)
+                    for name in joint_labels(run.arm)
                 ]
+            there = bool(np.isfinite(bounds).any())
             self._limited = gui.add_checkbox(
-                "keep joint limits", bool(limited), visible=limited is not None, hint="The bounds of every joint"
+                "keep joint limits", run.scale is not None, visible=there, hint="The bounds of every joint"
             )
             reset = gui.add_button("reset", color="gray")
-        self.take(scheme)
+        self.take(run.scheme)
         for widget in (self._kind, self._limited, *self._sliders.values(), *self._weights):
             widget.on_update(self._on_update)
-        reset.on_click(lambda _: self._reset(scheme))
+        reset.on_click(lambda _: self._reset(run.scheme))
 
     @property
     def limited(self) -> bool:

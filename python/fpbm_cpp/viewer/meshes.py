@@ -42,13 +42,11 @@ class Meshes:
         self.found = bool(self.robot.scene.geometry)
 
     def show(self, server: ViserServer) -> None:
-        """Add the meshes to a scene."""
         rotation = SO3.from_matrix(self.placement[:3, :3]).wxyz
         server.scene.add_frame("/arm", show_axes=False, wxyz=rotation, position=self.placement[:3, 3])
         self._shown = ViserUrdf(server, self.robot, root_node_name="/arm")
 
     def pose(self, q: Array) -> None:
-        """Move the arm to a posture."""
         self._shown.update_cfg(self.configuration(q))
 
     def configuration(self, q: Array) -> Array:

@@ -2,7 +2,6 @@
 
 import html
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from viser import GuiApi
@@ -61,7 +60,6 @@ class Readout:
 
     @property
     def text(self) -> str:
-        """The readout as HTML."""
         return f"{self._status.content}{self._table.content}"
 
     def _say(self, text: str, colour: str) -> None:
@@ -69,21 +67,14 @@ class Readout:
         self._status.content = f'<div style="{style}">{html.escape(text)}</div>'
 
 
-class Quantity(NamedTuple):
-    """Values at the frames, and their unit; a quantity of the joints has the joints' unit and this."""
-
-    values: Callable[[Playback], Array]
-    unit: str
-    of_joints: bool = False
-
-
-QUANTITIES = {
-    "joint velocities": Quantity(lambda playback: playback.run.qd[playback.frames], "/s", of_joints=True),
-    "joint accelerations": Quantity(lambda playback: playback.run.qdd[playback.frames], "/s²", of_joints=True),
-    "joint positions": Quantity(lambda playback: playback.run.q[playback.frames], "", of_joints=True),
-    "tip error": Quantity(lambda playback: playback.tip_error[playback.frames], "m"),
-    "orientation error": Quantity(lambda playback: playback.orientation_error[playback.frames], "rad"),
-    "manipulability": Quantity(lambda playback: playback.manipulability, ""),
+# Values at the frames, and their unit; in two dimensions those of the joints, which have the joints' unit and this.
+QUANTITIES: dict[str, tuple[Callable[[Playback], Array], str]] = {
+    "joint velocities": (lambda playback: playback.run.qd[playback.frames], "/s"),
+    "joint accelerations": (lambda playback: playback.run.qdd[playback.frames], "/s²"),
+    "joint positions": (lambda playback: playback.run.q[playback.frames], ""),
+    "tip error": (lambda playback: playback.tip_error[playback.frames], "m"),
+    "orientation error": (lambda playback: playback.orientation_error[playback.frames], "rad"),
+    "manipulability": (lambda playback: playback.manipulability, ""),
 }
 
 
@@ -123,16 +114,16 @@ class Chart:
     def _curves(self) -> tuple[list[str], Array, str]:
         """Labels, a column for each, and a title with unit and power of ten."""
         name, arm = self._quantity.value, self._playback.run.arm
-        quantity = QUANTITIES[name]
-        values = quantity.values(self._playback)
-        if quantity.of_joints:
-            units = sorted(set(joint_units(arm)), reverse=True)
-            return joint_labels(arm), values, f"{name} [{', '.join(unit + quantity.unit for unit in units)}]"
+        values_of, unit = QUANTITIES[name]
+        values = values_of(self._playback)
+        if values.ndim == 2:
+            units = sorted({own + unit for own in joint_units(arm)}, reverse=True)
+            return joint_labels(arm), values, f"{name} [{', '.join(units)}]"
         largest = float(values.max())
         exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
         exponent = exponent if exponent < -2 else 0
         power = f"10{str(exponent).translate(SUPERSCRIPTS)} " if exponent else ""
-        unit = f"{power}{quantity.unit}".strip()
+        unit = f"{power}{unit}".strip()
         return [name], values[:, None] / 10.0**exponent, f"{name} [{unit}]" if unit else name
 
     def _now(self) -> Array:

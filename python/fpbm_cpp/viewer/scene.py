@@ -61,7 +61,6 @@ class Scene:
 
 
 def _segments(points: Array) -> Array:
-    """The segments of a line through points."""
     return np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
 
 
@@ -118,7 +117,6 @@ class Links:
         self.pose(q)
 
     def pose(self, q: Array) -> None:
-        """Move the arm to a posture."""
         points = in_space(joint_points(self._arm, q))
         for link, start, end in zip(self._links, points, points[1:]):
             length = float(np.linalg.norm(end - start))

@@ -13,8 +13,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import TracebackType
 
-import numpy as np
-
 try:
     import rich
     import viser
@@ -25,7 +23,6 @@ except ModuleNotFoundError as missing:
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
-from ..skeleton import joint_labels
 from .controls import Controls
 from .meshes import Meshes
 from .playback import Playback
@@ -61,26 +58,19 @@ class Viewer:
             self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         atexit.register(self.close)  # Before viser's own exit, which prints.
         self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
+        gui, duration = self._server.gui, run.path.duration + run.options.get("hold", 0.0)
         with self._lock:  # The page's first events wait until all parts are there.
-            self._build(playback, meshes)
+            # The share button would show the page to others, through somebody's server.
+            gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+            gui.main_panel.dock_right()
+            self._readout = Readout(gui)
+            self._player = Player(gui, duration, self._draw)
+            self._controls = Controls(gui, run, self._on_change)
+            self._chart = Chart(gui, playback, duration)
+            self._scene = Scene(self._server, playback, meshes)
+            self._show(run)
         if open_browser:
             webbrowser.open(self.url)
-
-    def _build(self, playback: Playback, meshes: Meshes | None) -> None:
-        run, gui = self._first, self._server.gui
-        # The share button would show the page to others, through somebody's server.
-        gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
-        gui.main_panel.dock_right()
-        duration = run.path.duration + run.options.get("hold", 0.0)
-        limits = run.limits
-        limited = np.isfinite([limits.lower, limits.upper, limits.velocity, limits.acceleration]).any()
-        self._readout = Readout(gui)
-        self._player = Player(gui, duration, self._draw)
-        keep_limits = run.scale is not None if limited else None
-        self._controls = Controls(gui, run.scheme, joint_labels(run.arm), keep_limits, self._on_change)
-        self._chart = Chart(gui, playback, duration)
-        self._scene = Scene(self._server, playback, meshes)
-        self._show(run)
 
     @property
     def run(self) -> Run:
