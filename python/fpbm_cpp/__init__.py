@@ -24,8 +24,7 @@ from .io.run_file import load
 from .motion.lanes import LANES
 from .motion.run import Run, RunStatus
 from .motion.simulation import simulate, track
-from .motion.sweep_result import Sweep
-from .motion.sweeping import sweep
+from .motion.sweeping import Sweep, sweep
 from .paths import *
 from .schemes import *
 from .tuning import Tuning, tune

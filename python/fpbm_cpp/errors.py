@@ -12,7 +12,7 @@ __all__ = ["ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterru
 
 if TYPE_CHECKING:
     from .motion.run import Run
-    from .motion.sweep_result import Sweep
+    from .motion.sweeping import Sweep
     from .tuning.result import Tuning
 
 

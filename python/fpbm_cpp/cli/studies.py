@@ -11,7 +11,7 @@ import numpy as np
 
 from .._core import Status, advice, message
 from ..errors import SweepInterrupted, TuneInterrupted
-from ..motion.sweep_result import Sweep
+from ..motion.sweeping import Sweep
 from ..motion.sweeping import sweep as run_sweep
 from ..schemes import FPBM
 from ..tuning import Tuning

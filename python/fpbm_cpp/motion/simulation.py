@@ -5,9 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import failed
-from .._core import simulate as simulated
-from .._core import track as tracked
+from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..errors import ResolutionError
 from ..paths import Path
@@ -68,7 +66,7 @@ def simulate(
         If the motion must stop early; the exception's run holds the part before.
     """
     options = motion_options(arm, dt, hold, qd0)
-    outcome = simulated(arm, path, scheme, q0, options["qd0"], dt, hold, task)
+    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task)
     run = make_run(outcome, q0, arm, path, scheme, task, options)
     if failed(run.status.code) and not partial:
         raise ResolutionError(run.status.code, str(run.status), run)
@@ -121,8 +119,7 @@ def track(
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
-    *outcome, arrays, scale, saturated = tracked(arm, path, scheme, q0, options["qd0"], dt, hold, task, *limited)
-    outcome.append((*arrays, scale, saturated))
+    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
     return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})
 
 

@@ -1,20 +1,21 @@
-"""Many motions at once: every scheme from every start."""
+"""Many motions at once, every scheme from every start, and their key figures."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .._core import Status, check_sweep, not_run
+from .._core import Status, check_sweep, failed, not_run
+from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import SweepInterrupted, wrong
 from ..paths import Path
 from ..schemes import Scheme
 from .simulation import LimitOptions, make_run, motion_options
-from .sweep_result import Sweep
 from .workers import run_chunks
 
 # True for a bar on the terminal or in a notebook, or what to call with (done, total).
@@ -27,6 +28,77 @@ GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
 
 # By their numbers in the compiled part; the last, at -1, is that of a motion that was not run.
 STATUSES = np.array([*Status, None], dtype=object)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Sweep:
+    """Key figures of every scheme from every start: arrays of shape (S, K), of S schemes from K starts.
+
+    A figure of joint vectors is of the largest entry by size; largest and peak are over time. Entries are nan where
+    there is no figure: where a motion was not run, or stopped before its first sample.
+
+    Attributes
+    ----------
+    status, time
+        How each motion ended, a Status, or None where it was not run; and the time of its last sample [s].
+    max_error, max_orientation_error
+        Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
+        which is 0 where the task leaves it free.
+    peak_velocity, final_velocity, peak_acceleration, final_acceleration
+        Of the joints [rad/s], [rad/s^2], m for rad where one is prismatic. At velocity level, accelerations are finite
+        differences of the velocities.
+    manipulability
+        The least sqrt(det(J J')) of the task on the way (Yoshikawa, 1985).
+    motions
+        The whole motions, each a Run, if they were asked for; None where one was not run.
+    arm, path, schemes, q0s, task
+        What moved, along what, how, from where, and as what task: S schemes, and starts of shape (K, n).
+    """
+
+    status: NDArray[Any]
+    time: Array
+    motions: NDArray[Any] | None
+    arm: Arm
+    path: Path
+    schemes: tuple[Scheme, ...]
+    q0s: Array
+    task: str
+    max_error: Array
+    max_orientation_error: Array
+    peak_velocity: Array
+    final_velocity: Array
+    peak_acceleration: Array
+    final_acceleration: Array
+    manipulability: Array
+
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """Which motions were run, complete or not: all, unless the sweep was interrupted."""
+        return ~np.isnan(self.time)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which motions are complete."""
+        good = [status for status in Status if not failed(status)]
+        return np.isin(self.status, np.array(good, dtype=object))
+
+    def __str__(self) -> str:
+        """One line for each scheme: how many motions are complete, and the worst of those."""
+        return "\n".join([repr(self), *map(self._row, range(len(self.schemes)))])
+
+    def _row(self, i: int) -> str:
+        scheme, ok = repr(self.schemes[i]), self.ok[i]
+        text = f"{scheme if len(scheme) <= 72 else scheme[:69] + '...'}: {ok.sum()} of {ok.size} complete"
+        if not ok.any():
+            return text
+        error, velocity = self.max_error[i, ok].max(), self.peak_velocity[i, ok].max()
+        worst = f"tip error up to {error:.1e} m, joints up to {velocity:.3g} rad/s"
+        return f"{text}; {worst}, manipulability down to {self.manipulability[i, ok].min():.3g}"
+
+    def __repr__(self) -> str:
+        counts = {"complete": self.ok, "stopped early": self.done & ~self.ok, "not run": ~self.done}
+        parts = ", ".join(f"{int(mask.sum())} {name}" for name, mask in counts.items() if mask.any())
+        return f"<Sweep of {len(self.schemes)} schemes from {len(self.q0s)} starts: {parts}>"
 
 
 def sweep(
@@ -106,16 +178,10 @@ def sweep(
     options = {**motion_options(arm, dt, hold), **(kept._asdict() if kept else {})}
     outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
     # Its arrays are views of these, which fill as the chunks arrive.
+    figures = {name: outcomes["summary"][name].reshape(shape) for name in outcomes["summary"].dtype.names or ()}
+    whole = runs.reshape(shape) if motions else None
     result = Sweep(
-        status=status.reshape(shape),
-        time=outcomes["time"].reshape(shape),
-        motions=runs.reshape(shape) if motions else None,
-        arm=arm,
-        path=path,
-        schemes=laws,
-        q0s=starts,
-        task=task,
-        **{name: outcomes["summary"][name].reshape(shape) for name in outcomes["summary"].dtype.names or ()},
+        status.reshape(shape), outcomes["time"].reshape(shape), whole, arm, path, laws, starts, task, **figures
     )
 
     def chunk(part: slice) -> tuple[Any, ...]:

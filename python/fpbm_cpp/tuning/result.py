@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..arms import Arm
-from ..motion.sweep_result import Sweep
+from ..motion.sweeping import Sweep
 from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Measure
