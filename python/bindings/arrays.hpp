@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
@@ -15,6 +16,8 @@
 namespace py = pybind11;
 
 namespace fpbm::bindings {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 inline bool is_candidate(const PyObject* /*object*/) {
   return true;
@@ -45,18 +48,6 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
 
 using OptionalArray = std::optional<ArrayLike>;
 
-/// A vector of exactly `size` finite entries.
-template <int Size>
-Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
-  const auto array = real_array(argument, name, 1);
-  if (array.size() != Size) {
-    validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
-  }
-  const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
-  validation::require_finite(name, result);
-  return result;
-}
-
 /// One entry per joint: 1 to kMaxDof of them, not yet checked further.
 inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char* name) {
   const auto array = real_array(argument, name, 1);
@@ -72,15 +63,16 @@ inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char
   return values;
 }
 
-/// One row and one column per joint.
-inline Matrix<Eigen::Dynamic, Eigen::Dynamic> joint_matrix(const ArrayLike& argument, const char* name) {
-  const auto array = real_array(argument, name, 2);
-  validation::require_dof(name, array.shape(0), 1);
-  if (array.shape(1) != array.shape(0)) {
-    validation::reject(name, ": must be square, got shape " + py::cast<std::string>(py::str(array.attr("shape"))));
+/// A vector of exactly `Size` finite entries.
+template <int Size>
+Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
+  const auto array = real_array(argument, name, 1);
+  if (array.size() != Size) {
+    validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
   }
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
+  const Vector<Size> result = Eigen::Map<const Vector<Size>>(array.data());
+  validation::require_finite(name, result);
+  return result;
 }
 
 /// A matrix of exactly `rows` x `cols` finite entries.
@@ -90,7 +82,6 @@ inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen
     validation::reject(name, ": must have shape (" + std::to_string(rows) + ", " + std::to_string(cols) + "), got " +
                                  py::cast<std::string>(py::str(array.attr("shape"))));
   }
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::MatrixXd result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < cols; ++j) {
@@ -123,33 +114,24 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
 
 /// Any object with lower, upper, velocity and acceleration, one number a joint each, none of them NaN.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
-  const auto bound = [&](const char* name, Eigen::Index dof) {
+  const auto bound = [&](const char* name) {
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
-    validation::require_size(name, values.size(), dof == 0 ? values.size() : dof);
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
     }
     return values;
   };
-  const Vector<Eigen::Dynamic> lower = bound("lower", 0);
-  const Eigen::Index dof = lower.size();
-  return {lower, bound("upper", dof), bound("velocity", dof), bound("acceleration", dof)};
+  return {bound("lower"), bound("upper"), bound("velocity"), bound("acceleration")};
 }
 
 /// A vector, a matrix or a point of a task space as Python has it.
 template <typename Derived>
 py::array_t<double> array_of(const Eigen::MatrixBase<Derived>& values) {
-  if constexpr (Derived::ColsAtCompileTime == 1) {
-    py::array_t<double> result(values.size());
-    for (Eigen::Index i = 0; i < values.size(); ++i) result.mutable_at(i) = values(i);
-    return result;
-  } else {
-    py::array_t<double> result({values.rows(), values.cols()});
-    for (Eigen::Index i = 0; i < values.rows(); ++i) {
-      for (Eigen::Index j = 0; j < values.cols(); ++j) result.mutable_at(i, j) = values(i, j);
-    }
-    return result;
-  }
+  std::vector<py::ssize_t> shape{values.rows()};
+  if (Derived::ColsAtCompileTime != 1) shape.push_back(values.cols());
+  py::array_t<double> result(shape);
+  Eigen::Map<RowMajor>(result.mutable_data(), values.rows(), values.cols()) = values;
+  return result;
 }
 inline py::array_t<double> array_of(const Transform<>& x) {
   py::array_t<double> result({4, 4});

@@ -69,7 +69,8 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
     const auto any = py::array::ensure(*weights);
     PyErr_Clear();
     if (any && any.ndim() == 2) {
-      scheme.weights = joint_matrix(ArrayLike(*weights), "weights");
+      validation::require_dof("weights", any.shape(0), 1);
+      scheme.weights = Scheme::Dense(matrix(ArrayLike(*weights), "weights", any.shape(0), any.shape(0)));
     } else {
       scheme.weights = joint_vector(ArrayLike(*weights), "weights");
     }

@@ -17,8 +17,7 @@ struct Stop {
 };
 
 using Schemes = std::vector<const Scheme*>;
-using Motions = py::typing::List<py::typing::Tuple<Array, py::ellipsis>>;
-using Chunk = py::typing::Tuple<py::array, Motions>;
+using Chunk = py::typing::Tuple<py::array, py::typing::List<Arrays>>;
 
 const LaneCode* lane_code = nullptr;
 
@@ -47,11 +46,6 @@ Array starts(const ArrayLike& q0s, int dof) {
 
 JointVector row(const Array& rows, py::ssize_t i) {
   return Eigen::Map<const Eigen::VectorXd>(rows.data(i, 0), rows.shape(1));
-}
-
-std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
-  if (!given) return std::nullopt;
-  return limited_of(*given, arm);
 }
 
 /// Checks all that a sweep is made of, and returns its starts as rows and the samples of each motion.
@@ -117,10 +111,8 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
       const py::gil_scoped_release others_may_run;
       sweep(arm, same, grid, jobs, limited ? &*limited : nullptr, lane_code, stop.flag, into);
     }
-    Motions arrays;
-    for (const MotionArrays<Space>& each : whole) {
-      arrays.append(limited ? py::tuple(each.arrays() + py::make_tuple(each.scale, each.saturated)) : each.arrays());
-    }
+    py::typing::List<Arrays> arrays;
+    for (const MotionArrays<Space>& each : whole) arrays.append(each.all());
     return py::make_tuple(outcomes, arrays);
   });
 }

@@ -2,6 +2,7 @@
 
 #include <pybind11/typing.h>
 
+#include <optional>
 #include <tuple>
 #include <type_traits>
 
@@ -11,8 +12,8 @@
 namespace fpbm::bindings {
 
 using Array = py::array_t<double>;
-/// t, q, qd, qdd, x, x_ref, error of a motion, one row a sample.
-using Arrays = py::typing::Tuple<Array, Array, Array, Array, Array, Array, Array>;
+/// t, q, qd, qdd, x, x_ref, error of a motion, one row a sample; then scale and saturated, of one within limits.
+using Arrays = py::typing::Tuple<Array, py::ellipsis>;
 
 /// Arrays for a motion of that many samples of n joints.
 template <typename Space>
@@ -35,7 +36,10 @@ struct MotionArrays {
             scale.size() > 0 ? scale.mutable_data() : nullptr,
             saturated.size() > 0 ? saturated.mutable_data() : nullptr};
   }
-  [[nodiscard]] Arrays arrays() const { return py::make_tuple(t, q, qd, qdd, x, x_ref, error); }
+  [[nodiscard]] Arrays all() const {
+    const py::tuple plain = py::make_tuple(t, q, qd, qdd, x, x_ref, error);
+    return scale.size() > 0 ? py::tuple(plain + py::make_tuple(scale, saturated)) : plain;
+  }
 
   Array t;
   Array q;
@@ -60,10 +64,11 @@ struct MotionArrays {
 /// limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake of a motion that keeps limits.
 using LimitedOptions = std::tuple<py::object, double, double, double, double, double>;
 
-inline Limited limited_of(const LimitedOptions& given, const Arm& arm) {
-  const auto& [limits, max_error, gain, bound, radius, brake] = given;
-  return {limits.is_none() ? arm.limits() : joint_limits(limits),
-          {1e-3, max_error, gain, bound, SingularDamping<>(radius, brake)}};
+inline std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
+  if (!given) return std::nullopt;
+  const auto& [limits, max_error, gain, bound, radius, brake] = *given;
+  return Limited{limits.is_none() ? arm.limits() : joint_limits(limits),
+                 {1e-3, max_error, gain, bound, SingularDamping<>(radius, brake)}};
 }
 
 }  // namespace fpbm::bindings

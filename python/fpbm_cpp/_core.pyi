@@ -34,12 +34,11 @@ __all__: list[str] = [
     "not_run",
     "preset",
     "processor_kinds",
+    "rollout",
     "rotation",
     "rotation_vector",
     "sequence",
-    "simulate",
     "sweep_chunk",
-    "track",
     "tricuspid",
     "use_lanes",
     "waypoints",
@@ -476,6 +475,25 @@ def message(status: Status) -> str:
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
 def processor_kinds() -> list[str]: ...
+def rollout(
+    arm: Arm,
+    path: Path,
+    scheme: Scheme,
+    q0: numpy.typing.ArrayLike,
+    qd0: numpy.typing.ArrayLike,
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    hold: typing.SupportsFloat | typing.SupportsIndex,
+    task: str,
+    limited: tuple[
+        typing.Any,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
+    ]
+    | None = None,
+) -> tuple[Status, float, int, tuple[numpy.typing.NDArray[numpy.float64], ...]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.
@@ -487,29 +505,6 @@ def rotation_vector(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.flo
     """
 
 def sequence(paths: collections.abc.Sequence[Path]) -> Path: ...
-def simulate(
-    arm: Arm,
-    path: Path,
-    scheme: Scheme,
-    q0: numpy.typing.ArrayLike,
-    qd0: numpy.typing.ArrayLike,
-    dt: typing.SupportsFloat | typing.SupportsIndex,
-    hold: typing.SupportsFloat | typing.SupportsIndex,
-    task: str,
-) -> tuple[
-    Status,
-    float,
-    int,
-    tuple[
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-    ],
-]: ...
 def sweep_chunk(
     arm: Arm,
     path: Path,
@@ -531,37 +526,6 @@ def sweep_chunk(
     | None,
     stop: Stop,
 ) -> tuple[numpy.ndarray, list[tuple[numpy.typing.NDArray[numpy.float64], ...]]]: ...
-def track(
-    arm: Arm,
-    path: Path,
-    scheme: Scheme,
-    q0: numpy.typing.ArrayLike,
-    qd0: numpy.typing.ArrayLike,
-    dt: typing.SupportsFloat | typing.SupportsIndex,
-    hold: typing.SupportsFloat | typing.SupportsIndex,
-    task: str,
-    limits: typing.Any,
-    max_error: typing.SupportsFloat | typing.SupportsIndex,
-    integral_gain: typing.SupportsFloat | typing.SupportsIndex,
-    integral_bound: typing.SupportsFloat | typing.SupportsIndex,
-    singular_radius: typing.SupportsFloat | typing.SupportsIndex,
-    singular_brake: typing.SupportsFloat | typing.SupportsIndex,
-) -> tuple[
-    Status,
-    float,
-    int,
-    tuple[
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-    ],
-    numpy.typing.NDArray[numpy.float64],
-    numpy.typing.NDArray[numpy.bool],
-]: ...
 def tricuspid(
     size: typing.SupportsFloat | typing.SupportsIndex,
     duration: typing.SupportsFloat | typing.SupportsIndex,

@@ -253,6 +253,10 @@ TEST(Limits, say_what_is_wrong_with_them) {
   bounds.set(1, {-1.0, 1.0, 2.0, -5.0});
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.acceleration[1] = -5: must be positive");
   bounds.set(1, {-1.0, 1.0, 2.0, 5.0});
+  auto uneven = JointLimits<Eigen::Dynamic>::none(2);
+  uneven.upper.resize(1);
+  EXPECT_EQ(complaint([&] { Limits<Level::kVelocity, Eigen::Dynamic>(uneven, kTick); }),
+            "limits.upper has 1 entries: must have 2, one per joint");
   Accelerations limits(bounds, kTick);
   EXPECT_EQ(complaint([&] {
               limits.set_upper_envelope(1, {1.0, 0.1, 6.0});

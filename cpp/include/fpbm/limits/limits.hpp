@@ -29,6 +29,9 @@ class Limits {
   Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds) {
     validation::require_positive("dt", static_cast<double>(tick));
     const Eigen::Index n = bounds.lower.size();
+    validation::require_size("limits.upper", bounds.upper.size(), n);
+    validation::require_size("limits.velocity", bounds.velocity.size(), n);
+    validation::require_size("limits.acceleration", bounds.acceleration.size(), n);
     upper_.resize(n);
     lower_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
