@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 from ._core import Status, advice, message
 
-__all__ = ["ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
-
 if TYPE_CHECKING:
     from .motion.run import Run
     from .motion.sweeping import Sweep

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 else:
 
     def dataclass_transform(**_: Any) -> Callable[[Any], Any]:
-        """Tell type checkers what `data` does."""
         return lambda decorator: decorator
 
 
@@ -60,11 +59,10 @@ class Parameter:
             return "positive" if self.open_low else "not negative"
         return f"at least {self.low:g}" if math.isfinite(self.low) else ""
 
-    @property
-    def demand(self) -> str:
+    def _demand(self) -> str:
         """What a number must be: 'finite and not negative', say."""
         if self.whole:
-            return f"a whole number, {self.range}" if self.range else "a whole number"
+            return ", ".join(filter(None, ["a whole number", self.range]))
         if self.infinite or math.isfinite(self.high):
             return self.range or "a number"
         words = {"positive": "positive and finite", "not negative": "finite and not negative"}
@@ -102,7 +100,7 @@ class Parameter:
         if self.whole:
             allowed &= array == np.floor(array)
         for index in map(tuple, np.argwhere(~allowed).tolist()):
-            raise self._error(float(array[index]), self.demand if array.ndim < 2 else "finite", index)
+            raise self._error(float(array[index]), self._demand() if array.ndim < 2 else "finite", index)
         array = array.astype(int) if self.whole else array
         array.setflags(write=False)
         return array if array.ndim else array.item()

@@ -44,19 +44,13 @@ class Path(Data, CorePath):
         return self._duration()
 
     def in_plane(self, plane: str | ArrayLike) -> Path:
-        """This path of the plane, laid into a plane of space.
-
-        plane: the base frame's axes that its x and y run along, as in 'yz', or any two directions at right angles,
-        shape (2, 3).
-        """
+        """This path of the plane, laid into a plane of space, 'yz' say: InPlane(path, plane)."""
         return InPlane(self, plane)
 
     def with_rotation(self, rotation: ArrayLike, *, time_law: str = "quintic") -> Path:
-        """This path of positions, with the tip rotated on the way, from rest to rest over the whole duration.
+        """This path of positions, with the tip rotated on the way: WithRotation(path, rotation, time_law=time_law).
 
-        rotation: rotation vector along the base frame's axes [rad], shape (3,), or an angle in the plane, from the
-        orientation that the tip starts in. To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the
-        orientation.
+        To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the orientation.
         """
         return WithRotation(self, rotation, time_law=time_law)
 
@@ -191,7 +185,7 @@ class InPlane(Path):
 
 @data
 class WithRotation(Path):
-    """A path of positions, with the tip rotated on the way: path.with_rotation(rotation, time_law=...)."""
+    """A path of positions, with the tip rotated on the way, from rest to rest over the whole duration."""
 
     kind = "with_rotation"
     path: Path = parameter("A path of positions.")

@@ -1,7 +1,5 @@
 """What is shown of an arm: positions and axes of base, joints and tip, and what the joints are called."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ._types import Array

@@ -6,8 +6,6 @@ A table has the kind and the parameters of its thing, by their names. A path's a
 in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Arms written as C++ headers, for programs that read no files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from math import inf

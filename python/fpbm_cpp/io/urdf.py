@@ -3,8 +3,6 @@
 Names, numbers and the tree must be sound in the whole file; anything else matters only between base and tip.
 """
 
-from __future__ import annotations
-
 import difflib
 import os
 import warnings

@@ -4,8 +4,6 @@ A file may come from anywhere: one bounded pass over its XML, which expands no e
 what a chain is made of. Meshes, masses, transmissions and simulators' extras are not read.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from xml.parsers import expat
 

@@ -152,8 +152,7 @@ class Run:
     def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        panels are the names of those wanted instead, from fpbm_cpp.plot.PANELS; dark draws on black. Raises ValueError
-        for an unknown name, and ImportError where matplotlib is missing.
+        panels: the names of those wanted instead, from fpbm_cpp.plot.PANELS. dark: on black. Needs matplotlib.
         """
         from ..plot import plot_run
 
@@ -228,9 +227,9 @@ class Run:
         """Write a ROS 2 bag, whole or not at all, stamped with the run's time from 0. Needs the extra 'ros', no ROS.
 
         Topics /joint_states (sensor_msgs/JointState), /tip and /tip_reference (geometry_msgs/PoseStamped) in the base
-        frame of that name; with trajectory also /joint_trajectory (trajectory_msgs/JointTrajectory), the whole motion
-        as one message. Where the task leaves the orientation free, the tip's is the arm's and the reference has none
-        (the identity). Raises FileExistsError where there is something of the bag's name.
+        frame of that name; with trajectory also /joint_trajectory (trajectory_msgs/JointTrajectory), one message. Where
+        the task leaves the orientation free, the tip's is the arm's and the reference's the identity. Raises
+        FileExistsError where there is something of the bag's name.
         """
         from ..io.rosbag import to_rosbag
 

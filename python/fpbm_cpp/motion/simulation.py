@@ -41,6 +41,9 @@ def simulate(
     The path is a displacement from where the tip starts, f(q0). Velocity-level schemes integrate q, acceleration-level
     schemes q and qd. Runs without the interpreter's lock. The run's status says how it ended.
 
+    Raises ValueError if an argument is out of range, not finite, or of the wrong shape: nothing is run. Raises
+    ResolutionError if the motion must stop early: its run holds the part before.
+
     Parameters
     ----------
     arm, path, scheme
@@ -57,13 +60,6 @@ def simulate(
         'position', or 'pose' to track the tip's orientation as well.
     partial : bool
         If the motion must stop early, return what was done instead of raising.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, not finite, or of the wrong shape; nothing is run.
-    ResolutionError
-        If the motion must stop early; the exception's run holds the part before.
     """
     options = motion_options(arm, dt, hold, qd0)
     outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task)
@@ -95,7 +91,8 @@ def track(
     The motion is a Tracker's, where simulate() has the plain law's: every joint keeps its bounds, the motion is damped
     near singular postures, and nothing makes it stop early. Sample k is the state at t_k, the tip's error there, and
     the tick that begins there: its mean acceleration, its scale, and which joints it had on a bound. The run's status
-    is the worst of all ticks: OK, DAMPED or SLOWED; without damping it may be SINGULAR, where the arm braked.
+    is the worst of all ticks: OK, DAMPED or SLOWED; without damping it may be SINGULAR, where the arm braked. Raises
+    ValueError as simulate() does, and if a limit is missing or the start breaks one.
 
     Parameters
     ----------
@@ -111,11 +108,6 @@ def track(
         adds [m/s^2] or [m/s]. Stable below k1 k2.
     singular_radius, singular_brake : float
         Damping near singular postures for a scheme that has none; 0 switches it off.
-
-    Raises
-    ------
-    ValueError
-        As simulate() does, and if a limit is missing or the start breaks one; nothing is run.
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)

@@ -128,6 +128,9 @@ def sweep(
     simulate() to 1e-12. The results are the same to the last bit for any number of workers. A motion that must stop
     early raises nothing: its status says so.
 
+    Raises ValueError or TypeError if an argument is wrong, ImportError if what progress=True needs is missing: nothing
+    is run. On Ctrl-C it raises SweepInterrupted, a KeyboardInterrupt whose sweep holds what is finished.
+
     Parameters
     ----------
     arm, path, dt, hold, task
@@ -148,15 +151,6 @@ def sweep(
         True for a progress bar, which needs the extra 'progress'; or a function of (done, total), numbers of motions.
     motions : bool
         Keep the whole motions as well, in the result's motions: 8 bytes for each number of simulate()'s arrays.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If an argument is out of range, not finite, or of the wrong shape, or a scheme is none; nothing is run.
-    SweepInterrupted
-        On Ctrl-C: a KeyboardInterrupt whose sweep holds what is finished.
-    ImportError
-        If progress=True and the extra is missing; nothing is run.
     """
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
