@@ -117,7 +117,7 @@ def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkey
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        animation.animation_writer(file, 25.0)(broken())
+        animation.write_frames(file, broken(), 25.0)
     assert file.read_text() == "old"
     assert [file.name for file in tmp_path.iterdir()] == [file.name]
 
@@ -125,5 +125,5 @@ def test_the_old_file_stays_if_writing_fails(suffix: str, tmp_path: Path, monkey
 def test_errors_of_ffmpeg_are_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(animation, "_ffmpeg", lambda: shutil.which("cat"))
     with pytest.raises(OSError, match=r"^ffmpeg: .*cat: "):
-        animation.animation_writer(tmp_path / "a.mp4", 25.0)(np.zeros((3, 2, 2, 3), np.uint8))
+        animation.write_frames(tmp_path / "a.mp4", np.zeros((3, 2, 2, 3), np.uint8), 25.0)
     assert not list(tmp_path.iterdir())

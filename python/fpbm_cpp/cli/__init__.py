@@ -19,6 +19,7 @@ class _InOrder(click.Group):
 
 @click.group(
     cls=_InOrder,
+    commands=[track, compare, sweep, tune, view, bench, reproduce, export_header, completion],
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110, "show_default": True},
     epilog="""\b
 Examples:
@@ -32,7 +33,3 @@ def command() -> None:
 
     Radians, metres, seconds throughout.
     """
-
-
-for each in (track, compare, sweep, tune, view, bench, reproduce, export_header, completion):
-    command.add_command(each)

@@ -3,7 +3,7 @@
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -42,40 +42,23 @@ def animate(
 ) -> None:
     """Write an animation of a run: the moving arm, the trail of its tip, and panels with a cursor at that time.
 
-    Parameters
-    ----------
-    file : path
-        The file: .mp4, which needs ffmpeg or the extra 'animation', or .gif. An existing one is replaced, whole or not
-        at all.
-    fps : float
-        Frames per second.
-    speed : float
-        Seconds of the motion in a second of the animation.
-    panels : sequence of str
-        Names from PANELS, shown beside the arm.
-    dark : bool
-        Dark background.
-    dpi : float
-        Pixels per inch; with 180 and two panels the animation has 1280 × 720 pixels.
+    The file is an .mp4, which needs ffmpeg or the extra 'animation', or a .gif; an existing one is replaced, whole or
+    not at all. fps is frames per second, speed the seconds of the motion in a second of the animation, and dpi pixels
+    per inch: with 180 and two panels the animation has 1280 × 720 pixels. panels are names from PANELS, shown beside
+    the arm; dark draws on black.
 
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, the file has another suffix, or the run has no samples.
-    ImportError
-        If the file is .mp4 and there is no ffmpeg.
-    OSError
-        If the file cannot be written.
+    Raises ValueError if an argument is out of range, the file has another suffix, or the run has no samples;
+    ImportError if there is no ffmpeg for an .mp4; OSError if the file cannot be written.
     """
     for name, value in (("fps", fps), ("speed", speed), ("dpi", dpi)):
         Parameter(name, float, low=0.0, open_low=True).check(value)
     if not len(run.t):
         raise ValueError("run: has no samples to animate")
     shown = {name: panel for name, panel in choose(run, panels).items() if name != "arm"}
-    write = animation_writer(Path(file), fps)
     times = np.append(np.arange(run.t[0], run.t[-1], speed / fps), run.t[-1])
     samples = np.searchsorted(run.t, times).clip(max=len(run.t) - 1)
-    write(_frames(run, samples, {"arm": Panel("", _draw_background), **shown}, DARK if dark else LIGHT, dpi))
+    shown = {"arm": Panel("", _draw_background), **shown}
+    write_frames(Path(file), _frames(run, samples, shown, DARK if dark else LIGHT, dpi), fps)
 
 
 def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float) -> Iterator[Frame]:
@@ -121,11 +104,11 @@ def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
     head_legend(axes, theme, [trail, *target])
 
 
-def animation_writer(file: Path, fps: float) -> Callable[[Iterable[Frame]], None]:
-    """A function that writes frames, all of one shape (height, width, 3), to a file: whole, or not at all.
+def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:
+    """Write frames, all of one shape (height, width, 3), to a file: whole, or not at all.
 
-    Raises at once, before anything is drawn: ValueError for another suffix than .mp4 and .gif, OSError if the folder
-    does not exist, ImportError if ffmpeg is missing.
+    Raises before it takes a frame: ValueError for another suffix than .mp4 and .gif, OSError if the folder does not
+    exist, ImportError if ffmpeg is missing.
     """
     suffix = file.suffix.lower()
     if suffix not in (".mp4", ".gif"):
@@ -135,19 +118,15 @@ def animation_writer(file: Path, fps: float) -> Callable[[Iterable[Frame]], None
     if not file.parent.is_dir():
         raise FileNotFoundError(f"file = {str(file)!r}: there is no folder {str(file.parent)!r}")
     ffmpeg = _ffmpeg() if suffix == ".mp4" else ""
-
-    def write(frames: Iterable[Frame]) -> None:
-        rest = iter(frames)
-        first = next(rest)
-        with TemporaryDirectory() as folder:
-            part = Path(folder, "animation" + suffix)
-            if ffmpeg:
-                _write_mp4(part, first, chain([first], rest), fps, ffmpeg)
-            else:
-                _write_gif(part, first, chain([first], rest), fps)
-            write_whole(file, part.read_bytes())
-
-    return write
+    rest = iter(frames)
+    first = next(rest)
+    with TemporaryDirectory() as folder:
+        part = Path(folder, "animation" + suffix)
+        if ffmpeg:
+            _write_mp4(part, first, chain([first], rest), fps, ffmpeg)
+        else:
+            _write_gif(part, first, chain([first], rest), fps)
+        write_whole(file, part.read_bytes())
 
 
 def _ffmpeg() -> str:

@@ -30,9 +30,9 @@ class Trials:
     """T schemes and the results of their motions: arrays of shape (T,), in the order in which they were tried.
 
     value is the objective, NaN if the motion stopped early; peak_velocity [rad/s] and peak_acceleration [rad/s^2] are
-    those of the fastest joint; error is the largest position error of the tip [m] or, where it is a larger number, its
-    largest orientation error [rad]. A trial is feasible if its motion is complete, its objective finite, and its error
-    within the tolerance.
+    those of the fastest joint; error is the tip's largest position error [m] or, where it is a larger number,
+    orientation error [rad]. A trial is feasible if its motion is complete, its objective finite, and its error within
+    the tolerance.
     """
 
     schemes: NDArray[Any]
@@ -110,19 +110,11 @@ def sensitivity(scheme: FPBM, value: float, run: Callable[[Sequence[FPBM]], Tria
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Tuning:
-    """The best scheme found, its sensitivity, and all that was tried.
+    """The best scheme found, its sensitivity, and the trials, the baseline first; arm, path, q0, task are the motion.
 
-    Attributes
-    ----------
-    trials : Trials
-        All schemes tried and their results, the baseline first.
-    sensitivity : dict of str to (float, float)
-        Change of the objective when one parameter of the best steps down, and up: alpha by 0.05, within [0, 1], all
-        others by 10 %. NaN where it cannot step, infinite where the step is infeasible. Empty after an interruption.
-    objective, unit : str
-        Name and unit of the objective; the unit is empty for a function of the caller's.
-    arm, path, q0, task
-        The motion.
+    sensitivity is the change of the objective when one parameter of the best steps down, and up: alpha by 0.05, within
+    [0, 1], all others by 10 %. It is NaN where the parameter cannot step, infinite where the step is infeasible, and
+    empty after an interruption. objective is a name; its unit is empty for a function of the caller's.
     """
 
     trials: Trials

@@ -45,28 +45,15 @@ def view(
 ) -> None:
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
-    Prints the page's address. The motion is simulated again whenever the scheme or a parameter is changed on the page;
-    a motion that stops early is shown as far as it went. fpbm_cpp.viewer.Viewer does the same without waiting.
+    Prints the page's address. The motion, as for simulate(), is made again whenever the scheme or a parameter is
+    changed on the page; one that stops early is shown as far as it went. fpbm_cpp.viewer.Viewer does not wait.
 
-    Parameters
-    ----------
-    arm, path, scheme, q0, dt, hold, task
-        As for simulate().
-    urdf : path, optional
-        The arm's URDF file, whose meshes are drawn, with the joints that are not the arm's at zero; without it the arm
-        is drawn as rods and cylinders.
-    host, port
-        Address to serve at, and port, where 0 takes a free one. Only this machine can open the page, unless host is
-        '0.0.0.0' or an address on a network.
-    open_browser : bool
-        Open the page in the browser.
+    urdf is the arm's URDF file, whose meshes are drawn, with the joints that are not the arm's at zero; without it the
+    arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0' or an address on a
+    network. Port 0 takes a free one.
 
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, or the URDF file is not that of the arm; nothing is served.
-    OSError, ImportError
-        If the port is in use, or the URDF file cannot be read; if the extra 'view' is missing.
+    Raises ValueError if an argument is out of range, or the URDF file is not that of the arm: nothing is served then;
+    OSError if the port is in use, or the URDF file cannot be read; ImportError if the extra 'view' is missing.
     """
     from .viewer import Viewer
 
