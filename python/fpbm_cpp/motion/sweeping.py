@@ -169,14 +169,7 @@ def sweep(
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)
     parts = _parts(total, len(starts), samples)
-    options = {**motion_options(arm, dt, hold), **(kept._asdict() if kept else {})}
     outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
-    # Its arrays are views of these, which fill as the chunks arrive.
-    figures = {name: outcomes["summary"][name].reshape(shape) for name in outcomes["summary"].dtype.names or ()}
-    whole = runs.reshape(shape) if motions else None
-    result = Sweep(
-        status.reshape(shape), outcomes["time"].reshape(shape), whole, arm, path, laws, starts, task, **figures
-    )
 
     def chunk(part: slice) -> tuple[Any, ...]:
         """What a worker needs: motion i is of laws[i // K] from starts[i % K], with K starts."""
@@ -190,15 +183,22 @@ def sweep(
         for i, rows in zip(range(total)[part], arrays):
             if status[i] is not None:
                 law, start = laws[i // len(starts)], starts[i % len(starts)]
+                options = {**motion_options(arm, dt, hold), **(kept._asdict() if kept else {})}
                 outcome = status[i], float(outcomes["time"][i]), int(outcomes["samples"][i]), rows
                 runs[i] = make_run(outcome, start, arm, path, law, task, options)
+
+    def result() -> Sweep:
+        summary, whole = outcomes["summary"], runs.reshape(shape) if motions else None
+        figures = {name: summary[name].reshape(shape).copy() for name in summary.dtype.names or ()}
+        time = outcomes["time"].reshape(shape).copy()
+        return Sweep(status.reshape(shape), time, whole, arm, path, laws, starts, task, **figures)
 
     try:
         with reporting(progress, total) as report:
             run_chunks(((part, chunk(part)) for part in parts), executor, workers, take, report)
     except KeyboardInterrupt:
-        raise SweepInterrupted(result) from None
-    return result
+        raise SweepInterrupted(result()) from None
+    return result()
 
 
 def _parts(total: int, starts: int, samples: int) -> list[slice]:
