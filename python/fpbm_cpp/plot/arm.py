@@ -11,8 +11,7 @@ from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
 from ..skeleton import joint_points, tip_axes
-from .lines import head_legend
-from .theme import LIGHT, TEXT, Theme
+from .theme import LIGHT, TEXT, Theme, head_legend
 
 SNAPSHOTS = 11
 ROUND = {"solid_capstyle": "round"}

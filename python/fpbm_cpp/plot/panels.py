@@ -11,8 +11,19 @@ from ..arms import Arm
 from ..motion.run import Run
 from ..skeleton import joint_labels, joint_units
 from .arm import arm_panel
-from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
-from .theme import LIGHT, LINE, Theme, dress
+from .theme import (
+    LIGHT,
+    LINE,
+    Theme,
+    draw_lines,
+    dress,
+    envelope,
+    from_zero,
+    head_legend,
+    in_decades,
+    over_time,
+    side_legend,
+)
 
 __all__ = [
     "OVERVIEW",

@@ -23,10 +23,9 @@ except ModuleNotFoundError as missing:
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
-from .controls import Controls
+from .controls import Controls, Player
 from .meshes import Meshes
 from .playback import Playback
-from .player import Player
 from .readout import Chart, Readout
 from .scene import Scene
 
