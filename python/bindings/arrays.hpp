@@ -30,6 +30,17 @@ class ArrayLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, is_candidate)
 };
 
+inline std::string shape_text(const py::array& array) {
+  return py::cast<std::string>(py::str(array.attr("shape")));
+}
+
+/// Number of dimensions of an array or of what can be one; -1 of all else.
+inline int dimensions(const ArrayLike& argument) {
+  const auto any = py::array::ensure(argument);
+  PyErr_Clear();
+  return any ? static_cast<int>(any.ndim()) : -1;
+}
+
 /// Real numbers in an array of the given number of dimensions. Throws std::invalid_argument.
 inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argument, const char* name, int dimensions) {
   const auto any = py::array::ensure(argument);
@@ -40,8 +51,7 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
   }
   if (any.ndim() != dimensions) {
     validation::reject(name, ": must have " + std::to_string(dimensions) +
-                                 (dimensions == 1 ? " dimension" : " dimensions") + ", got shape " +
-                                 py::cast<std::string>(py::str(any.attr("shape"))));
+                                 (dimensions == 1 ? " dimension" : " dimensions") + ", got shape " + shape_text(any));
   }
   return py::array_t<double, py::array::c_style | py::array::forcecast>(any);
 }
@@ -80,7 +90,7 @@ inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen
   const auto array = real_array(argument, name, 2);
   if (array.shape(0) != rows || array.shape(1) != cols) {
     validation::reject(name, ": must have shape (" + std::to_string(rows) + ", " + std::to_string(cols) + "), got " +
-                                 py::cast<std::string>(py::str(array.attr("shape"))));
+                                 shape_text(array));
   }
   const Eigen::MatrixXd result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
   for (Eigen::Index i = 0; i < rows; ++i) {

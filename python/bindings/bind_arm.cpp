@@ -168,12 +168,6 @@ ParameterError
       .def_property_readonly("Jd", &rate_of, "dJ/dt along qd, shape (m, n).");
 }
 
-/// A docstring, with what the argument task means.
-std::string with_task(const char* text) {
-  return std::string(text) +
-         " task: 'position' or 'pose', whose rows are linear first, then\nangular, along the base frame's axes.";
-}
-
 }  // namespace
 
 void bind_arm(py::module_& m) {
@@ -205,23 +199,22 @@ void bind_arm(py::module_& m) {
            "Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous\n"
            "matrix, shape (4, 4), of one in space. q: shape (n,) [rad].")
       .def("kinematics", &kinematics_of, py::arg("q"), py::arg("qd"), py::kw_only(), task,
-           with_task("Tip, J and Jd at q, qd, shape (n,) [rad], [rad/s].").c_str())
+           "Tip, J and Jd of a task, 'position' or 'pose', at q, qd, shape (n,) [rad], [rad/s].")
       .def(
           "jacobian",
           [](const Arm& arm, const ArrayLike& q, const std::string& name) {
             return jacobian_of(kinematics_of(arm, q, q, name));
           },
           py::arg("q"), py::kw_only(), task,
-          with_task("Task Jacobian J(q), shape (m, n): tip velocity is J qd. q: shape (n,) [rad].").c_str())
+          "Task Jacobian J(q), shape (m, n): the tip's velocity is J qd, linear rows first, then angular. q: (n,) "
+          "[rad].")
       .def(
           "jacobian_dot",
           [](const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const std::string& name) {
             return rate_of(kinematics_of(arm, q, qd, name));
           },
           py::arg("q"), py::arg("qd"), py::kw_only(), task,
-          with_task(
-              "dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s].")
-              .c_str());
+          "dJ/dt along qd, shape (m, n): the tip's acceleration is J qdd + Jd qd. q, qd: (n,) [rad], [rad/s].");
 
   m.def("dh", &dh, py::arg("table"), py::arg("convention"), py::arg("types"));
   m.def("preset", &preset, py::arg("name"));

@@ -40,12 +40,6 @@ double number(const ArrayLike& argument, const char* name) {
   return value;
 }
 
-int dimensions(const ArrayLike& argument) {
-  const auto any = py::array::ensure(argument);
-  PyErr_Clear();
-  return any ? static_cast<int>(any.ndim()) : -1;
-}
-
 /// A shape run through under the time law of that name.
 template <typename Shape>
 Path make_path(const Shape& shape, double duration, const std::string& law) {
@@ -155,8 +149,7 @@ Path waypoints(const ArrayLike& points, const std::optional<double>& duration, c
   if (poses) return waypoints_in<Pose>(points_of<Pose>(array), timing);
   if (array.shape(1) == 2) return waypoints_in<Position<2>>(points_of<Position<2>>(array), timing);
   if (array.shape(1) == 3) return waypoints_in<Position<3>>(points_of<Position<3>>(array), timing);
-  validation::reject("points", ": must have shape (k, 2), (k, 3) or (k, 4, 4), got " +
-                                   py::cast<std::string>(py::str(array.attr("shape"))));
+  validation::reject("points", ": must have shape (k, 2), (k, 3) or (k, 4, 4), got " + shape_text(array));
 }
 
 py::typing::Tuple<Array, Array, Array> sample(const Path& path, double t) {

@@ -66,13 +66,13 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
   }
   Scheme scheme{level == "velocity" ? Level::kVelocity : Level::kAcceleration};
   if (const auto weights = given("weights")) {
-    const auto any = py::array::ensure(*weights);
-    PyErr_Clear();
-    if (any && any.ndim() == 2) {
-      validation::require_dof("weights", any.shape(0), 1);
-      scheme.weights = Scheme::Dense(matrix(ArrayLike(*weights), "weights", any.shape(0), any.shape(0)));
+    const ArrayLike W(*weights);
+    if (dimensions(W) == 2) {
+      const auto dof = real_array(W, "weights", 2).shape(0);
+      validation::require_dof("weights", dof, 1);
+      scheme.weights = Scheme::Dense(matrix(W, "weights", dof, dof));
     } else {
-      scheme.weights = joint_vector(ArrayLike(*weights), "weights");
+      scheme.weights = joint_vector(W, "weights");
     }
   }
   scheme.alpha = number("alpha", 0.0);

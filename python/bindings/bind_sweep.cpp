@@ -23,25 +23,14 @@ const LaneCode* lane_code = nullptr;
 
 /// Starts as rows, from one or from many.
 Array starts(const ArrayLike& q0s, int dof) {
-  const auto any = py::array::ensure(q0s);
-  PyErr_Clear();
-  if (any && any.ndim() > 2) {
-    validation::reject(
-        "q0s", ": must have shape (n,) or (K, n), got shape " + py::cast<std::string>(py::str(any.attr("shape"))));
-  }
-  if (!any || any.ndim() < 2) {
-    const JointVector q0 = joint_vector(q0s, "q0s", dof);
-    Array row({py::ssize_t{1}, py::ssize_t{dof}});
-    std::copy_n(q0.data(), dof, row.mutable_data());
-    return row;
+  if (dimensions(q0s) < 2) return array_of(RowMajor(joint_vector(q0s, "q0s", dof).transpose()));
+  if (dimensions(q0s) > 2) {
+    validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " + shape_text(py::array::ensure(q0s)));
   }
   const auto rows = real_array(q0s, "q0s", 2);
   if (rows.shape(0) == 0) validation::reject("q0s", ": must have one row at least");
   validation::require_size("a row of q0s", rows.shape(1), dof);
-  for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-    for (py::ssize_t j = 0; j < dof; ++j) validation::require_finite(validation::element("q0s", i, j), rows.at(i, j));
-  }
-  return rows;
+  return array_of(matrix(q0s, "q0s", rows.shape(0), dof));
 }
 
 JointVector row(const Array& rows, py::ssize_t i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 #include <vector>
@@ -10,10 +11,24 @@
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
+#include "fpbm/sim/summary.hpp"
 #include "fpbm/sim/time_grid.hpp"
-#include "outcome.hpp"
 
 namespace fpbm::bindings {
+
+/// What became of a motion. Not a number where there is none: of a motion that was not run, or has no sample.
+struct Outcome {
+  static constexpr int kNotRun = -1;
+  [[nodiscard]] static Outcome of_nothing() noexcept {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNotRun, 0, kNone, {kNone, kNone, kNone, kNone, kNone, kNone, kNone}};
+  }
+
+  int status;  ///< A Status, or kNotRun.
+  int samples;
+  double time;  ///< Of the last sample [s].
+  MotionSummary<> summary;
+};
 
 /// The arms that there is code in lanes for.
 template <typename Space>

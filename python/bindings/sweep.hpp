@@ -8,7 +8,6 @@
 
 #include "lanes.hpp"
 #include "motion.hpp"
-#include "outcome.hpp"
 
 namespace fpbm::bindings {
 

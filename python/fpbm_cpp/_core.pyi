@@ -117,22 +117,19 @@ class Arm:
         """
     def jacobian(self, q: numpy.typing.ArrayLike, *, task: str = "position") -> numpy.typing.NDArray[numpy.float64]:
         """
-        Task Jacobian J(q), shape (m, n): tip velocity is J qd. q: shape (n,) [rad]. task: 'position' or 'pose', whose rows are linear first, then
-        angular, along the base frame's axes.
+        Task Jacobian J(q), shape (m, n): the tip's velocity is J qd, linear rows first, then angular. q: (n,) [rad].
         """
     def jacobian_dot(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        dJ/dt along qd, shape (m, n): tip acceleration is J qdd + Jd qd. q, qd: shape (n,) [rad], [rad/s]. task: 'position' or 'pose', whose rows are linear first, then
-        angular, along the base frame's axes.
+        dJ/dt along qd, shape (m, n): the tip's acceleration is J qdd + Jd qd. q, qd: (n,) [rad], [rad/s].
         """
     def kinematics(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, task: str = "position"
     ) -> Kinematics:
         """
-        Tip, J and Jd at q, qd, shape (n,) [rad], [rad/s]. task: 'position' or 'pose', whose rows are linear first, then
-        angular, along the base frame's axes.
+        Tip, J and Jd of a task, 'position' or 'pose', at q, qd, shape (n,) [rad], [rad/s].
         """
     @property
     def dof(self) -> int:
