@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from itertools import chain
@@ -11,14 +12,17 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core
-from ._core import TIME_LAWS
+from ._core import TIME_LAWS, circle, in_plane, line, lissajous, sequence, tricuspid, waypoints, with_rotation
 from ._core import Path as CorePath
 from ._types import ArrayField, DerivedField, OptionalArrayField
 from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
+# Who compiles a path of its parameters, by its kind.
+COMPILERS: dict[str, Callable[..., CorePath]] = {
+    each.__name__: each for each in (circle, lissajous, tricuspid, line, waypoints, with_rotation, sequence)
+}
 # What shapes have in common.
 DURATION = replace(POSITIVE, help="Duration T of the path.", usual=10.0, unit="s")
 TIME_LAW = Parameter(help="How the fraction s of the way grows with time.", choices=TIME_LAWS)
@@ -36,7 +40,7 @@ class Path(Data, CorePath):
     'constant_speed', tau.
     """
 
-    kind: ClassVar[str]  # The compiled part calls by it what makes a path of the parameters in their order.
+    kind: ClassVar[str]
 
     @cached_property
     def duration(self) -> float:
@@ -59,7 +63,7 @@ class Path(Data, CorePath):
         return Sequence((self, path))
 
     def _finish(self) -> None:
-        CorePath.__init__(self, getattr(_core, self.kind)(*self._values().values()))
+        CorePath.__init__(self, COMPILERS[self.kind](*self._values().values()))
 
 
 @data
@@ -170,7 +174,6 @@ class Waypoints(Path):
 class InPlane(Path):
     """A path of the plane, laid into a plane of space: path.in_plane(plane)."""
 
-    kind = "in_plane"
     path: Path = parameter("A path of positions in the plane.")
     plane: ArrayField = parameter(
         "The base frame's axes that the path's x and y run along, or two directions at right angles.",
@@ -180,7 +183,7 @@ class InPlane(Path):
 
     def _finish(self) -> None:
         axes = np.eye(3)[["xyz".index(axis) for axis in self.plane]] if isinstance(self.plane, str) else self.plane
-        CorePath.__init__(self, _core.in_plane(self.path, axes))
+        CorePath.__init__(self, in_plane(self.path, axes))
 
 
 @data

@@ -127,9 +127,9 @@ def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str |
 
     The header constructs the arm from base to tip, with neither parser nor file when the program runs.
     """
+    from ..io import write_whole
     from ..io.header import export_header, namespace_of
     from ..io.urdf import read_urdf
-    from ..io.write_whole import write_whole
 
     to_stdout = str(out) == "-"
     source = f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"

@@ -17,7 +17,7 @@ from ..arms import ARMS
 from ..motion.run import ARRAYS, LIMITED, Run, RunStatus
 from ..schemes import SCHEMES
 from ..table import EVERY_PATH, Makers, from_table, to_table
-from .write_whole import write_whole
+from . import write_whole
 
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}

@@ -14,7 +14,7 @@ from .._core import rotation_vector
 from .._types import Array
 from ..motion.run import Run
 from ..skeleton import joint_units
-from .write_whole import write_whole
+from . import write_whole
 
 if TYPE_CHECKING:
     import pandas as pd

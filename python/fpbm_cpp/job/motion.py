@@ -16,7 +16,7 @@ from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import wrong
-from ..io.write_whole import write_whole
+from ..io import write_whole
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..paths import Path

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from .._types import Array
-from ..io.write_whole import write_whole
+from ..io import write_whole
 from ..motion.run import Run
 from ..parameter import Parameter
 from ..skeleton import joint_points

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..io.write_whole import write_whole
+from ..io import write_whole
 from .cases import Result, load, of_figures, run_all
 from .claims import Claim, check_claims
 from .report import TOLERANCE, Table, make_figure, make_report, make_tables, rendered, summary
