@@ -5,7 +5,7 @@ function of axes and run, for figures of your own. Nothing here uses matplotlib.
 without global state, and work without a display and in several threads. Show one with IPython's display(run.plot()),
 or write it with run.plot().savefig("run.pdf").
 
-Imports go one way: theme ← arm ← panels ← figures ← animation.
+Imports go one way: theme ← lines ← arm ← panels ← figures ← animation.
 """
 
 try:

@@ -22,8 +22,9 @@ from ..parameter import Parameter
 from ..skeleton import joint_points
 from .arm import LINK, draw_base, draw_target, frame_arm
 from .figures import lay_out
+from .lines import head_legend
 from .panels import Panel, choose
-from .theme import DARK, LIGHT, TEXT, Theme, head_legend
+from .theme import DARK, LIGHT, TEXT, Theme
 
 Frame = NDArray[np.uint8]
 FASTEST_GIF = 50.0  # Frames per second; many programs play faster files slowly.

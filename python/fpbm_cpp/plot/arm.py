@@ -11,7 +11,8 @@ from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
 from ..skeleton import joint_points, tip_axes
-from .theme import LIGHT, TEXT, Theme, head_legend
+from .lines import head_legend
+from .theme import LIGHT, TEXT, Theme
 
 SNAPSHOTS = 11
 ROUND = {"solid_capstyle": "round"}

@@ -11,24 +11,9 @@ from matplotlib.figure import Figure
 
 from .._types import Array
 from ..motion.run import Run
+from .lines import envelope, foot_height, foot_legend, from_zero, in_decades, label_time_below, over_time
 from .panels import Panel, choose, joint_names, unit_of
-from .theme import (
-    COLUMN,
-    DARK,
-    LIGHT,
-    PAGE,
-    TITLE_ROW,
-    Theme,
-    dress,
-    envelope,
-    foot_height,
-    foot_legend,
-    from_zero,
-    in_decades,
-    label_time_below,
-    over_time,
-    sheet,
-)
+from .theme import COLUMN, DARK, LIGHT, PAGE, TITLE_ROW, Theme, dress, sheet
 
 ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
 

@@ -11,19 +11,8 @@ from ..arms import Arm
 from ..motion.run import Run
 from ..skeleton import joint_labels, joint_units
 from .arm import arm_panel
-from .theme import (
-    LIGHT,
-    LINE,
-    Theme,
-    draw_lines,
-    dress,
-    envelope,
-    from_zero,
-    head_legend,
-    in_decades,
-    over_time,
-    side_legend,
-)
+from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
+from .theme import LIGHT, LINE, Theme, dress
 
 __all__ = [
     "OVERVIEW",

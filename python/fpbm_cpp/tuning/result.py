@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,8 +129,7 @@ class Tuning:
     @property
     def scheme(self) -> FPBM:
         """The best of all feasible trials, ready to use."""
-        best: FPBM = self.trials.schemes[self.trials.best()]
-        return best
+        return cast(FPBM, self.trials.schemes[self.trials.best()])
 
     @property
     def value(self) -> float:
@@ -150,8 +149,7 @@ class Tuning:
     @property
     def baseline(self) -> FPBM:
         """The scheme that the best is compared with."""
-        first: FPBM = self.trials.schemes[0]
-        return first
+        return cast(FPBM, self.trials.schemes[0])
 
     @property
     def baseline_value(self) -> float:

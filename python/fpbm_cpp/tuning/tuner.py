@@ -1,14 +1,12 @@
 """The search for the parameters of a scheme."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
 from ..motion.sweeping import Progress, reporting, sweep
@@ -17,7 +15,7 @@ from ..paths import Path
 from ..schemes import FPBM
 from .objectives import Objective, measure
 from .result import Trials, Tuning, joined, sensitivity, trials_of
-from .search import Search, front, least, require_cmaes
+from .search import front, least, require_cmaes
 from .space import Space, numbers
 
 
@@ -104,17 +102,20 @@ def tune(
     def tuning(steps: dict[str, tuple[float, float]]) -> Tuning:
         return Tuning(joined(tried), steps, wanted.name, wanted.unit, arm, path, start, task)
 
-    halves = (
-        _half(least(len(space.names), seed), Trials.scores, count - count // 2, space, run),
-        _half(front(len(space.names), seed), Trials.peaks, count // 2, space, run),
-    )
+    size = len(space.names)
+    halves = ((least(size, seed), Trials.scores, count - count // 2), (front(size, seed), Trials.peaks, count // 2))
     total = 1 + count + 2 * len(numbers(first))
     try:
         with reporting(progress, total) as report:
             tried.append(run([first]))
-            for batch in chain(*halves):
-                tried.append(batch)
-                report(sum(map(len, tried)))
+            for points_of, scores_of, left in halves:
+                points = next(points_of)
+                while left > 0:
+                    tried.append(run([space.scheme(point) for point in points[:left]]))
+                    report(sum(map(len, tried)))
+                    left -= len(tried[-1])
+                    if left > 0:
+                        points = points_of.send(scores_of(tried[-1]))
             if not any(batch.feasible.any() for batch in tried):
                 raise RuntimeError(_why_none(joined(tried), tolerance))
             found = tuning({})
@@ -124,19 +125,6 @@ def tune(
         feasible = any(batch.feasible.any() for batch in tried)
         raise TuneInterrupted(tuning({}) if feasible else None, sum(map(len, tried))) from None
     return tuning(steps)
-
-
-def _half(
-    search: Search, score: Callable[[Trials], Array], count: int, space: Space, run: Callable[[Sequence[FPBM]], Trials]
-) -> Iterator[Trials]:
-    """So many trials of a search, in batches as large as it asks for; the last may be smaller."""
-    points = next(search)
-    while count > 0:
-        batch = run([space.scheme(point) for point in points[:count]])
-        yield batch
-        count -= len(batch)
-        if count > 0:
-            points = search.send(score(batch))
 
 
 def _why_none(tried: Trials, tolerance: float) -> str:
