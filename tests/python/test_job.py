@@ -18,7 +18,7 @@ pytest.importorskip("tomlkit")
 import tomlkit
 
 from fpbm_cpp.job import JobError, prepare, read_job, write_job
-from fpbm_cpp.job.fill import ready
+from fpbm_cpp.job.motion import ready
 from fpbm_cpp.job.sections import known
 from fpbm_cpp.parameter import parameters
 from fpbm_cpp.paths import PATH_OPTIONS, PATHS
