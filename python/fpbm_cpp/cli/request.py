@@ -30,23 +30,20 @@ METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
 TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
 
 
-class Value(click.ParamType):  # type: ignore[type-arg]
+def _value(text: str) -> Any:
     """A number, or several: '1,2; 3,4' has two rows. What is none stays text, which the job refuses."""
-
-    name = "value"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        try:
-            rows = [_row(row) for row in value.split(";")]
-        except ValueError:
-            return value
-        return rows if len(rows) > 1 else rows[0]
+    try:
+        rows = [_row(row) for row in text.split(";")]
+    except ValueError:
+        return text
+    return rows if len(rows) > 1 else rows[0]
 
 
 def _row(text: str) -> Any:
     """Numbers between commas; one number where there is no comma."""
-    numbers = [float(part) for part in text.split(",") if part.strip() or "," not in text]
-    return numbers if "," in text else numbers[0]
+    if "," not in text:
+        return float(text)
+    return [float(part) for part in text.split(",") if part.strip()]
 
 
 class Word(click.Choice):  # type: ignore[type-arg]
@@ -88,7 +85,7 @@ def _job_options(kind: bool) -> Iterator[JobOption]:
 def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
     """The option for a key, of a few kinds only where these are named."""
     several = bool(declared.shape)
-    kind: Any = Value() if several or declared.type in (float, int) else str
+    kind: Any = _value if several or declared.type in (float, int) else str
     kind = Word(declared.choices) if declared.choices and not several else kind
     metavar = None if isinstance(kind, Word) else METAVARS.get(key, "NUMBERS" if several else "NUMBER")
     usual = [] if declared.usual in (REQUIRED, None) else np.ravel(declared.usual).tolist()
