@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class ParameterError(ValueError):
     """An argument is out of range, of the wrong shape or type, or unknown.
 
-    name: the argument, 'radius' say; in a table, with the tables that it is in: 'path.radius'. index: the entry of an
-    array that is wrong, or None. value: what was given, where it is known. problem: the message after the name.
+    name: the argument, 'radius' say, or 'path.radius' in a table. index: the entry of an array that is wrong, or None.
+    value: what was given, where it is known. problem: the message after the name.
     """
 
     def __init__(self, name: str, index: int | None, value: object, message: str) -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ._core import rotation
 from ._types import Array
 from .arms import Arm, PlanarArm, SerialArm
 
@@ -42,10 +43,7 @@ def joint_axes(arm: Arm, q: Array) -> Array:
 
 def tip_axes(arm: Arm, q: Array) -> Array:
     """Axes of the tip in posture q, shape (n,), as columns: shape (2, 2) in the plane, (3, 3) in space."""
-    if isinstance(arm, PlanarArm):
-        sine, cosine = np.sin(q.sum()), np.cos(q.sum())
-        return np.array([[cosine, -sine], [sine, cosine]])
-    return np.asarray(arm.forward(q)[:3, :3])
+    return rotation([0.0, 0.0, q.sum()])[:2, :2] if isinstance(arm, PlanarArm) else arm.forward(q)[:3, :3]
 
 
 def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array]:
@@ -67,10 +65,10 @@ def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array]:
 
 def _positions(arm: SerialArm, q: Array) -> list[Array]:
     """Position of each joint of the chain, mimic joints included."""
-    driven = [i for i, joint in enumerate(arm.joints) if joint.mimic is None]
+    mimics = [joint.mimic for joint in arm.joints]
+    driven = (i for i, mimic in enumerate(mimics) if mimic is None)
     own = {i: q[..., column] for column, i in enumerate(driven)}
-    followed = ((i, joint.mimic) for i, joint in enumerate(arm.joints))
-    return [own[i] if mimic is None else mimic[1] * own[mimic[0]] + mimic[2] for i, mimic in followed]
+    return [own[i] if mimic is None else mimic[1] * own[mimic[0]] + mimic[2] for i, mimic in enumerate(mimics)]
 
 
 def _rotations(axis: Array, angle: Array) -> Array:

@@ -31,8 +31,7 @@ LISTS: dict[Any, Any] = {(SerialArm, "joints"): Joint, (PathSequence, "paths"): 
 def to_table(thing: Any) -> Any:
     """A thing of this package as a table; numbers, text and arrays as they stand in one. TypeError for others.
 
-    Infinity is 'inf' in quotes, which JSON cannot say otherwise. What is None, or a bound that a joint has not, is left
-    out.
+    Infinity is 'inf' in quotes, for JSON. What is None, or a bound that a joint has not, is left out.
     """
     if isinstance(thing, InPlane):
         return {**to_table(thing.path), "in_plane": to_table(thing.plane)}
@@ -70,20 +69,14 @@ def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | 
 
 
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
-    """All that is wrong with the keys of a table and with each of its values, for an arm that is yet to come.
-
-    usual: whether what has a usual value may be missing.
-    """
+    """All that is wrong with a table's keys and values, for an arm yet to come. usual: what has such may be missing."""
     reader = _Reader(None, usual, make=False)
     reader.read(table, kinds, name)
     return reader.problems
 
 
 def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parameter]:
-    """The keys of a maker's table, but for its kind.
-
-    joints: whether second tasks say the first joints of an arm that is known, in place of an arm of their own.
-    """
+    """The keys of a maker's table, but for its kind. joints: as from_table() has it for an arm."""
     known = dict(parameters(maker))
     if maker is SecondTask and joints:
         del known["arm"]
@@ -113,7 +106,7 @@ class _Reader:
             return self._wrong(name, table, f" = {table!r:.60}: must be a table")
         if not isinstance(kinds, Mapping):
             return self._thing(table, kinds, name)
-        key, kind = _join(name, "kind"), table.get("kind")
+        key, kind = f"{name}.kind".lstrip("."), table.get("kind")
         if kind is None:
             return self._wrong(key, None, f": is missing: must be one of {', '.join(kinds)}")
         if kind not in tuple(kinds):
@@ -122,16 +115,16 @@ class _Reader:
 
     def _thing(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
         before, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
-        values = {}
+        values, within = {}, f"{name}." if name else ""
         for key, value in table.items():
             if key in known:
-                values[key] = self._value(value, known[key], maker, _join(name, key))
+                values[key] = self._value(value, known[key], maker, within + key)
             elif key != "kind":
                 what = f": {table.get('kind', name)} has no such key: must be one of {', '.join(known)}"
-                self._wrong(_join(name, key), value, what + suggestion(key, known))
+                self._wrong(within + key, value, what + suggestion(key, known))
         for key, parameter in known.items():
             if parameter.required and key not in table and not (self.usual and parameter.usual is not REQUIRED):
-                self._wrong(_join(name, key), None, ": is missing")
+                self._wrong(within + key, None, ": is missing")
         if self.make and len(self.problems) == before:
             return self._checked(lambda: self._made(maker, values), name)
 
@@ -169,10 +162,6 @@ class _Reader:
 
     def _wrong(self, name: str, value: object, problem: str) -> None:
         self.problems.append(wrong(name, value, problem))
-
-
-def _join(table: str, key: str) -> str:
-    return f"{table}.{key}" if table else key
 
 
 def _with_infinities(value: Any) -> Any:

@@ -98,7 +98,7 @@ def _joint_lines(i: int, joint: Joint) -> list[str]:
         lines.append(f"{member}.bounds = {_braced(bounds)};")
     if joint.mimic is not None:
         leader, ratio, offset = joint.mimic
-        lines.append(f"{member}.mimic = {{{leader}, {_number(ratio)}, {_number(offset)}}};  // joint, ratio, offset")
+        lines.append(f"{member}.mimic = {{{leader}, {ratio!r}, {offset!r}}};  // joint, ratio, offset")
     return lines
 
 
@@ -115,11 +115,7 @@ def _transform_lines(name: str, transform: ArrayLike) -> list[str]:
 
 
 def _braced(numbers: ArrayLike) -> str:
-    return "{" + ", ".join(map(_number, np.asarray(numbers, dtype=float))) + "}"
-
-
-def _number(value: float) -> str:
-    return repr(float(value)).replace("inf", "kNone")
+    return f"{{{', '.join(map(repr, np.asarray(numbers, dtype=float).tolist()))}}}".replace("inf", "kNone")
 
 
 def _literal(text: str) -> str:

@@ -50,16 +50,13 @@ def load(file: str | os.PathLike[str]) -> Run:
     OSError if it cannot be read.
     """
     content = FilePath(file).read_bytes()
-    # Readers of damaged files raise exceptions of every kind.
     try:
         meta, arrays = _members(content)
-    except Exception as error:
+    except Exception as error:  # Readers of damaged files raise exceptions of every kind.
         raise ValueError(f"{file}: must be a whole file that a run was saved to: {error}") from error
     if meta["version"] > VERSION:
-        raise ValueError(
-            f"{file}: its format {meta['version']} is newer than {VERSION}, the newest that fpbm_cpp {__version__} "
-            "reads: upgrade fpbm_cpp"
-        )
+        newest = f"{VERSION}, the newest that fpbm_cpp {__version__} reads: upgrade fpbm_cpp"
+        raise ValueError(f"{file}: its format {meta['version']} is newer than {newest}")
     try:
         return _run(meta, arrays)
     except Exception as error:

@@ -165,10 +165,9 @@ class Run:
         Viewer(self, urdf=urdf, **{"open_browser": True, **how}).wait()
 
     def replay(self) -> Run:
-        """Make the motion again from arm, path, scheme and options, by simulate() or track().
+        """Make the motion again, by simulate() or track(): with the same bits in the same build on such a processor.
 
-        Equal to this run to the last bit in the same build on a processor of the same kind; another compiler, C library
-        or kind of processor may round differently. Raises ValueError where the options do not say how it was made.
+        Raises ValueError where the options do not say how it was made.
         """
         from .simulation import simulate, track
 
@@ -184,19 +183,18 @@ class Run:
     ) -> None:
         """Write the run to an .npz file, for fp.load. An existing file is replaced, whole or not at all.
 
-        numpy.load reads the arrays; arm, path, scheme, options, status and provenance are JSON text, in 'meta'. Nothing
-        is pickled. The provenance keeps the note, any text, and the seed of the random numbers behind the run.
+        numpy.load reads the arrays; all else is JSON text in 'meta', and nothing is pickled. The provenance keeps the
+        note, any text, and the seed of the random numbers behind the run.
         """
         from ..io.run_file import save
 
         save(self, file, note, seed)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Data frame of a row for each sample.
+        """Data frame of a row for each sample, with its units in frame.attrs["units"]. Needs the extra 'data'.
 
-        Columns t, q_<joint>, qd_<joint>, qdd_<joint>, the tip as x, y, z with qx, qy, qz, qw or angle for its
-        orientation, its reference as x_ref and so on, error_x and so on, orientation_error_x and so on; scale and
-        saturated_<joint> where the limits were kept. The units are in frame.attrs["units"]. Needs the extra 'data'.
+        Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
+        and so on, orientation_error_x and so on; scale and saturated_<joint> where the limits were kept.
         """
         from ..io.tables import to_pandas
 
@@ -212,10 +210,10 @@ class Run:
         to_csv(self, file)
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over time, joint and axis, with units as attributes.
+        """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
 
         Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
-        orientation_error; scale and saturated where the limits were kept. Needs the extra 'data'.
+        orientation_error; scale and saturated where the limits were kept.
         """
         from ..io.tables import to_xarray
 
@@ -226,10 +224,9 @@ class Run:
     ) -> None:
         """Write a ROS 2 bag, whole or not at all, stamped with the run's time from 0. Needs the extra 'ros', no ROS.
 
-        Topics /joint_states (sensor_msgs/JointState), /tip and /tip_reference (geometry_msgs/PoseStamped) in the base
-        frame of that name; with trajectory also /joint_trajectory (trajectory_msgs/JointTrajectory), one message. Where
-        the task leaves the orientation free, the tip's is the arm's and the reference's the identity. Raises
-        FileExistsError where there is something of the bag's name.
+        Topics /joint_states, /tip and /tip_reference (JointState, PoseStamped) in the base frame of that name; with
+        trajectory also /joint_trajectory, one message. Where the task leaves the orientation free, the tip's is the
+        arm's and the reference's the identity. Raises FileExistsError where there is something of the bag's name.
         """
         from ..io.rosbag import to_rosbag
 

@@ -76,11 +76,10 @@ def run_chunks(
 def interrupted_at_checks() -> Iterator[Callable[[], None]]:
     """A function to call at safe points: there, and nowhere between, a Ctrl-C raises KeyboardInterrupt.
 
-    Raised while one of Python's own locks is taken, KeyboardInterrupt leaves it locked, and the next thread that wants
-    it waits for ever. Does nothing outside the main thread, or where the program has a handler of its own for Ctrl-C.
+    Raised while one of Python's own locks is taken, it would leave it locked for ever. Does nothing outside the main
+    thread, or where the program has a handler of its own for Ctrl-C.
     """
-    pressed = False
-    process = os.getpid()
+    pressed, process = False, os.getpid()
 
     def handle(number: int, frame: Any) -> None:
         nonlocal pressed
