@@ -154,7 +154,7 @@ parameters: Callable[[Callable[..., Any]], dict[str, Parameter]] = cache(_parame
 
 
 class Data:
-    """A frozen data class: equal where its parameters are, readable, picklable, made again by what repr() says."""
+    """A frozen data class: equal where it reads the same, picklable, made again by what repr() says."""
 
     def __post_init__(self) -> None:
         for name, declared in parameters(type(self)).items():
@@ -171,13 +171,13 @@ class Data:
     def _given(self) -> dict[str, Any]:
         """The same without what is at its default."""
         known, values = parameters(type(self)), self._values().items()
-        return {n: v for n, v in values if known[n].required or _key(v) != _key(known[n].check(known[n].default))}
+        return {n: v for n, v in values if known[n].required or _text(v) != _text(known[n].check(known[n].default))}
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and _key(other) == _key(self)
+        return type(other) is type(self) and repr(other) == repr(self)
 
     def __hash__(self) -> int:
-        return hash(_key(self))
+        return hash(repr(self))
 
     def __repr__(self) -> str:
         given = ", ".join(f"{name}={_text(value)}" for name, value in self._given().items())
@@ -210,19 +210,10 @@ def _entry(known: Parameter) -> str:
     return f"{known.name} : {', '.join(filter(None, words))}{unit}\n{text}"
 
 
-def _key(value: Any) -> Any:
-    """What is equal, and hashes equally, where values are the same."""
-    if isinstance(value, Data):
-        return (type(value), *(_key(getattr(value, name)) for name in parameters(type(value))))
-    if isinstance(value, np.ndarray):
-        return value.shape, (value + 0.0).tobytes()  # Of two zeros, one positive.
-    return tuple(map(_key, value)) if isinstance(value, tuple) else value
-
-
 def _text(value: Any) -> str:
     """A value as Python reads it, numbers without a needless '.0'."""
     if isinstance(value, float):
-        return repr(value).removesuffix(".0") if math.isfinite(value) else f"float('{value}')"
+        return repr(value + 0.0).removesuffix(".0") if math.isfinite(value) else f"float('{value}')"
     if isinstance(value, np.ndarray):
         return _text(value.tolist())
     if isinstance(value, (list, tuple)):
