@@ -66,7 +66,7 @@ def viewer(shared):
 
 
 def say(viewer):
-    return viewer._readout.text
+    return viewer._readout._status.content + viewer._readout._table.content
 
 
 def same(run, expected):

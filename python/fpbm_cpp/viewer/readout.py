@@ -58,10 +58,6 @@ class Readout:
         lines = ("".join(f'<{tag} style="{CELL}">{html.escape(cell)}</{tag}>' for cell in row) for tag, *row in rows)
         self._table.content = f'<table style="{TABLE}">{"".join(f"<tr>{line}</tr>" for line in lines)}</table>'
 
-    @property
-    def text(self) -> str:
-        return f"{self._status.content}{self._table.content}"
-
     def _say(self, text: str, colour: str) -> None:
         style = f"padding:0.4em 0.9em 0;font-size:0.85em;font-weight:600;color:{colour}"
         self._status.content = f'<div style="{style}">{html.escape(text)}</div>'

@@ -10,7 +10,7 @@ import threading
 import time
 import webbrowser
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from types import TracebackType
 
 try:
@@ -30,7 +30,7 @@ from .readout import Chart, Readout
 from .scene import Scene
 
 
-class Viewer:
+class Viewer(AbstractContextManager["Viewer"]):
     """A page in the browser with a run, which is simulated again whenever a parameter is changed on the page.
 
     Serves from another thread until it is closed, or until the end of a with block; url is the page's address. All
@@ -118,9 +118,6 @@ class Viewer:
         self._player.close()
         with _quiet():
             self._server.stop()
-
-    def __enter__(self) -> Viewer:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
