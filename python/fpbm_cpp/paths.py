@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
-from itertools import chain
 from math import pi
 from typing import Any, ClassVar
 
@@ -209,18 +208,17 @@ class Sequence(Path):
     paths: tuple[Path, ...] = parameter("In their order, one at least.")
 
     def _finish(self) -> None:
-        parts = [path.paths if isinstance(path, Sequence) else (path,) for path in self.paths]
-        object.__setattr__(self, "paths", tuple(chain.from_iterable(parts)))
+        parts = (path.paths if isinstance(path, Sequence) else (path,) for path in self.paths)
+        object.__setattr__(self, "paths", sum(parts, ()))
         super()._finish()
 
 
 # The shapes by the kind that a table has, and how any of them is laid and rotated.
 PATHS: dict[str, type[Path]] = {shape.kind: shape for shape in (Circle, Lissajous, Tricuspid, Line, Waypoints)}
 PATH_OPTIONS: dict[str, Parameter] = {
-    name: replace(parameters(maker)[own], name=name, default=None, usual=None)
-    for name, maker, own in (
-        ("in_plane", InPlane, "plane"),
-        ("with_rotation", WithRotation, "rotation"),
-        ("rotation_time_law", WithRotation, "time_law"),
-    )
+    "in_plane": replace(parameters(InPlane)["plane"], name="in_plane", default=None, usual=None),
+    "with_rotation": replace(parameters(WithRotation)["rotation"], name="with_rotation", default=None, usual=None),
+    "rotation_time_law": replace(
+        parameters(WithRotation)["time_law"], name="rotation_time_law", default=None, usual=None
+    ),
 }

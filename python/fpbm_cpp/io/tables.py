@@ -5,7 +5,7 @@ import io
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,45 +21,40 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-class Quantity(NamedTuple):
-    """A quantity over time and, where it has several components, over 'joint', 'axis' or 'quaternion'."""
-
-    name: str
-    column: str  # What its columns are called, with {} for the component.
-    over: str
-    values: NDArray[Any]
-    units: list[str]  # Of its components, each empty where there is none.
+# Its name, what its columns are called, with {} for the component, over what its components are ('joint', 'axis',
+# 'quaternion', or '' of one that has none), values over time, and units of the components, '' where there is none.
+Quantity = tuple[str, str, str, NDArray[Any], list[str]]
 
 
 def _quantities(run: Run) -> Iterator[Quantity]:
     """All quantities of a run but the times, from left to right."""
     joints, none = joint_units(run.arm), [""] * 4
     for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
-        yield Quantity(name, f"{name}_{{}}", "joint", values, [unit + per for unit in joints])
+        yield name, f"{name}_{{}}", "joint", values, [unit + per for unit in joints]
     for end, x, positions in (("", run.x, run.positions), ("_ref", run.x_ref, run.reference_positions)):
-        yield Quantity(f"x{end}", f"{{}}{end}", "axis", positions, ["m"] * 3)
+        yield f"x{end}", f"{{}}{end}", "axis", positions, ["m"] * 3
         if x.ndim == 3:
-            yield Quantity(f"orientation{end}", f"q{{}}{end}", "quaternion", quaternions(x[:, :3, :3]), none)
+            yield f"orientation{end}", f"q{{}}{end}", "quaternion", quaternions(x[:, :3, :3]), none
         elif run.task == "pose":
-            yield Quantity(f"angle{end}", f"angle{end}", "", x[:, 2], ["rad"])
-    yield Quantity("error", "error_{}", "axis", run.position_error, ["m"] * 3)
+            yield f"angle{end}", f"angle{end}", "", x[:, 2], ["rad"]
+    yield "error", "error_{}", "axis", run.position_error, ["m"] * 3
     if run.x.ndim == 3:
-        yield Quantity("orientation_error", "orientation_error_{}", "axis", run.orientation_error, ["rad"] * 3)
+        yield "orientation_error", "orientation_error_{}", "axis", run.orientation_error, ["rad"] * 3
     elif run.task == "pose":
-        yield Quantity("orientation_error", "orientation_error", "", run.orientation_error[:, 0], ["rad"])
+        yield "orientation_error", "orientation_error", "", run.orientation_error[:, 0], ["rad"]
     if run.scale is not None:
-        yield Quantity("scale", "scale", "", run.scale, none)
+        yield "scale", "scale", "", run.scale, none
     if run.saturated is not None:
-        yield Quantity("saturated", "saturated_{}", "joint", run.saturated, [""] * len(joints))
+        yield "saturated", "saturated_{}", "joint", run.saturated, [""] * len(joints)
 
 
 def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
     """Name, unit and values of each column."""
     yield "t", "s", run.t
     labels = {"joint": run.arm.joint_names, "axis": "xyz", "quaternion": "xyzw", "": " "}
-    for quantity in _quantities(run):
-        for label, unit, values in zip(labels[quantity.over], quantity.units, np.atleast_2d(quantity.values.T)):
-            yield quantity.column.format(label), unit, values
+    for _, column, over, values, units in _quantities(run):
+        for label, unit, component in zip(labels[over], units, np.atleast_2d(values.T)):
+            yield column.format(label), unit, component
 
 
 def to_pandas(run: Run) -> "pd.DataFrame":
