@@ -17,13 +17,7 @@ from ..job.sections import FREE, SECTIONS, Table, known
 from ..parameter import REQUIRED, Parameter
 from .plain import PLACE, WIDTH, Plain, file_errors
 
-HEADINGS = {
-    "arm": "Arm and start",
-    "run": "Arm and start",
-    "path": "Path",
-    "scheme": "Scheme",
-    "limits": "Joint limits",
-}
+HEADING = {"arm": "Arm and start", "run": "Arm and start", "path": "Path", "scheme": "Scheme", "limits": "Joint limits"}
 SAVED = "Write the job to a TOML file, with all that was taken by default."
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
 # What jobs take where nothing is given and the arm decides.
@@ -58,7 +52,7 @@ class JobOption(click.Option):
 
     def __init__(self, section: str, key: str, flag: str, **attributes: Any) -> None:
         super().__init__([flag, f"{section}__{key}"], default=None, **attributes)
-        self.section, self.key, self.heading = section, key, HEADINGS[section]
+        self.section, self.key, self.heading = section, key, HEADING[section]
 
 
 def _job_options(kind: bool) -> Iterator[JobOption]:

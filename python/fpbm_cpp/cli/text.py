@@ -35,9 +35,7 @@ def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: 
     """A row for each scheme: cells of these names, what is complete, figures of the worst motion; remarks below."""
     shown = [name for name in FIGURES if task == "pose" or name != "max_orientation_error"]
     header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name] for name in shown))
-    cells = [
-        [*first, complete, *(number(figures[name]) for name in shown if figures)] for first, complete, figures in rows
-    ]
+    cells = [[*first, done, *(number(figures[name]) for name in shown if figures)] for first, done, figures in rows]
     lines = [click.wrap_text(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
     return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])
 

@@ -16,21 +16,9 @@ except ModuleNotFoundError as missing:
 from ..skeleton import joint_points
 from . import panels
 from .animation import animate
-from .arm import arm_panel
 from .figures import compare, plot_run
 from .panels import *
 from .theme import DARK, DASHES, LIGHT, OKABE_ITO, Theme
 
-__all__ = [
-    "DARK",
-    "DASHES",
-    "LIGHT",
-    "OKABE_ITO",
-    "Theme",
-    "animate",
-    "arm_panel",
-    "compare",
-    "joint_points",
-    "plot_run",
-]
+__all__ = ["DARK", "DASHES", "LIGHT", "OKABE_ITO", "Theme", "animate", "compare", "joint_points", "plot_run"]
 __all__ += panels.__all__

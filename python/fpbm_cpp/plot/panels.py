@@ -18,6 +18,7 @@ __all__ = [
     "OVERVIEW",
     "PANELS",
     "acceleration_panel",
+    "arm_panel",
     "error_panel",
     "manipulability_panel",
     "min_singular_values",
@@ -67,17 +68,17 @@ def _components(axes: Any, run: Run, theme: Theme, error: Array, names: Sequence
 
 def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint positions, and the bounds that a joint comes near."""
-    _joint_lines(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
+    _joints(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
 
 
 def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint velocities, and the bounds that a joint comes near."""
-    _joint_lines(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity)
+    _joints(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity)
 
 
 def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Joint accelerations, and the bounds that a joint comes near."""
-    _joint_lines(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
+    _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
 
 
 def joint_names(arm: Arm) -> list[str]:
@@ -92,7 +93,7 @@ def unit_of(runs: Sequence[Run], per: str) -> str:
     return ", ".join(unit + per for unit in units)
 
 
-def _joint_lines(
+def _joints(
     axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array
 ) -> None:
     """A line for each joint, and at each bound that one comes near: in its colour, or in ink where several share it."""
@@ -184,21 +185,19 @@ class Panel(NamedTuple):
     heading: str
     draw: Callable[[Any, Run, Theme], None]
     of_joints: bool = False
-    suits: Callable[[Run], bool] = lambda run: True
+    fits: Callable[[Run], bool] = lambda run: True
 
 
 PANELS = {
     "arm": Panel("Arm", arm_panel),
     "error": Panel("Tip error", tip_error_panel),
     "axis_errors": Panel("Tip error", error_panel),
-    "axis_orientation_errors": Panel(
-        "Orientation error", orientation_error_panel, suits=lambda run: run.task == "pose"
-    ),
+    "axis_orientation_errors": Panel("Orientation error", orientation_error_panel, fits=lambda run: run.task == "pose"),
     "positions": Panel("Joint positions", position_panel, of_joints=True),
     "velocities": Panel("Joint velocities", velocity_panel, of_joints=True),
     "accelerations": Panel("Joint accelerations", acceleration_panel, of_joints=True),
-    "saturation": Panel("Joints on a bound", saturation_panel, suits=lambda run: run.saturated is not None),
-    "scale": Panel("Share of the task kept", scale_panel, suits=lambda run: run.scale is not None),
+    "saturation": Panel("Joints on a bound", saturation_panel, fits=lambda run: run.saturated is not None),
+    "scale": Panel("Share of the task kept", scale_panel, fits=lambda run: run.scale is not None),
     "manipulability": Panel("Manipulability", manipulability_panel),
     "null_space": Panel("Null-space velocity", null_space_panel),
 }
@@ -213,7 +212,7 @@ def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
             raise ValueError(f"panels: {name!r} must be one of {', '.join(PANELS)}")
         if asked.count(name) > 1:
             raise ValueError(f"panels: {name!r} is given twice")
-    chosen = {name: PANELS[name] for name in asked if PANELS[name].suits(run)}
+    chosen = {name: PANELS[name] for name in asked if PANELS[name].fits(run)}
     if not chosen:
         raise ValueError(f"panels: {asked} leave nothing to draw of this run")
     return chosen
