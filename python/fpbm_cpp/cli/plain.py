@@ -29,10 +29,7 @@ dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark grou
 
 
 class Plain(click.Command):
-    """A command that lists its options by what they are about. Warnings and errors are one line each.
-
-    Ctrl-C ends it with exit status 130, a library that is not installed with 1.
-    """
+    """Lists options by what they are about; a warning or an error is a line; Ctrl-C ends it with exit status 130."""
 
     def invoke(self, context: click.Context) -> Any:
         try:
@@ -119,10 +116,7 @@ def progress(label: str) -> Iterator[Callable[[int, int], object]]:
 
 
 def import_undisturbed(*names: str) -> None:
-    """Import the libraries that are installed, and hold Ctrl-C back meanwhile.
-
-    The viewer imports trimesh, which takes an interrupt for an optional part that is missing, and goes on.
-    """
+    """Import libraries with Ctrl-C held back: trimesh takes it for an optional part that is missing, and goes on."""
     held: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
     try:

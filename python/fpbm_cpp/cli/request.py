@@ -91,10 +91,7 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
 
 
 def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Callable[[Callable[..., None]], Plain]:
-    """A command with ARM, --job, --save-job and the options of a job, all or without the kind of scheme.
-
-    The function gets the request in place of these, and its name is the command's.
-    """
+    """A command, named as its function, which gets a Request for ARM, --job, --save-job and the options of a job."""
 
     def make(function: Callable[..., None]) -> Plain:
         ours = list(_job_options(kind))
@@ -145,10 +142,7 @@ class Request:
         return str(given.get("kind")) if isinstance(given, dict) else FREE["scheme"]
 
     def motion(self, kind: str | None = None, *, at_rest: bool = False) -> Motion:
-        """The motion; where a kind of scheme is named, under that one, with what options it has.
-
-        at_rest: whether the command can only begin at rest.
-        """
+        """The motion, under a kind of scheme where one is named; at_rest: whether it has to begin at rest."""
         table = self.table
         if kind is not None:
             given = table.get("scheme", {})

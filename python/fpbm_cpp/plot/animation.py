@@ -105,11 +105,7 @@ def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
 
 
 def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:
-    """Write frames, all of one shape (height, width, 3), to a file: whole, or not at all.
-
-    Raises before it takes a frame: ValueError for another suffix than .mp4 and .gif, OSError if the folder does not
-    exist, ImportError if ffmpeg is missing.
-    """
+    """Write frames, all of one shape (height, width, 3), to a file, whole or not at all; its name is checked first."""
     suffix = file.suffix.lower()
     if suffix not in (".mp4", ".gif"):
         raise ValueError(f"file = {str(file)!r}: must end in .mp4 or .gif")

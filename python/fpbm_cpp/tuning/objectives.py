@@ -19,10 +19,7 @@ def energy(run: Run) -> float:
 
 
 def limit_distance(run: Run) -> float:
-    """Largest share of its range that a joint uses: 0 in the middle, 1 on a bound, more beyond it.
-
-    Joints without two bounds do not count.
-    """
+    """Largest share of its range that a joint with two bounds uses: 0 in the middle, 1 on a bound, more beyond it."""
     bounded = _bounded(run.limits)
     lower, upper = run.limits.lower[bounded], run.limits.upper[bounded]
     return float(np.max(np.abs(2 * run.q[:, bounded] - (lower + upper)) / (upper - lower)))

@@ -163,10 +163,7 @@ class Tuning:
         return (before - self.value) / abs(before) if before else np.nan
 
     def plot(self, *, dark: bool = False) -> Figure:
-        """Figure of the Pareto front with the best and the baseline, the sensitivity, and the convergence.
-
-        Raises ImportError, with what to install, if matplotlib is missing.
-        """
+        """Figure of the Pareto front with best and baseline, the sensitivity, and the convergence. Needs matplotlib."""
         from .figure import plot_tuning
 
         return plot_tuning(self, dark=dark)

@@ -73,14 +73,13 @@ def tune(
 
     Raises
     ------
-    ValueError, TypeError
-        If an argument is out of range, not finite, unknown, or of the wrong shape or type; nothing is run.
+    ValueError, TypeError, ImportError
+        If an argument is out of range, not finite, unknown, or of the wrong shape or type; if the extra 'tune' or, with
+        progress=True, the extra 'progress' is missing: nothing is run.
     RuntimeError
         If no trial is feasible.
     TuneInterrupted
         On Ctrl-C: a KeyboardInterrupt whose tuning holds what was found.
-    ImportError
-        If the extra 'tune' is missing, or with progress=True the extra 'progress'; nothing is run.
     """
     start = Parameter("q0", np.ndarray, shape=f"({arm.dof},)").check(q0)
     count = Parameter("trials", int, low=1, whole=True).check(trials)

@@ -30,19 +30,13 @@ def _own_numbers() -> dict[str, Parameter]:
 
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
-    """A scheme of a kind with these values, as far as it has them; its other parameters are those of the base.
-
-    Raises ValueError if a value is out of range.
-    """
+    """A scheme of a kind with these values, as far as it has them, and otherwise the base's. Raises ValueError."""
     kept = {name: getattr(base, name) for name in parameters(type(base))}
     return kind(**{name: value for name, value in {**kept, **values}.items() if name in parameters(kind)})
 
 
 class Controls:
-    """A choice of schemes, a slider for each parameter of the chosen one, and a checkbox for joint limits.
-
-    Calls `on_change` when somebody on the page changes one.
-    """
+    """Inputs for the scheme, its parameters and joint limits; calls `on_change` when one is changed on the page."""
 
     def __init__(self, gui: GuiApi, run: Run, on_change: Callable[[], None]) -> None:
         self._on_change = on_change

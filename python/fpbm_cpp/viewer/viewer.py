@@ -154,10 +154,7 @@ class Viewer(AbstractContextManager["Viewer"]):
 
 
 def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
-    """The motion of a run under another scheme, as far as it goes; within the run's limits, or the arm's, if limited.
-
-    Raises ValueError if the scheme does not suit the arm, or the limits cannot be kept.
-    """
+    """The motion of a run under another scheme, if limited within the run's limits or the arm's. Raises ValueError."""
     q0 = run.q[0] if len(run.q) else run.status.q
     if limited:
         return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
