@@ -1,7 +1,6 @@
 #pragma once
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -9,11 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "bindings.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/model/chain.hpp"
-
-namespace py = pybind11;
 
 namespace fpbm::bindings {
 

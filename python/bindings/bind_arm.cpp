@@ -7,7 +7,6 @@
 
 #include "arm.hpp"
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "fpbm/model/dh.hpp"
 #include "fpbm/model/presets.hpp"
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "fpbm/any/any_time_law.hpp"
 #include "fpbm/any/convert_path.hpp"
 #include "fpbm/task/in_plane.hpp"

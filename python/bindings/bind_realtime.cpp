@@ -2,7 +2,6 @@
 #include <string>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "path.hpp"
 #include "scheme.hpp"
 #include "tracker.hpp"

@@ -2,10 +2,8 @@
 
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "arrays.hpp"
-#include "bindings.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {
@@ -52,9 +50,9 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
     if (!parameters.contains(key) || py::object(parameters[key]).is_none()) return std::nullopt;
     return py::object(parameters[key]);
   };
-  const auto number = [&](const char* key, double neutral) {
+  const auto number = [&](const char* key) {
     const auto value = given(key);
-    return value ? py::cast<double>(*value) : neutral;
+    return value ? py::cast<double>(*value) : 0.0;
   };
   const auto vector = [&](const char* key) -> std::optional<JointVector> {
     const auto value = given(key);
@@ -75,18 +73,11 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
       scheme.weights = joint_vector(W, "weights");
     }
   }
-  scheme.alpha = number("alpha", 0.0);
-  scheme.k = number("k", 0.0);
-  scheme.k1 = number("k1", 0.0);
-  scheme.k2 = number("k2", 0.0);
-  scheme.null_damping = number("null_damping", 0.0);
-  scheme.null_stiffness = number("null_stiffness", 0.0);
+  for (const auto& [key, member] : kSchemeNumbers) scheme.*member = number(key);
   scheme.rest_posture = vector("rest_posture");
   scheme.c = vector("c");
-  scheme.joint_centring = number("joint_centring", 0.0);
-  scheme.manipulability_gain = number("manipulability_gain", 0.0);
   if (const auto task = given("second_task")) scheme.second_task = second_task_of(py::cast<py::tuple>(*task));
-  const SingularDamping<> singular(number("singular_radius", 0.0), number("singular_brake", 0.0));
+  const SingularDamping<> singular(number("singular_radius"), number("singular_brake"));
   if (singular.radius() != 0.0) scheme.singular = singular;
   check(scheme);
   return scheme;

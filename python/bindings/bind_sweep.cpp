@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "bindings.hpp"
 #include "motion_arrays.hpp"
 #include "path.hpp"
 #include "sweep.hpp"

@@ -2,13 +2,15 @@
 
 #include <pybind11/pybind11.h>
 
+namespace py = pybind11;
+
 namespace fpbm::bindings {
 
-void bind_arm(pybind11::module_& m);
-void bind_path(pybind11::module_& m);
-void bind_scheme(pybind11::module_& m);
-void bind_sim(pybind11::module_& m);
-void bind_sweep(pybind11::module_& m);
-void bind_realtime(pybind11::module_& m);
+void bind_arm(py::module_& m);
+void bind_path(py::module_& m);
+void bind_scheme(py::module_& m);
+void bind_sim(py::module_& m);
+void bind_sweep(py::module_& m);
+void bind_realtime(py::module_& m);
 
 }  // namespace fpbm::bindings

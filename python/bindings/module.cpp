@@ -1,8 +1,6 @@
 #include "bindings.hpp"
 #include "fpbm/core/validation.hpp"
 
-namespace py = pybind11;
-
 namespace {
 
 /// A ParameterError becomes the package's own, a subclass of ValueError.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "arm.hpp"
@@ -114,6 +114,18 @@ struct Scheme {
     if (joint_centring != 0.0) result = result.with_joint_centring(limits, joint_centring);
     return result;
   }
+};
+
+/// The parameters that are numbers, and 0 where they are not given.
+inline constexpr std::pair<const char*, double Scheme::*> kSchemeNumbers[] = {
+    {"alpha", &Scheme::alpha},
+    {"k", &Scheme::k},
+    {"k1", &Scheme::k1},
+    {"k2", &Scheme::k2},
+    {"null_damping", &Scheme::null_damping},
+    {"null_stiffness", &Scheme::null_stiffness},
+    {"joint_centring", &Scheme::joint_centring},
+    {"manipulability_gain", &Scheme::manipulability_gain},
 };
 
 }  // namespace fpbm::bindings
