@@ -165,7 +165,7 @@ class Run:
         Viewer(self, urdf=urdf, **{"open_browser": True, **how}).wait()
 
     def replay(self) -> Run:
-        """Make the motion again, by simulate() or track(): with the same bits in the same build on such a processor.
+        """Make the motion again: the same to the last bit, in the same build on the same kind of processor.
 
         Raises ValueError where the options do not say how it was made.
         """

@@ -99,15 +99,8 @@ def track(
     arm, path, scheme, q0, dt, hold, qd0, task
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
-    limits : JointLimits, optional
-        The arm's own by default. A joint with bounds needs one on its acceleration, except at velocity level.
-    max_error : float
-        Largest error that the feedback sees [m, rad]; a larger one is scaled down to it.
-    integral_gain, integral_bound : float
-        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it
-        adds [m/s^2] or [m/s]. Stable below k1 k2.
-    singular_radius, singular_brake : float
-        Damping near singular postures for a scheme that has none; 0 switches it off.
+    limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake
+        As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)

@@ -142,7 +142,7 @@ def sweep(
     limits : JointLimits, optional
         Limits that every motion keeps: arm.limits are the arm's own. None by default.
     max_error, integral_gain, integral_bound, singular_radius, singular_brake : float
-        As for track(); they need limits.
+        As for Tracker; they need limits.
     executor : concurrent.futures.Executor, optional
         Runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
     workers : int, optional
