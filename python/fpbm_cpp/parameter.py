@@ -128,8 +128,7 @@ ANY = Parameter()
 def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
-    Takes what Parameter has; what is not given is as in `like`. Name and type are the field's; the usual value is the
-    default, unless given.
+    Takes what Parameter has; what is not given is as in `like`, and the usual value is the default.
     """
     usual = default if like.usual is REQUIRED else like.usual
     declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})

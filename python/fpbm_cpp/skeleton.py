@@ -22,8 +22,7 @@ def joint_units(arm: Arm) -> list[str]:
 def joint_points(arm: Arm, q: Array) -> Array:
     """Positions of base, joints and tip [m] in postures q, shape (..., n).
 
-    Shape (..., n + 1, 2) for a planar arm, whose first joint is its base, and (..., k + 2, 3) for a serial arm of k
-    joints, mimic joints included.
+    Shape (..., n + 1, 2) of planar arms, whose base is a joint, (..., k + 2, 3) of k joints, mimic joints included.
     """
     if isinstance(arm, PlanarArm):
         heading = np.cumsum(q, axis=-1)

@@ -22,11 +22,9 @@ typedef typeid typename union unsigned using virtual void volatile wchar_t while
 def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source: str = "") -> str:
     """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
 
-    The joints go from base to tip, whose frame, shape (4, 4) [m], is seen from the last of them. The header includes
-    this library's headers alone, and has kDof, kJointNames, chain() and arm() in the namespace of that name, as in
-    'my::arm'. The arm is an fpbm::CoupledArm where one joint mimics another, else an fpbm::SerialArm. Numbers keep all
-    their digits. source: where the arm comes from, for a comment. Raises ParameterError where a namespace cannot have
-    that name.
+    It has kDof, kJointNames, chain() and arm(), an fpbm::CoupledArm where one joint mimics another, else an
+    fpbm::SerialArm, in the namespace of that name, 'my::arm' say. tip: its frame, shape (4, 4) [m], seen from the last
+    joint. source: where the arm comes from, for a comment. Raises ParameterError where no namespace can have the name.
     """
     if not all(_is_identifier(part) for part in name.split("::")):
         raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")

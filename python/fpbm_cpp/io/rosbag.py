@@ -71,13 +71,10 @@ def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tu
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions: for a task of position, the arm's, and of the reference the identity.
-
-    A planar arm lies in the xy plane and rotates about z.
-    """
+    """Positions in space, and quaternions: for a task of position, the arm's, and of the reference the identity."""
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
-    if isinstance(run.arm, PlanarArm):
+    if isinstance(run.arm, PlanarArm):  # In the xy plane.
         angles = x[:, 2] if run.task == "pose" else np.zeros(len(x)) if reference else run.q.sum(axis=1)
         half, none = angles / 2, np.zeros(len(x))
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])

@@ -1,7 +1,4 @@
-"""Chains of joints from URDF files.
-
-Names, numbers and the tree must be sound in the whole file; anything else matters only between base and tip.
-"""
+"""Chains of joints from URDF files: names, numbers and the tree must be sound in all of it, the rest on the way."""
 
 import difflib
 import os
@@ -29,11 +26,7 @@ Follow = tuple[str, float, float]  # Leader, ratio, offset: a position is ratio 
 def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array]:
     """Read the joints that move from link base (the root unless given) to link tip, and the tip's frame.
 
-    As SerialArm.from_urdf() says. A joint that mimics another keeps that one's index, ratio and offset, and the other's
-    bounds are narrowed so that both stay within theirs.
-
-    Raises an OSError where the file cannot be read, a ParameterError where tip or base is none of its links, and a
-    ValueError that begins with the path where it is no sound URDF or has no such chain.
+    As SerialArm.from_urdf() says. The bounds of a joint that another mimics are narrowed so that both keep theirs.
     """
     name = os.fsdecode(path)
     try:

@@ -90,10 +90,7 @@ class Motion:
 
 
 def prepare(job: Table) -> Motion:
-    """Build what a job asks for.
-
-    Raises JobError with everything that is wrong with it, OSError where a file that it names cannot be read.
-    """
+    """Build what a job asks for. Raises JobError, or OSError where a file that it names cannot be read."""
     require_sound(job)
     arm = make("arm", job["arm"])
     full = filled(job, arm)
@@ -164,17 +161,13 @@ def _text(value: Any) -> str:
 
 
 def ready(arm: Arm, task: str) -> list[float]:
-    """Joint positions that are not singular [rad].
-
-    In the plane, a quarter of a turn from the first link to the last, in even bends; else the middle of the limits, or
-    zero where there are none, with as few joints bent as keep it far from singular postures.
-    """
+    """Joint positions that are not singular [rad]; in the plane, even bends that add up to a quarter of a turn."""
     posture = np.full(arm.dof, np.pi / 2 / (arm.dof - 1)) if isinstance(arm, PlanarArm) else _bent(arm, task)
     return [round(float(position), 4) for position in posture]
 
 
 def _bent(arm: Arm, task: str) -> Array:
-    """The posture of fewest bent joints that is about as far from singular ones as any."""
+    """The middle of the limits with the fewest joints bent that make it about as far from singular as any are."""
     lower, upper = arm.limits.lower, arm.limits.upper
     bounded = np.isfinite(lower) & np.isfinite(upper)
     middle = np.clip(0.0, lower, upper)
@@ -191,10 +184,7 @@ def _bent(arm: Arm, task: str) -> Array:
 
 
 def read_job(file: str | os.PathLike[str]) -> Table:
-    """What a TOML file says, as yet unchecked. Raises JobError where it is no TOML, or OSError.
-
-    Files that it names are seen from its folder.
-    """
+    """What a TOML file says, as yet unchecked. Files that it names are seen from there. Raises JobError or OSError."""
     try:
         table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
     except (TOMLKitError, UnicodeDecodeError) as error:

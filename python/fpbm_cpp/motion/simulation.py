@@ -117,10 +117,7 @@ def motion_options(arm: Arm, dt: float, hold: float, qd0: ArrayLike | None = Non
 def make_run(
     outcome: Any, q0: ArrayLike, arm: Arm, path: Path, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
-    """A run of what the compiled part gives: status, time, number of samples, and arrays that many rows are filled of.
-
-    Where the motion kept its joints' limits, the last two arrays are scale and saturated.
-    """
+    """A run of what the compiled part gives: status, time, number of samples, and arrays filled as far as these."""
     code, time, samples, arrays = outcome
     arrays = [array if samples == len(array) else array[:samples].copy() for array in arrays]
     t, q, qd, qdd, x, x_ref, error, *limited = arrays

@@ -28,9 +28,7 @@ def run_chunks(
     take: Callable[[slice, Any, list[Any]], object],
     report: Callable[[int], object],
 ) -> None:
-    """Run chunks: which motions these are, and what sweep_chunk() takes.
-
-    In this thread, take(which, *result) receives each as it arrives, report(n) the number of motions done so far.
+    """Run chunks, given as their motions and what sweep_chunk() takes, and call take() and report() in this thread.
 
     On an exception, chunks that have not begun are cancelled, those in this process stop within a sample, and those in
     other processes are left to them. On KeyboardInterrupt, all that is finished is still taken.
