@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from ._core import Status, advice, message
 
@@ -50,6 +51,14 @@ def suggestion(word: object, words: Iterable[str]) -> str:
     """A question after the word that this one is close to; empty where it is close to none."""
     close = difflib.get_close_matches(str(word).lower().replace("-", "_"), list(words), 1)
     return f"; did you mean {close[0]!r}?" if close else ""
+
+
+def extra(library: str, user: str, name: str) -> Any:
+    """The library of an extra. Raises ImportError, with what to install for its user, where it is missing."""
+    try:
+        return import_module(library)
+    except ImportError:
+        raise ImportError(f'{user} needs {library.partition(".")[0]}: pip install "fpbm_cpp[{name}]"') from None
 
 
 class ResolutionError(RuntimeError):

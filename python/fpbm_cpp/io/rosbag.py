@@ -11,27 +11,24 @@ import numpy as np
 
 from .._types import Array
 from ..arms import PlanarArm
+from ..errors import extra
 from ..motion.run import Run
 from .tables import quaternions
 
 
 def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
-    try:
-        from rosbags.rosbag2 import Writer
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise ImportError('to_rosbag needs rosbags: pip install "fpbm_cpp[ros]"') from None
+    rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
         raise ValueError("the run has no samples: must have one at least to be a bag")
     target = Path(directory)
     if target.exists() or target.is_symlink():
         raise FileExistsError(f"{target}: exists already, and a bag is not written over anything")
-    store = get_typestore(Stores.ROS2_HUMBLE)
+    store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
     # A bag's files have its name, so an unfinished bag is marked by the name of its parent.
     part = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".part", dir=target.absolute().parent))
     try:
         # ROS 2 Humble cannot parse the qualities of service of version 9; later releases read both.
-        with Writer(part / target.name, version=8) as writer:
+        with rosbag2.Writer(part / target.name, version=8) as writer:
             topics: dict[str, Any] = {}
             for topic, time, message in _messages(run, store.types, frame, trajectory):
                 kind = message.__msgtype__

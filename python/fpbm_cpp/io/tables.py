@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .._core import rotation_vector
 from .._types import Array
+from ..errors import extra
 from ..motion.run import Run
 from ..skeleton import joint_units
 from . import write_whole
@@ -58,13 +59,10 @@ def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
 
 
 def to_pandas(run: Run) -> "pd.DataFrame":
-    try:
-        import pandas as pd
-    except ImportError:
-        raise ImportError('to_pandas needs pandas: pip install "fpbm_cpp[data]"') from None
+    pandas = extra("pandas", "to_pandas", "data")
     names, units, columns = zip(*_columns(run))
-    frame = pd.DataFrame(dict(enumerate(columns)))  # Names may be there twice.
-    frame.columns = pd.Index(names)
+    frame: pd.DataFrame = pandas.DataFrame(dict(enumerate(columns)))  # Names may be there twice.
+    frame.columns = pandas.Index(names)
     frame.attrs["units"] = {name: unit for name, unit in zip(names, units) if unit}
     return frame
 
@@ -80,10 +78,7 @@ def to_csv(run: Run, file: str | os.PathLike[str]) -> None:
 
 
 def to_xarray(run: Run) -> "xr.Dataset":
-    try:
-        import xarray as xr
-    except ImportError:
-        raise ImportError('to_xarray needs xarray: pip install "fpbm_cpp[data]"') from None
+    xarray = extra("xarray", "to_xarray", "data")
     coordinates = {
         "time": ("time", run.t, {"units": "s"}),
         "joint": ("joint", run.arm.joint_names),
@@ -98,7 +93,8 @@ def to_xarray(run: Run) -> "xr.Dataset":
         unit = ", ".join(sorted(set(units), reverse=True)) or "1"
         data[name] = (("time", over)[: values.ndim], values, {"units": unit})
     things = {"arm": repr(run.arm), "path": repr(run.path), "scheme": repr(run.scheme)}
-    return xr.Dataset(data, coordinates, {**things, "task": run.task, "status": str(run.status)})
+    dataset: xr.Dataset = xarray.Dataset(data, coordinates, {**things, "task": run.task, "status": str(run.status)})
+    return dataset
 
 
 def quaternions(rotations: Array) -> Array:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Status, check_sweep, failed, not_run
 from .._types import Array
 from ..arms import Arm, JointLimits
-from ..errors import SweepInterrupted, wrong
+from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..schemes import Scheme
 from .simulation import LimitOptions, make_run, motion_options
@@ -215,11 +215,7 @@ def reporting(progress: Progress, total: int) -> Iterator[Callable[[int], object
     if callable(progress):
         yield lambda done: progress(done, total)
     elif progress:
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            raise ImportError('progress=True needs tqdm: pip install "fpbm_cpp[progress]"') from None
-        with tqdm(total=total, unit="motion") as bar:
+        with extra("tqdm.auto", "progress=True", "progress").tqdm(total=total, unit="motion") as bar:
             yield lambda done: bar.update(done - bar.n)
     else:
         yield lambda done: None
