@@ -79,9 +79,9 @@ def make_folder(out: Path) -> None:
 
 def write_files(out: Path, files: dict[str, Writer]) -> None:
     """Write to a folder what each name's function writes to the file that it is given, and say so."""
+    make_folder(out)
     for name, write in files.items():
         with file_errors("write to", out / name):
-            out.mkdir(parents=True, exist_ok=True)
             try:
                 write(out / name)
             except ValueError as error:  # A motion without a sample has no animation.

@@ -52,7 +52,7 @@ def _sensitivity(axes: Any, tuning: Tuning, theme: Theme) -> None:
         where = np.arange(len(names)) + (side - 0.5) * 0.36
         axes.barh(where, np.where(np.isfinite(steps), steps, 0.0), 0.34, color=theme.lines[side], label=label)
         for y in where[np.isinf(steps)]:
-            axes.text(0.0, y, " infeasible", va="center", fontsize=8, color=theme.ink)
+            axes.text(0.0, y, " infeasible", va="center", fontsize=9, color=theme.ink)
     axes.axvline(0.0, color=theme.ink, lw=0.8)
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()

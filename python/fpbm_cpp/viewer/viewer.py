@@ -56,7 +56,8 @@ class Viewer(AbstractContextManager["Viewer"]):
         with _quiet():
             self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
         atexit.register(self.close)  # Before viser's own exit, which prints.
-        self.url = f"http://{'localhost' if host == '0.0.0.0' else host}:{self._server.get_port()}"
+        shown = {"0.0.0.0": "localhost", "::": "localhost"}.get(host, f"[{host}]" if ":" in host else host)
+        self.url = f"http://{shown}:{self._server.get_port()}"
         gui, duration = self._server.gui, run.path.duration + run.options.get("hold", 0.0)
         with self._lock:  # The page's first events wait until all parts are there.
             # The share button would show the page to others, through somebody's server.
@@ -166,7 +167,7 @@ def _require_free(host: str, port: int) -> None:
     """Raise OSError if the port cannot be served at; viser would silently take another one."""
     if not 0 <= port <= 65535:
         raise ValueError(f"port = {port}: must be 0 to 65535")
-    with socket.socket() as probe:
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind((host, port))
