@@ -67,10 +67,7 @@ class Path(Data, CorePath):
 
 @data
 class Circle(Path):
-    """Circle, counter-clockwise from its rightmost point.
-
-    r (cos phi - 1, sin phi), phi = 2 pi s.
-    """
+    """Circle, counter-clockwise from its rightmost point: r (cos phi - 1, sin phi), phi = 2 pi s."""
 
     kind = "circle"
     radius: float = parameter("Radius r.", POSITIVE, unit="m", usual=0.1)
@@ -101,10 +98,7 @@ class Lissajous(Path):
 
 @data
 class Tricuspid(Path):
-    """Tricuspid (deltoid), from its rightmost cusp.
-
-    a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s.
-    """
+    """Tricuspid (deltoid) from its rightmost cusp: a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s."""
 
     kind = "tricuspid"
     size: float = parameter("Size a.", POSITIVE, unit="m", usual=0.05)

@@ -81,10 +81,8 @@ def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
     others = {base, *(joint.parent for joint in _to_root(above, "base", base))}
     if base not in links:
         fork = next(link for link in links if link in others)
-        raise ValueError(
-            f"tip {tip!r} is not below base {base!r}, they have {fork!r} in common: "
-            f"base must lie between the root {links[-1]!r} and the tip"
-        )
+        where = f"base must lie between the root {links[-1]!r} and the tip"
+        raise ValueError(f"tip {tip!r} is not below base {base!r}, they have {fork!r} in common: {where}")
     way = up[: links.index(base)][::-1]
     count = _moving(way)
     if not 1 <= count <= MAX_DOF:
