@@ -98,7 +98,7 @@ class Lissajous(Path):
 
 @data
 class Tricuspid(Path):
-    """Tricuspid (deltoid) from its rightmost cusp: a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s."""
+    """Deltoid, from its rightmost cusp: a (2 cos phi + cos 2 phi - 3, 2 sin phi - sin 2 phi), phi = 2 pi s."""
 
     kind = "tricuspid"
     size: float = parameter("Size a.", POSITIVE, unit="m", usual=0.05)
