@@ -46,10 +46,7 @@ EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
 
 template <typename Space>
 EitherScheme<Space> Scheme::make_without_arm(Eigen::Index dof) const {
-  if (!is_plain() || joint_centring != 0.0) {
-    validation::reject("scheme",
-                       ": joint_centring, manipulability_gain and second_task need an arm, and there is none here");
-  }
+  if (needs_arm()) validation::reject("scheme", ": it has objectives that need an arm, and there is none here");
   return plain<Space>(JointLimits<kDynamic>::none(dof));
 }
 

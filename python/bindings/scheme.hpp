@@ -71,6 +71,9 @@ struct Scheme {
   /// Whether all of it is in law(): no objective wraps it.
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
 
+  /// Whether an objective reads the arm or its limits.
+  [[nodiscard]] bool needs_arm() const noexcept { return !is_plain() || joint_centring != 0.0; }
+
   /// The scheme without the objectives that wrap it, for joints of these limits. Compiled once, in scheme.cpp.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> plain(const JointLimits<kDynamic>& limits) const;
