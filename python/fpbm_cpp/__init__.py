@@ -30,31 +30,7 @@ from .schemes import *
 from .tuning import Tuning, tune
 from .viewer import view
 
-__all__ = [
-    "LANES",
-    "MAX_DOF",
-    "Kinematics",
-    "ParameterError",
-    "PathFollower",
-    "ResolutionError",
-    "Run",
-    "RunStatus",
-    "Status",
-    "Sweep",
-    "SweepInterrupted",
-    "Tick",
-    "Tracker",
-    "TuneInterrupted",
-    "Tuning",
-    "__version__",
-    "failed",
-    "load",
-    "rotation",
-    "rotation_vector",
-    "simulate",
-    "sweep",
-    "track",
-    "tune",
-    "view",
-]
+__all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune", "view"]
+__all__ += ["Kinematics", "PathFollower", "Status", "Tick", "Tracker", "failed", "rotation", "rotation_vector"]
+__all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "__version__"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__
