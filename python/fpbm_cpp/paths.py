@@ -112,9 +112,7 @@ class Line(Path):
     """Straight line."""
 
     kind = "line"
-    displacement: ArrayField = parameter(
-        "From the start of the line to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0)
-    )
+    displacement: ArrayField = parameter("From its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0))
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")

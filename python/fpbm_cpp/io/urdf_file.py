@@ -130,18 +130,12 @@ def _joint(name: str, parts: Parts) -> UrdfJoint:
             raise ValueError(f"joint {name!r}: {tag} {key} = {text!r}: must be {wanted}")
         return found
 
+    kind, parent, child = parts["joint"].get("type"), required("parent", "link"), required("child", "link")
+    xyz, rpy = (numbers("origin", key, [0.0, 0.0, 0.0]) for key in ("xyz", "rpy"))
+    axis = numbers("axis", "xyz", [1.0, 0.0, 0.0])
+    limit = {key: numbers("limit", key, [0.0])[0] for key in LIMITS if key in parts.get("limit", {})}
     mimic = None
     if "mimic" in parts:
         (multiplier,), (offset,) = numbers("mimic", "multiplier", [1.0]), numbers("mimic", "offset", [0.0])
         mimic = (required("mimic", "joint"), multiplier, offset)
-    return UrdfJoint(
-        name,
-        parts["joint"].get("type"),
-        required("parent", "link"),
-        required("child", "link"),
-        numbers("origin", "xyz", [0.0, 0.0, 0.0]),
-        numbers("origin", "rpy", [0.0, 0.0, 0.0]),
-        numbers("axis", "xyz", [1.0, 0.0, 0.0]),
-        {key: numbers("limit", key, [0.0])[0] for key in LIMITS if key in parts.get("limit", {})},
-        mimic,
-    )
+    return UrdfJoint(name, kind, parent, child, xyz, rpy, axis, limit, mimic)
