@@ -17,11 +17,7 @@ __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTa
 
 # What more than one class declares.
 ALPHA = Parameter(help="Share of WMVN; MAN has the rest.", usual=0.6, low=0.0, high=1.0)
-WEIGHTS = replace(
-    POSITIVE,
-    help="Diagonal of W, or W itself, symmetric positive definite. Only ratios matter.",
-    shape="(n,) or (n, n)",
-)
+WEIGHTS = replace(POSITIVE, help="W, or its diagonal: positive definite. Only ratios matter.", shape="(n,) or (n, n)")
 K = replace(NOT_NEGATIVE, help="Position feedback: xd + k (x - f(q)) in place of xd.", unit="1/s")
 K1 = replace(NOT_NEGATIVE, help="Feedback gain on velocity, which velocity-level schemes do without.", unit="1/s")
 K2 = replace(NOT_NEGATIVE, help="Feedback gain on position or direction.", unit="1/s^2, 1/s at velocity level")

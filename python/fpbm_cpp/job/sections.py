@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import inf
-from typing import Any, ClassVar
+from typing import Any
 
 from .._types import OptionalArrayField
 from ..arms import ARMS, Arm, JointLimits
@@ -22,7 +22,6 @@ Table = dict[str, Any]
 class RunOptions(Data):
     """How a motion is run."""
 
-    kind: ClassVar[str] = "run"
     task: str = parameter("What the tip keeps to.", default="position", choices=("position", "pose"))
     q0: OptionalArrayField = parameter("Joint positions at the start.", default=None, shape="(n,)", unit="rad")
     qd0: OptionalArrayField = parameter("Joint velocities at the start.", default=None, shape="(n,)", unit="rad/s")
@@ -35,7 +34,7 @@ SECTIONS: dict[str, Makers] = {
     "arm": ARMS,
     "path": PATHS,  # Or a list of tables, of paths one after another.
     "scheme": SCHEMES,
-    "run": {RunOptions.kind: RunOptions},
+    "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
 }
 FREE = {"path": "circle", "scheme": "fpbm"}  # The kind that is taken where the section is missing.
