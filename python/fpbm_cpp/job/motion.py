@@ -122,7 +122,7 @@ def filled(job: Table, arm: Arm) -> Table:
     run = _filled("run", job.get("run", {}))
     if "q0" not in run:
         preset = job["arm"].get("name")
-        run["q0"] = READY.get(preset) or ready(arm, run["task"])
+        run["q0"] = list(READY.get(preset) or ready(arm, run["task"]))
     return {**job, "path": pieces, "scheme": scheme, "run": run}
 
 
