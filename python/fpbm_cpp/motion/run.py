@@ -103,11 +103,15 @@ class Run:
 
     def max_error(self) -> float:
         """Largest distance of the tip from its reference [m]."""
-        return float(np.linalg.norm(self.position_error, axis=1).max(initial=0.0))
+        return float(self.error_norms()[0].max(initial=0.0))
 
     def max_orientation_error(self) -> float:
         """Largest angle between the tip's orientation and its reference [rad]; 0 where the task leaves it free."""
-        return float(np.linalg.norm(self.orientation_error, axis=1).max(initial=0.0))
+        return float(self.error_norms()[1].max(initial=0.0))
+
+    def error_norms(self) -> tuple[Array, Array]:
+        """Distance of the tip from its reference [m] and angle between their orientations [rad], shape (N,) each."""
+        return np.linalg.norm(self.position_error, axis=1), np.linalg.norm(self.orientation_error, axis=1)
 
     @property
     def position_error(self) -> Array:
