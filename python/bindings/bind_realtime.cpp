@@ -175,7 +175,7 @@ dt : float
     Length of a tick [s].
 limits : JointLimits, optional
     The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
-max_error : float
+error_bound : float
     Largest tip error that the feedback acts on [m, rad]: a larger one counts as this.
 integral_gain, integral_bound : float
     Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
@@ -188,13 +188,13 @@ Raises
 ParameterError
     Where an argument is out of range, a limit is missing, or the start breaks one.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-                       const std::string& task, double dt, const py::object& limits, double max_error, double gain,
+                       const std::string& task, double dt, const py::object& limits, double error_bound, double gain,
                        double bound, double radius, double brake) {
-             const TrackerOptions<> options{dt, max_error, gain, bound, SingularDamping<>(radius, brake)};
+             const TrackerOptions<> options{dt, error_bound, gain, bound, SingularDamping<>(radius, brake)};
              return PyTracker(arm, scheme, q0, qd0, task, limits, options);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
-           py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none, py::arg("max_error") = 0.1,
+           py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none, py::arg("error_bound") = 0.1,
            py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake())

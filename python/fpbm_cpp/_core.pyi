@@ -331,7 +331,7 @@ class Tracker:
         Length of a tick [s].
     limits : JointLimits, optional
         The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
-    max_error : float
+    error_bound : float
         Largest tip error that the feedback acts on [m, rad]: a larger one counts as this.
     integral_gain, integral_bound : float
         Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
@@ -354,7 +354,7 @@ class Tracker:
         task: str = "position",
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
         limits: typing.Any = None,
-        max_error: typing.SupportsFloat | typing.SupportsIndex = 0.1,
+        error_bound: typing.SupportsFloat | typing.SupportsIndex = 0.1,
         integral_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         integral_bound: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,

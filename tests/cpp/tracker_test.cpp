@@ -423,7 +423,7 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   };
   EXPECT_EQ(make({}), "");
   EXPECT_EQ(make({0.0}), "dt = 0: must be positive and finite");
-  EXPECT_EQ(make({kTick, -1.0}), "max_error = -1: must be positive and finite");
+  EXPECT_EQ(make({kTick, -1.0}), "error_bound = -1: must be positive and finite");
   EXPECT_EQ(make({kTick, 0.1, -1.0}), "integral_gain = -1: must be finite and not negative");
   EXPECT_EQ(make({kTick, 0.1, 1.0, 0.0}), "integral_bound = 0: must be positive and finite");
   Vector<7> q0 = bent();

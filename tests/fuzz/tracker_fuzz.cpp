@@ -149,7 +149,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     options.dt = bytes.any();
     wild = true;
   }
-  options.max_error = bytes.mostly(bytes.spread(1e-3, 1.0));
+  options.error_bound = bytes.mostly(bytes.spread(1e-3, 1.0));
   if (bytes.chance(64)) options.integral_gain = any_gain(bytes, 100.0, wild);
   options.integral_bound = bytes.mostly(bytes.spread(1e-3, 10.0));
   options.singular = any_damping(bytes, wild);

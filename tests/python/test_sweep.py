@@ -229,7 +229,7 @@ def test_within_limits_a_sweep_is_many_tracks(case):
     arm, path, task, q0 = CASES[case]
     schemes = every_scheme(arm.dof)
     q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (2, arm.dof))
-    how = {"limits": LIMITED[case], "max_error": 0.05, "integral_gain": 0.1, "singular_radius": 0.03}
+    how = {"limits": LIMITED[case], "error_bound": 0.05, "integral_gain": 0.1, "singular_radius": 0.03}
     sweep = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True, **how)
     figures = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, **how)
     same(figures, sweep)
@@ -258,9 +258,9 @@ def test_workers_change_nothing_within_limits(arm, reference):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"max_error": 0.05}, "limits: must be given"),
+        ({"error_bound": 0.05}, "limits: must be given"),
         ({"singular_radius": 0.0}, "limits: must be given"),
-        ({"limits": TIGHT, "max_error": -1}, "max_error = -1: must be positive"),
+        ({"limits": TIGHT, "error_bound": -1}, "error_bound = -1: must be positive"),
         ({"limits": TIGHT, "integral_gain": -1}, "integral_gain = -1"),
         ({"limits": PANDA.limits}, "limits has 7 entries"),
         ({"limits": TIGHT, "q0s": [[0.3] * 4, [0.3, 4, 0, 0]]}, r"q0s\[1\]: q0\[1\] = 4: must be within"),

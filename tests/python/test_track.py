@@ -63,8 +63,8 @@ def test_free_of_limits_it_is_simulate(case):
 def test_what_a_sample_is(q0):
     """Sample k is the tracker's state before tick k, and what tick k says."""
     arm, scheme = fp.PlanarArm([1, 1, 1, 1]), fp.FPBM(0.6, W, 10, 25, null_damping=2)
-    run = fp.track(arm, fp.Circle(0.45, 2.0), scheme, q0, dt=0.01, hold=0.1, limits=TIGHT, max_error=0.05)
-    tracker = fp.Tracker(arm, scheme, q0, dt=0.01, limits=TIGHT, max_error=0.05)
+    run = fp.track(arm, fp.Circle(0.45, 2.0), scheme, q0, dt=0.01, hold=0.1, limits=TIGHT, error_bound=0.05)
+    tracker = fp.Tracker(arm, scheme, q0, dt=0.01, limits=TIGHT, error_bound=0.05)
     follower = tracker.follow(fp.Circle(0.45, 2.0))
     assert len(run.t) == 211
     for k in range(len(run.t)):
@@ -113,7 +113,7 @@ def test_options_make_it_again(q0):
         "hold": 0.5,
         "qd0": [0.01, 0.0, 0.0, 0.0],
         "limits": TIGHT,
-        "max_error": 0.05,
+        "error_bound": 0.05,
         "integral_gain": 1.0,
         "integral_bound": 0.5,
         "singular_radius": 0.03,
@@ -128,7 +128,7 @@ def test_options_make_it_again(q0):
         "q0",
     }
     assert fp.track(arm, SMOOTH, scheme, q0, **run.options) == run
-    for name, other in (("max_error", 0.01), ("integral_gain", 2.0), ("singular_radius", 0.5), ("qd0", np.zeros(4))):
+    for name, other in (("error_bound", 0.01), ("integral_gain", 2.0), ("singular_radius", 0.5), ("qd0", np.zeros(4))):
         assert fp.track(arm, SMOOTH, scheme, q0, **{**given, name: other}) != run, name
 
 
@@ -138,7 +138,7 @@ def test_defaults_are_the_trackers(function):
     own = {name: parameter.default for name, parameter in signature(function).parameters.items()}
     assert {
         "dt",
-        "max_error",
+        "error_bound",
         "integral_gain",
         "integral_bound",
         "singular_radius",
@@ -168,7 +168,7 @@ def test_it_goes_through_pickle_with_its_limits(q0):
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
         ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
         ({"scheme": fp.WMVN([1, 2, 3])}, "weights has 3 entries: must have 4"),
-        ({"max_error": -1}, "max_error = -1: must be positive"),
+        ({"error_bound": -1}, "error_bound = -1: must be positive"),
         ({"integral_gain": -1}, "integral_gain = -1"),
         ({"singular_radius": 2}, "singular_radius = 2"),
         ({"limits": fp.SerialArm.preset("panda").limits}, "limits has 7 entries"),

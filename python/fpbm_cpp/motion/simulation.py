@@ -17,7 +17,7 @@ class LimitOptions(NamedTuple):
     """How a motion keeps its joints' limits; the fields are arguments of track(), in the compiled part's order."""
 
     limits: JointLimits | None = None
-    max_error: float = 0.1
+    error_bound: float = 0.1
     integral_gain: float = 0.0
     integral_bound: float = 1.0
     singular_radius: float = 0.02
@@ -80,7 +80,7 @@ def track(
     qd0: ArrayLike | None = None,
     task: str = "position",
     limits: JointLimits | None = None,
-    max_error: float = 0.1,
+    error_bound: float = 0.1,
     integral_gain: float = 0.0,
     integral_bound: float = 1.0,
     singular_radius: float = 0.02,
@@ -99,11 +99,11 @@ def track(
     arm, path, scheme, q0, dt, hold, qd0, task
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
-    limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake
+    limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
-    limited = LimitOptions(limits, max_error, integral_gain, integral_bound, singular_radius, singular_brake)
+    limited = LimitOptions(limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake)
     outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
     return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})
 

@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// Corrects a loop's reference before the scheme sees it: a target beyond options.max_error is brought to that distance
-/// (Buss 2004), and the integral of the error is added.
+/// Corrects a loop's reference before the scheme sees it: a target beyond options.error_bound is brought to that
+/// distance (Buss 2004), and the integral of the error is added.
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
@@ -16,8 +16,11 @@ class Correction {
 
   /// Throws std::invalid_argument where an option is out of range.
   explicit Correction(const TrackerOptions<Scalar>& options)
-      : dt_(options.dt), max_error_(options.max_error), gain_(options.integral_gain), bound_(options.integral_bound) {
-    validation::require_positive("max_error", static_cast<double>(max_error_));
+      : dt_(options.dt),
+        error_bound_(options.error_bound),
+        gain_(options.integral_gain),
+        bound_(options.integral_bound) {
+    validation::require_positive("error_bound", static_cast<double>(error_bound_));
     validation::require_non_negative("integral_gain", static_cast<double>(gain_));
     validation::require_positive("integral_bound", static_cast<double>(bound_));
   }
@@ -26,8 +29,8 @@ class Correction {
   void begin(const Twist& error) noexcept {
     error_ = error;
     const Scalar length = error.norm();
-    far_ = !(length <= max_error_);  // NaN is not integrated either.
-    if (far_) excess_ = (Scalar(1) - max_error_ / length) * error;
+    far_ = !(length <= error_bound_);  // NaN is not integrated either.
+    if (far_) excess_ = (Scalar(1) - error_bound_ / length) * error;
   }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
@@ -46,7 +49,7 @@ class Correction {
 
  private:
   Scalar dt_;
-  Scalar max_error_;
+  Scalar error_bound_;
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;
