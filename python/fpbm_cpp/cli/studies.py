@@ -132,7 +132,7 @@ def _csv(done: Sweep, keys: list[str], cases: Cases) -> str:
     fpbm-cpp track --job tuned/job.toml""",
     kind=False,
 )
-@click.option("--objective", type=Word(OBJECTIVES), default="peak_velocity", help="What is to be small.")
+@click.option("--objective", type=Word(list(OBJECTIVES)), default="peak_velocity", help="What is to be small.")
 @click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
 @workers_option

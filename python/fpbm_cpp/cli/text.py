@@ -61,7 +61,7 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     def at(k: np.intp, name: str, values: Array, unit: str = "") -> tuple[str, str, str, str]:
         return name, number(values[k]), unit, f"at {run.t[k]:.3g} s"
 
-    position, orientation = (np.linalg.norm(error, axis=1) for error in (run.position_error, run.orientation_error))
+    position, orientation = run.error_norms()
     yield at(position.argmax(), "largest tip error", position, "m")
     if run.task == "pose":
         yield at(orientation.argmax(), "largest orientation error", orientation, "rad")

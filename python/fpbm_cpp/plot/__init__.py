@@ -4,8 +4,6 @@ plot_run() and Run.plot() draw one motion, compare() draws several, animate() wr
 function of axes and run, for figures of your own. Nothing here uses matplotlib.pyplot: figures are plain objects
 without global state, and work without a display and in several threads. Show one with IPython's display(run.plot()),
 or write it with run.plot().savefig("run.pdf").
-
-Imports go one way: theme ← lines ← arm ← panels ← figures ← animation.
 """
 
 try:

@@ -4,7 +4,7 @@ import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -87,29 +87,21 @@ def _columns(panels: Mapping[str, Panel]) -> tuple[list[list[str]], int]:
     return [column for column in columns if column], rows
 
 
-class Quantity(NamedTuple):
-    """What a panel of a comparison shows: the norm of each row of an array of the run."""
-
-    heading: str
-    rows: Callable[[Run], Array]
-    symbol: str
-    per: str | None = None  # A quantity of the joints, whose unit is the joints' and this.
-    log: bool = False
+def _norms(rows: Array) -> Array:
+    return np.asarray(np.linalg.norm(rows, axis=1))
 
 
-VELOCITIES = Quantity("Joint velocities", lambda run: run.qd, r"$\|\dot q\|$", "/s")
-ACCELERATIONS = Quantity("Joint accelerations", lambda run: run.qdd, r"$\|\ddot q\|$", "/s²")
-MANIPULABILITY = Quantity("Manipulability", lambda run: run.manipulability()[:, None], "√det(JJᵀ)")
-TIP_ERROR = Quantity("Tip error", lambda run: run.position_error, r"$\|e\|$ [m]", log=True)
+# What the panels of a comparison show: heading, values of a run, symbol, and what follows the joints' unit, if any.
+Quantity = tuple[str, Callable[[Run], Array], str, str | None]
+VELOCITIES: Quantity = "Joint velocities", lambda run: _norms(run.qd), r"$\|\dot q\|$", "/s"
+ACCELERATIONS: Quantity = "Joint accelerations", lambda run: _norms(run.qdd), r"$\|\ddot q\|$", "/s²"
+DISTANCES: Quantity = "Distance from the first posture", lambda run: _norms(run.q - run.q[:1]), r"$\|q - q(0)\|$", ""
+TIP_ERROR: Quantity = "Tip error", lambda run: run.error_norms()[0], r"$\|e\|$ [m]", None
+POSITION_ERROR: Quantity = "Position error", *TIP_ERROR[1:]
+ORIENTATION_ERROR: Quantity = "Orientation error", lambda run: run.error_norms()[1], r"$\|e\|$ [rad]", None
+MANIPULABILITY: Quantity = "Manipulability", lambda run: run.manipulability(), "√det(JJᵀ)", None
 POSITION_TASK = (VELOCITIES, ACCELERATIONS, TIP_ERROR, MANIPULABILITY)
-POSE_TASK = (
-    VELOCITIES,
-    ACCELERATIONS,
-    Quantity("Distance from the first posture", lambda run: run.q - run.q[:1], r"$\|q - q(0)\|$", ""),
-    TIP_ERROR._replace(heading="Position error"),
-    Quantity("Orientation error", lambda run: run.orientation_error, r"$\|e\|$ [rad]", log=True),
-    MANIPULABILITY,
-)
+POSE_TASK = (VELOCITIES, ACCELERATIONS, DISTANCES, POSITION_ERROR, ORIENTATION_ERROR, MANIPULABILITY)
 
 
 def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: bool = False) -> Figure:
@@ -127,12 +119,13 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     rows = len(quantities) // 2
     figure, (upper, lower) = sheet(PAGE, [COMPARED_ROW * rows, foot_height(list(named), PAGE)], title, theme)
     grid = upper.subplots(rows, 2)
-    for letter, axes, (heading, rows_of, symbol, per, log) in zip("abcdef", grid.T.flat, quantities):
+    for letter, axes, (heading, values_of, symbol, per) in zip("abcdef", grid.T.flat, quantities):
         dress(axes, theme, f"({letter}) {heading}")
+        log = "error" in heading
         # The first line is widest, so that lines which coincide are all seen.
         for run, (colour, dash), width in zip(shown, theme.styles(), np.linspace(3.0, 1.4, len(shown))):
-            t, norms = run.t, np.linalg.norm(rows_of(run), axis=1)
-            axes.plot(*(envelope(t, norms) if log else (t, norms)), color=colour, ls=dash, lw=width)
+            t, values = run.t, values_of(run)
+            axes.plot(*(envelope(t, values) if log else (t, values)), color=colour, ls=dash, lw=width)
         over_time(axes, symbol if per is None else f"{symbol} [{unit_of(shown, per)}]")
         in_decades(axes) if log else from_zero(axes)
     for column in grid.T:

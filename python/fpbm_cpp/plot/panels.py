@@ -37,13 +37,13 @@ NEAR = 0.1  # Of the distance between a joint's bounds.
 
 def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Norm of the position error and, where the task is a pose, of the orientation error, on a logarithmic axis."""
-    parts = {"[m]": run.position_error, "[rad]": run.orientation_error}
-    for (name, rows), (colour, dash) in zip(parts.items(), theme.styles()):
-        if rows.shape[1]:
-            axes.plot(*envelope(run.t, np.linalg.norm(rows, axis=1)), color=colour, ls=dash, lw=LINE, label=name)
-    over_time(axes, r"$\|e\|$" if run.task == "pose" else r"$\|e\|$ [m]")
+    pose = run.task == "pose"
+    names = ("[m]", "[rad]") if pose else ("[m]",)
+    for name, norms, (colour, dash) in zip(names, run.error_norms(), theme.styles()):
+        axes.plot(*envelope(run.t, norms), color=colour, ls=dash, lw=LINE, label=name)
+    over_time(axes, r"$\|e\|$" if pose else r"$\|e\|$ [m]")
     in_decades(axes)
-    if run.task == "pose":
+    if pose:
         head_legend(axes, theme)
 
 

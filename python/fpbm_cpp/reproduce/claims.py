@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Array
 from ..motion.run import Run
 from ..schemes import FPBM, MAN, Balanced, Scheme
 from .cases import DT, NAMES, Paper, Result, of_figures
@@ -34,8 +33,8 @@ def check_claims(paper: Paper, results: Sequence[Result]) -> list[Claim]:
 def _of_figures(paper: Paper, results: Sequence[Result]) -> Iterator[Claim]:
     """What the paper says of MAN and FPBM where it shows both."""
     schemes = (MAN(), _fpbm(paper))
-    man, fpbm = (_errors(paper.simulate("circle", s, dt=COARSE)) for s in schemes)
-    man_held, fpbm_held = (_errors(paper.simulate("circle", s, dt=COARSE, hold=HOLD))[-1] for s in schemes)
+    man, fpbm = (paper.simulate("circle", s, dt=COARSE).error_norms()[0] for s in schemes)
+    man_held, fpbm_held = (paper.simulate("circle", s, dt=COARSE, hold=HOLD).error_norms()[0][-1] for s in schemes)
     man_fine, fpbm_fine = (paper.simulate("circle", s).max_error() for s in schemes)
     yield Claim(
         "MAN's tip error diverges, FPBM's does not",
@@ -175,11 +174,6 @@ def _moved_on_hold(paper: Paper, scheme: Scheme) -> float:
     run = paper.simulate("circle", scheme, hold=HOLD)
     start = round(run.path.duration / DT)
     return float(np.abs(run.q[start:] - run.q[start]).max())
-
-
-def _errors(run: Run) -> Array:
-    """Distance of the tip from its reference at each sample [m]."""
-    return np.asarray(np.linalg.norm(run.error, axis=1))
 
 
 def _peak(run: Run) -> float:

@@ -1,7 +1,6 @@
 """What a scheme can be tuned for: a number of its motion, to be made small."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 from ..arms import JointLimits
 from ..motion.run import Run
 
-Objective = str | Callable[[Run], float]
+OfRun = Callable[[Run], float]
 
 
 def energy(run: Run) -> float:
@@ -30,31 +29,23 @@ def _bounded(limits: JointLimits) -> NDArray[np.bool_]:
     return np.isfinite(limits.lower) & np.isfinite(limits.upper) & (limits.lower < limits.upper)
 
 
-class Measure(NamedTuple):
-    """An objective: name, unit, and its function of a Run; None for a key figure of a sweep, which is faster."""
-
-    name: str
-    unit: str
-    of_run: Callable[[Run], float] | None = None
-
-
-MEASURES = (
-    Measure("peak_velocity", "rad/s"),
-    Measure("peak_acceleration", "rad/s²"),
-    Measure("final_velocity", "rad/s"),
-    Measure("energy", "rad²/s", energy),
-    Measure("limit_distance", "of the range", limit_distance),
-)
-OBJECTIVES = [measure.name for measure in MEASURES]
+# Unit, and function of a Run; None for a key figure of a sweep, which is faster.
+OBJECTIVES: dict[str, tuple[str, OfRun | None]] = {
+    "peak_velocity": ("rad/s", None),
+    "peak_acceleration": ("rad/s²", None),
+    "final_velocity": ("rad/s", None),
+    "energy": ("rad²/s", energy),
+    "limit_distance": ("of the range", limit_distance),
+}
 
 
-def measure(objective: Objective, limits: JointLimits) -> Measure:
-    """The measure of an objective. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
+def measure(objective: str | OfRun, limits: JointLimits) -> tuple[str, str, OfRun | None]:
+    """Name, unit and function. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
     if callable(objective):
-        return Measure(getattr(objective, "__name__", type(objective).__name__), "", objective)
+        return getattr(objective, "__name__", type(objective).__name__), "", objective
     if objective not in OBJECTIVES:
         names = ", ".join(map(repr, OBJECTIVES))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
     if objective == "limit_distance" and not np.any(_bounded(limits)):
         raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
-    return MEASURES[OBJECTIVES.index(objective)]
+    return objective, *OBJECTIVES[objective]

@@ -14,7 +14,7 @@ from ..arms import Arm
 from ..motion.sweeping import Sweep
 from ..paths import Path
 from ..schemes import FPBM
-from .objectives import Measure
+from .objectives import OfRun
 from .search import pareto_front
 from .space import TUNABLE, numbers, tunable, with_numbers
 
@@ -60,10 +60,6 @@ class Trials:
         """Index of the first feasible trial of the least value; there must be a feasible one."""
         return int(np.nanargmin(self.scores()))
 
-    def front(self) -> Trials:
-        """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
-        return self[pareto_front(*self.peaks().T)]
-
     def __getitem__(self, which: Any) -> Trials:
         """Some of the trials: a slice, a mask, or an array of indices."""
         return Trials(*(getattr(self, field.name)[which] for field in fields(self)))
@@ -75,15 +71,15 @@ class Trials:
         return f"<{len(self)} trials, {int(self.feasible.sum())} feasible>"
 
 
-def trials_of(sweep: Sweep, measure: Measure, tolerance: float) -> Trials:
+def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:
     """The trials of a sweep's schemes from one start."""
     ok, schemes = sweep.ok[:, 0], np.empty(len(sweep.schemes), dtype=object)
     schemes[:] = sweep.schemes
-    if measure.of_run is None:
-        value = np.where(ok, getattr(sweep, measure.name)[:, 0], np.nan)
+    if of_run is None:
+        value = np.where(ok, getattr(sweep, objective)[:, 0], np.nan)
     else:
         runs = sweep.motions[:, 0] if sweep.motions is not None else ()
-        value = np.array([float(measure.of_run(run)) if done else np.nan for done, run in zip(ok, runs)])
+        value = np.array([float(of_run(run)) if done else np.nan for done, run in zip(ok, runs)])
     error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
     feasible = ok & np.isfinite(value) & (error <= tolerance)
     return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)
@@ -143,8 +139,8 @@ class Tuning:
 
     @property
     def front(self) -> Trials:
-        """The Pareto front: the feasible trials that no other beats in both peak velocity and peak acceleration."""
-        return self.trials.front()
+        """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
+        return self.trials[pareto_front(*self.trials.peaks().T)]
 
     @property
     def baseline(self) -> FPBM:

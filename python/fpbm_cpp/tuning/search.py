@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Array
+from ..errors import extra
 
 Search = Generator[Array, Array, None]
 
@@ -21,11 +22,7 @@ WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Of two scores: how many, the le
 
 def require_cmaes() -> Any:
     """The searches' library. Raises ImportError, with what to install, if it is missing."""
-    try:
-        import cmaes
-    except ImportError:
-        raise ImportError('tuning needs cmaes: pip install "fpbm_cpp[tune]"') from None
-    return cmaes
+    return extra("cmaes", "tuning", "tune")
 
 
 def least(size: int, seed: int) -> Search:

@@ -13,7 +13,7 @@ from ..motion.sweeping import Progress, reporting, sweep
 from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
-from .objectives import Objective, measure
+from .objectives import OfRun, measure
 from .result import Trials, Tuning, joined, sensitivity, trials_of
 from .search import front, least, require_cmaes
 from .space import Space, numbers
@@ -23,7 +23,7 @@ def tune(
     arm: Arm,
     path: Path,
     q0: ArrayLike,
-    objective: Objective = "peak_velocity",
+    objective: str | OfRun = "peak_velocity",
     *,
     dt: float = 1e-3,
     hold: float = 0.0,
@@ -88,18 +88,19 @@ def tune(
     first = FPBM(0.6, np.arange(1.0, arm.dof + 1), k1=1.0, k2=1.0) if baseline is None else baseline
     if not isinstance(first, FPBM):
         raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
-    space, wanted = Space(search, first, arm.dof), measure(objective, limits or arm.limits)
+    space = Space(search, first, arm.dof)
+    name, unit, of_run = measure(objective, limits or arm.limits)
     require_cmaes()
     tried: list[Trials] = []
 
     def run(schemes: Sequence[FPBM]) -> Trials:
         how: dict[str, Any] = {"hold": hold, "task": task, "limits": limits, **tracking}
-        whole = wanted.of_run is not None
+        whole = of_run is not None
         done = sweep(arm, path, schemes, start, dt, executor=executor, workers=workers, motions=whole, **how)
-        return trials_of(done, wanted, tolerance)
+        return trials_of(done, name, of_run, tolerance)
 
     def tuning(steps: dict[str, tuple[float, float]]) -> Tuning:
-        return Tuning(joined(tried), steps, wanted.name, wanted.unit, arm, path, start, task)
+        return Tuning(joined(tried), steps, name, unit, arm, path, start, task)
 
     size = len(space.names)
     halves = ((least(size, seed), Trials.scores, count - count // 2), (front(size, seed), Trials.peaks, count // 2))

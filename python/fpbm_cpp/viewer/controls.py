@@ -17,16 +17,13 @@ from ..skeleton import joint_labels
 RATE = 30.0  # Pictures per second.
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
-
-
-def _own_numbers() -> dict[str, Parameter]:
-    """The numbers that some schemes have and others have not; a slider is made for each."""
-    return {
-        name: known
-        for kind in reversed(KINDS.values())  # FPBM, which has most, says in which order.
-        for name, known in parameters(kind).items()
-        if known.type is float and name not in parameters(Scheme)
-    }
+# The numbers that only some schemes have; a slider is made for each.
+NUMBERS = {
+    name: known
+    for kind in reversed(KINDS.values())  # FPBM, which has most, says in which order.
+    for name, known in parameters(kind).items()
+    if known.type is float and name not in parameters(Scheme)
+}
 
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
@@ -44,9 +41,8 @@ class Controls:
         bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
-            own = _own_numbers()
-            self._initial = {name: known.usual if known.required else known.default for name, known in own.items()}
-            self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in own.items()}
+            self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}
+            self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
                 self._weights = [
@@ -134,8 +130,8 @@ class Player:
         self._slider.on_update(self._on_slider)
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
         self._lock = threading.RLock()  # Taken before any lock that `moved` takes.
-        self._running = threading.Event()
-        self._closed = False
+        self.playing: bool = False
+        self._closed = threading.Event()
         self._clock = threading.Thread(target=self._tick, name="fpbm_cpp viewer", daemon=True)
         self._clock.start()
 
@@ -150,26 +146,21 @@ class Player:
         self._slider.value = self._time
         self._moved(self._time)
 
-    @property
-    def playing(self) -> bool:
-        return self._running.is_set()
-
     def play(self) -> None:
         """Start the clock; at the end of the motion it starts from 0."""
         if self._time >= self.end:
             self.time = 0.0
-        self._running.set()
+        self.playing = True
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
         """Stop the clock; it does not move time after this returns."""
         with self._lock:
-            self._running.clear()
+            self.playing = False
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 
     def close(self) -> None:
-        self._closed = True
-        self._running.set()
+        self._closed.set()
         self._clock.join()
 
     def _on_slider(self, event: GuiEvent[Any]) -> None:
@@ -178,14 +169,11 @@ class Player:
             self._moved(self._time)
 
     def _tick(self) -> None:
-        while not self._closed:
-            self._running.wait()
-            last = time.perf_counter()
-            while self._running.is_set() and not self._closed:
-                time.sleep(1.0 / RATE)
-                now = time.perf_counter()
-                self._advance(SPEEDS[self._speed.value] * (now - last))
-                last = now
+        last = time.perf_counter()
+        while not self._closed.wait(1.0 / RATE):
+            now = time.perf_counter()
+            self._advance(SPEEDS[self._speed.value] * (now - last))
+            last = now
 
     def _advance(self, seconds: float) -> None:
         with self._lock:

@@ -24,8 +24,7 @@ class Playback:
         self.tip = in_space(run.positions[self.frames])
         self.target = in_space(run.reference_positions[self.frames])
         self.manipulability = replace(run, q=run.q[self.frames]).manipulability()
-        self.tip_error: Array = np.linalg.norm(run.position_error, axis=1)
-        self.orientation_error: Array = np.linalg.norm(run.orientation_error, axis=1)
+        self.tip_error, self.orientation_error = run.error_norms()
 
     def sample(self, time: float) -> int:
         """The sample nearest to a time."""

@@ -116,8 +116,7 @@ class Chart:
             units = sorted({own + unit for own in joint_units(arm)}, reverse=True)
             return joint_labels(arm), values, f"{name} [{', '.join(units)}]"
         largest = float(values.max())
-        exponent = int(np.floor(np.log10(largest))) if largest > 0.0 else 0
-        exponent = exponent if exponent < -2 else 0
+        exponent = int(np.floor(np.log10(largest))) if 0.0 < largest < 0.01 else 0
         power = f"10{str(exponent).translate(SUPERSCRIPTS)} " if exponent else ""
         unit = f"{power}{unit}".strip()
         return [name], values[:, None] / 10.0**exponent, f"{name} [{unit}]" if unit else name

@@ -11,7 +11,6 @@ import time
 import webbrowser
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
-from types import TracebackType
 
 try:
     import rich
@@ -120,7 +119,7 @@ class Viewer(AbstractContextManager["Viewer"]):
         with _quiet():
             self._server.stop()
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def _repr_html_(self) -> str:
