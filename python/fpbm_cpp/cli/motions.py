@@ -9,7 +9,7 @@ from .._core import Status
 from ..errors import not_one_of
 from ..motion.run import Run
 from ..schemes import SCHEMES
-from .plain import Writer, dark_option, import_undisturbed, out_option, picture, write_files
+from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
 from .text import Row, figure_table, summary
 
@@ -139,7 +139,7 @@ def view(request: Request, port: int, browser: bool) -> None:
         run = motion.run()
     try:
         request.say(motion)
-        import_undisturbed("viser", "viser.extras")
+        import_viser()
         from ..viewer import Viewer
 
         Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser).wait()

@@ -1,12 +1,12 @@
 """Commands that say in one plain line what went wrong, and write each file whole or not at all."""
 
-import importlib
 import io
 import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,14 +115,13 @@ def progress(label: str) -> Iterator[Callable[[int, int], object]]:
             click.echo("\r\033[K", nl=False, err=True)
 
 
-def import_undisturbed(*names: str) -> None:
-    """Import libraries with Ctrl-C held back: trimesh takes it for an optional part that is missing, and goes on."""
+def import_viser() -> None:
+    """Import viser with Ctrl-C held back: trimesh takes it for an optional part that is missing, and goes on."""
     held: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
     try:
-        for name in names:
-            with suppress(ImportError):
-                importlib.import_module(name)
+        with suppress(ImportError):
+            import_module("viser.extras")
     finally:
         signal.signal(signal.SIGINT, before)
     if held:

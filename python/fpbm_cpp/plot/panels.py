@@ -14,23 +14,9 @@ from .arm import arm_panel
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
 from .theme import LIGHT, LINE, Theme, dress
 
-__all__ = [
-    "OVERVIEW",
-    "PANELS",
-    "acceleration_panel",
-    "arm_panel",
-    "error_panel",
-    "manipulability_panel",
-    "min_singular_values",
-    "null_space_panel",
-    "null_space_velocities",
-    "orientation_error_panel",
-    "position_panel",
-    "saturation_panel",
-    "scale_panel",
-    "tip_error_panel",
-    "velocity_panel",
-]
+__all__ = ["OVERVIEW", "PANELS", "arm_panel", "min_singular_values", "null_space_velocities"]
+__all__ += ["acceleration_panel", "position_panel", "saturation_panel", "scale_panel", "velocity_panel"]
+__all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
 
 NEAR = 0.1  # Of the distance between a joint's bounds.
 

@@ -1,9 +1,8 @@
 """The style of all figures: colours, dashes, and sizes that suit a paper's column."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import cycle
-from typing import Any
+from typing import Any, NamedTuple
 
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
@@ -19,36 +18,25 @@ DPI = 270  # A page is 1920 pixels wide.
 LINE = 1.4  # [pt]
 
 
-@dataclass(frozen=True)
-class Theme:
+class Theme(NamedTuple):
     """Colours of a figure: background, text, the parts of the arm, lines, and postures from the first to the last."""
 
-    paper: str
-    ink: str
-    soft: str
-    grid: str
-    pane: str
-    tip: str
-    axes: tuple[str, str, str]
-    lines: tuple[str, ...]
-    fade: Colormap
+    paper: str = "#FFFFFF"
+    ink: str = "#000000"
+    soft: str = "#555555"
+    grid: str = "#E3E3E3"
+    pane: str = "#F7F7F7"
+    tip: str = "#D55E00"
+    axes: tuple[str, str, str] = ("#D55E00", "#009E73", "#0072B2")
+    lines: tuple[str, ...] = OKABE_ITO[:7]
+    fade: Colormap = LinearSegmentedColormap.from_list("fade", ["#C9DDF0", "#5BA3D0", "#08306B"])
 
     def styles(self) -> Iterator[tuple[str, str]]:
         """Colour and dash of each line: 28 different pairs; neighbours differ in both, also when printed in grey."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 
-LIGHT = Theme(
-    paper="#FFFFFF",
-    ink="#000000",
-    soft="#555555",
-    grid="#E3E3E3",
-    pane="#F7F7F7",
-    tip="#D55E00",
-    axes=("#D55E00", "#009E73", "#0072B2"),
-    lines=OKABE_ITO[:7],
-    fade=LinearSegmentedColormap.from_list("fade", ["#C9DDF0", "#5BA3D0", "#08306B"]),
-)
+LIGHT = Theme()
 DARK = Theme(
     paper="#14171A",
     ink="#ECECEC",
