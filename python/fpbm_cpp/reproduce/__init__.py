@@ -1,14 +1,11 @@
-"""The paper's results from beginning to end: 18 motions, figures, tables, errata and claims.
-
-Imports go one way: paper.json → cases (runs) → claims → report (figures and tables).
-"""
+"""The paper's results from beginning to end: 18 motions, figures, tables, errata and claims."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..io import write_whole
-from .cases import Result, load, of_figures, run_all
+from .cases import Result, load, of_figures
 from .claims import Claim, check_claims
 from .report import TOLERANCE, Table, make_figure, make_report, make_tables, rendered, summary
 
@@ -40,7 +37,7 @@ def reproduce(out: Path, say: Callable[[str], None] = lambda step: None) -> Repr
     out.mkdir(parents=True, exist_ok=True)
     paper = load()
     say(f"running {len(paper.cases)} cases")
-    results = run_all(paper)
+    results = [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
     files = []
     for result in of_figures(results):
         say(f"drawing Fig. {result.case.figure}")

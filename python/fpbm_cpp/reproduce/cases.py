@@ -99,10 +99,6 @@ def load() -> Paper:
     )
 
 
-def run_all(paper: Paper) -> list[Result]:
-    return [Result(case, paper.simulate(case.path, case.scheme)) for case in paper.cases]
-
-
 def of_figures(results: Sequence[Result]) -> list[Result]:
     """The results that have a figure, in the figures' order."""
     return sorted((result for result in results if result.case.figure), key=lambda result: result.case.figure)

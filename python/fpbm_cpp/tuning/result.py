@@ -15,8 +15,7 @@ from ..motion.sweeping import Sweep
 from ..paths import Path
 from ..schemes import FPBM
 from .objectives import OfRun
-from .search import pareto_front
-from .space import TUNABLE, numbers, tunable, with_numbers
+from .search import TUNABLE, numbers, pareto_front, tunable, with_numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

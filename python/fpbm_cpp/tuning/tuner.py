@@ -15,8 +15,7 @@ from ..paths import Path
 from ..schemes import FPBM
 from .objectives import OfRun, measure
 from .result import Trials, Tuning, joined, sensitivity, trials_of
-from .search import front, least, require_cmaes
-from .space import Space, numbers
+from .search import Space, front, least, numbers, require_cmaes
 
 
 def tune(

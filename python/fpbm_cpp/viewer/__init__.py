@@ -1,7 +1,6 @@
 """The viewer: a page in the browser with the arm, the time and the scheme's parameters. Needs the extra 'view'.
 
-Data flows one way. The page asks for a scheme and a time (controls); the viewer makes the motion again under the scheme
-and prepares it for drawing (playback); scene and readout draw it.
+The page asks for a scheme and a time (controls); the viewer makes the motion again; scene and readout draw it.
 """
 
 import os

@@ -9,7 +9,7 @@ from viser import GuiApi
 from .._core import message
 from .._types import Array
 from ..skeleton import joint_labels, joint_units
-from .playback import Playback
+from .scene import Playback
 
 GOOD, BAD = "#009E73", "#D55E00"
 CELL = "padding:0.15em 0.6em 0.15em 0"

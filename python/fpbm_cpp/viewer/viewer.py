@@ -24,9 +24,8 @@ from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 from .controls import Controls, Player
 from .meshes import Meshes
-from .playback import Playback
 from .readout import Chart, Readout
-from .scene import Scene
+from .scene import Playback, Scene
 
 
 class Viewer(AbstractContextManager["Viewer"]):
