@@ -72,7 +72,7 @@ fuzz:
 	  -verbosity=0 -print_funcs=0 -print_final_stats=1 -artifact_prefix=build/fuzz/ build/fuzz/corpus
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses $(JOBS)
 
 test-view: $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium

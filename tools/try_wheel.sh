@@ -19,4 +19,4 @@ alone "$python" -m pip list
 alone "$python" -I tests/package/installed.py
 alone "$python" -m pip install --quiet --upgrade pip --no-index --find-links "$house"
 alone "$python" -m pip install --quiet --no-index --only-binary :all: --find-links "$house" --group test
-alone "$python" -m pytest -q -p no:cacheprovider
+alone "$python" -m pytest -q -p no:cacheprovider --numprocesses auto

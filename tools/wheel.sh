@@ -15,7 +15,7 @@ mkdir -p "$house"
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: -r build/requires.txt cmake ninja numpy pip
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test
 
-"$python" tools/cost.py 150 3000 \
+"$python" tools/cost.py 90 1200 \
     tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel dist/*.tar.gz
 
 "$python" -m auditwheel show build/wheel/*.whl

@@ -2,8 +2,13 @@ import signal
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 import fpbm_cpp as fp
+
+# A busy machine is no fault of an example's.
+settings.register_profile("patient", deadline=None)
+settings.load_profile("patient")
 
 Q0 = np.pi / np.array([12, 12, 15, 15])
 

@@ -14,7 +14,7 @@ PLANAR = fp.PlanarArm([1.0, 0.8, 0.6, 0.4])
 PLANAR_ELBOW = fp.PlanarArm([1.0, 0.8])
 
 GAINS = st.floats(0.0, 5.0)
-FEW = settings(max_examples=60, deadline=None)
+FEW = settings(max_examples=60)
 SCHEMES = {
     "MVN": lambda n, **options: fp.MVN(**options),
     "WMVN": lambda n, **options: fp.WMVN(np.arange(1.0, n + 1), **options),

@@ -97,7 +97,7 @@ def close(actual, expected):
     np.testing.assert_allclose(actual, expected, atol=1e-9 * (1 + np.abs(expected).max()))
 
 
-MANY = settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+MANY = settings(max_examples=300, suppress_health_check=[HealthCheck.filter_too_much])
 
 
 @MANY

@@ -280,7 +280,7 @@ PIECES = st.lists(
 ).filter(lambda pieces: any(piece.type != "fixed" for piece in pieces))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(pieces=PIECES)
 def test_forward_kinematics_of_random_chains(pieces: list[Piece], write) -> None:
     text = robot(*(link(f"l{i}") for i in range(len(pieces) + 1)), *(p.xml(i) for i, p in enumerate(pieces)))
@@ -701,7 +701,7 @@ def test_long_chain(length: int, write) -> None:
     assert refusal(file, links[-1]).startswith("no joints move between base ")
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(at=st.floats(0, 1), length=st.integers(0, 60), instead=st.text(max_size=20) | st.sampled_from(["nan", "<", "0"]))
 def test_damaged_file_is_read_or_refused(at: float, length: int, instead: str, write) -> None:
     text = three_links('<origin xyz="0 0 1" rpy="0 0 0"/>' + Z + LIMIT, mimic("a", 'multiplier="0.5"'))

@@ -439,7 +439,7 @@ def test_a_model_moves_as_the_arm_does(file, base):
     model = Meshes(file, arm, np.zeros(arm.dof))
     assert model.found
 
-    @settings(max_examples=20, deadline=None)
+    @settings(max_examples=20)
     @given(st.lists(st.floats(-2, 2), min_size=arm.dof, max_size=arm.dof))
     def check(q):
         model.robot.update_cfg(model.configuration(np.array(q)))
