@@ -135,7 +135,7 @@ class Waypoints(Path):
 
     kind = "waypoints"
     points: ArrayField = parameter(
-        "Positions or poses, two at least, in the base frame say: only differences from the first matter.",
+        "Positions or poses, two at least. Only differences from the first matter: a path starts where the tip is.",
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
