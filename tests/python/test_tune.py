@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import fpbm_cpp as fp
-from fpbm_cpp.tuning import objectives, search
+from fpbm_cpp.tuning import search, tuner
 from fpbm_cpp.tuning.result import Trials, sensitivity
 from fpbm_cpp.tuning.search import pareto_front
 
@@ -87,9 +87,9 @@ def test_the_range_used_is_one_on_a_bound():
     run = fp.simulate(PANDA, fp.Line([0.0, 0.0, 0.01], 0.1), fp.MVN(), READY, dt=0.01)
     for bound in (PANDA.limits.lower, PANDA.limits.upper):
         run.q[:] = (PANDA.limits.lower + PANDA.limits.upper) / 2
-        assert objectives.limit_distance(run) == 0.0
+        assert tuner.limit_distance(run) == 0.0
         run.q[3, 5] = bound[5]
-        assert objectives.limit_distance(run) == pytest.approx(1.0, abs=1e-14)
+        assert tuner.limit_distance(run) == pytest.approx(1.0, abs=1e-14)
 
 
 def test_it_finds_what_is_better(tuning):
@@ -241,7 +241,7 @@ def test_trials_are_tracked_within_limits():
     for scheme, value, error in zip(trials.schemes, trials.value, trials.error):
         run = fp.track(PANDA, path, scheme, READY, dt=0.01, limits=limits, integral_gain=0.1)
         assert run.max_error() == pytest.approx(error, abs=1e-9)
-        assert objectives.energy(run) == pytest.approx(value, rel=1e-9)
+        assert tuner.energy(run) == pytest.approx(value, rel=1e-9)
 
 
 def test_options_of_tracking_need_limits():

@@ -102,17 +102,13 @@ def picture(figure: "Figure") -> Writer:
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[int, int], object]]:
     """A function to call with (done, total): prints them on one line of the screen, unless errors go elsewhere."""
-    watched = sys.stderr.isatty()
-
-    def report(done: int, total: int) -> None:
-        if watched:
-            click.echo(f"\r{label}: {done} of {total}", nl=False, err=True)
-
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
     try:
-        yield report
+        yield lambda done, total: click.echo(f"\r{label}: {done} of {total}", nl=False, err=True)
     finally:
-        if watched:
-            click.echo("\r\033[K", nl=False, err=True)
+        click.echo("\r\033[K", nl=False, err=True)
 
 
 def import_viser() -> None:

@@ -16,7 +16,7 @@ from ..motion.sweeping import sweep as run_sweep
 from ..schemes import FPBM
 from ..tuning import Tuning
 from ..tuning import tune as search
-from ..tuning.objectives import OBJECTIVES
+from ..tuning.tuner import OBJECTIVES
 from .plain import content, dark_option, make_folder, out_option, picture, progress, workers_option, write_files
 from .request import Request, Word, motion_command
 from .text import FIGURES, Row, figure_table, number

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from .._types import Array
 from ..arms import Arm
-from ..motion.sweeping import Sweep
 from ..paths import Path
 from ..schemes import FPBM
-from .objectives import OfRun
 from .search import TUNABLE, numbers, pareto_front, tunable, with_numbers
 
 if TYPE_CHECKING:
@@ -68,20 +66,6 @@ class Trials:
 
     def __repr__(self) -> str:
         return f"<{len(self)} trials, {int(self.feasible.sum())} feasible>"
-
-
-def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:
-    """The trials of a sweep's schemes from one start."""
-    ok, schemes = sweep.ok[:, 0], np.empty(len(sweep.schemes), dtype=object)
-    schemes[:] = sweep.schemes
-    if of_run is None:
-        value = np.where(ok, getattr(sweep, objective)[:, 0], np.nan)
-    else:
-        runs = sweep.motions[:, 0] if sweep.motions is not None else ()
-        value = np.array([float(of_run(run)) if done else np.nan for done, run in zip(ok, runs)])
-    error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
-    feasible = ok & np.isfinite(value) & (error <= tolerance)
-    return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)
 
 
 def joined(parts: Sequence[Trials]) -> Trials:

@@ -1,21 +1,63 @@
-"""The search for the parameters of a scheme."""
+"""The search for the parameters of a scheme, and what they can be tuned for: a number of its motion, to be small."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
-from ..motion.sweeping import Progress, reporting, sweep
+from ..motion.run import Run
+from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
-from .objectives import OfRun, measure
-from .result import Trials, Tuning, joined, sensitivity, trials_of
+from .result import Trials, Tuning, joined, sensitivity
 from .search import Space, front, least, numbers, require_cmaes
+
+OfRun = Callable[[Run], float]
+
+
+def energy(run: Run) -> float:
+    """Integral of |qd|² over the motion [rad²/s], by the trapezoidal rule."""
+    squares = np.sum(run.qd**2, axis=1)
+    return float(np.sum(np.diff(run.t) * (squares[1:] + squares[:-1])) / 2)
+
+
+def limit_distance(run: Run) -> float:
+    """Largest share of its range that a joint with two bounds uses: 0 in the middle, 1 on a bound, more beyond it."""
+    bounded = _bounded(run.limits)
+    lower, upper = run.limits.lower[bounded], run.limits.upper[bounded]
+    return float(np.max(np.abs(2 * run.q[:, bounded] - (lower + upper)) / (upper - lower)))
+
+
+def _bounded(limits: JointLimits) -> NDArray[np.bool_]:
+    """Which joints have two bounds, and can move between them."""
+    return np.isfinite(limits.lower) & np.isfinite(limits.upper) & (limits.lower < limits.upper)
+
+
+# Unit, and function of a Run; None for a key figure of a sweep, which is faster.
+OBJECTIVES: dict[str, tuple[str, OfRun | None]] = {
+    "peak_velocity": ("rad/s", None),
+    "peak_acceleration": ("rad/s²", None),
+    "final_velocity": ("rad/s", None),
+    "energy": ("rad²/s", energy),
+    "limit_distance": ("of the range", limit_distance),
+}
+
+
+def measure(objective: str | OfRun, limits: JointLimits) -> tuple[str, str, OfRun | None]:
+    """Name, unit and function. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
+    if callable(objective):
+        return getattr(objective, "__name__", type(objective).__name__), "", objective
+    if objective not in OBJECTIVES:
+        names = ", ".join(map(repr, OBJECTIVES))
+        raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
+    if objective == "limit_distance" and not np.any(_bounded(limits)):
+        raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
+    return objective, *OBJECTIVES[objective]
 
 
 def tune(
@@ -44,10 +86,14 @@ def tune(
     velocity and peak acceleration. The result is the best of all trials, the first of which is the baseline. The same
     seed gives the same result to the last bit, with any executor.
 
+    Raises ValueError or TypeError if an argument is wrong, ImportError if the extra 'tune' or what progress=True needs
+    is missing: nothing is run; RuntimeError if no trial is feasible. On Ctrl-C it raises TuneInterrupted, a
+    KeyboardInterrupt whose tuning holds what was found.
+
     Parameters
     ----------
-    arm, path, q0, dt, hold, task
-        The motion, as for simulate().
+    arm, path, q0, dt, hold, task, executor, workers, progress
+        As for simulate() and sweep().
     objective : str or callable
         'peak_velocity' [rad/s], 'peak_acceleration' [rad/s^2], 'final_velocity' [rad/s], each of the fastest joint;
         'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest share of its range that a joint uses,
@@ -67,18 +113,6 @@ def tune(
         Largest position error of the tip [m], and of its orientation [rad] under 'pose', of a feasible motion.
     trials, seed : int
         How many schemes to try, and the seed of the random numbers.
-    executor, workers, progress
-        As for sweep().
-
-    Raises
-    ------
-    ValueError, TypeError, ImportError
-        If an argument is out of range, not finite, unknown, or of the wrong shape or type; if the extra 'tune' or, with
-        progress=True, the extra 'progress' is missing: nothing is run.
-    RuntimeError
-        If no trial is feasible.
-    TuneInterrupted
-        On Ctrl-C: a KeyboardInterrupt whose tuning holds what was found.
     """
     start = Parameter("q0", np.ndarray, shape=f"({arm.dof},)").check(q0)
     count = Parameter("trials", int, low=1, whole=True).check(trials)
@@ -132,3 +166,17 @@ def _why_none(tried: Trials, tolerance: float) -> str:
     if not complete.any():
         return f"{text}; simulate() says why for {tried.schemes[0]!r}"
     return f"{text}, and the others err by at least {tried.error[complete].min():.2g}, where tolerance = {tolerance:g}"
+
+
+def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:
+    """The trials of a sweep's schemes from one start."""
+    ok, schemes = sweep.ok[:, 0], np.empty(len(sweep.schemes), dtype=object)
+    schemes[:] = sweep.schemes
+    if of_run is None:
+        value = np.where(ok, getattr(sweep, objective)[:, 0], np.nan)
+    else:
+        runs = sweep.motions[:, 0] if sweep.motions is not None else ()
+        value = np.array([float(of_run(run)) if done else np.nan for done, run in zip(ok, runs)])
+    error = np.maximum(sweep.max_error, sweep.max_orientation_error)[:, 0]
+    feasible = ok & np.isfinite(value) & (error <= tolerance)
+    return Trials(schemes, value, sweep.peak_velocity[:, 0], sweep.peak_acceleration[:, 0], error, feasible)

@@ -37,7 +37,7 @@ class Controls:
 
     def __init__(self, gui: GuiApi, run: Run, on_change: Callable[[], None]) -> None:
         self._on_change = on_change
-        limits = run.limits
+        limits, names = run.limits, joint_labels(run.arm)
         bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
@@ -45,10 +45,7 @@ class Controls:
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
-                self._weights = [
-                    gui.add_slider(name, min=0.1, max=10.0, step=0.1, initial_value=1.0)
-                    for name in joint_labels(run.arm)
-                ]
+                self._weights = [gui.add_slider(name, 0.1, 10.0, step=0.1, initial_value=1.0) for name in names]
             there = bool(np.isfinite(bounds).any())
             self._limited = gui.add_checkbox(
                 "keep joint limits", run.scale is not None, visible=there, hint="The bounds of every joint"
@@ -61,7 +58,6 @@ class Controls:
 
     @property
     def limited(self) -> bool:
-        """Whether joint limits are to be kept."""
         return bool(self._limited.value)
 
     def scheme(self) -> Scheme:
@@ -137,7 +133,6 @@ class Player:
 
     @property
     def time(self) -> float:
-        """The time shown [s]."""
         return self._time
 
     @time.setter
@@ -147,15 +142,13 @@ class Player:
         self._moved(self._time)
 
     def play(self) -> None:
-        """Start the clock; at the end of the motion it starts from 0."""
         if self._time >= self.end:
             self.time = 0.0
         self.playing = True
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
-        """Stop the clock; it does not move time after this returns."""
-        with self._lock:
+        with self._lock:  # The clock does not move time after this.
             self.playing = False
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 

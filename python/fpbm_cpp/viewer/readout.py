@@ -21,14 +21,13 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Readout:
-    """A line on how the run ended, and a table of figures: now, and the worst of the whole motion."""
+    """How the run ended, in a line, and a table of figures: at a sample, and the worst of the whole motion."""
 
     def __init__(self, gui: GuiApi) -> None:
         self._status = gui.add_html("")
         self._table = gui.add_html("")
 
     def show(self, playback: Playback) -> None:
-        """Say how a run ended."""
         self._playback, status = playback, playback.run.status
         stopped = f"stopped after t = {status.time:g} s: {message(status.code)}. {status.advice}"
         self._say(str(status) if status else stopped, GOOD if status else BAD)
@@ -38,7 +37,6 @@ class Readout:
         self._say(f"not run: {reason}", BAD)
 
     def at(self, sample: int) -> None:
-        """Show the figures of a sample."""
         playback, run = self._playback, self._playback.run
         w, errors = playback.manipulability, {"tip error": (playback.tip_error, "m")}
         if run.task == "pose":
@@ -89,10 +87,12 @@ class Chart:
         self._quantity.on_update(lambda _: self.show(self._playback))
 
     def show(self, playback: Playback) -> None:
-        """Draw a run."""
         self._playback = playback
         labels, values, self._plot.title = self._curves()
-        self._range = _range(values)
+        low, high = float(values.min()), float(values.max())
+        low, high = (0.0, high) if 0.0 <= low < high / 2 else (low, high)
+        room = 0.05 * (high - low) or 1.0
+        self._range = low - room, high + room
         lines = [
             {"label": label, "stroke": LINES[i % len(LINES)], "width": 1.6, "dash": [] if i < len(LINES) else [6, 3]}
             for i, label in enumerate(labels)
@@ -103,7 +103,6 @@ class Chart:
         self._plot.data = (playback.run.t[playback.frames], *values.T, self._now())
 
     def at(self, sample: int) -> None:
-        """Move the line to a sample."""
         self._sample = sample
         self._plot.data = (*self._plot.data[:-1], self._now())
 
@@ -127,11 +126,3 @@ class Chart:
         first = min(self._playback.frame(self._sample), max(len(line) - 2, 0))
         line[first : first + 2] = self._range[: len(line)]
         return line
-
-
-def _range(values: Array) -> tuple[float, float]:
-    """A range with a little more than all values; it starts near 0 where the values do."""
-    low, high = float(values.min()), float(values.max())
-    low, high = (0.0, high) if 0.0 <= low < high / 2 else (low, high)
-    room = 0.05 * (high - low) or 1.0
-    return low - room, high + room

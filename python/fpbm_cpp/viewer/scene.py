@@ -65,7 +65,7 @@ def in_space(points: Array) -> Array:
 
 
 class Scene:
-    """An arm on its path: show() draws a run, at() moves the arm to a sample of the run."""
+    """An arm on its path: show() draws start and target of a run, at() moves the arm to a sample of the run."""
 
     def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
         run, self._server = playback.run, server
@@ -91,7 +91,6 @@ class Scene:
         )
 
     def show(self, playback: Playback) -> None:
-        """Draw the start and the target of a run."""
         self._playback, run = playback, playback.run
         self._start.points = _segments(in_space(joint_points(run.arm, run.q[0])))
         target = _segments(playback.target)

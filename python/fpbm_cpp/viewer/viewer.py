@@ -97,7 +97,7 @@ class Viewer(AbstractContextManager["Viewer"]):
         self._player.time = seconds
 
     def play(self) -> None:
-        """Start the clock."""
+        """Start the clock; at the end of the motion it starts from 0."""
         self._player.play()
 
     def pause(self) -> None:
