@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import click
-import numpy as np
 
 from .._core import Status
 from ..errors import not_one_of
@@ -11,7 +10,7 @@ from ..motion.run import Run
 from ..schemes import SCHEMES
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
-from .text import Row, figure_table, summary
+from .text import FIGURES, Row, figure_table, summary
 
 
 @motion_command(
@@ -107,16 +106,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
 def _row(kind: str, run: Run) -> Row:
     if not len(run.t):
         return [kind], "", {}
-    speed, acceleration = np.abs(run.qd).max(axis=1), np.abs(run.qdd).max(axis=1)
-    figures = {
-        "max_error": run.max_error(),
-        "max_orientation_error": run.max_orientation_error(),
-        "peak_velocity": speed.max(),
-        "final_velocity": speed[-1],
-        "peak_acceleration": acceleration.max(),
-        "final_acceleration": acceleration[-1],
-        "manipulability": run.manipulability().min(),
-    }
+    figures = {name: of_run(run) for name, (_, _, of_run) in FIGURES.items()}
     return [kind], "yes" if run.status else f"to {run.status.time:.3g} s", figures
 
 

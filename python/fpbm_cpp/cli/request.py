@@ -34,7 +34,6 @@ def _value(text: str) -> Any:
 
 
 def _row(text: str) -> Any:
-    """Numbers between commas; one number where there is no comma."""
     if "," not in text:
         return float(text)
     return [float(part) for part in text.split(",") if part.strip()]
@@ -176,7 +175,6 @@ class Request:
             raise click.ClickException("\nError: ".join(lines)) from None
 
     def _put(self, option: JobOption, value: Any) -> None:
-        """Set one key of the table."""
         section, key = option.section, option.key
         if key == "keep":
             if value:
@@ -196,7 +194,6 @@ class Request:
 
 
 def _arm(text: str) -> Table:
-    """The table of an arm that is named in one word."""
     if text in PRESETS:
         return {"kind": "preset", "name": text}
     if text.startswith("planar:"):

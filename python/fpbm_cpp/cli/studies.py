@@ -3,6 +3,7 @@
 import csv
 import io
 import itertools
+from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
@@ -44,13 +45,7 @@ Cases = list[tuple[float, ...]]
 @workers_option
 @out_option
 def sweep(
-    request: Request,
-    vary: tuple[str, ...],
-    starts: int,
-    spread: float,
-    seed: int,
-    workers: int | None,
-    out: Path | None,
+    request: Request, vary: Sequence[str], starts: int, spread: float, seed: int, workers: int | None, out: Path | None
 ) -> None:
     """Move an arm along a path under many schemes from many starts, on all cores.
 
@@ -113,7 +108,6 @@ def _table(done: Sweep, keys: list[str], cases: Cases) -> str:
 
 
 def _csv(done: Sweep, keys: list[str], cases: Cases) -> str:
-    """A row for each motion that was run."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     joints = [f"q0_{name}" for name in done.arm.joint_names]

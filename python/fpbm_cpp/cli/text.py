@@ -1,6 +1,6 @@
 """Figures of motions as text."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import click
 import numpy as np
@@ -10,15 +10,15 @@ from ..motion.run import Run
 from ..skeleton import joint_labels, joint_units
 from .plain import WIDTH
 
-# The figures of a motion that a sweep has, as the head of their column and its unit.
-FIGURES = {
-    "max_error": ("tip error", "m"),
-    "max_orientation_error": ("tip error", "rad"),
-    "peak_velocity": ("peak qd", "rad/s"),
-    "final_velocity": ("final qd", "rad/s"),
-    "peak_acceleration": ("peak qdd", "rad/s^2"),
-    "final_acceleration": ("final qdd", "rad/s^2"),
-    "manipulability": ("manip.", "least"),
+# The figures of a motion that a sweep has: the head of their column, its unit, and the figure of a run.
+FIGURES: dict[str, tuple[str, str, Callable[[Run], float]]] = {
+    "max_error": ("tip error", "m", Run.max_error),
+    "max_orientation_error": ("tip error", "rad", Run.max_orientation_error),
+    "peak_velocity": ("peak qd", "rad/s", lambda run: np.abs(run.qd).max()),
+    "final_velocity": ("final qd", "rad/s", lambda run: np.abs(run.qd[-1]).max()),
+    "peak_acceleration": ("peak qdd", "rad/s^2", lambda run: np.abs(run.qdd).max()),
+    "final_acceleration": ("final qdd", "rad/s^2", lambda run: np.abs(run.qdd[-1]).max()),
+    "manipulability": ("manip.", "least", lambda run: run.manipulability().min()),
 }
 Row = tuple[Sequence[str], str, Mapping[str, float]]
 
@@ -34,7 +34,7 @@ def columns(*rows: Sequence[str]) -> str:
 def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
     """A row for each scheme: cells of these names, what is complete, figures of the worst motion; remarks below."""
     shown = [name for name in FIGURES if task == "pose" or name != "max_orientation_error"]
-    header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name] for name in shown))
+    header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name][:2] for name in shown))
     cells = [[*first, done, *(number(figures[name]) for name in shown if figures)] for first, done, figures in rows]
     lines = [click.wrap_text(remark, WIDTH, subsequent_indent="  ") for remark in remarks]
     return "\n".join([columns(*header, *cells), *([""] if lines else []), *lines])

@@ -88,7 +88,6 @@ def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme
 
 
 def _set_points(line: Any, points: Array) -> None:
-    """Move a line in the plane or in space."""
     (line.set_data if points.shape[1] == 2 else line.set_data_3d)(*points.T)
 
 
@@ -126,7 +125,6 @@ def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:
 
 
 def _ffmpeg() -> str:
-    """The machine's ffmpeg, or imageio-ffmpeg's."""
     if found := shutil.which("ffmpeg"):
         return found
     try:

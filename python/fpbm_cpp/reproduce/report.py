@@ -69,29 +69,21 @@ class Table:
 
 def make_tables(results: Sequence[Result]) -> list[Table]:
     """Table 1, Tables 2 and 3, and the numbers in the text about the figures."""
+    groups = {
+        "Table 1. Circle, FPBM, W = diag(1, 2, 3, 4), k1 = k2 = 1": [r for r in results if r.case.table == "1"],
+        "Tables 2 and 3. Circle, FPBM, alpha = 0.6, k1 = k2 = 1": [r for r in results if r.case.table == "2, 3"],
+        "Text about Figs. 1 to 8. FPBM with alpha = 0.6, k1 = k2 = 1; * marks a misprint": of_figures(results),
+    }
+    header = ("case", "", *(f"joint {i}" for i in range(1, results[0].run.arm.dof + 1)), "tip error")
+    labels: tuple[Callable[[Case], tuple[str, str]], ...] = (
+        lambda case: (f"alpha = {case.fpbm['alpha']}", ""),
+        lambda case: (f"{case.row} =", case.weights),
+        lambda case: (f"Fig. {case.figure}, {NAMES[case.path]}", f"W = {case.weights}" if case.fpbm else "MAN"),
+    )
     return [
-        _table(
-            "Table 1. Circle, FPBM, W = diag(1, 2, 3, 4), k1 = k2 = 1",
-            [r for r in results if r.case.table == "1"],
-            lambda case: (f"alpha = {case.fpbm['alpha']}", ""),
-        ),
-        _table(
-            "Tables 2 and 3. Circle, FPBM, alpha = 0.6, k1 = k2 = 1",
-            [r for r in results if r.case.table == "2, 3"],
-            lambda case: (f"{case.row} =", case.weights),
-        ),
-        _table(
-            "Text about Figs. 1 to 8. FPBM with alpha = 0.6, k1 = k2 = 1; * marks a misprint",
-            of_figures(results),
-            lambda case: (f"Fig. {case.figure}, {NAMES[case.path]}", f"W = {case.weights}" if case.fpbm else "MAN"),
-        ),
+        Table(title, header, tuple(row for result in group for row in _rows(result, label(result.case))))
+        for (title, group), label in zip(groups.items(), labels)
     ]
-
-
-def _table(title: str, results: Sequence[Result], label: Callable[[Case], tuple[str, str]]) -> Table:
-    joints = range(1, results[0].run.arm.dof + 1)
-    header = ("case", "", *(f"joint {i}" for i in joints), "tip error")
-    return Table(title, header, tuple(row for result in results for row in _rows(result, label(result.case))))
 
 
 def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
@@ -137,21 +129,17 @@ def make_report(paper: Paper, results: Sequence[Result], tables: Sequence[Table]
         paper.source,
         f"Run with fpbm_cpp {__version__}: classical fourth-order Runge–Kutta, fixed steps of {DT:g} s. {paper.arm!r}, "
         f"from rest at q(0) = [{posture}], along {', '.join(map(repr, paper.paths.values()))}.",
-        _bullets(summary(results)),
+        "\n".join(f"- {line}" for line in summary(results)),
         "## Figures",
         *(f"![Fig. {n}](fig{n}.png)\n\nFig. {n}: {words} ([PDF](fig{n}.pdf))." for n, words in figures),
         "## Tables",
         *(table.markdown() for table in tables),
         "## Errata",
-        _bullets(errata),
+        "\n".join(f"- {line}" for line in errata),
         "## Claims",
         "\n".join(f"{i}. **{c.statement}: {c.verdict}.** {c.evidence}" for i, c in enumerate(claims, 1)),
     ]
     return "\n\n".join(paragraphs) + "\n"
-
-
-def _bullets(lines: Sequence[str]) -> str:
-    return "\n".join(f"- {line}" for line in lines)
 
 
 def _misprint(result: Result) -> str:

@@ -28,8 +28,8 @@ NUMBERS = {
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
     """A scheme of a kind with these values, as far as it has them, and otherwise the base's. Raises ValueError."""
-    kept = {name: getattr(base, name) for name in parameters(type(base))}
-    return kind(**{name: value for name, value in {**kept, **values}.items() if name in parameters(kind)})
+    known = {**base._values(), **values}
+    return kind(**{name: value for name, value in known.items() if name in parameters(kind)})
 
 
 class Controls:

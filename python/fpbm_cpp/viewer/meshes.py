@@ -38,7 +38,11 @@ class Meshes:
                 raise self._error(f"has no joint {name!r}, which the arm has; its own: {', '.join(there)}")
         # The file's root, seen from the arm's base, which may be another link.
         self.placement: Array = arm.joints[0].placement @ np.linalg.inv(self._frames(np.zeros(arm.dof))[0])
-        self._require_same(q)
+        distances = np.linalg.norm((self.placement @ self._frames(q))[:, :3, 3] - joint_points(arm, q)[1:-1], axis=1)
+        worst = int(distances.argmax())
+        if distances[worst] > TOLERANCE:
+            joint = f"its joint {arm.joints[worst].name!r} is {distances[worst]:.3g} m from where this arm has it"
+            raise self._error(f"is another arm's: {joint}")
         self.found = bool(self.robot.scene.geometry)
 
     def show(self, server: ViserServer) -> None:
@@ -92,14 +96,6 @@ class Meshes:
         self.robot.update_cfg(self.configuration(q))
         links = (self.robot.joint_map[joint.name].child for joint in self._arm.joints)
         return np.array([self.robot.get_transform(link, self.robot.base_link) for link in links])
-
-    def _require_same(self, q: Array) -> None:
-        there = (self.placement @ self._frames(q))[:, :3, 3]
-        distances = np.linalg.norm(there - joint_points(self._arm, q)[1:-1], axis=1)
-        worst = int(distances.argmax())
-        if distances[worst] > TOLERANCE:
-            joint = f"its joint {self._arm.joints[worst].name!r} is {distances[worst]:.3g} m from where this arm has it"
-            raise self._error(f"is another arm's: {joint}")
 
     def _error(self, text: str) -> ValueError:
         return ValueError(f"urdf = {str(self.file)!r}: {text}")
