@@ -86,7 +86,11 @@ class Arm(Data, CoreArm):
             return PlanarArm(self.lengths[:joints])
         assert isinstance(self, SerialArm)
         driven = [i for i, joint in enumerate(self.joints) if joint.mimic is None]
-        return SerialArm(self.joints[: driven[joints - 1] + 1])
+        kept = self.joints[: driven[joints - 1] + 1]
+        for joint in kept:
+            if joint.mimic is not None and joint.mimic[0] >= len(kept):
+                raise wrong("joints", joints, f" = {joints}: {joint.name!r} follows a joint beyond them")
+        return SerialArm(kept)
 
 
 @data

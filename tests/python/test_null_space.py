@@ -281,4 +281,7 @@ def test_the_first_joints_of_an_arm_are_those_with_a_drive():
     coupled = fp.SerialArm(joints, PANDA.tip)
     assert coupled.first(3) == fp.SerialArm(joints[:4])
     assert coupled.first(3).dof == 3
+    ahead = fp.SerialArm([fp.Joint(), fp.Joint(mimic=(3, 1.0, 0.0)), fp.Joint(), fp.Joint()])
+    with pytest.raises(fp.ParameterError, match="joints = 2: 'joint_2' follows a joint beyond them"):
+        ahead.first(2)
     assert PANDA.first(4) == ELBOW
