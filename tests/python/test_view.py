@@ -28,8 +28,7 @@ from fpbm_cpp.parameter import parameters
 from fpbm_cpp.skeleton import joint_points
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
-from fpbm_cpp.viewer.meshes import Meshes
-from fpbm_cpp.viewer.scene import FRAMES, Links, Playback, along
+from fpbm_cpp.viewer.scene import FRAMES, Links, Meshes, Playback, along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 Q0 = np.pi / np.array([12, 12, 15, 15])

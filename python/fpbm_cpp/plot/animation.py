@@ -54,10 +54,9 @@ def animate(
         Parameter(name, float, low=0.0, open_low=True).check(value)
     if not len(run.t):
         raise ValueError("run: has no samples to animate")
-    shown = {name: panel for name, panel in choose(run, panels).items() if name != "arm"}
+    shown = {**choose(run, panels), "arm": Panel("", _draw_background)}
     times = np.append(np.arange(run.t[0], run.t[-1], speed / fps), run.t[-1])
     samples = np.searchsorted(run.t, times).clip(max=len(run.t) - 1)
-    shown = {"arm": Panel("", _draw_background), **shown}
     write_frames(Path(file), _frames(run, samples, shown, DARK if dark else LIGHT, dpi), fps)
 
 

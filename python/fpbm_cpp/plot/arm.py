@@ -58,8 +58,7 @@ def draw_base(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
 
 
 def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
-    style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
-    return list(axes.plot(*run.reference_positions.T, **style))
+    return list(axes.plot(*run.reference_positions.T, color=theme.ink, lw=0.9, ls=(0, (2, 2)), label="target"))
 
 
 def frame_arm(axes: Any, theme: Theme) -> None:

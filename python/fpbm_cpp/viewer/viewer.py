@@ -23,9 +23,8 @@ from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 from .controls import Controls, Player
-from .meshes import Meshes
 from .readout import Chart, Readout
-from .scene import Playback, Scene
+from .scene import Meshes, Playback, Scene
 
 
 class Viewer(AbstractContextManager["Viewer"]):
