@@ -12,6 +12,8 @@ from .plain import Writer, dark_option, import_viser, out_option, picture, write
 from .request import Request, motion_command
 from .text import FIGURES, Row, figure_table, summary
 
+ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
+
 
 @motion_command(
     "Move an arm along a path.",
@@ -23,12 +25,7 @@ from .text import FIGURES, Row, figure_table, summary
 )
 @out_option
 @dark_option
-@click.option(
-    "--also",
-    multiple=True,
-    type=click.Choice(["csv", "rosbag", "gif", "mp4"]),
-    help="Write this to the folder, too; may be said again.",
-)
+@click.option("--also", multiple=True, type=ALSO, help="Write this to the folder, too; may be said again.")
 def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
     """Move an arm along a path, and say how it went.
 

@@ -23,6 +23,7 @@ from .request import Request, Word, motion_command
 from .text import FIGURES, Row, figure_table, number
 
 Cases = list[tuple[float, ...]]
+VARY = "Numbers for an option of the scheme: alpha=0,0.6,1, or alpha=0:1:11 for 11 of them. All combinations run."
 
 
 @motion_command(
@@ -31,12 +32,7 @@ Cases = list[tuple[float, ...]]
     fpbm-cpp sweep panda --vary alpha=0:1:6 --starts 20 --duration 2
     fpbm-cpp sweep planar:1,1,1,1 --radius 0.45 --vary alpha=0,0.6,1 --vary null-damping=0,2 --hold 5 --out grid""",
 )
-@click.option(
-    "--vary",
-    multiple=True,
-    metavar="OPTION=VALUES",
-    help="Numbers for an option of the scheme: alpha=0,0.6,1, or alpha=0:1:11 for 11 of them. All combinations run.",
-)
+@click.option("--vary", multiple=True, metavar="OPTION=VALUES", help=VARY)
 @click.option("--starts", type=click.IntRange(1), default=1, help="How many starts: q0 and others near it.")
 @click.option(
     "--spread", type=click.FloatRange(0.0), default=0.05, help="Standard deviation of their joint positions [rad]."

@@ -37,7 +37,12 @@ CASES: dict[str, Table] = {
 }
 
 
-@click.command("bench", short_help="Time this machine.", cls=Plain, epilog="Example: fpbm-cpp bench --seconds 1")
+def tool(short_help: str, example: str) -> Callable[[Callable[..., None]], click.Command]:
+    """A command with an example of how to call it."""
+    return click.command(cls=Plain, short_help=short_help, epilog=f"Example: fpbm-cpp {example}")
+
+
+@tool("Time this machine.", "bench --seconds 1")
 @click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="How long each is timed.")
 def bench(seconds: float) -> None:
     """Time this machine: what a scheme costs an evaluation, and how many motions a second a sweep runs.
@@ -77,12 +82,7 @@ def _median(run: Callable[[], object], seconds: float) -> float:
     return float(np.median(times))
 
 
-@click.command(
-    "reproduce",
-    short_help="Reproduce the FPBM paper.",
-    cls=Plain,
-    epilog="Example: fpbm-cpp reproduce --out reproduction",
-)
+@tool("Reproduce the FPBM paper.", "reproduce --out reproduction")
 @click.option("--out", type=PLACE, metavar="DIR", default="reproduction", help=OUT)
 def reproduce(out: Path) -> None:
     """Reproduce the FPBM paper: figures, tables, errata and claims.
@@ -111,12 +111,7 @@ def reproduce(out: Path) -> None:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
 
 
-@click.command(
-    "export-header",
-    short_help="Write the arm of a URDF file in C++.",
-    cls=Plain,
-    epilog="Example: fpbm-cpp export-header my_arm.urdf --tip tool -o my_arm.hpp",
-)
+@tool("Write the arm of a URDF file in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
 @click.argument("urdf", metavar="ARM.urdf", type=PLACE)
 @click.option("--tip", metavar="LINK", required=True, help="Link to move.")
 @click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")

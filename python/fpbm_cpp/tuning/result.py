@@ -69,7 +69,6 @@ class Trials:
 
 
 def joined(parts: Sequence[Trials]) -> Trials:
-    """All trials, one part after another."""
     return Trials(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Trials)))
 
 

@@ -169,7 +169,6 @@ def _why_none(tried: Trials, tolerance: float) -> str:
 
 
 def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:
-    """The trials of a sweep's schemes from one start."""
     ok, schemes = sweep.ok[:, 0], np.empty(len(sweep.schemes), dtype=object)
     schemes[:] = sweep.schemes
     if of_run is None:

@@ -80,10 +80,9 @@ class Chart:
         names = [name for name in QUANTITIES if name != "orientation error" or playback.run.task == "pose"]
         with gui.add_folder("Over time"):
             self._quantity = gui.add_dropdown("quantity", tuple(names))
+            nothing = (np.zeros(1), np.zeros(1)), ({"label": ""}, {"label": ""})
             axes = ({"size": 32}, {"size": 44})
-            self._plot = gui.add_uplot(
-                (np.zeros(1), np.zeros(1)), ({"label": ""}, {"label": ""}), axes=axes, height=220, padding=(8, 16, 0, 0)
-            )
+            self._plot = gui.add_uplot(*nothing, axes=axes, height=220, padding=(8, 16, 0, 0))
         self._quantity.on_update(lambda _: self.show(self._playback))
 
     def show(self, playback: Playback) -> None:

@@ -203,16 +203,9 @@ def _add_ground(scene: SceneApi, radius: float, planar: bool) -> None:
     """A grid under the arm, whose cells suit a motion within a ball of this radius."""
     cell = 10.0 ** np.floor(np.log10(radius))
     cell = cell / 2 if radius / cell < 3 else cell
-    scene.add_grid(
-        "/ground",
-        width=40 * cell,
-        height=40 * cell,
-        plane="xy",
-        cell_size=cell / 2,
-        section_size=2 * cell,
-        position=(0.0, 0.0, -(0.1 if planar else 0.002) * radius),  # Under the joints.
-        shadow_opacity=0.15,
-    )
+    sizes = {"width": 40 * cell, "height": 40 * cell, "cell_size": cell / 2, "section_size": 2 * cell}
+    under = (0.0, 0.0, -(0.1 if planar else 0.002) * radius)  # The joints.
+    scene.add_grid("/ground", plane="xy", position=under, shadow_opacity=0.15, **sizes)
 
 
 def _place_camera(server: ViserServer, centre: Array, radius: float, planar: bool) -> None:
