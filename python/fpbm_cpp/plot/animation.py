@@ -20,10 +20,9 @@ from ..io import write_whole
 from ..motion.run import Run
 from ..parameter import Parameter
 from ..skeleton import joint_points
-from .arm import LINK, draw_base, draw_target, frame_arm
 from .figures import lay_out
 from .lines import head_legend
-from .panels import Panel, choose
+from .panels import LINK, Panel, choose, draw_base, draw_target, frame_arm
 from .theme import DARK, LIGHT, TEXT, Theme
 
 Frame = NDArray[np.uint8]
