@@ -119,12 +119,10 @@ class Request:
             raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
         self.file, self.copy = file, copy
         self.table: Table = {}
+        self.flags: dict[str, str] = {}
         if file is not None:
-            try:
-                with file_errors("read", file):
-                    self.table = read_job(file)
-            except JobError as error:
-                raise click.ClickException(f"{file}: {error}") from None
+            with self.plain(), file_errors("read", file):
+                self.table = read_job(file)
         said = {f"{section}.{key}" for section, keys in self.table.items() if isinstance(keys, dict) for key in keys}
         if arm is not None:
             self.table["arm"] = _arm(arm)
@@ -144,9 +142,7 @@ class Request:
         """The motion, under a kind of scheme where one is named; at_rest: whether it has to begin at rest."""
         table = self.table
         if kind is not None:
-            given = table.get("scheme", {})
-            scheme = _without_foreign("scheme", given, kind) if isinstance(given, dict) else {}
-            table = {**table, "scheme": {**scheme, "kind": kind}}
+            table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):
             motion = prepare(table)
         if at_rest and motion.options.qd0 is not None:
@@ -189,7 +185,7 @@ class Request:
         if not isinstance(there, dict):
             there = {"kind": FREE[section]} if section in FREE else {}
         if key == "kind" and value in SECTIONS[section]:
-            there = _without_foreign(section, there, value)
+            there = _of_kind(section, there, value)
         self.table[section] = {**there, key: value}
 
 
@@ -208,7 +204,8 @@ def _arm(text: str) -> Table:
     raise click.ClickException(str(not_one_of("ARM", text, [*PRESETS, "planar:1,1,1,1", "a URDF file"])))
 
 
-def _without_foreign(section: str, table: Table, kind: str) -> Table:
-    """A table without the keys that only other kinds have."""
+def _of_kind(section: str, table: Any, kind: str) -> Table:
+    """A table of this kind, without the keys that only other kinds have."""
     foreign = {key for each in SECTIONS[section] for key in known(section, each)} - set(known(section, kind))
-    return {key: value for key, value in table.items() if key not in foreign}
+    kept = {key: value for key, value in table.items() if key not in foreign} if isinstance(table, dict) else {}
+    return {**kept, "kind": kind}
