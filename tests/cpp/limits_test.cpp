@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
@@ -73,7 +74,8 @@ struct Tally {
   double worst = -std::numeric_limits<double>::infinity();
 };
 
-/// From random starts, toward references that change ten times and violate every limit.
+/// From random starts, toward references that change ten times and violate every limit. Every state on the way is one
+/// that another tracker could start from.
 template <typename Space, typename Arm, typename MakeScheme>
 void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& make_scheme, int rollouts, Tally& tally) {
   constexpr int N = Arm::kDof;
@@ -91,6 +93,7 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
       const double broken = violation(bounds, before, tick);
       ASSERT_LE(broken, kSlack) << "seed " << seed << ", tick " << i;
       ASSERT_FALSE(failed(tick.status));
+      ASSERT_EQ(complaint([&] { limits.require_viable(tracker.state()); }), "") << "seed " << seed << ", tick " << i;
       ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);
       tally.worst = std::max(tally.worst, broken);
       tally.limited += tick.saturated != 0 ? 1 : 0;
@@ -212,6 +215,59 @@ void expect_invariance() {
 TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
   expect_invariance<Level::kAcceleration>();
   expect_invariance<Level::kVelocity>();
+}
+
+/// A joint may begin at rest on either end of its range, and is not pushed beyond it.
+template <Level kLevel, typename Scalar>
+void expect_rest_on_both_ends(const JointBounds<>& joint) {
+  auto bounds = JointLimits<1, Scalar>::none(1);
+  bounds.set(0, {Scalar(joint.lower), Scalar(joint.upper), Scalar(joint.velocity), Scalar(joint.acceleration)});
+  const auto tick = static_cast<Scalar>(kTick);
+  const Limits<kLevel, 1, Scalar> limits(bounds, tick);
+  const Scalar slack = std::numeric_limits<Scalar>::epsilon() * Scalar(100);
+  for (const Scalar end : {bounds.lower(0), bounds.upper(0)}) {
+    State<1, Scalar> state{Vector<1, Scalar>(end), Vector<1, Scalar>(Scalar(0))};
+    ASSERT_EQ(complaint([&] { limits.require_viable(state); }), "") << end;
+    const bool up = end == bounds.upper(0);
+    for (int i = 0; i < 100; ++i) {
+      const auto box = limits.box(state);
+      const Scalar u = up ? box.upper(0) : box.lower(0);
+      if constexpr (kLevel == Level::kAcceleration) {
+        state.q(0) += tick * (state.qd(0) + tick / Scalar(2) * u);
+        state.qd(0) += tick * u;
+      } else {
+        state.q(0) += tick * u;
+        state.qd(0) = u;
+      }
+      ASSERT_LE(up ? state.q(0) - end : end - state.q(0), slack * std::max(Scalar(1), std::abs(end)));
+      ASSERT_LE(std::abs(state.qd(0)), std::sqrt(slack) * Scalar(joint.acceleration)) << i;
+    }
+  }
+}
+TEST(Limits, allow_rest_on_the_ends_of_every_range) {
+  std::vector<JointBounds<>> joints;
+  for (const presets::Preset& preset : presets::kAll) {
+    for (const Joint<>& joint : preset.chain().joints) joints.push_back(joint.bounds);
+  }
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const double middle = random.uniform(-3.0, 3.0);
+    const double reach = random.uniform(0.01, 3.0);
+    joints.push_back({middle - reach, middle + reach, random.uniform(0.1, 10.0), random.uniform(0.1, 100.0)});
+  }
+  for (JointBounds<>& joint : joints) {
+    if (!std::isfinite(joint.lower)) continue;
+    if (!std::isfinite(joint.acceleration)) joint.acceleration = 10.0;
+    expect_rest_on_both_ends<Level::kAcceleration, double>(joint);
+    expect_rest_on_both_ends<Level::kVelocity, double>(joint);
+    expect_rest_on_both_ends<Level::kAcceleration, float>(joint);
+    expect_rest_on_both_ends<Level::kVelocity, float>(joint);
+  }
+  auto unbounded = JointLimits<1>::none(1);
+  unbounded.set(0, {-JointBounds<>::kNone, JointBounds<>::kNone, 0.3, 10.0});
+  const Limits<Level::kAcceleration, 1> limits(unbounded, kTick);
+  EXPECT_EQ(complaint([&] { limits.require_viable({Vector<1>(0.0), Vector<1>(std::nextafter(0.3, 1.0))}); }), "");
+  EXPECT_NE(complaint([&] { limits.require_viable({Vector<1>(0.0), Vector<1>(0.3 + 1e-12)}); }), "");
 }
 
 /// Position-dependent velocity bounds of the kind that Franka prescribes for its FR3.

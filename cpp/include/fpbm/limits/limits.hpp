@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
@@ -59,14 +60,19 @@ class Limits {
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
 
-  /// Throws std::invalid_argument unless the state is viable.
+  /// Throws std::invalid_argument unless the state is viable, up to round-off: a tracker's own state is.
   void require_viable(const State<N, Scalar>& state) const {
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {
-      if (!(bounds_.lower(i) <= state.q(i) && state.q(i) <= bounds_.upper(i))) {
+      const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
+      const Scalar slack = round_off(i, q);
+      if (!(std::abs(state.q(i) - q) <= slack)) {
         validation::fail(validation::element("q0", i), static_cast<double>(state.q(i)), "within the joint's range");
       }
-      if (!viable(i, state.q(i), state.qd(i))) {
-        validation::fail(validation::element("qd0", i), static_cast<double>(state.qd(i)),
+      const Scalar qd = state.qd(i);
+      const Scalar margin = slack / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::abs(qd);
+      const Scalar slower = qd - std::clamp(qd, -margin, margin);
+      if (!viable(i, q, slower)) {
+        validation::fail(validation::element("qd0", i), static_cast<double>(qd),
                          "slow enough for the joint to stop within its bounds");
       }
     }
@@ -124,6 +130,15 @@ class Limits {
 
   [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
     return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
+  }
+
+  /// Round-off of a joint's position and its distance to the ends of its range.
+  [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
+    Scalar size = std::abs(q);
+    for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
+      if (std::isfinite(end)) size += std::abs(end);
+    }
+    return Scalar(16) * std::numeric_limits<Scalar>::epsilon() * size;
   }
 
   void require_ordered(Eigen::Index i) const {

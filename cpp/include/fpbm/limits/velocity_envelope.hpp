@@ -36,7 +36,8 @@ class VelocityEnvelopes {
 
   [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
     const Scalar p = qd + offset_(i);
-    return q <= rest_(i) && (!(p > Scalar(0)) || p * p <= Scalar(2) * deceleration_(i) * (end_(i) - q));
+    // At rest the envelope holds wherever q is; computed, end − q may have lost the digits that say so.
+    return q <= rest_(i) && (qd <= Scalar(0) || p * p <= Scalar(2) * deceleration_(i) * (end_(i) - q));
   }
 
   /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
