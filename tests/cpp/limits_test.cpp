@@ -217,14 +217,15 @@ TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
   expect_invariance<Level::kVelocity>();
 }
 
-/// A joint may begin at rest on either end of its range, and is not pushed beyond it.
+/// A joint may begin at rest on either end of its range, and is not pushed beyond it, whatever its units and the tick.
 template <Level kLevel, typename Scalar>
-void expect_rest_on_both_ends(const JointBounds<>& joint) {
+void expect_rest_on_both_ends(const JointBounds<>& joint, double seconds) {
   auto bounds = JointLimits<1, Scalar>::none(1);
   bounds.set(0, {Scalar(joint.lower), Scalar(joint.upper), Scalar(joint.velocity), Scalar(joint.acceleration)});
-  const auto tick = static_cast<Scalar>(kTick);
+  const auto tick = static_cast<Scalar>(seconds);
   const Limits<kLevel, 1, Scalar> limits(bounds, tick);
-  const Scalar slack = std::numeric_limits<Scalar>::epsilon() * Scalar(100);
+  const Scalar size = std::abs(bounds.lower(0)) + std::abs(bounds.upper(0));
+  const Scalar slack = std::numeric_limits<Scalar>::epsilon() * Scalar(100) * size;
   for (const Scalar end : {bounds.lower(0), bounds.upper(0)}) {
     State<1, Scalar> state{Vector<1, Scalar>(end), Vector<1, Scalar>(Scalar(0))};
     ASSERT_EQ(complaint([&] { limits.require_viable(state); }), "") << end;
@@ -239,8 +240,8 @@ void expect_rest_on_both_ends(const JointBounds<>& joint) {
         state.q(0) += tick * u;
         state.qd(0) = u;
       }
-      ASSERT_LE(up ? state.q(0) - end : end - state.q(0), slack * std::max(Scalar(1), std::abs(end)));
-      ASSERT_LE(std::abs(state.qd(0)), std::sqrt(slack) * Scalar(joint.acceleration)) << i;
+      ASSERT_LE(up ? state.q(0) - end : end - state.q(0), slack);
+      ASSERT_LE(std::abs(state.qd(0)), slack / tick) << i;
     }
   }
 }
@@ -258,10 +259,13 @@ TEST(Limits, allow_rest_on_the_ends_of_every_range) {
   for (JointBounds<>& joint : joints) {
     if (!std::isfinite(joint.lower)) continue;
     if (!std::isfinite(joint.acceleration)) joint.acceleration = 10.0;
-    expect_rest_on_both_ends<Level::kAcceleration, double>(joint);
-    expect_rest_on_both_ends<Level::kVelocity, double>(joint);
-    expect_rest_on_both_ends<Level::kAcceleration, float>(joint);
-    expect_rest_on_both_ends<Level::kVelocity, float>(joint);
+    const double unit = std::pow(10.0, random.uniform(-3.0, 3.0));  // Small arms, and others in millimetres.
+    for (double* bound : {&joint.lower, &joint.upper, &joint.velocity, &joint.acceleration}) *bound *= unit;
+    const double tick = std::pow(10.0, random.uniform(-4.0, -2.0));
+    expect_rest_on_both_ends<Level::kAcceleration, double>(joint, tick);
+    expect_rest_on_both_ends<Level::kVelocity, double>(joint, tick);
+    expect_rest_on_both_ends<Level::kAcceleration, float>(joint, tick);
+    expect_rest_on_both_ends<Level::kVelocity, float>(joint, tick);
   }
   auto unbounded = JointLimits<1>::none(1);
   unbounded.set(0, {-JointBounds<>::kNone, JointBounds<>::kNone, 0.3, 10.0});

@@ -132,7 +132,7 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
   }
 
-  /// Round-off of a joint's position and its distance to the ends of its range.
+  /// Round-off of joint i's position and of its distance to the ends of its range [rad] or [m].
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);
     for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
