@@ -1,0 +1,213 @@
+#include "fpbm/limits/saturation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "support/arms.hpp"
+#include "support/linear_program.hpp"
+
+/// Saturation in the null space does as much of the task as a linear program, along the task's line, within the box.
+namespace fpbm::test {
+namespace {
+
+/// A box, a motion to rest inside it, and a desired motion.
+struct Problem {
+  Eigen::MatrixXd J;
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+  Eigen::VectorXd rest;
+  Eigen::VectorXd desired;
+};
+
+template <int M, int N, typename Scalar>
+[[nodiscard]] Saturated<Eigen::Dynamic> saturate_as(const Problem& problem) {
+  const auto cast = [](const Eigen::VectorXd& v) { return Vector<N, Scalar>(v.cast<Scalar>()); };
+  const Box<N, Scalar> box{cast(problem.lower), cast(problem.upper)};
+  const Vector<N, Scalar> unit = (box.upper - box.lower).cwiseMax(Scalar(1e-3));
+  const Matrix<M, N, Scalar> J = problem.J.cast<Scalar>();
+  const auto found = NullSpaceSaturation<M, N, Scalar>(J, unit)(box, cast(problem.rest), cast(problem.desired));
+  return {found.u.template cast<double>(), static_cast<double>(found.scale), found.joints, found.passes};
+}
+
+[[nodiscard]] Saturated<Eigen::Dynamic> saturate(const Problem& problem) {
+  constexpr int N = Eigen::Dynamic;
+  switch (problem.J.rows()) {
+    case 1: return saturate_as<1, N, double>(problem);
+    case 2: return saturate_as<2, N, double>(problem);
+    case 3: return problem.J.cols() == 7 ? saturate_as<3, 7, double>(problem) : saturate_as<3, N, double>(problem);
+    case 4: return saturate_as<4, N, double>(problem);
+    case 5: return saturate_as<5, N, double>(problem);
+    default: return problem.J.cols() == 6 ? saturate_as<6, 6, double>(problem) : saturate_as<6, N, double>(problem);
+  }
+}
+
+/// Bounds of random widths about 0, a fifth of them with rest on them, and a desired motion mostly too large.
+void fill(Random& random, Problem& problem) {
+  const Eigen::Index n = problem.J.cols();
+  problem.lower = random.uniform(n, -3.0, -0.5);
+  problem.upper = random.uniform(n, 0.5, 3.0);
+  problem.rest = random.uniform(n, -0.4, 0.4);
+  problem.desired = std::pow(10.0, random.uniform(0.0, 1.5)) * random.uniform(n, -1.0, 1.0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double draw = random.uniform(0.0, 1.0);
+    if (draw < 0.1) problem.rest(i) = problem.lower(i);
+    if (draw > 0.9) problem.rest(i) = problem.upper(i);
+  }
+}
+
+struct Tally {
+  const char* name;
+  int all = 0;
+  int slowed = 0;
+  int apart = 0;  ///< By more than 1e-6.
+  int passes = 0;
+  double least = 1.0;  ///< s as a share of the linear program's.
+  double off = 0.0;    ///< Of the task's line [rad].
+
+  void check(const Problem& problem) {
+    const auto found = saturate(problem);
+    ASSERT_TRUE((problem.lower.array() <= found.u.array()).all() && (found.u.array() <= problem.upper.array()).all());
+    ASSERT_TRUE(found.scale >= 0.0 && found.scale <= 1.0);
+    const double most = largest_scale(problem.J, problem.lower, problem.upper, problem.rest, problem.desired);
+    const Eigen::VectorXd task = problem.J * (problem.desired - problem.rest);
+    const Eigen::VectorXd done = problem.J * (found.u - problem.rest);
+    // Round-off of the sums in J u stands beside the angle where little of the task is left.
+    const double round_off = 1e-14 * problem.J.norm() * (problem.upper - problem.lower).norm();
+    const double away = (done - found.scale * task).norm();
+    off = std::max(off, (away - round_off) / std::max(found.scale * task.norm(), 1e-300));
+    ASSERT_LE(away, 1e-9 * found.scale * task.norm() + round_off);
+    ASSERT_LE(found.scale, most * (1.0 + 1e-9) + 1e-12);
+    ++all;
+    if (found.scale < 1.0) ++slowed;
+    passes = std::max(passes, found.passes);
+    if (found.scale < most - 1e-6 * std::max(most, 1e-3)) ++apart;
+    least = std::min(least, (found.scale + 1e-9) / (most + 1e-9));
+  }
+
+  ~Tally() {
+    std::printf(
+        "%s: %d problems, %d slowed, %d miss the optimum by more than 1e-6, the worst has %.6f of it; "
+        "off the line by %.1e at most; %d passes at most\n",
+        name, all, slowed, apart, least, std::max(off, 0.0), passes);
+    EXPECT_LE(apart, all / 1000);
+    EXPECT_GE(least, 0.99);
+  }
+};
+
+template <typename Space, typename Arm>
+void check_arm(const char* name, const Arm& arm, int count) {
+  constexpr int N = Arm::kDof;
+  Random random(5);
+  Tally tally{name};
+  for (int k = 0; k < trials(count); ++k) {
+    Kinematics<Space, N> kinematics;
+    arm.kinematics(Vector<N>(random.uniform(arm.dof(), -2.8, 2.8)), kinematics);
+    Problem problem{kinematics.J, {}, {}, {}, {}};
+    fill(random, problem);
+    SCOPED_TRACE(name + std::string(", problem ") + std::to_string(k));
+    ASSERT_NO_FATAL_FAILURE(tally.check(problem));
+  }
+}
+
+TEST(Saturation, is_optimal_on_arms) {
+  for (const presets::Preset& preset : presets::kAll) {
+    const auto arm = any_arm(preset.chain());
+    check_arm<Pose>((std::string(preset.name) + " pose").c_str(), arm, 8000);
+    check_arm<Position<3>>((std::string(preset.name) + " position").c_str(), arm, 8000);
+  }
+  check_arm<Pose>("rail pose", any_arm(panda_on_rail()), 4000);
+  for (int n = 2; n <= 7; ++n) {
+    const auto arm = any_planar_arm(Vector<Eigen::Dynamic>::Ones(n));
+    check_arm<Position<2>>(("planar " + std::to_string(n)).c_str(), arm, 4000);
+    if (n > 2) check_arm<PlanarPose>(("planar pose " + std::to_string(n)).c_str(), arm, 4000);
+  }
+}
+
+TEST(Saturation, is_optimal_at_every_rank) {
+  for (const char* kind : {"full rank", "zero column", "column of round-off", "small column", "repeated columns",
+                           "opposite columns", "deficient rank", "zero"}) {
+    Random random(11);
+    Tally tally{kind};
+    for (int k = 0; k < trials(8000); ++k) {
+      const Eigen::Index m = 1 + k % 6;
+      const Eigen::Index n = m + (k / 6) % 5;
+      Problem problem{random.uniform(m, n, -3.0, 3.0), {}, {}, {}, {}};
+      Eigen::MatrixXd& J = problem.J;
+      const Eigen::Index j = k % n;
+      const std::string name = kind;
+      if (name == "zero column") J.col(j).setZero();
+      if (name == "column of round-off") J.col(j) *= 1e-17;
+      if (name == "small column") J.col(j) *= 1e-4;
+      if (name == "repeated columns") J.col(j) = J.col((j + 1) % n).eval();
+      if (name == "opposite columns") J.col(j) = -2.0 * J.col((j + 1) % n).eval();
+      if (name == "deficient rank") J = (random.uniform(m, m - 1, -3.0, 3.0) * J.topRows(m - 1)).eval();
+      if (name == "zero") J.setZero();
+      fill(random, problem);
+      SCOPED_TRACE(name + ", problem " + std::to_string(k));
+      ASSERT_NO_FATAL_FAILURE(tally.check(problem));
+    }
+  }
+}
+
+/// Random problems of the kind that the tests of SNS-IK draw (RethinkRobotics-opensource/sns_ik), each with a share of
+/// the task that is known to be feasible: J q̈ + J̇ q̇ = s ẍ at acceleration level, J q̇ = s ẋ at velocity level.
+struct SnsBounds {
+  double J;
+  double least;
+  double most;
+  double drift;
+};
+
+void check_sns(const SnsBounds& like) {
+  Random random(75);
+  int checked = 0;
+  for (int k = 0; k < trials(10000); ++k) {
+    const auto m = static_cast<Eigen::Index>(random.uniform(1.0, 6.999));
+    const auto n = static_cast<Eigen::Index>(random.uniform(static_cast<double>(m), static_cast<double>(m) + 4.999));
+    Problem problem{random.uniform(m, n, -like.J, like.J),
+                    random.uniform(n, -like.most, -like.least),
+                    random.uniform(n, like.least, like.most),
+                    Eigen::VectorXd::Zero(n),
+                    {}};
+    Eigen::VectorXd u(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double draw = random.uniform(0.0, 1.0);
+      u(i) = draw < 0.1   ? problem.lower(i)
+             : draw > 0.9 ? problem.upper(i)
+                          : random.uniform(problem.lower(i), problem.upper(i));
+    }
+    const Eigen::VectorXd drift = random.uniform(m, -like.drift, like.drift);
+    const double known = std::min(1.0, random.uniform(0.2, 1.2));
+    const Eigen::VectorXd task = (problem.J * u + drift) / known;
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> J(problem.J);
+    if (like.drift > 0.0) {  // A rest motion that cancels the drift, where the box holds one.
+      problem.desired = J.solve(-drift);
+      const auto rest = saturate(problem);
+      if (rest.scale < 1.0) continue;
+      problem.rest = rest.u;
+    }
+    problem.desired = J.solve(task - drift);
+    const auto found = saturate(problem);
+    SCOPED_TRACE("problem " + std::to_string(k));
+    ++checked;
+    ASSERT_LE((problem.J * found.u + drift - found.scale * task).cwiseAbs().maxCoeff(), 1e-10);
+    ASSERT_GE(found.scale, known - 1e-9);
+    ASSERT_TRUE((problem.lower.array() <= found.u.array()).all() && (found.u.array() <= problem.upper.array()).all());
+  }
+  EXPECT_GE(checked, trials(10000) * 8 / 10);
+}
+
+TEST(Saturation, solves_the_random_problems_of_sns_ik_in_acceleration) {
+  check_sns({3.0, 1.0, 3.0, 1.0});
+}
+TEST(Saturation, solves_the_random_problems_of_sns_ik_in_velocity) {
+  check_sns({2.0, 0.5, 5.0, 0.0});
+}
+
+}  // namespace
+}  // namespace fpbm::test

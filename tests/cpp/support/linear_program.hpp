@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace fpbm::test {
+
+/// Largest cᵀx subject to Ax ≤ b, where b ≥ 0 and the optimum is finite: the simplex method on a dense tableau, by
+/// Bland's rule, in long double. Slow, plain and certain.
+[[nodiscard]] double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// Largest s ≤ 1 for which some u in [lower, upper] has J u = J rest + s J (desired − rest); rest lies in the box.
+[[nodiscard]] double largest_scale(const Eigen::MatrixXd& J, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                                   const Eigen::VectorXd& rest, const Eigen::VectorXd& desired);
+
+}  // namespace fpbm::test
