@@ -2,18 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "fpbm/model/serial_arm.hpp"
-#include "support/random.hpp"
+#include "fpbm/realtime/tracker.hpp"
+#include "support/arms.hpp"
 
-/// The arms of presets.hpp against models from other sources, and Denavit-Hartenberg tables against products of their
-/// factors.
+/// The arms of presets.hpp against models from other sources and in a control loop as they come, and
+/// Denavit-Hartenberg tables against products of their factors.
 namespace fpbm::test {
 namespace {
 
+constexpr int kOpen = Eigen::Dynamic;
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kDegree = kHalfTurn / 180.0;
 
@@ -28,13 +31,15 @@ Matrix34 tip_of(const Chain<>& chain, const Vector<N>& q) {
   return tip;
 }
 
-void expect_tip(const Chain<>& chain, const Vector<7>& q, const std::vector<double>& rows, double tolerance = 1e-12) {
+template <int N>
+void expect_tip(const Chain<>& chain, const Vector<N>& q, const std::vector<double>& rows, double tolerance = 1e-12) {
   const Matrix34 expected = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data());
-  EXPECT_LE((tip_of<7>(chain, q) - expected).cwiseAbs().maxCoeff(), tolerance) << q.transpose();
+  EXPECT_LE((tip_of<N>(chain, q) - expected).cwiseAbs().maxCoeff(), tolerance) << q.transpose();
 }
 
-void expect_both_ways(const Vector<7>& lower, const Vector<7>& upper, const Vector<7>& expected, double tolerance) {
-  for (int i = 0; i < 7; ++i) {
+template <int N>
+void expect_both_ways(const Vector<N>& lower, const Vector<N>& upper, const Vector<N>& expected, double tolerance) {
+  for (int i = 0; i < N; ++i) {
     EXPECT_NEAR(upper(i), expected(i), tolerance) << i;
     EXPECT_EQ(lower(i), -upper(i)) << i;
   }
@@ -51,16 +56,16 @@ std::vector<std::string> names_of(const Chain<>& chain) {
 TEST(Presets, panda_agrees_with_other_models) {
   const Chain<> panda = presets::panda();
   // clang-format off
-  expect_tip(panda, Vector<7>::Zero(), {
+  expect_tip<7>(panda, Vector<7>::Zero(), {
       1.0, 0.0, 0.0, 0.088,
       0.0, -1.0, 0.0, 0.0,
       0.0, 0.0, -1.0, 0.926});
   const Vector<7> ready{0.0, -kHalfTurn / 4, 0.0, -0.75 * kHalfTurn, 0.0, kHalfTurn / 2, kHalfTurn / 4};
-  expect_tip(panda, ready, {
+  expect_tip<7>(panda, ready, {
       std::sqrt(0.5), -std::sqrt(0.5), 0.0, 0.306890566592941,
       -std::sqrt(0.5), -std::sqrt(0.5), 0.0, 0.0,
       0.0, 0.0, -1.0, 0.590282052302839});
-  expect_tip(panda, {0.5, -1.0, 1.5, -2.0, -0.5, 2.5, -1.5}, {
+  expect_tip<7>(panda, {0.5, -1.0, 1.5, -2.0, -0.5, 2.5, -1.5}, {
       -0.0945820042185657, -0.850408580677225, 0.517551437432596, -0.397827255325499,
       -0.137846378738888, 0.526061549688126, 0.839200584966611, 0.458305614445778,
       -0.985927289584062, 0.0080306818063453, -0.166981699006661, 0.462365503028319});
@@ -94,51 +99,52 @@ TEST(Presets, panda_reaches_farthest_where_its_manufacturer_says) {
   EXPECT_GT(farthest, reach(kElbowFlip + 0.01));
 }
 
-/// Poses: the joint frames of mujoco_menagerie's iiwa14.xml, by Pinocchio 4.1.0. Bounds: Drake, iiwa_constants.cc, and
-/// lbr_fri_ros2_stack, joint_limits.yaml.
+/// Poses: the joint frames of mujoco_menagerie's iiwa14.xml, by Pinocchio 4.1.0. Bounds: Drake, iiwa_constants.cc and
+/// pull request 20921, and lbr_fri_ros2_stack, joint_limits.yaml.
 TEST(Presets, iiwa14_agrees_with_other_models) {
   const Chain<> iiwa14 = presets::iiwa14();
   // clang-format off
-  expect_tip(iiwa14, Vector<7>::Zero(), {
+  expect_tip<7>(iiwa14, Vector<7>::Zero(), {
       1.0, 0.0, 0.0, 0.0,
       0.0, 1.0, 0.0, 0.0,
       0.0, 0.0, 1.0, 1.306});
   const Vector<7> bent{0.0, kHalfTurn / 4, 0.0, -kHalfTurn / 2, 0.0, kHalfTurn / 4, 0.0};
-  expect_tip(iiwa14, bent, {
+  expect_tip<7>(iiwa14, bent, {
       -1.0, 0.0, 0.0, 0.579827560572968,
       0.0, 1.0, 0.0, 0.0,
       0.0, 0.0, -1.0, 0.248142135623731});
-  expect_tip(iiwa14, {0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5}, {
+  expect_tip<7>(iiwa14, {0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5}, {
       0.0110649205805657, -0.327300888465268, 0.944855383612957, -0.22991831530967,
       0.108567593576908, -0.938933994800224, -0.326521103503905, 0.181632451593342,
       0.994027487123702, 0.106193605355194, 0.0251450397533994, 0.521806959737738});
   // clang-format on
   const JointLimits<7> limits = SerialArm<7>(iiwa14).limits();
-  expect_both_ways(limits.lower, limits.upper, kDegree * Vector<7>(170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 175.0),
-                   1e-15);
+  expect_both_ways<7>(limits.lower, limits.upper, kDegree * Vector<7>(170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 175.0),
+                      1e-15);
   const Vector<7> drake{1.483529, 1.483529, 1.745329, 1.308996, 2.268928, 2.356194, 2.356194};
   EXPECT_LE((limits.velocity - drake).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_TRUE((limits.acceleration.array() == JointBounds<>::kNone).all());
+  EXPECT_EQ(limits.acceleration, Vector<7>(8.57, 8.57, 8.74, 11.36, 12.23, 15.72, 15.72));
   EXPECT_EQ(names_of(iiwa14).front(), "joint_a1");
   EXPECT_EQ(names_of(iiwa14).back(), "joint_a7");
 }
 
 /// Poses: the joint frames of mujoco_menagerie's gen3.xml, by Pinocchio 4.1.0, and table 94 of the User Guide, R07, as
-/// it is printed: rounded to 0.1 mm. Bounds of position: menagerie's.
+/// it is printed: rounded to 0.1 mm. Bounds of position: menagerie's; of acceleration: ros_kortex,
+/// hard_joint_limits.yaml.
 TEST(Presets, gen3_agrees_with_other_models) {
   const Chain<> gen3 = presets::gen3();
   const Vector<7> home = kDegree * Vector<7>(0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0);
   const Vector<7> generic{0.5, -1.0, 1.5, -2.0, -0.5, 2.0, -1.5};
   // clang-format off
-  expect_tip(gen3, Vector<7>::Zero(), {
+  expect_tip<7>(gen3, Vector<7>::Zero(), {
       1.0, 0.0, 0.0, 0.0,
       0.0, 1.0, 0.0, -0.0248501,
       0.0, 0.0, 1.0, 1.187385});
-  expect_tip(gen3, home, {
+  expect_tip<7>(gen3, home, {
       0.0, 0.0, 1.0, 0.456665189948651,
       1.0, 0.0, 0.0, 0.0013501,
       0.0, 1.0, 0.0, 0.433724314026701});
-  expect_tip(gen3, generic, {
+  expect_tip<7>(gen3, generic, {
       0.635978200885924, 0.617126787562068, -0.463342482480532, -0.176920240590453,
       -0.582916680056964, 0.777621605124216, 0.235611509386536, 0.404261775297256,
       0.505707298849114, 0.120246277769238, 0.854283887576825, 0.556623398531648});
@@ -166,9 +172,61 @@ TEST(Presets, gen3_agrees_with_other_models) {
     EXPECT_EQ(limits.lower(i), -limits.upper(i)) << i;
     EXPECT_DOUBLE_EQ(limits.velocity(i), (i < 4 ? 79.64 : 69.91) * kDegree) << i;
   }
-  EXPECT_TRUE((limits.acceleration.array() == kAny).all());
+  EXPECT_EQ(limits.acceleration, Vector<7>(4.94, 4.94, 4.94, 4.94, 9.5, 9.5, 9.5));
   EXPECT_EQ(names_of(gen3).front(), "joint_1");
   EXPECT_EQ(names_of(gen3).back(), "joint_7");
+}
+
+/// The posture farthest from singular ones, of a hundred in the middle of the joints' ranges.
+Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
+  const Vector<kOpen> lower = arm.limits().lower.cwiseMax(-3.0);
+  const Vector<kOpen> upper = arm.limits().upper.cwiseMin(3.0);
+  Random random(5);
+  Vector<kOpen> best = lower;
+  double most = -1.0;
+  for (int i = 0; i < 100; ++i) {
+    const Vector<kOpen> share = random.uniform(arm.dof(), 0.2, 0.8);
+    const Vector<kOpen> q = lower + share.cwiseProduct(upper - lower);
+    Kinematics<Pose, kOpen> kinematics;
+    arm.kinematics(q, kinematics);
+    const double open = manipulability(kinematics.J);
+    if (open > most) best = q;
+    most = std::max(most, open);
+  }
+  return best;
+}
+
+template <typename Space, typename Scheme>
+void expect_to_reach_a_near_target(const AnyArm<Position<3>>& arm, const Scheme& scheme) {
+  Tracker tracker(arm, Space{}, scheme, open_posture(arm));
+  Vector<Space::kRows> way = Vector<Space::kRows>::Zero();
+  way.template head<3>() = Vector<3>(0.02, -0.03, 0.01);
+  const auto target = Reference<Space>::hold(Space::template displace<double>(tracker.tip(), way));
+  const JointLimits<kOpen>& bounds = arm.limits();
+  for (int i = 0; i < 1000; ++i) {
+    const auto tick = tracker.tick(target);
+    ASSERT_FALSE(failed(tick.status)) << message(tick.status);
+    ASSERT_TRUE((tick.q.array() >= bounds.lower.array() - 1e-9).all());
+    ASSERT_TRUE((tick.q.array() <= bounds.upper.array() + 1e-9).all());
+    ASSERT_TRUE((tick.qd.array().abs() <= bounds.velocity.array() + 1e-9).all());
+    ASSERT_TRUE((tick.qdd.array().abs() <= bounds.acceleration.array() + 1e-9).all());
+  }
+  EXPECT_LE(Space::template difference<double>(target.x, tracker.tip()).norm(), 1e-3);
+}
+
+/// With the bounds that it comes with, at both levels.
+TEST(Presets, run_in_a_control_loop_as_they_come) {
+  for (const presets::Preset& known : presets::kAll) {
+    SCOPED_TRACE(known.name);
+    const AnyArm<Position<3>> arm = any_arm(known.chain());
+    EXPECT_TRUE(arm.limits().velocity.allFinite() && arm.limits().acceleration.allFinite());
+    const Vector<kOpen> ones = Vector<kOpen>::Ones(arm.dof());
+    const auto z = NullSpace<kOpen>{}.with_damping(2.0);
+    EXPECT_NO_THROW((expect_to_reach_a_near_target<Position<3>>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
+    EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, FPBM<kOpen>(0.6, ones, 20.0, 100.0, z))));
+    EXPECT_NO_THROW((expect_to_reach_a_near_target<Position<3>>(arm, WMVN<kOpen>(ones, 10.0))));
+    EXPECT_NO_THROW((expect_to_reach_a_near_target<Pose>(arm, WMVN<kOpen>(ones, 10.0))));
+  }
 }
 
 Eigen::Matrix4d along(int axis, double distance) {

@@ -8,6 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fpbm_cpp as fp
+from fpbm_cpp.arms import PRESETS
+from fpbm_cpp.job.motion import READY
 
 PANDA = fp.SerialArm.preset("panda")
 
@@ -69,6 +71,25 @@ def test_an_arm_describes_itself():
     assert hash(again) == hash(PANDA)
     assert fp.SerialArm.preset("iiwa14") != PANDA
     assert fp.SerialArm([fp.Joint(), fp.Joint()]).joint_names == ["joint_1", "joint_2"]
+
+
+@pytest.mark.parametrize("task", ["position", "pose"])
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_runs_in_a_control_loop_as_it_comes(name, level, task):
+    arm, q0 = fp.SerialArm.preset(name), READY[name]
+    limits, ones = arm.limits, np.ones(arm.dof)
+    scheme = fp.WMVN(ones, k=10) if level == "velocity" else fp.FPBM(0.6, ones, 20, 100, null_damping=2)
+    tracker = fp.Tracker(arm, scheme, q0, task=task)
+    target = np.array(tracker.tip)
+    position = target[:3, 3] if task == "pose" else target
+    position += [0.02, -0.03, 0.01]
+    for _ in range(1000):
+        tick = tracker.tick(target)
+        assert np.all((limits.lower - 1e-9 <= tick.q) & (tick.q <= limits.upper + 1e-9))
+        assert np.all(np.abs(tick.qd) <= limits.velocity + 1e-9)
+        assert np.all(np.abs(tick.qdd) <= limits.acceleration + 1e-9)
+    assert np.linalg.norm(tick.error) < 1e-3
 
 
 def test_followers_are_no_degrees_of_freedom():
