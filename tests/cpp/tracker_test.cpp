@@ -430,8 +430,10 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   q0(3) = 0.5;
   EXPECT_EQ(complaint([&] { Tracker(panda(), Pose{}, settling(), q0); }),
             "q0[3] = 0.5: must be within the joint's range");
-  const SerialArm<7> iiwa(presets::iiwa14());
-  EXPECT_EQ(complaint([&] { Tracker(iiwa, Pose{}, settling(), bent()); }),
+  Chain<> chain = presets::panda();
+  for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
+  const SerialArm<7> unbounded(chain);
+  EXPECT_EQ(complaint([&] { Tracker(unbounded, Pose{}, settling(), bent()); }),
             "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
   EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }),
             "ramp = 0: must be positive and finite");

@@ -9,7 +9,9 @@
 
 /// Arms as their makers specify them, from the base frame to the flange frame.
 ///
-/// Each is a chain. Build a SerialArm<7> from it, or change it first: chain.tip = chain.tip * tool adds a tool.
+/// Each is a chain. Build a SerialArm<7> from it, or change it first: chain.tip = chain.tip * tool adds a tool. All run
+/// in a Tracker as they come. Where the maker publishes no bound on acceleration, the figure here is another's, as said
+/// there: set chain.joints[i].bounds.acceleration to your own.
 namespace fpbm::presets {
 
 namespace arms {
@@ -18,14 +20,13 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kRight = 90.0 * kDegree;
 constexpr double kHalfTurn = 180.0 * kDegree;
 
-/// [deg] and [deg/s], the same both ways.
-struct Degrees {
-  double position;
-  double velocity;
+/// The same both ways.
+struct BothWays {
+  double position;      ///< [deg]
+  double velocity;      ///< [deg/s]
+  double acceleration;  ///< [rad/s²]
 
-  operator JointBounds<>() const {
-    return {-position * kDegree, position * kDegree, velocity * kDegree, JointBounds<>::kNone};
-  }
+  operator JointBounds<>() const { return {-position * kDegree, position * kDegree, velocity * kDegree, acceleration}; }
 };
 
 /// The chain with bounds, and with joints named name1, name2, …
@@ -69,8 +70,10 @@ template <typename Bounds>
 /// KUKA LBR iiwa 14 R820, 7 joints, to its flange.
 ///
 /// KUKA "LBR iiwa 7 R800, LBR iiwa 14 R820, Specification" V5 of January 2015: figure 4-4, "Working envelope", and
-/// section 4.3.2, "Axis data". It has no table of Denavit-Hartenberg parameters and no accelerations. The signs of
-/// alpha are such that positive A2 and A6, and negative A4, tilt the upright arm to +x, as on the robot.
+/// section 4.3.2, "Axis data". It has no table of Denavit-Hartenberg parameters. The signs of alpha are such that
+/// positive A2 and A6, and negative A4, tilt the upright arm to +x, as on the robot. KUKA publish no accelerations:
+/// these were measured on an arm (C. Larsen, "Including a Collaborative Robot in Digital Twin Manufacturing Systems",
+/// Chalmers 2019, table 4; by way of Drake, pull requests 16377 and 20921).
 [[nodiscard]] inline Chain<> iiwa14() {
   using arms::kRight;
   const Chain<> chain = classic_dh<double>({
@@ -83,8 +86,9 @@ template <typename Bounds>
       {0.0, kRight, 0.0},
       {0.0, 0.0, 0.126},
   });
-  const std::vector<arms::Degrees> bounds = {
-      {170.0, 85.0}, {120.0, 85.0}, {170.0, 100.0}, {120.0, 75.0}, {170.0, 130.0}, {120.0, 135.0}, {175.0, 135.0},
+  const std::vector<arms::BothWays> bounds = {
+      {170.0, 85.0, 8.57},   {120.0, 85.0, 8.57},   {170.0, 100.0, 8.74},  {120.0, 75.0, 11.36},
+      {170.0, 130.0, 12.23}, {120.0, 135.0, 15.72}, {175.0, 135.0, 15.72},
   };
   return arms::driven(chain, "joint_a", bounds);
 }
@@ -94,7 +98,8 @@ template <typename Bounds>
 /// Kinova "Gen3 Ultra lightweight robot, User Guide" R07 of 2022: table 94, "7 DoF spherical Classical DH parameters",
 /// whose row of the base is alpha of the first joint here; tables 39 and 40 for the bounds. The guide rounds lengths to
 /// 0.1 mm and leaves out the offset at joint 6; these here are from GEN3_URDF_V12 of Kinova's kortex_description, which
-/// has all digits. Bounds of acceleration depend on the mode of control: none is set.
+/// has all digits. Bounds of acceleration depend on the mode of control; these are the hard ones of Kinova's
+/// ros_kortex, gen3_move_it_config/config/7dof/hard_joint_limits.yaml.
 [[nodiscard]] inline Chain<> gen3() {
   using arms::kHalfTurn;
   using arms::kRight;
@@ -112,8 +117,9 @@ template <typename Bounds>
       {0.0, kRight, -(0.10593 + 0.061525), kHalfTurn, kEndless},
   });
   chain.tip = dh::along_x<double>({0.0, kHalfTurn});
-  const std::vector<arms::Degrees> bounds = {
-      {kAny, 79.64}, {128.9, 79.64}, {kAny, 79.64}, {147.8, 79.64}, {kAny, 69.91}, {120.3, 69.91}, {kAny, 69.91},
+  const std::vector<arms::BothWays> bounds = {
+      {kAny, 79.64, 4.94}, {128.9, 79.64, 4.94}, {kAny, 79.64, 4.94}, {147.8, 79.64, 4.94},
+      {kAny, 69.91, 9.5},  {120.3, 69.91, 9.5},  {kAny, 69.91, 9.5},
   };
   return arms::driven(chain, "joint_", bounds);
 }
