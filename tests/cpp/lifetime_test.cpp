@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <type_traits>
+
+#include "fpbm/scheme/schemes.hpp"
+#include "fpbm/sim/anchored_path.hpp"
+#include "fpbm/sim/closed_loop.hpp"
+#include "fpbm/singular/damping.hpp"
+#include "support/paper.hpp"
+
+/// What a class refers to outlives it: a temporary, which would not, is refused where the program is compiled.
+namespace fpbm::test {
+namespace {
+
+template <typename Scalar>
+class Lifetimes : public ::testing::Test {};
+
+using Scalars = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Lifetimes, Scalars, );
+
+TYPED_TEST(Lifetimes, of_a_gram_matrix_spans_its_jacobian) {
+  using J = Matrix<3, 7, TypeParam>;
+  using Transposed = Eigen::Transpose<const Matrix<7, 3, TypeParam>>;
+  using Damping = SingularDamping<TypeParam>;
+  using Gram = DampedGram<3, 7, TypeParam>;
+  EXPECT_TRUE((std::is_constructible_v<Gram, const Damping&, const J&>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, J>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J>));
+  EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed>));  // Would be converted to a temporary.
+
+  // The damping is two numbers, which it keeps.
+  J jacobian = J::Identity();
+  jacobian(2, 2) = TypeParam(0.125);
+  auto damping = Damping(TypeParam(0.5), TypeParam(2));
+  Gram gram(damping, jacobian);
+  damping = Damping::off();
+  EXPECT_EQ(gram.factor(jacobian.transpose(), TypeParam(1)), Status::kDamped);
+}
+
+TYPED_TEST(Lifetimes, of_an_anchored_path_spans_the_path) {
+  using Way = Path<Circle<TypeParam>>;
+  using Anchored = AnchoredPath<Way>;
+  using Point = Vector<2, TypeParam>;
+  EXPECT_TRUE((std::is_constructible_v<Anchored, const Way&, const Point&>));
+  EXPECT_TRUE((std::is_constructible_v<Anchored, Way&, Point>));
+  EXPECT_FALSE((std::is_constructible_v<Anchored, Way, const Point&>));
+  EXPECT_FALSE((std::is_constructible_v<Anchored, const Way, const Point&>));
+}
+
+/// In braces, which is the only way to make one, a temporary lives as long as the loop.
+TYPED_TEST(Lifetimes, of_a_closed_loop_spans_arm_and_scheme) {
+  using Arm = PlanarArm<4, TypeParam>;
+  using Scheme = AccelerationScheme<4, TypeParam>;
+  using Loop = ClosedLoop<Arm, Scheme, Position<2>>;
+  EXPECT_TRUE(std::is_aggregate_v<Loop>);
+  EXPECT_FALSE((std::is_constructible_v<Loop, Arm, Scheme>));
+}
+
+}  // namespace
+}  // namespace fpbm::test
