@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,13 @@ std::vector<std::string> names_of(const Chain<>& chain) {
   std::vector<std::string> names;
   for (const Joint<>& joint : chain.joints) names.push_back(joint.name);
   return names;
+}
+
+Chain<> preset(const std::string& name) {
+  for (const presets::Preset& known : presets::kAll) {
+    if (name == known.name) return known.chain();
+  }
+  throw std::out_of_range("no preset is named " + name);
 }
 
 /// Poses: panda.urdf of example-robot-data 6.0.0, panda_link8, by Pinocchio 4.1.0. Bounds: franka_ros,
@@ -175,6 +183,53 @@ TEST(Presets, gen3_agrees_with_other_models) {
   EXPECT_EQ(limits.acceleration, Vector<7>(4.94, 4.94, 4.94, 4.94, 9.5, 9.5, 9.5));
   EXPECT_EQ(names_of(gen3).front(), "joint_1");
   EXPECT_EQ(names_of(gen3).back(), "joint_7");
+}
+
+/// Poses: the joint frames of ur_description, default_kinematics.yaml, from base_link_inertia to tool0, as products of
+/// NumPy matrices. Bounds: ur_description, joint_limits.yaml, but for its elbow, which it halves for planners.
+void expect_universal_robot(const Chain<>& arm, const Vector<6>& speeds) {
+  const JointLimits<6> limits = SerialArm<6>(arm).limits();
+  expect_both_ways<6>(limits.lower, limits.upper, Vector<6>::Constant(2.0 * kHalfTurn), 1e-15);
+  EXPECT_LE((limits.velocity - kDegree * speeds).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_EQ(limits.acceleration, Vector<6>::Constant(5.0));
+  EXPECT_EQ(names_of(arm), (std::vector<std::string>{"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+                                                     "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"}));
+}
+TEST(Presets, ur5e_agrees_with_other_models) {
+  const Chain<> ur5e = preset("ur5e");
+  // clang-format off
+  expect_tip<6>(ur5e, Vector<6>::Zero(), {
+      1.0, 0.0, 0.0, -0.8172,
+      0.0, 0.0, -1.0, -0.2329,
+      0.0, 1.0, 0.0, 0.0628});
+  expect_tip<6>(ur5e, kHalfTurn / 2.0 * Vector<6>(0.0, -1.0, 1.0, -1.0, -1.0, 0.0), {
+      0.0, 1.0, 0.0, -0.4919,
+      1.0, 0.0, 0.0, -0.1333,
+      0.0, 0.0, -1.0, 0.4879});
+  expect_tip<6>(ur5e, {0.5, -1.0, 1.5, -2.0, -0.5, 2.5}, {
+      0.6643900267281933, -0.5963541027201674, 0.4504971437788868, -0.4820700974404498,
+      -0.07470882606675189, -0.6527365535707303, -0.7538922886860783, -0.5148506350233188,
+      0.7436427123907278, 0.4672224050721766, -0.4782245712076411, 0.2774108060042365});
+  // clang-format on
+  expect_universal_robot(ur5e, Vector<6>::Constant(180.0));
+}
+TEST(Presets, ur10e_agrees_with_other_models) {
+  const Chain<> ur10e = preset("ur10e");
+  // clang-format off
+  expect_tip<6>(ur10e, Vector<6>::Zero(), {
+      1.0, 0.0, 0.0, -1.18425,
+      0.0, 0.0, -1.0, -0.2907,
+      0.0, 1.0, 0.0, 0.06085});
+  expect_tip<6>(ur10e, kHalfTurn / 2.0 * Vector<6>(0.0, -1.0, 1.0, -1.0, -1.0, 0.0), {
+      0.0, 1.0, 0.0, -0.6914,
+      1.0, 0.0, 0.0, -0.17415,
+      0.0, 0.0, -1.0, 0.67685});
+  expect_tip<6>(ur10e, {0.5, -1.0, 1.5, -2.0, -0.5, 2.5}, {
+      0.6643900267281933, -0.5963541027201674, 0.4504971437788868, -0.6996150484372753,
+      -0.07470882606675189, -0.6527365535707303, -0.7538922886860783, -0.6971943103370378,
+      0.7436427123907278, 0.4672224050721766, -0.4782245712076411, 0.3580386784084411});
+  // clang-format on
+  expect_universal_robot(ur10e, {120.0, 120.0, 180.0, 180.0, 180.0, 180.0});
 }
 
 /// The posture farthest from singular ones, of a hundred in the middle of the joints' ranges.

@@ -227,7 +227,7 @@ def test_a_path_of_the_plane_is_laid_before_an_arm_in_space_alone() -> None:
     assert prepare({"arm": PANDA, "path": line}).job["path"].get("in_plane") is None
 
 
-@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3"])
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "gen3", "ur5e", "ur10e"])
 @pytest.mark.parametrize("task", ["position", "pose"])
 def test_every_preset_goes_its_way_by_default(name: str, task: str) -> None:
     motion = prepare({"arm": {"kind": "preset", "name": name}, "run": {"task": task}})

@@ -194,7 +194,7 @@ URDFS = {
     "Baxter": ("baxter_description/urdf/baxter.urdf", "right_hand_range_link"),
     "PR2": ("pr2_description/urdf/pr2.urdf", "r_gripper_tool_frame"),
 }
-PRESETS = ("panda", "iiwa14", "gen3")
+PRESETS = ("panda", "iiwa14", "gen3", "ur5e", "ur10e")
 
 
 @functools.cache
@@ -279,11 +279,13 @@ def test_a_position_is_the_linear_rows_of_a_pose(name):
 
 
 # URDFs in the PyPI package ManipulaPy, which come from others still. They are as exact as their digits of π: the first
-# two have twelve or more, Kinova's own has 3.1416.
+# two have twelve or more, Kinova's own has 3.1416, ur_description 1.570796327.
 OTHERS = {
     "panda": ("franka_panda/panda.urdf", "panda_link8", 1e-10),
     "iiwa14": ("kuka_iiwa/iiwa14/iiwa14.urdf", "iiwa_link_ee_kuka", 1e-10),
     "gen3": ("kinova/gen3/gen3_v12.urdf", "end_effector_link", 3e-5),
+    "ur5e": ("universal_robots/ur5e/ur5e.urdf", "tool0", 1e-9),
+    "ur10e": ("universal_robots/ur10e/ur10e.urdf", "tool0", 1e-9),
 }
 
 
@@ -295,6 +297,8 @@ def test_presets_are_the_others(name):
     file, tip, tolerance = OTHERS[name]
     path = Path(package.origin).parent / "ManipulaPy_data" / file
     links, end = read_urdf(str(path), tip)
+    if name.startswith("ur"):  # The preset's base is the controller's, from which ROS turns base_link half round.
+        links[0] = links[0]._replace(placement=frame(rotation(np.eye(3)[2], np.pi), np.zeros(3)) @ links[0].placement)
     preset = fp.SerialArm.preset(name)
     other = fp.SerialArm.from_joints(
         [fp.Joint("prismatic" if link.prismatic else "revolute", link.placement, link.axis) for link in links], end
@@ -303,9 +307,13 @@ def test_presets_are_the_others(name):
         np.testing.assert_allclose(preset.forward(q), other.forward(q), rtol=0, atol=tolerance)
         np.testing.assert_allclose(preset.jacobian(q, task="pose"), other.jacobian(q, task="pose"), atol=tolerance)
 
-    # None goes farther than the other; Kinova's URDF is wider than its guide.
+    # None goes farther than the other; Kinova's URDF is wider than its guide, and UR's halves the elbow for planners.
     limits = [limit for joint in ElementTree.parse(path).findall("joint") if (limit := joint.find("limit")) is not None]
     lower = [float(limit.get("lower", -np.inf)) for limit in limits[: preset.dof]]
     upper = [float(limit.get("upper", np.inf)) for limit in limits[: preset.dof]]
-    assert np.all(preset.limits.lower >= np.array(lower) - 1e-9)
-    assert np.all(preset.limits.upper <= np.array(upper) + 1e-9)
+    halved = [joint == "elbow_joint" for joint in preset.joint_names]
+    assert np.all(preset.limits.lower >= np.array(lower) * np.where(halved, 2, 1) - 1e-9)
+    assert np.all(preset.limits.upper <= np.array(upper) * np.where(halved, 2, 1) + 1e-9)
+    if name.startswith("ur"):
+        speeds = [float(limit.get("velocity")) for limit in limits]
+        np.testing.assert_allclose(preset.limits.velocity, speeds, rtol=1e-12)
