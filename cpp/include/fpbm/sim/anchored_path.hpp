@@ -17,10 +17,12 @@ class AnchoredPath {
   using Space = typename Path::Space;
   using Point = typename Space::template Point<Scalar>;
 
+  /// path must outlive it.
   AnchoredPath(const Path& path, const Point& anchor) noexcept
       : path_(path), anchor_(anchor), end_(anchor), time_(0), since_(0), last_(from_anchor(Time(0), Time(0))) {
     end_ = from_anchor(path.duration(), path.duration()).x;
   }
+  AnchoredPath(const Path&& path, const Point& anchor) = delete;
 
   /// Reference at t [s] of the motion, in an integrator's step that starts at since; t is clipped to T, which round-off
   /// may exceed.

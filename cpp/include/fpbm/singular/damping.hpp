@@ -57,8 +57,10 @@ class DampedGram {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
+  /// J must outlive it.
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
       : damping_(damping), J_(J) {}
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
 
   /// Factorises JW⁻¹Jᵀ + Δ, given W⁻¹Jᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
   /// Returns kDamped where Δ is not zero, or why there is no factor.
@@ -107,7 +109,7 @@ class DampedGram {
     return status == Status::kOk ? Status::kDamped : status;
   }
 
-  const SingularDamping<Scalar>& damping_;
+  SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Cholesky<M, Value> cholesky_;
   Scalar lost_{0};  ///< tr Δ/ε²: about the number of lost directions.
