@@ -1,0 +1,42 @@
+#include <fpbm/fpbm.hpp>
+
+/// Ticks of control loops in float, and nothing else, so that firmware.sh can look for arithmetic in double.
+/// Of every kind of arm, task space and level, with the objectives that are schemes themselves.
+namespace fpbm {
+
+using Serial = SerialArm<7, float>;
+using Gazing = SecondTask<AccelerationScheme<7, float>, Gaze<Serial>, Position<2>>;
+using Turning = WithRotation<InPlane<Path<Circle<float>>>>;
+
+Tick<Pose, 7, float> tick(Tracker<Serial, Pose, AccelerationScheme<7, float>>& tracker,
+                          PathFollower<Turning>& follower) {
+  return tracker.tick(follower);
+}
+
+Tick<Pose, 7, float> measured(Tracker<Serial, Pose, AccelerationScheme<7, float>>& tracker,
+                              const State<7, float>& state, const Reference<Pose, float>& reference) {
+  return tracker.resolve_measured(state.q, state.qd, reference);
+}
+
+void pause(PathFollower<Turning>& follower) {
+  follower.pause();
+}
+
+Tick<PlanarPose, 4, float> tick(Tracker<PlanarArm<4, float>, PlanarPose, VelocityScheme<4, float>>& tracker,
+                                const Reference<PlanarPose, float>& reference) {
+  return tracker.tick(reference);
+}
+
+Status resolve(const CoupledArm<6, float>& arm, const VelocityScheme<6, float>& scheme, const State<6, float>& state,
+               const Reference<Position<3>, float>& reference, Vector<6, float>& qd) {
+  Kinematics<Position<3>, 6, float> kinematics;
+  arm.kinematics(state.q, state.qd, kinematics);
+  return scheme.resolve(kinematics, reference, state, qd);
+}
+
+Status resolve(const Kinematics<Position<3>, 7, float>& kinematics, const ManipulabilityAscent<Gazing, Serial>& scheme,
+               const State<7, float>& state, const Reference<Position<3>, float>& reference, Vector<7, float>& qdd) {
+  return scheme.resolve(kinematics, reference, state, qdd);
+}
+
+}  // namespace fpbm
