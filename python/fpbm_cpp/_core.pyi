@@ -541,6 +541,6 @@ def waypoints(
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 
 MAX_DOF: int = 32
-PRESETS: tuple[str, ...] = ("panda", "iiwa14", "gen3")
+PRESETS: tuple[str, ...] = ("panda", "iiwa14", "gen3", "ur5e", "ur10e")
 TIME_LAWS: tuple[str, ...] = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"

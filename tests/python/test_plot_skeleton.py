@@ -41,7 +41,7 @@ def some_arms() -> dict[str, fp.SerialArm]:
     kinds = ["prismatic", "revolute", "continuous", "prismatic", "revolute"]
     followed = [joint("revolute"), joint("prismatic", mimic=(2, 0.5, 0.1)), joint("revolute"), joint("prismatic")]
     return {
-        **{name: fp.SerialArm.preset(name) for name in ("panda", "iiwa14", "gen3")},
+        **{name: fp.SerialArm.preset(name) for name in fp.arms.PRESETS},
         "mixed": fp.SerialArm([joint(kind) for kind in kinds], frame()),
         "followers": fp.SerialArm([*followed, joint("revolute", mimic=(0, -1.0, 0.2))], frame()),
     }

@@ -26,11 +26,14 @@ from ..schemes import Scheme
 from ..table import to_table
 from .sections import FREE, SECTIONS, JobError, RunOptions, Table, in_order, job_errors, known, make, require_sound
 
-# The hand points down, from the makers' ready postures: Franka's, 30° -90° 60° of the iiwa 14, Kinova's home [rad].
+# The hand points down, from the makers' ready postures: Franka's, 30° -90° 60° of the iiwa 14, Kinova's home, right
+# angles of UR's [rad].
 READY = {
     "panda": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
     "iiwa14": [0.0, 0.5236, 0.0, -1.5708, 0.0, 1.0472, 0.0],
     "gen3": [0.0, 0.2618, 3.1416, -2.2689, 0.0, 0.9599, 1.5708],
+    "ur5e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
+    "ur10e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
 }
 
 # How far joints of an unknown arm are bent, one way, the other or not at all [rad]; at most a quarter of their range.

@@ -9,9 +9,9 @@
 
 /// Arms as their makers specify them, from the base frame to the flange frame.
 ///
-/// Each is a chain. Build a SerialArm<7> from it, or change it first: chain.tip = chain.tip * tool adds a tool. All run
-/// in a Tracker as they come. Where the maker publishes no bound on acceleration, the figure here is another's, as said
-/// there: set chain.joints[i].bounds.acceleration to your own.
+/// Each is a chain. Build a SerialArm<7> or SerialArm<6> from it, or change it first: chain.tip = chain.tip * tool adds
+/// a tool. All run in a Tracker as they come. Where the maker publishes no bound on acceleration, the figure here is
+/// another's, as said there: set chain.joints[i].bounds.acceleration to your own.
 namespace fpbm::presets {
 
 namespace arms {
@@ -124,11 +124,54 @@ template <typename Bounds>
   return arms::driven(chain, "joint_", bounds);
 }
 
+namespace arms {
+
+/// An arm of Universal Robots, which have one shape. a of the two long links [m], d of joints 1, 4, 5 and 6 [m], speeds
+/// of the shoulder's two joints and of the four others [deg/s].
+[[nodiscard]] inline Chain<> universal_robot(const std::vector<double>& a, const std::vector<double>& d,
+                                             const std::vector<double>& speeds) {
+  Chain<> chain = classic_dh<double>({
+      // a [m], alpha [rad], d [m]
+      {0.0, kRight, d[0]},
+      {a[0], 0.0, 0.0},
+      {a[1], 0.0, 0.0},
+      {0.0, kRight, d[1]},
+      {0.0, -kRight, d[2]},
+      {0.0, 0.0, d[3]},
+  });
+  constexpr const char* kNames[] = {"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
+                                    "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint"};
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    chain.joints[i].name = kNames[i];
+    chain.joints[i].bounds = BothWays{360.0, speeds[i < 2 ? 0 : 1], 5.0};
+  }
+  return chain;
+}
+
+}  // namespace arms
+
+/// Universal Robots UR5e, 6 joints, to its flange (tool0 in ROS), from the base frame of its controller (base in ROS,
+/// which is base_link turned half round).
+///
+/// Universal Robots, "DH Parameters for calculations of kinematics and dynamics", and the user manual of the e-Series
+/// 5.8 for the bounds of position and velocity; ROS halves the elbow's range for its planners. UR publish no
+/// accelerations, the drives being bounded by torque: 5 rad/s² is the cautious figure of their ROS driver,
+/// ur_moveit_config/config/joint_limits.yaml.
+[[nodiscard]] inline Chain<> ur5e() {
+  return arms::universal_robot({-0.425, -0.3922}, {0.1625, 0.1333, 0.0997, 0.0996}, {180.0, 180.0});
+}
+
+/// Universal Robots UR10e, 6 joints, as the UR5e.
+[[nodiscard]] inline Chain<> ur10e() {
+  return arms::universal_robot({-0.6127, -0.57155}, {0.1807, 0.17415, 0.11985, 0.11655}, {120.0, 180.0});
+}
+
 /// A preset by name, for programs that learn it at run time.
 struct Preset {
   const char* name;
   Chain<> (*chain)();
 };
-inline constexpr Preset kAll[] = {{"panda", panda}, {"iiwa14", iiwa14}, {"gen3", gen3}};
+inline constexpr Preset kAll[] = {
+    {"panda", panda}, {"iiwa14", iiwa14}, {"gen3", gen3}, {"ur5e", ur5e}, {"ur10e", ur10e}};
 
 }  // namespace fpbm::presets
