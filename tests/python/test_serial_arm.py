@@ -100,6 +100,37 @@ def test_followers_are_no_degrees_of_freedom():
     np.testing.assert_allclose(fp.rotation_vector(arm.forward([0.2, 0.3])[:3, :3]), [0, 0, 0.2 + 0.5 + 0.3], atol=1e-15)
 
 
+@given(st.integers(0, 2**32 - 1))
+def test_followers_keep_their_bounds(seed):
+    rng = np.random.default_rng(seed)
+    middle = rng.uniform(-1, 1)
+    joints = [fp.Joint(lower=middle - 1, upper=middle + 2, velocity=3, acceleration=4, name="leader")]
+    for _ in range(rng.integers(1, 4)):
+        ratio, offset = rng.choice([-1, 1]) * rng.uniform(0.1, 3), rng.uniform(-1, 1)
+        low, high = ratio * middle + offset - rng.uniform(0.1, 3, 2) * [1, -1]
+        joints.append(
+            fp.Joint(lower=low, upper=high, velocity=rng.uniform(1, 5), acceleration=5, mimic=(0, ratio, offset))
+        )
+    limits = fp.SerialArm(joints).limits
+    room = []
+    for joint in joints:
+        _, ratio, offset = joint.mimic or (0, 1, 0)
+        ends = sorted([ratio * limits.lower[0] + offset, ratio * limits.upper[0] + offset])
+        room.append([ends[0] - joint.lower, joint.upper - ends[1]])
+        room[-1] += [joint.velocity - abs(ratio) * limits.velocity[0]]
+        room[-1] += [joint.acceleration - abs(ratio) * limits.acceleration[0]]
+    assert np.min(room) > -1e-12
+    np.testing.assert_allclose(np.min(room, axis=0)[2:], 0, atol=1e-12)  # No narrower than need be.
+
+
+def test_a_joint_without_room_is_named():
+    joints = [fp.Joint(name="a", lower=0, upper=1), fp.Joint(name="b", lower=3, upper=4, mimic=(0, 2.0, 0.5))]
+    with pytest.raises(
+        ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1.0* for its followers to keep"
+    ):
+        fp.SerialArm(joints)
+
+
 def test_bounds_of_a_table():
     arm = fp.SerialArm.from_dh(
         np.zeros((2, 4)),
