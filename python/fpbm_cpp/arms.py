@@ -58,7 +58,7 @@ class Joint(Data):
     name: str = parameter("'joint_1' and so on where empty.", default="")
     mimic: tuple[int, float, float] | None = parameter(
         "Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is ratio "
-        "times the other's plus offset. The joint is no degree of freedom.",
+        "times the other's plus offset. The joint is no degree of freedom; its bounds narrow the other's.",
         default=None,
     )
 

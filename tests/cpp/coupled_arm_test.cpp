@@ -16,7 +16,6 @@
 namespace fpbm::test {
 namespace {
 
-constexpr double kTick = 1e-3;
 constexpr double kSlack = 1e-9;
 constexpr double kNone = JointBounds<>::kNone;
 constexpr int kOpen = Eigen::Dynamic;

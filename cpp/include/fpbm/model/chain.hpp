@@ -21,6 +21,13 @@ struct Chain {
 
 namespace chain_check {
 
+/// How messages name joint i.
+template <typename Scalar>
+validation::Argument name_of(const Chain<Scalar>& chain, Eigen::Index i) {
+  const std::string& name = chain.joints[static_cast<std::size_t>(i)].name;
+  return name.empty() ? validation::element("joints", i) : validation::Argument("joint '" + name + "'");
+}
+
 template <typename Scalar>
 void require_transform(const validation::Argument& name, const Transform<Scalar>& transform) {
   validation::require_finite((name + ".p").text.c_str(), transform.p);
@@ -64,8 +71,7 @@ Eigen::Index require_chain(const Chain<Scalar>& chain, int n = Eigen::Dynamic) {
   if (n != Eigen::Dynamic) validation::require_size("joints", dof, n);
   for (Eigen::Index i = 0; i < dof; ++i) {
     const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
-    const validation::Argument name =
-        joint.name.empty() ? validation::element("joints", i) : validation::Argument("joint '" + joint.name + "'");
+    const validation::Argument name = chain_check::name_of(chain, i);
     chain_check::require_transform(name + ".placement", joint.placement);
     validation::require_finite((name + ".axis").text.c_str(), joint.axis);
     if (!(joint.axis.norm() > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");

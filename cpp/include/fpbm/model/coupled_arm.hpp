@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "fpbm/core/validation.hpp"
@@ -19,10 +21,9 @@ class CoupledArm {
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// A joint whose mimic names another joint follows that one, which must have a drive of its own. A follower's bounds
-  /// are not read.
-  /// Throws std::invalid_argument where the chain does not suit a SerialArm, a mimic is out of range, or the number of
-  /// joints with a drive is not N.
+  /// A joint whose mimic names another joint follows that one, which must have a drive of its own.
+  /// Throws std::invalid_argument where the chain does not suit a SerialArm, a mimic is out of range, the number of
+  /// joints with a drive is not N, or a joint cannot move without a follower that leaves its bounds.
   explicit CoupledArm(const Chain<Scalar>& chain) : chain_(without_mimics(chain)) {
     const auto length = static_cast<Eigen::Index>(chain.joints.size());
     Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> column(length);
@@ -51,9 +52,13 @@ class CoupledArm {
       A_(i, column(mimic.joint)) = mimic.ratio;
       b_(i) = mimic.offset;
     }
+    for (Eigen::Index i = 0; i < length; ++i) {
+      if (!drives(chain, i)) bound_leader(chain, i, column(chain.joints[static_cast<std::size_t>(i)].mimic.joint));
+    }
   }
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(A_.cols()); }
+  /// Bounds within which all joints of the chain keep theirs, those that follow included.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
@@ -81,6 +86,32 @@ class CoupledArm {
 
   static bool drives(const Chain<Scalar>& chain, Eigen::Index i) {
     return chain.joints[static_cast<std::size_t>(i)].mimic.joint < 0;
+  }
+
+  /// Narrows the bounds of drive k so that joint i, which follows it, keeps its own.
+  void bound_leader(const Chain<Scalar>& chain, Eigen::Index i, Eigen::Index k) {
+    const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
+    const JointBounds<Scalar>& bounds = joint.bounds;
+    const auto& [leader, ratio, offset] = joint.mimic;
+    if (ratio == Scalar(0)) {
+      if (!(bounds.lower <= offset && offset <= bounds.upper)) {
+        validation::fail(chain_check::name_of(chain, i) + ".mimic.offset", static_cast<double>(offset),
+                         "within its bounds, since its ratio is 0");
+      }
+      return;
+    }
+    Scalar& lower = limits_.lower(k);
+    Scalar& upper = limits_.upper(k);
+    const Scalar low = (bounds.lower - offset) / ratio;
+    const Scalar high = (bounds.upper - offset) / ratio;
+    lower = std::max(lower, std::min(low, high));
+    upper = std::min(upper, std::max(low, high));
+    limits_.velocity(k) = std::min(limits_.velocity(k), bounds.velocity / std::abs(ratio));
+    limits_.acceleration(k) = std::min(limits_.acceleration(k), bounds.acceleration / std::abs(ratio));
+    if (!(lower < upper)) {
+      const std::string room = "below upper = " + std::to_string(upper) + " for its followers to keep their bounds";
+      validation::fail(chain_check::name_of(chain, leader) + ".lower", static_cast<double>(lower), room.c_str());
+    }
   }
 
   static Chain<Scalar> without_mimics(Chain<Scalar> chain) {
