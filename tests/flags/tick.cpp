@@ -13,11 +13,6 @@ Tick<Pose, 7, float> tick(Tracker<Serial, Pose, AccelerationScheme<7, float>>& t
   return tracker.tick(follower);
 }
 
-Tick<Pose, 7, float> measured(Tracker<Serial, Pose, AccelerationScheme<7, float>>& tracker,
-                              const State<7, float>& state, const Reference<Pose, float>& reference) {
-  return tracker.resolve_measured(state.q, state.qd, reference);
-}
-
 void pause(PathFollower<Turning>& follower) {
   follower.pause();
 }

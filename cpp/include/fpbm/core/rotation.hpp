@@ -109,13 +109,14 @@ template <typename Scalar>
   const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const Scalar z = s.squaredNorm() / Scalar(4);
   // Even and odd powers apart: two short dependency chains in place of a long one.
-  constexpr double kEven[] = {6435.0 / 557056.0, 231.0 / 13312.0, 35.0 / 1152.0, 3.0 / 40.0, 1.0};
-  constexpr double kOdd[] = {143.0 / 10240.0, 63.0 / 2816.0, 5.0 / 112.0, 1.0 / 6.0};
-  const Scalar square = z * z;
-  Scalar even(0);
-  Scalar odd(0);
-  for (const double coefficient : kEven) even = even * square + Scalar(coefficient);
-  for (const double coefficient : kOdd) odd = odd * square + Scalar(coefficient);
+  // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
+  // double.
+  const Scalar y = z * z;
+  Scalar even = Scalar(6435.0 / 557056.0) * y + Scalar(231.0 / 13312.0);
+  even = (even * y + Scalar(35.0 / 1152.0)) * y + Scalar(3.0 / 40.0);
+  even = even * y + Scalar(1);
+  Scalar odd = Scalar(143.0 / 10240.0) * y + Scalar(63.0 / 2816.0);
+  odd = (odd * y + Scalar(5.0 / 112.0)) * y + Scalar(1.0 / 6.0);
   const Scalar sum = even + z * odd;
   Vector<3, Scalar> r = sum / Scalar(2) * s;
   const Mask<Scalar> small = R.trace() > Scalar(2) && z < Scalar(1.0 / 64.0);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -34,7 +35,7 @@ class ParameterError : public std::invalid_argument {
 }  // namespace fpbm
 
 /// What constructors require of their arguments. Each failure is a ParameterError, whose message names the argument,
-/// the index and the value.
+/// the index and the value; without exceptions, the end of the program with that message.
 namespace fpbm::validation {
 
 /// An argument, or an entry of it, and how messages name it: text begins with name.
@@ -65,10 +66,16 @@ inline Argument element(const char* argument, Eigen::Index i, Eigen::Index j) {
   return {argument, i, std::string(argument) + "[" + std::to_string(i) + ", " + std::to_string(j) + "]"};
 }
 
-/// Throws a ParameterError that says "<argument><what>".
+/// Throws a ParameterError that says "<argument><what>". Where the compiler was told to do without exceptions, says so
+/// on the standard error output and aborts.
 [[noreturn]] inline void reject(const Argument& argument, const std::string& what,
-                                double value = std::numeric_limits<double>::quiet_NaN()) {
+                                [[maybe_unused]] double value = std::numeric_limits<double>::quiet_NaN()) {
+#if defined(__cpp_exceptions)
   throw ParameterError(argument.name, argument.index, value, argument.text + what);
+#else
+  std::fprintf(stderr, "fpbm: %s\n", (argument.text + what).c_str());
+  std::abort();
+#endif
 }
 
 /// Throws a ParameterError that says "<argument> = <value>: must be <demand>".

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <stdexcept>
-
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/task/path.hpp"
@@ -20,9 +18,7 @@ class InPlane {
   InPlane(const Path& path, const Vector<3, Scalar>& u, const Vector<3, Scalar>& v) : path_(path) {
     validation::require_finite("u", u);
     validation::require_finite("v", v);
-    if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) {
-      throw std::invalid_argument("u and v: must both be nonzero");
-    }
+    if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) validation::reject("u and v", ": must both be nonzero");
     axes_.col(0) = u.normalized();
     axes_.col(1) = v.normalized();
     const Scalar cosine = axes_.col(0).dot(axes_.col(1));

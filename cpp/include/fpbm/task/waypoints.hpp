@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -58,7 +57,7 @@ class Waypoints {
         std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
                  std::max(std::sqrt(peak.acceleration / bounds.acceleration),
                           std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
-    if (!(duration > Scalar(0))) throw std::invalid_argument("bounds: at least one must limit the tip");
+    if (!(duration > Scalar(0))) validation::reject("bounds", ": at least one must limit the tip");
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
 
