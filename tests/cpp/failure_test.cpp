@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -167,6 +168,83 @@ TEST_P(Failure, does_not_stop_a_motion_well_inside_the_workspace) {
 
 INSTANTIATE_TEST_SUITE_P(every, Failure, ::testing::ValuesIn(contenders()),
                          [](const auto& each) { return each.param.name; });
+
+/// What the steps' length made of a motion: errors in largest entries of J, its lever arms.
+struct Accuracy {
+  Status status;
+  double error = 0.0;  ///< Largest of the tip, each over the lever arm there.
+};
+
+template <typename Space, typename Arm, typename Path, typename Scheme>
+[[nodiscard]] Accuracy accuracy(const Arm& arm, const Path& path, const Scheme& scheme, const Eigen::VectorXd& q0,
+                                double dt) {
+  Accuracy result{Status::kOk};
+  const AnyPath<Space> any(path);
+  const auto record = [&](const auto& sample) noexcept {
+    result.error = std::max(result.error, sample.error.norm() / sample.J.cwiseAbs().maxCoeff());
+  };
+  const State<kOpen> start{q0, Vector<kOpen>::Zero(q0.size())};
+  const AnyScheme<Scheme::kLevel, Space> law(scheme);
+  result.status = rollout(arm, any, law, start, TimeGrid<>(path.duration(), dt), record).status;
+  return result;
+}
+
+struct AccuracyTally {
+  int fine = 0;
+  int coarse = 0;
+};
+
+/// From rest on the path, the tip error is the steps' alone. Where it exceeds 1e-4 lever arms the motion says so, and
+/// nowhere else.
+template <typename Space, typename Arm, typename Path>
+void expect_the_truth(const Arm& arm, const Path& path, double dt, Random& random, AccuracyTally& tally) {
+  const int n = arm.dof();
+  const Eigen::VectorXd q0 = random.uniform(n, -2.0, 2.0);
+  const Vector<kOpen> W = random.uniform(n, 0.5, 5.0);
+  const double k = std::pow(10.0, random.uniform(-1.0, 1.5));
+  const double alpha = random.uniform(0.0, 1.0);
+  const auto z = NullSpace<kOpen>{}.with_damping(std::pow(10.0, random.uniform(-1.0, 2.0)));
+  for (const Accuracy& run :
+       {accuracy<Space>(arm, path, WMVN<kOpen>(W), q0, dt), accuracy<Space>(arm, path, WMVN<kOpen>(W, k), q0, dt),
+        accuracy<Space>(arm, path, Balanced<kOpen>(alpha, W), q0, dt),
+        accuracy<Space>(arm, path, Balanced<kOpen>(alpha, W, z), q0, dt),
+        accuracy<Space>(arm, path, FPBM<kOpen>(alpha, W, 2.0 * k, k * k, z), q0, dt)}) {
+    if (failed(run.status)) continue;
+    EXPECT_EQ(run.status == Status::kOk, run.error <= 1e-4) << message(run.status) << ", error " << run.error;
+    ++(run.error <= 1e-4 ? tally.fine : tally.coarse);
+  }
+}
+TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
+  AccuracyTally tally;
+  for (int seed = 0; seed < trials(400); ++seed) {
+    Random random(static_cast<std::uint32_t>(seed));
+    const double dt = std::vector<double>{1e-3, 5e-3, 2e-2}[static_cast<std::size_t>(seed % 3)];
+    const double duration = 1.0 + seed % 4;
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", dt = " + std::to_string(dt));
+    if (seed % 2 == 0) {
+      const auto arm = any_planar_arm(random.uniform(2 + seed % 6, 0.5, 1.5));
+      if (seed % 4 == 0) {
+        expect_the_truth<Position<2>>(arm, Path(Circle(random.uniform(0.1, 1.0)), duration), dt, random, tally);
+      } else {
+        const Path line(Line<2>(random.uniform(2, -1.0, 1.0)), duration);
+        expect_the_truth<Position<2>>(arm, line, dt, random, tally);
+      }
+    } else {
+      const std::vector<Chain<>> chains{presets::panda(), presets::gen3(), panda_on_rail(), coupled_panda()};
+      const auto arm = any_arm(chains[static_cast<std::size_t>(seed / 2) % 4]);
+      const Path circle(Circle(random.uniform(0.05, 0.3)), duration);
+      const InPlane path(circle, Vector<3>::UnitY(), Vector<3>::UnitZ());
+      if (seed % 4 == 1) {
+        expect_the_truth<Position<3>>(arm, path, dt, random, tally);
+      } else {
+        expect_the_truth<Pose>(arm, WithRotation(path), dt, random, tally);
+      }
+    }
+  }
+  EXPECT_GT(tally.fine, trials(1000));
+  EXPECT_GT(tally.coarse, 0);
+  std::printf("%d motions fine, %d of too long a step\n", tally.fine, tally.coarse);
+}
 
 /// Every status has a message, and every failure has advice.
 TEST(Status, has_a_message_and_advice) {
