@@ -9,6 +9,7 @@
 #include "fpbm/any/any_weights.hpp"
 #include "fpbm/any/convert_path.hpp"
 #include "fpbm/any/make_arm.hpp"
+#include "fpbm/core/float_model.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "fpbm/core/float_model.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
@@ -18,14 +19,18 @@ struct ReducedSinCos {
   static constexpr double kReach = 5e5;  ///< k · π/2 stays exact in its first part up to here.
 
   static void evaluate(double x, double& sine, double& cosine) noexcept {
+#if defined(__clang__) && __clang_major__ >= 12
+#pragma clang fp reassociate(off)  // Or k is no integer under -fassociative-math, which clang does not tell of.
+#endif
     constexpr double kRound = 6755399441055744.0;  // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits.
     const double shifted = x * kPerQuadrant + kRound;
-    const Reduced<double> reduced = reduce(x, shifted - kRound);
+    const double k = kHasExcessDigits ? nearest_integer(x * kPerQuadrant) : shifted - kRound;
+    const Reduced<double> reduced = reduce(x, k);
     const std::uint64_t sin_r = bits(reduced.sine);
     const std::uint64_t cos_r = bits(reduced.cosine);
 
     // Quadrant k mod 4: an odd one swaps sine and cosine, the upper bit of k and of k + 1 sets their signs.
-    const std::uint64_t quadrant = bits(shifted);
+    const std::uint64_t quadrant = bits(kHasExcessDigits ? k + kRound : shifted);
     const std::uint64_t swap = std::uint64_t{0} - (quadrant & 1U);
     sine = real(((sin_r & ~swap) | (cos_r & swap)) ^ ((quadrant & 2U) << 62));
     cosine = real(((cos_r & ~swap) | (sin_r & swap)) ^ (((quadrant + 1U) & 2U) << 62));
@@ -52,6 +57,11 @@ struct ReducedSinCos {
  private:
   static constexpr double kPerQuadrant = 6.36619772367581343e-01;
 
+  /// Of one that has more digits than a double, with which kRound leaves more than the integer.
+  static double nearest_integer(double x) noexcept {
+    return static_cast<double>(static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)));
+  }
+
   template <typename Scalar>
   struct Reduced {
     Scalar sine;
@@ -61,6 +71,9 @@ struct ReducedSinCos {
   /// sin and cos of r = x − k π/2.
   template <typename Scalar>
   static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
+#if defined(__clang__) && __clang_major__ >= 12
+#pragma clang fp reassociate(off)  // Or the three parts become one, of 2e-11.
+#endif
     Scalar r = x - k * Scalar(1.57079632673412561e+00);
     r -= k * Scalar(6.07710050630396598e-11);
     r -= k * Scalar(2.02226624879595063e-21);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "fpbm/core/float_model.hpp"
+
 namespace fpbm {
 
 /// Largest number of joints of an arm whose size is known at run time (N = Eigen::Dynamic).
