@@ -149,6 +149,7 @@ py::array_t<double> resolve_for_kinematics(const Scheme& scheme, const AnyKinema
 void bind_scheme(py::module_& m) {
   py::native_enum<Status>(m, "Status", "enum.Enum", "What became of an evaluation or a rollout.")
       .value("OK", Status::kOk, "The motion is complete.")
+      .value("COARSE", Status::kCoarse, "The motion is complete; its steps are too long for the tip error.")
       .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
       .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")

@@ -248,7 +248,8 @@ TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
 
 /// Every status has a message, and every failure has advice.
 TEST(Status, has_a_message_and_advice) {
-  for (const Status status : {Status::kOk, Status::kSingular, Status::kTaskLost, Status::kNotFinite}) {
+  for (const Status status : {Status::kOk, Status::kCoarse, Status::kDamped, Status::kSlowed, Status::kSingular,
+                              Status::kTaskLost, Status::kNotFinite}) {
     EXPECT_STRNE(message(status), "");
     EXPECT_STRNE(message(status), "unknown status");
     EXPECT_EQ(std::string(advice(status)).empty(), status == Status::kOk);

@@ -49,6 +49,24 @@ def test_same_steps_as_numpy(n):
     np.testing.assert_allclose(run.qd[-1], qd, atol=1e-11)
 
 
+@pytest.mark.parametrize(("scheme", "dt"), [(fp.MAN(), 5e-3), (fp.FPBM(0.6, [1, 2, 3, 4], 1, 1), 2e-2)])
+def test_a_step_that_is_too_long_is_said(arm, scheme, dt):
+    """Past a nearly singular posture. The error in the end is the integration's alone."""
+    path, q0 = fp.Circle(1.05, 1.0), [0.3, 0.6, 0.6, 0.6]
+    run = fp.simulate(arm, path, scheme, q0, dt=dt)
+    assert run.status.code is fp.Status.COARSE
+    assert run.status
+    assert run.max_error() > 0.01
+    assert "complete, t = 1 s; at times, the steps are too long" in str(run.status)
+    assert "Shorten dt." in str(run.status)
+    fine = fp.simulate(arm, path, scheme, q0, dt=dt / 10)
+    assert fine.status.code is fp.Status.OK
+    assert fine.max_error() < 1e-5
+    sweep = fp.sweep(arm, path, [scheme], [q0] * 20, dt=dt)
+    assert (sweep.status == fp.Status.COARSE).all()
+    assert (sweep.max_error == run.max_error()).all()
+
+
 def test_what_a_run_holds(run, arm, circle, q0):
     assert run.status.ok
     assert bool(run.status)

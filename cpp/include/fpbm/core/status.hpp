@@ -6,6 +6,7 @@ namespace fpbm {
 /// Up to kSlowed there is a result; from kSingular on there is none.
 enum class Status : unsigned char {
   kOk = 0,
+  kCoarse,     ///< The steps are too long: they, and not the scheme, made a tip error that counts.
   kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
   kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
   kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
@@ -27,6 +28,7 @@ enum class Status : unsigned char {
 [[nodiscard]] constexpr const char* message(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "all is well";
+    case Status::kCoarse: return "the steps are too long: they give the tip an error that the scheme does not";
     case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
     case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
@@ -41,6 +43,7 @@ enum class Status : unsigned char {
 [[nodiscard]] constexpr const char* advice(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "";
+    case Status::kCoarse: return "Shorten dt.";
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
     case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
     case Status::kSingular:

@@ -20,7 +20,7 @@ namespace fpbm {
 /// How a rollout ended. Where it stopped early, the samples before are valid.
 template <int N, typename Scalar = double>
 struct RolloutResult {
-  Status status;          ///< kOk or kDamped when the whole motion is done; otherwise why it stopped.
+  Status status;          ///< kOk, kCoarse or kDamped when the whole motion is done; otherwise why it stopped.
   Number<Scalar> time;    ///< When it ended [s].
   State<N, Scalar> last;  ///< The last valid state.
   int samples;            ///< Number of samples recorded.
@@ -40,14 +40,15 @@ template <typename Recorder, typename Sample>
 /// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
 ///
 /// The path is a displacement from where the tip starts. Where damping at a singular posture makes the tip miss its
-/// path, the motion stops with kTaskLost; a Tracker goes on. Velocity-level schemes integrate q
-/// (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
+/// path, the motion stops with kTaskLost; a Tracker goes on. Where the steps themselves make a tip error of more than
+/// 1e-4 of the largest lever arm, the motion ends kCoarse: an estimate, see TaskWatch. Velocity-level schemes integrate
+/// q (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
 /// noexcept; where it returns a bool, false ends the motion there, its status still good. Throws std::invalid_argument
 /// where the scheme or start does not fit the arm, the grid does not fit the path, or start is not finite, before
 /// anything is recorded; after that nothing throws or allocates, and a failure is in the result.
 ///
-/// In lanes, many motions run side by side. A motion whose scheme fails or is damped, or whose tip leaves its path,
-/// ends with a last q of NaN: run it by itself to learn why and when.
+/// In lanes, many motions run side by side. A motion whose scheme fails or is damped, whose tip leaves its path, or
+/// whose steps are too long, ends with a last q of NaN: run it by itself to learn why and when.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,
@@ -99,9 +100,10 @@ RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Pat
       result.status = Status::kTaskLost;
       break;
     }
+    if (none_of(watch.accurate())) result.status = worse(result.status, Status::kCoarse);
     for (Eigen::Index j = 0; j < loop.state.q.size(); ++j) {
-      set_nan_unless(followed, x(j, 0));
-      set_nan_unless(followed, loop.state.q(j));
+      set_nan_unless(followed && watch.accurate(), x(j, 0));
+      set_nan_unless(followed && watch.accurate(), loop.state.q(j));
     }
 
     result.time = t;

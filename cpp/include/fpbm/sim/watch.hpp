@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,14 +22,18 @@ class ErrorWatch {
  public:
   using TaskVector = Vector<M, Scalar>;
 
-  /// Whether e follows from its rate of h seconds ago. travel: the reference's displacement in between; step: the
+  /// By how much e is larger than its rate of h seconds ago explains; 0 at first.
+  [[nodiscard]] Scalar growth(const TaskVector& error, Scalar h) const noexcept {
+    return started_ ? Scalar(error.norm() - error_.norm() - h * rate_.norm()) : Scalar(0);
+  }
+
+  /// Whether a growth of e is small enough. travel: the reference's displacement since the last sample; step: the
   /// largest step of a joint [rad]; size: the largest contribution of a joint to the quantities whose difference e is.
   /// travel and size are in the units of e.
-  [[nodiscard]] Mask<Scalar> follows(const TaskVector& error, const TaskVector& rate, Scalar h, Scalar travel,
-                                     Scalar step, Scalar size) const noexcept {
+  [[nodiscard]] Mask<Scalar> follows(Scalar growth, const TaskVector& error, const TaskVector& rate, Scalar h,
+                                     Scalar travel, Scalar step, Scalar size) const noexcept {
     using std::sqrt;
     if (!started_) return Mask<Scalar>(true);
-    const Scalar growth = error.norm() - error_.norm() - h * rate_.norm();
     const Scalar expected = Scalar(kTolerance) * (travel + error.norm() + h * rate.norm());
     const Scalar truncation = Scalar(kTruncation) * step * (step * step) * (step * step) * size;
     const Scalar round_off = Scalar(sqrt(std::numeric_limits<Number<Scalar>>::epsilon())) * size;
@@ -52,7 +57,11 @@ class ErrorWatch {
 };
 
 /// Detects the step of a rollout in which the tip leaves its reference, by position and, at acceleration level, by
-/// velocity.
+/// velocity; and the sample from which on the tip error is more than the scheme explains.
+///
+/// The second is an estimate without any further evaluation. What all steps so far have added to the error beyond its
+/// rate, and, at acceleration level, to its rate, which goes on since, bounds the error that they made where nothing
+/// makes it smaller. Feedback does: so the error itself is a bound as well, and the lesser of both is judged.
 template <typename Space, int N, typename Scalar = double>
 class TaskWatch {
  public:
@@ -69,6 +78,8 @@ class TaskWatch {
                                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                                [[maybe_unused]] const Vector<N, Scalar>& qdd, Scalar h,
                                                bool damped) noexcept {
+    using std::max;
+    using std::min;
     using TaskVector = Vector<Space::kRows, Scalar>;
     const auto& [tip, J, Jd] = kinematics;
     const Scalar step = h * state.qd.cwiseAbs().maxCoeff();
@@ -77,22 +88,34 @@ class TaskWatch {
     const TaskVector e = Space::template difference<Scalar>(arrived.x, tip);
     const TaskVector ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
-    Mask<Scalar> follows = step <= Scalar(kLargestStep) && position_.follows(e, ed, h, travel, step, reach);
+    const Scalar growth = position_.growth(e, h);
+    Mask<Scalar> follows = step <= Scalar(kLargestStep) && position_.follows(growth, e, ed, h, travel, step, reach);
     if (damped) {
       follows = follows && e.norm() <= undamped_error_ + Scalar(kDampedSteps) * travel;
     } else {
       undamped_error_ = e.norm();
+      made_ += max(growth, Scalar(0));
     }
     position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
       const TaskVector edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
       const Scalar change = (arrived.xd - before_.xd).norm();
-      follows = follows && velocity_.follows(arrived.xd - velocity, edd, h, change, step, reach / h);
+      const TaskVector ed_before = arrived.xd - velocity;
+      const Scalar faster = velocity_.growth(ed_before, h);
+      follows = follows && velocity_.follows(faster, ed_before, edd, h, change, step, reach / h);
+      if (!damped) {
+        made_ += h * made_rate_;
+        made_rate_ += max(faster, Scalar(0));
+      }
       velocity_.start_from(ed, edd);
     }
     before_ = reference;
+    accurate_ = min(e.norm(), made_) <= Scalar(kAccuracy) * reach;
     return follows;
   }
+
+  /// Whether the steps have made less than an error that counts, at the last sample. Damping excuses an error.
+  [[nodiscard]] const Mask<Scalar>& accurate() const noexcept { return accurate_; }
 
  private:
   /// Largest step of a joint that still resolves the motion [rad], or [m] for a prismatic joint.
@@ -101,6 +124,12 @@ class TaskWatch {
   /// Largest lag of the tip where the scheme is damped, in steps of the reference.
   static constexpr auto kDampedSteps = static_cast<Number<Scalar>>(1.1);
 
+  /// Tip error that counts, in lever arms of the joints: 0.1 mm on an arm of 1 m.
+  static constexpr auto kAccuracy = static_cast<Number<Scalar>>(1e-4);
+
+  Mask<Scalar> accurate_ = Mask<Scalar>(true);
+  Scalar made_{0};       ///< Error that the steps made, at most.
+  Scalar made_rate_{0};  ///< Error of velocity that the steps made, at most.
   Scalar undamped_error_{0};
   ErrorWatch<Space::kRows, Scalar> position_;
   ErrorWatch<Space::kRows, Scalar> velocity_;
