@@ -176,14 +176,13 @@ struct Accuracy {
 };
 
 template <typename Space, typename Arm, typename Path, typename Scheme>
-[[nodiscard]] Accuracy accuracy(const Arm& arm, const Path& path, const Scheme& scheme, const Eigen::VectorXd& q0,
+[[nodiscard]] Accuracy accuracy(const Arm& arm, const Path& path, const Scheme& scheme, const State<kOpen>& start,
                                 double dt) {
   Accuracy result{Status::kOk};
   const AnyPath<Space> any(path);
   const auto record = [&](const auto& sample) noexcept {
     result.error = std::max(result.error, sample.error.norm() / sample.J.cwiseAbs().maxCoeff());
   };
-  const State<kOpen> start{q0, Vector<kOpen>::Zero(q0.size())};
   const AnyScheme<Scheme::kLevel, Space> law(scheme);
   result.status = rollout(arm, any, law, start, TimeGrid<>(path.duration(), dt), record).status;
   return result;
@@ -199,7 +198,7 @@ struct AccuracyTally {
 template <typename Space, typename Arm, typename Path>
 void expect_the_truth(const Arm& arm, const Path& path, double dt, Random& random, AccuracyTally& tally) {
   const int n = arm.dof();
-  const Eigen::VectorXd q0 = random.uniform(n, -2.0, 2.0);
+  const State<kOpen> q0{random.uniform(n, -2.0, 2.0), Vector<kOpen>::Zero(n)};
   const Vector<kOpen> W = random.uniform(n, 0.5, 5.0);
   const double k = std::pow(10.0, random.uniform(-1.0, 1.5));
   const double alpha = random.uniform(0.0, 1.0);
@@ -244,6 +243,27 @@ TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
   EXPECT_GT(tally.fine, trials(1000));
   EXPECT_GT(tally.coarse, 0);
   std::printf("%d motions fine, %d of too long a step\n", tally.fine, tally.coarse);
+}
+
+/// Where the start's velocity is not the path's, the error that follows is the scheme's.
+TEST(StepLength, is_not_blamed_for_a_wrong_start) {
+  int wrong = 0;
+  for (int seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(static_cast<std::uint32_t>(seed));
+    const int n = 3 + seed % 5;
+    const auto arm = any_planar_arm(random.uniform(n, 0.5, 1.5));
+    const Path path(Circle(random.uniform(0.1, 0.5)), 2.0);
+    const State<kOpen> start{random.uniform(n, 0.5, 1.0), random.uniform(n, -0.1, 0.1)};
+    const Vector<kOpen> W = random.uniform(n, 0.5, 5.0);
+    const double k = std::pow(10.0, random.uniform(-1.0, 1.5));
+    for (const double k1 : {0.0, 0.5 * k, 2.0 * k, 5.0 * k}) {
+      const Accuracy run = accuracy<Position<2>>(arm, path, FPBM<kOpen>(0.6, W, k1, k * k), start, 1e-3);
+      EXPECT_NE(run.status, Status::kCoarse);
+      wrong += run.status == Status::kOk && run.error > 1e-4 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(wrong, 300);
 }
 
 /// Every status has a message, and every failure has advice.

@@ -61,7 +61,8 @@ class ErrorWatch {
 ///
 /// The second is an estimate without any further evaluation. What all steps so far have added to the error beyond its
 /// rate, and, at acceleration level, to its rate, which goes on since, bounds the error that they made where nothing
-/// makes it smaller. Feedback does: so the error itself is a bound as well, and the lesser of both is judged.
+/// makes it smaller. Feedback does: so the error itself is a bound as well, and the lesser of both is judged. Where a
+/// wrong start velocity makes a larger error, that of the steps may be missed.
 template <typename Space, int N, typename Scalar = double>
 class TaskWatch {
  public:
