@@ -17,7 +17,9 @@ inline constexpr int kCapacity = (N == Eigen::Dynamic) ? kMaxDof : N;
 /// Unaligned, so that objects that hold one may be embedded, copied and passed between translation units built with
 /// different vector flags. Today's processors load unaligned memory at full speed.
 template <int Rows, int Cols, typename Scalar = double>
-using Matrix = Eigen::Matrix<Scalar, Rows, Cols, Eigen::ColMajor | Eigen::DontAlign, kCapacity<Rows>, kCapacity<Cols>>;
+using Matrix =
+    Eigen::Matrix<Scalar, Rows, Cols, (Rows == 1 && Cols != 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign,
+                  kCapacity<Rows>, kCapacity<Cols>>;
 
 /// Column vector that never touches the heap, whatever its size.
 template <int N, typename Scalar = double>
