@@ -217,7 +217,8 @@ TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
   expect_invariance<Level::kVelocity>();
 }
 
-/// A joint may begin at rest on either end of its range, and is not pushed beyond it, whatever its units and the tick.
+/// A joint may begin at rest on either end of its range, and is neither pushed beyond it nor off it, whatever its units
+/// and the tick.
 template <Level kLevel, typename Scalar>
 void expect_rest_on_both_ends(const JointBounds<>& joint, double seconds) {
   auto bounds = JointLimits<1, Scalar>::none(1);
@@ -233,6 +234,7 @@ void expect_rest_on_both_ends(const JointBounds<>& joint, double seconds) {
     for (int i = 0; i < 100; ++i) {
       const auto box = limits.box(state);
       const Scalar u = up ? box.upper(0) : box.lower(0);
+      ASSERT_EQ(u, Scalar(0)) << i;
       if constexpr (kLevel == Level::kAcceleration) {
         state.q(0) += tick * (state.qd(0) + tick / Scalar(2) * u);
         state.qd(0) += tick * u;
