@@ -39,21 +39,21 @@ class Limits {
       require_ordered(i);
       bounds_.acceleration(i) = acceleration(i);
       const Scalar deceleration = std::isfinite(bounds_.acceleration(i)) ? bounds_.acceleration(i) : Scalar(1);
-      const Scalar offset = deceleration * tick / Scalar(2);
-      const Scalar beyond = offset * offset / (Scalar(2) * deceleration);  // So that the joint may rest on its bound.
-      upper_.set(i, {bounds.upper(i) + beyond, offset, deceleration}, bounds.upper(i));
-      lower_.set(i, {-bounds.lower(i) + beyond, offset, deceleration}, -bounds.lower(i));
+      upper_.set(i, bounds.upper(i), tick / Scalar(2), deceleration);
+      lower_.set(i, -bounds.lower(i), tick / Scalar(2), deceleration);
     }
   }
 
   /// Narrows joint i's velocity toward its upper or lower end. Throws std::invalid_argument where the joint could not
   /// follow the envelope, or could leave its range within it.
   void set_upper_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
-    upper_.set(i, envelope, rest_within(i, envelope, bounds_.upper(i)));
+    const Scalar rest = rest_within(i, envelope, bounds_.upper(i));
+    upper_.set(i, rest, envelope.offset / envelope.deceleration, envelope.deceleration);
   }
   void set_lower_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
     const VelocityEnvelope<Scalar> mirrored{-envelope.end, envelope.offset, envelope.deceleration};
-    lower_.set(i, mirrored, rest_within(i, mirrored, -bounds_.lower(i)));
+    const Scalar rest = rest_within(i, mirrored, -bounds_.lower(i));
+    lower_.set(i, rest, envelope.offset / envelope.deceleration, envelope.deceleration);
   }
 
   /// The bounds, with accelerations filled in.
@@ -100,8 +100,9 @@ class Limits {
       const Scalar least = w - bounds_.acceleration(i) * tick_;
       const Scalar fastest = std::clamp(v, least, most);
       const Scalar slowest = std::clamp(-v, least, most);
-      Scalar up = std::clamp(upper_.furthest(i, state.q(i), w, tick_), slowest, fastest);
-      Scalar down = std::clamp(-lower_.furthest(i, -state.q(i), -w, tick_), slowest, fastest);
+      // In this order min and max pass over what is not a number, where a side has no end.
+      Scalar up = std::max(slowest, std::min(fastest, upper_.furthest(i, state.q(i), w, tick_)));
+      Scalar down = std::min(fastest, std::max(slowest, -lower_.furthest(i, -state.q(i), -w, tick_)));
       if (down > up) down = up = (down + up) / Scalar(2);
       if constexpr (kLevel == Level::kAcceleration) {
         up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));

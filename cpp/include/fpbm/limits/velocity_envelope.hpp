@@ -19,51 +19,51 @@ struct VelocityEnvelope {
 };
 
 /// Envelopes of all joints toward one end of their ranges, in coordinates that grow toward it.
+///
+/// With the position r = end − c²/(2d) where an envelope of offset c and deceleration d is zero, (w + c)² ≤ 2d (end −
+/// q) is w (w/d + 2c/d) ≤ 2 (r − q): r − q keeps its digits near r, and no number overflows where d is huge.
 template <Level kLevel, int N, typename Scalar>
 class VelocityEnvelopes {
  public:
   void resize(Eigen::Index n) {
-    for (JointVector* row : {&end_, &offset_, &deceleration_, &rest_}) row->resize(n);
+    for (JointVector* row : {&rest_, &delay_, &softness_}) row->resize(n);
   }
 
-  /// rest: position where the envelope is zero; the joint goes no farther.
-  void set(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar rest) noexcept {
-    end_(i) = envelope.end;
-    offset_(i) = envelope.offset;
-    deceleration_(i) = envelope.deceleration;
+  /// rest: r, beyond which the joint does not go; infinite where there is no end. delay: c/d [s]. Infinite d: as hard
+  /// as need be.
+  void set(Eigen::Index i, Scalar rest, Scalar delay, Scalar deceleration) noexcept {
     rest_(i) = rest;
+    delay_(i) = delay;
+    softness_(i) = Scalar(1) / deceleration;
   }
 
   [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
-    const Scalar p = qd + offset_(i);
-    // At rest the envelope holds wherever q is; computed, end − q may have lost the digits that say so.
-    return q <= rest_(i) && (qd <= Scalar(0) || p * p <= Scalar(2) * deceleration_(i) * (end_(i) - q));
+    return q <= rest_(i) &&
+           (qd <= Scalar(0) || qd * (qd * softness_(i) + Scalar(2) * delay_(i)) <= Scalar(2) * (rest_(i) - q));
   }
 
   /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
-  /// of (w⁺ + c)² = 2d (end − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
+  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
+  /// Not a number where there is no end.
   [[nodiscard]] Scalar furthest(Eigen::Index i, Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
     using std::sqrt;
-    const Scalar c = offset_(i);
-    const Scalar d = deceleration_(i);
-    const Scalar way = end_(i) - q;
-    Scalar lag = d * h;
-    Scalar square = Scalar(2) * d * (way + h * c);
+    Scalar way = Scalar(2) * (rest_(i) - q);
+    Scalar delay = delay_(i) + h;
     if constexpr (kLevel == Level::kAcceleration) {
-      lag = d * h / Scalar(2);
-      square = d * (Scalar(2) * way + h * (c - w));
+      way -= h * w;
+      delay = delay_(i) + h / Scalar(2);
     }
-    square += lag * lag;
-    return sqrt(square > Scalar(0) ? square : Scalar(0)) - lag - c;
+    const Scalar square = delay * delay + way * softness_(i);
+    if (square < Scalar(0)) return -delay / softness_(i);
+    return way / (sqrt(square) + delay);
   }
 
  private:
   using JointVector = Vector<N, Scalar>;
 
-  JointVector end_;
-  JointVector offset_;
-  JointVector deceleration_;
   JointVector rest_;
+  JointVector delay_;     ///< c/d [s]
+  JointVector softness_;  ///< 1/d
 };
 
 }  // namespace fpbm
