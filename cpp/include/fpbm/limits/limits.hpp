@@ -7,6 +7,7 @@
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/limits/box.hpp"
+#include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 
@@ -36,11 +37,10 @@ class Limits {
     upper_.resize(n);
     lower_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      require_ordered(i);
-      bounds_.acceleration(i) = acceleration(i);
-      const Scalar deceleration = std::isfinite(bounds_.acceleration(i)) ? bounds_.acceleration(i) : Scalar(1);
-      upper_.set(i, bounds.upper(i), tick / Scalar(2), deceleration);
-      lower_.set(i, -bounds.lower(i), tick / Scalar(2), deceleration);
+      const JointBounds<Scalar> given{bounds.lower(i), bounds.upper(i), bounds.velocity(i), bounds.acceleration(i)};
+      bounds_.set(i, usable_bounds<kLevel>(i, given, tick));
+      upper_.set(i, bounds.upper(i), tick / Scalar(2), bounds_.acceleration(i));
+      lower_.set(i, -bounds.lower(i), tick / Scalar(2), bounds_.acceleration(i));
     }
   }
 
@@ -140,35 +140,6 @@ class Limits {
       if (std::isfinite(end)) size += std::abs(end);
     }
     return Scalar(16) * std::numeric_limits<Scalar>::epsilon() * size;
-  }
-
-  void require_ordered(Eigen::Index i) const {
-    const auto element = [i](const char* name) { return validation::element(name, i); };
-    if (!(bounds_.lower(i) < bounds_.upper(i))) {
-      validation::fail(element("limits.lower"), static_cast<double>(bounds_.lower(i)), "below limits.upper");
-    }
-    if (!(bounds_.velocity(i) > Scalar(0))) {
-      validation::fail(element("limits.velocity"), static_cast<double>(bounds_.velocity(i)), "positive");
-    }
-    if (!(bounds_.acceleration(i) > Scalar(0))) {
-      validation::fail(element("limits.acceleration"), static_cast<double>(bounds_.acceleration(i)), "positive");
-    }
-  }
-
-  /// Bound on acceleration of joint i; a substitute where velocity level allows none to be given.
-  [[nodiscard]] Scalar acceleration(Eigen::Index i) const {
-    const Scalar given = bounds_.acceleration(i);
-    const Scalar range = bounds_.upper(i) - bounds_.lower(i);
-    if (std::isfinite(given) || (!std::isfinite(range) && !std::isfinite(bounds_.velocity(i)) &&
-                                 !std::isfinite(bounds_.lower(i)) && !std::isfinite(bounds_.upper(i)))) {
-      return given;
-    }
-    if (kLevel == Level::kAcceleration) {
-      validation::fail(validation::element("limits.acceleration", i), static_cast<double>(given),
-                       "finite where the joint's position or velocity is bounded: give one");
-    }
-    const Scalar speed = std::isfinite(bounds_.velocity(i)) ? bounds_.velocity(i) : range / tick_;
-    return std::isfinite(speed) ? Scalar(2) * speed / tick_ : given;
   }
 
   /// Position where an envelope stops the joint. Throws unless it lies within the bound.

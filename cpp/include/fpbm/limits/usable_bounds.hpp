@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/model/joint.hpp"
+
+namespace fpbm {
+
+/// Bounds on a joint as a loop of ticks of length h uses them. Throws std::invalid_argument naming the joint where they
+/// are none.
+///
+/// At velocity level a missing acceleration is the one that changes the velocity at once. A velocity or an acceleration
+/// a thousand times what a tick can use is cut down to that, since squares of DBL_MAX overflow: no joint moves farther
+/// than its range in a tick, or changes its velocity by more than twice the largest.
+template <Level kLevel, typename Scalar>
+[[nodiscard]] JointBounds<Scalar> usable_bounds(Eigen::Index i, JointBounds<Scalar> bounds, Scalar tick) {
+  const auto require = [i](bool good, const char* name, Scalar value, const char* what) {
+    if (!good) validation::fail(validation::element(name, i), static_cast<double>(value), what);
+  };
+  require(bounds.lower < bounds.upper, "limits.lower", bounds.lower, "below limits.upper");
+  require(bounds.velocity > Scalar(0), "limits.velocity", bounds.velocity, "positive");
+  require(bounds.acceleration > Scalar(0), "limits.acceleration", bounds.acceleration, "positive");
+
+  constexpr auto kPlenty = Scalar(1024);
+  const Scalar most =
+      std::ldexp(Scalar(1), std::numeric_limits<Scalar>::max_exponent * 3 / 8);  // Its square is finite.
+  const Scalar range = bounds.upper - bounds.lower;
+  if (std::isfinite(bounds.velocity)) bounds.velocity = std::min({bounds.velocity, kPlenty * (range / tick), most});
+  if (std::isfinite(bounds.acceleration)) {
+    const Scalar speed = std::min(bounds.velocity, Scalar(2) * (range / tick));
+    bounds.acceleration = std::min({bounds.acceleration, kPlenty * (speed / tick), most});
+    return bounds;
+  }
+  if (!std::isfinite(bounds.lower) && !std::isfinite(bounds.upper) && !std::isfinite(bounds.velocity)) return bounds;
+  require(kLevel == Level::kVelocity, "limits.acceleration", bounds.acceleration,
+          "finite where the joint's position or velocity is bounded: give one");
+  const Scalar speed = std::isfinite(bounds.velocity) ? bounds.velocity : range / tick;
+  if (std::isfinite(speed)) bounds.acceleration = Scalar(2) * speed / tick;
+  return bounds;
+}
+
+}  // namespace fpbm
