@@ -90,7 +90,8 @@ class Limits {
   }
 
   /// What each joint may do in the next tick. From a state that is not viable (a measured one may be so) the box leads
-  /// back; it keeps the bound on acceleration first and the bound on velocity next.
+  /// back; it keeps the bound on acceleration first and the bound on velocity next. A joint beyond its range returns as
+  /// fast as these allow, and can come to rest on the bound.
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {

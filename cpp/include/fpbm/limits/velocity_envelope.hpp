@@ -44,8 +44,11 @@ class VelocityEnvelopes {
 
   /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
   /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
-  /// Not a number where there is no end.
+  ///
+  /// Its mirror image where that is negative, beyond r: there the joint has to return at the speed from which it can
+  /// still stop at r. Not a number where there is no end.
   [[nodiscard]] Scalar furthest(Eigen::Index i, Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
+    using std::abs;
     using std::sqrt;
     Scalar way = Scalar(2) * (rest_(i) - q);
     Scalar delay = delay_(i) + h;
@@ -53,9 +56,7 @@ class VelocityEnvelopes {
       way -= h * w;
       delay = delay_(i) + h / Scalar(2);
     }
-    const Scalar square = delay * delay + way * softness_(i);
-    if (square < Scalar(0)) return -delay / softness_(i);
-    return way / (sqrt(square) + delay);
+    return way / (sqrt(delay * delay + abs(way) * softness_(i)) + delay);
   }
 
  private:
