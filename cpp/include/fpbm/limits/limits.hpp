@@ -116,14 +116,19 @@ class Limits {
   }
 
   /// The motion to rest: all joints slow down in proportion, as fast as their accelerations allow; a joint that must
-  /// brake harder does.
+  /// brake harder does. At acceleration level a joint beyond its range stops there.
   [[nodiscard]] JointVector brake(const State<N, Scalar>& state, const Box<N, Scalar>& box) const noexcept {
     Scalar rate = Scalar(1) / tick_;
     for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
       const Scalar speed = std::abs(state.qd(i));
       if (rate * speed > bounds_.acceleration(i)) rate = bounds_.acceleration(i) / speed;
     }
-    if constexpr (kLevel == Level::kAcceleration) return box.nearest(-rate * state.qd);
+    if constexpr (kLevel == Level::kAcceleration) {
+      // In the box of every viable state; not where a joint beyond its range should return, which may wait.
+      const JointVector halt = (state.qd / -tick_).cwiseMax(-bounds_.acceleration).cwiseMin(bounds_.acceleration);
+      const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
+      return wider.nearest(-rate * state.qd);
+    }
     return box.nearest((Scalar(1) - rate * tick_) * state.qd);
   }
 
