@@ -122,6 +122,7 @@ void expect_same_answers(const Arm& arm, const Scheme& scheme) {
     if (trial == 1) reference.xd(1) = reference.xdd(1) = std::numeric_limits<double>::quiet_NaN();
     Kinematics<Space, kOpen> any_kinematics;
     any_kinematics.tip = kinematics.tip;
+    any_kinematics.length = kinematics.length;
     any_kinematics.J = kinematics.J;
     any_kinematics.Jd = kinematics.Jd;
     const State<kOpen> any_state{state.q, state.qd};

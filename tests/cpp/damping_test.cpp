@@ -55,9 +55,10 @@ double least_singular_value(const RealMatrix& J) {
   return static_cast<double>(singular_values(J).tail(1)(0));
 }
 
-/// σ_min / ‖J‖_F: the least radius with which J is damped.
-double distance_to_singular(const RealMatrix& J) {
-  return least_singular_value(J) / static_cast<double>(J.norm());
+/// σ_min / ‖J‖_F, angles by the arm's length: the least radius with which J is damped.
+double distance_to_singular(const Situation& at) {
+  const RealMatrix even = at.units.asDiagonal() * at.J;
+  return least_singular_value(even) / static_cast<double>(even.norm());
 }
 
 /// Δ / ε² as defined, whose trace is the number of lost directions.
@@ -81,9 +82,11 @@ struct Expected {
 /// The laws as printed, with J⁺ and J_W⁺ damped and the brake in z.
 Expected damped(const Law& law, const Situation& at) {
   const auto alpha = static_cast<Real>(law.alpha);
-  const RealMatrix lost = lost_directions(at.J, law.singular_radius);
-  const Real edge = static_cast<Real>(law.singular_radius) * at.J.norm();
-  const RealMatrix delta = edge * edge * lost;
+  const RealMatrix even = at.units.asDiagonal() * at.J;
+  const RealMatrix lost = lost_directions(even, law.singular_radius);
+  const Real edge = static_cast<Real>(law.singular_radius) * even.norm();
+  const RealMatrix to_units = at.units.cwiseInverse().asDiagonal();
+  const RealMatrix delta = edge * edge * to_units * lost * to_units;
   RealMatrix Winv = inverse(real(law.W));
   Winv /= Winv.diagonal().maxCoeff();
 
@@ -182,7 +185,7 @@ TEST_P(Damping, is_exactly_none_outside_the_radius) {
   in_regular_states([](const Scene& scene, const Law& law) {
     const Outcome plain = resolve(law, scene);
     ASSERT_EQ(plain.status, Status::kOk);
-    const double border = distance_to_singular(plain.at.J);
+    const double border = distance_to_singular(plain.at);
     const double hair = round_off(border);
     ASSERT_LT(hair, 0.1);
     for (const double share : {0.01, 0.5, 1.0 - hair}) {
@@ -198,7 +201,7 @@ TEST_P(Damping, is_exactly_none_outside_the_radius) {
 TEST_P(Damping, equals_its_definition) {
   around_singular_states([](const Scene& scene, const Law& law) {
     const Outcome outcome = resolve(law, scene);
-    const double border = distance_to_singular(outcome.at.J);
+    const double border = distance_to_singular(outcome.at);
     const double hair = round_off(law.singular_radius);
     if (std::abs(border / law.singular_radius - 1.0) > hair) {
       EXPECT_EQ(outcome.status, border < law.singular_radius ? Status::kDamped : Status::kOk);
@@ -211,7 +214,7 @@ TEST_P(Damping, equals_its_definition) {
   });
 }
 
-/// ‖J⁺‖ ≤ 1.17/ε: the columns of J⁺ are MVN's answers to unit velocities.
+/// ‖J⁺‖ ≤ 1.17/ε: the columns of J⁺ are MVN's answers to unit velocities, angles by the arm's length.
 TEST_P(Damping, bounds_the_joint_velocities) {
   if (subject().takes.acceleration || subject().takes.weights) return;
   around_singular_states([](Scene scene, Law law) {
@@ -222,8 +225,8 @@ TEST_P(Damping, bounds_the_joint_velocities) {
     for (Eigen::Index i = 0; i < scene.xd.size(); ++i) {
       scene.xd = Eigen::VectorXd::Unit(scene.xd.size(), i);
       const Outcome outcome = resolve(law, scene);
-      Jp.col(i) = outcome.u;
-      edge = law.singular_radius * static_cast<double>(outcome.at.J.norm());
+      Jp.col(i) = outcome.u / outcome.at.units(i);
+      edge = law.singular_radius * static_cast<double>((outcome.at.units.asDiagonal() * outcome.at.J).norm());
     }
     EXPECT_LE(static_cast<double>(singular_values(Jp)(0)), 1.17 / edge);
   });
@@ -273,9 +276,9 @@ class SmoothDamping : public Damping {
       direction_ = random.uniform(scene_.q.size(), -1.0, 1.0);
       law_ = random_law(random, subject(), true);
       law_.alpha = std::clamp(law_.alpha, 0.1, 0.9);
-      const double radius = distance_to_singular(at(kEdge).at.J);
+      const double radius = distance_to_singular(at(kEdge).at);
       law_ = with_radius(law_, radius);
-      if (radius > 0.02 && radius < 0.3) return;
+      if (radius > 0.004 && radius < 0.3) return;
     }
   }
 
@@ -498,7 +501,7 @@ double nearest_to_singular(const Recording<4>& run) {
   for (const auto& sample : run.samples) {
     Kinematics<Position<2>, 4> kinematics;
     paper_arm().kinematics(sample.q, kinematics);
-    nearest = std::min(nearest, distance_to_singular(real(kinematics.J)));
+    nearest = std::min(nearest, static_cast<double>(least_singular_value(real(kinematics.J)) / kinematics.J.norm()));
   }
   return nearest;
 }

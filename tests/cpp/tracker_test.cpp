@@ -326,7 +326,10 @@ TEST(Tracker, answers_for_a_measured_state) {
     scheme.singular = SingularDamping<>();
     const Vector<6> error = Pose::difference<double>(target.x, kinematics.tip);
     auto near = target;
-    if (error.norm() > 0.1) near.x = Pose::displace<double>(kinematics.tip, 0.1 * error.normalized());
+    Vector<6> seen = error;  // The feedback sees a tenth of the arm's length, and of a radian.
+    seen.head<3>() *= std::min(1.0, 0.1 * kinematics.length / error.head<3>().norm());
+    seen.tail<3>() *= std::min(1.0, 0.1 / error.tail<3>().norm());
+    near.x = Pose::displace<double>(kinematics.tip, seen);
     ASSERT_FALSE(failed(scheme.resolve(kinematics, near, state, qdd)));
     const auto box = limits.box(state);
     ASSERT_TRUE(box.contains(tick.qdd));

@@ -24,6 +24,7 @@
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/saturation.hpp"
+#include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/null_basis.hpp"

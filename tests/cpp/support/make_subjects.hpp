@@ -74,10 +74,16 @@ template <typename Space, typename Arm>
   const Vector<Space::kRows, Scalar> displacement = scene.displacement.cast<Scalar>();
   reference = {Space::template displace<Scalar>(kinematics.tip, displacement), scene.xd.cast<Scalar>(),
                scene.xdd.cast<Scalar>()};
-  at = {real(state.q),       real(state.qd),
-        RealVector(),        real(kinematics.J),
-        real(kinematics.Jd), error_of<Space, Scalar>(reference.x, kinematics.tip, real(scene.displacement)),
-        real(reference.xd),  real(reference.xdd)};
+  at = {real(state.q),
+        real(state.qd),
+        RealVector(),
+        real(kinematics.J),
+        real(kinematics.Jd),
+        error_of<Space, Scalar>(reference.x, kinematics.tip, real(scene.displacement)),
+        real(reference.xd),
+        real(reference.xdd),
+        RealVector::Ones(Space::kRows)};
+  at.units.tail(Space::kTurns).setConstant(static_cast<Real>(kinematics.length));
   return result;
 }
 

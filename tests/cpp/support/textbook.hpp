@@ -42,6 +42,7 @@ struct Situation {
   RealVector error;  ///< x ⊖ f(q).
   RealVector xd;
   RealVector xdd;
+  RealVector units;  ///< Of each row: 1 for a length, the arm's characteristic length for an angle.
 };
 
 /// Tip position, J and Jd of a planar arm at (q, qd), each element summed on its own. The reference stays empty.

@@ -105,6 +105,7 @@ class AnyArm {
           arm_.kinematics(Vector<N>(q), sized);
         }
         out.tip = sized.tip;
+        out.length = sized.length;
         out.J = sized.J;
         if (qd != nullptr) out.Jd = sized.Jd;
       }

@@ -62,6 +62,7 @@ class AnyScheme {
         Kinematics<Space, N> sized;
         sized.tip = kinematics.tip;
         sized.J = kinematics.J;
+        sized.length = kinematics.length;
         State<N> sized_state;
         sized_state.q = state.q;
         if constexpr (kLevel == Level::kAcceleration) {

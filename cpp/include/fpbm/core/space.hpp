@@ -14,12 +14,14 @@ inline constexpr double kTwoPi = 6.28318530717958647692;
 ///   difference(x, y)   x ⊖ y: the displacement from y to x, along the base frame's axes
 ///   displace(y, d)     y ⊕ d: applies displacement d to point y
 ///   compose(y, x)      applies displacement x, given as a point seen from the origin, to point y
+///   kTurns             the number of rows that are angles, the last ones; the others are lengths
 ///   store(x, out)      writes a point as kSize plain numbers
 
 /// Task space of tip positions: M = 2 in the plane, M = 3 in space [m].
 template <int M>
 struct Position {
   static constexpr int kRows = M;
+  static constexpr int kTurns = 0;
   static constexpr int kSize = M;
 
   template <typename Scalar>
@@ -53,6 +55,8 @@ struct Position {
 
 /// Task space of tip poses in the plane: x, y [m] and the angle from the base frame's x axis to the tip's [rad].
 struct PlanarPose : Position<3> {
+  static constexpr int kTurns = 1;
+
   /// x ⊖ y, the angle by the shorter way.
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
@@ -67,6 +71,7 @@ struct PlanarPose : Position<3> {
 /// Task space of tip poses: linear rows first, then angular, in the base frame's axes at the tip.
 struct Pose {
   static constexpr int kRows = 6;
+  static constexpr int kTurns = 3;
   static constexpr int kSize = 16;
 
   template <typename Scalar>

@@ -68,6 +68,7 @@ class CoupledArm {
     Kinematics<Space, Eigen::Dynamic, Scalar> all;
     chain_.kinematics(Positions(A_.lazyProduct(q) + b_), Positions(A_.lazyProduct(qd)), all);
     out.tip = all.tip;
+    out.length = all.length;
     out.J = all.J.lazyProduct(A_);
     out.Jd = all.Jd.lazyProduct(A_);
   }
@@ -78,6 +79,7 @@ class CoupledArm {
     Kinematics<Space, Eigen::Dynamic, Scalar> all;
     chain_.kinematics(Positions(A_.lazyProduct(q) + b_), all);
     out.tip = all.tip;
+    out.length = all.length;
     out.J = all.J.lazyProduct(A_);
   }
 

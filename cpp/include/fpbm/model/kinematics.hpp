@@ -6,7 +6,7 @@ namespace fpbm {
 
 /// Kinematics of an arm in one state: all that a scheme knows about the robot.
 ///
-/// Filled by an arm of model/, or by any other library that computes these three.
+/// Filled by an arm of model/, or by any other library that computes the first three.
 template <typename Space, int N, typename Scalar = double>
 struct Kinematics {
   static constexpr int kRows = Space::kRows;
@@ -14,6 +14,17 @@ struct Kinematics {
   typename Space::template Point<Scalar> tip;  ///< f(q), in the base frame [m, rad].
   Matrix<kRows, N, Scalar> J;                  ///< Task Jacobian: tip velocity is J qd.
   Matrix<kRows, N, Scalar> Jd;                 ///< dJ/dt along qd: tip acceleration is J qdd + Jd qd.
+  /// The arm's characteristic length [m]: what one radian counts for beside it. Makes every threshold the same for a
+  /// small arm and a large one.
+  Scalar length = Scalar(1);
 };
+
+/// J with all rows in metres: angles count by the arm's length.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] Matrix<Space::kRows, N, Scalar> jacobian_in_metres(const Kinematics<Space, N, Scalar>& kinematics) {
+  Matrix<Space::kRows, N, Scalar> J = kinematics.J;
+  if constexpr (Space::kTurns > 0) J.template bottomRows<Space::kTurns>() *= kinematics.length;
+  return J;
+}
 
 }  // namespace fpbm

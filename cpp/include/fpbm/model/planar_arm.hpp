@@ -21,7 +21,7 @@ class PlanarArm {
   static constexpr int kDof = N;
 
   /// Throws std::invalid_argument unless there are 2 to kMaxDof lengths, all positive and finite.
-  explicit PlanarArm(const Vector<N, Scalar>& lengths) : lengths_(lengths) {
+  explicit PlanarArm(const Vector<N, Scalar>& lengths) : lengths_(lengths), reach_(lengths.sum()) {
     static_assert(N == Eigen::Dynamic || (N >= 2 && N <= kMaxDof), "a planar arm has 2 to kMaxDof joints");
     validation::require_dof("lengths", lengths.size(), Position<2>::kRows);
     validation::require_positive("lengths", lengths);
@@ -35,6 +35,9 @@ class PlanarArm {
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
   [[nodiscard]] const Vector<N, Scalar>& lengths() const noexcept { return lengths_; }
+
+  /// Characteristic length: the reach [m].
+  [[nodiscard]] Scalar length() const noexcept { return reach_; }
 
   /// Unbounded.
   [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
@@ -88,6 +91,7 @@ class PlanarArm {
       out.J.col(i).template head<2>() += out.J.col(i + 1).template head<2>();
       if constexpr (kWithRate) out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
     }
+    out.length = reach_;
     out.tip(0) = out.J(1, 0);
     out.tip(1) = -out.J(0, 0);
     if constexpr (kWithOrientation) {
@@ -98,6 +102,7 @@ class PlanarArm {
   }
 
   Vector<N, Scalar> lengths_;
+  Scalar reach_;
 };
 
 }  // namespace fpbm

@@ -49,9 +49,14 @@ class SerialArm {
       if (joint.type == JointType::kPrismatic) {
         turns_(i) = Scalar(0);
         slides_ |= std::uint32_t(1) << i;
+        const Scalar range = joint.bounds.upper - joint.bounds.lower;
+        if (is_finite(range)) length_ += range;
       }
+      if (i > 0) length_ += joint.placement.p.norm();
       limits_.set(i, joint.bounds);
     }
+    length_ += chain.tip.p.norm();
+    if (!(length_ > Scalar(0))) length_ = Scalar(1);
     links_[static_cast<std::size_t>(dof_ - 1)] = {turned_back * chain.tip.p, Scalar(1), Scalar(0)};
     tip_ = turned_back * chain.tip.R;
   }
@@ -64,6 +69,10 @@ class SerialArm {
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
+
+  /// Characteristic length [m]: the way from the first joint to the tip, from joint to joint, with the finite ranges of
+  /// prismatic joints. 1 where that is zero.
+  [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
   template <typename Space>
@@ -90,6 +99,7 @@ class SerialArm {
         offsets_(arm.offsets_.template cast<Scalar>()),
         slides_(arm.slides_),
         tip_(arm.tip_.template cast<Scalar>()),
+        length_(static_cast<Scalar>(arm.length_)),
         limits_(arm.limits_.template cast<Scalar>()) {
     for (std::size_t i = 0; i < links_.size(); ++i) links_[i] = arm.links_[i].template cast<Scalar>();
   }
@@ -144,6 +154,7 @@ class SerialArm {
       y = tilted;
     }
 
+    out.length = length_;
     out.J.resize(Space::kRows, dof_);
     screws.template relative_to_tip<kWithRate>(p, v);
     screws.columns(out.J);
@@ -179,6 +190,7 @@ class SerialArm {
   Vector<N, Scalar> offsets_;
   std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
   Matrix<3, 3, Scalar> tip_;  ///< The tip's orientation in the frame of the last link's end.
+  Scalar length_{0};          ///< [m]
   JointLimits<N, Scalar> limits_;
 };
 

@@ -8,7 +8,7 @@
 namespace fpbm {
 
 /// Corrects a loop's reference before the scheme sees it: a target beyond options.error_bound is brought to that
-/// distance (Buss 2004), and the integral of the error is added.
+/// distance (Buss 2004), its angle to that angle, and the integral of the error is added.
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
@@ -25,12 +25,16 @@ class Correction {
     validation::require_positive("integral_bound", static_cast<double>(bound_));
   }
 
-  /// Call at the start of a tick, with its error.
-  void begin(const Twist& error) noexcept {
+  /// Call at the start of a tick, with its error and the arm's characteristic length.
+  void begin(const Twist& error, Scalar length) noexcept {
     error_ = error;
-    const Scalar length = error.norm();
-    far_ = !(length <= error_bound_);  // NaN is not integrated either.
-    if (far_) excess_ = (Scalar(1) - error_bound_ / length) * error;
+    excess_.setZero();
+    size_ = length;
+    far_ = bring_near(excess_.template head<kLengths>(), error.template head<kLengths>(), error_bound_ * length);
+    if constexpr (Space::kTurns > 0) {
+      constexpr int kTurns = Space::kTurns;
+      far_ = bring_near(excess_.template tail<kTurns>(), error.template tail<kTurns>(), error_bound_) || far_;
+    }
   }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
@@ -43,16 +47,30 @@ class Correction {
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
     integral_ += dt_ * error_;
-    const Scalar size = gain_ * integral_.norm();
+    Twist even = integral_;  // In arm lengths and radians.
+    even.template head<kLengths>() /= size_;
+    const Scalar size = gain_ * even.norm();
     if (size > bound_) integral_ *= bound_ / size;
   }
 
  private:
+  static constexpr int kLengths = Space::kRows - Space::kTurns;
+
+  /// The part of an error beyond a bound; whether there is one, or the error is not a number.
+  template <typename Excess, typename Error>
+  [[nodiscard]] static bool bring_near(Excess&& excess, const Error& error, Scalar bound) noexcept {
+    const Scalar length = error.norm();
+    if (length <= bound) return false;
+    excess = (Scalar(1) - bound / length) * error;
+    return true;
+  }
+
   Scalar dt_;
   Scalar error_bound_;
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;
+  Scalar size_ = Scalar(1);  ///< Of the arm [m].
   Twist error_ = Twist::Zero();
   Twist excess_ = Twist::Zero();
   Twist integral_ = Twist::Zero();

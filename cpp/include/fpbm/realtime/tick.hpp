@@ -24,12 +24,13 @@ struct Tick {
 template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
-  /// Largest error that the feedback sees [m, rad]: a farther target, out of reach perhaps, pulls no harder.
+  /// Largest error that the feedback sees, of the position [the arm's characteristic lengths] and of the orientation
+  /// [rad]: a farther target, out of reach perhaps, pulls no harder.
   Scalar error_bound = Scalar(0.1);
   /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and removes the
   /// error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
-  /// the task is slowed or damped, or its target farther than error_bound, and adds integral_bound at most [m/s², or
-  /// m/s].
+  /// the task is slowed or damped, or its target farther than error_bound, and adds integral_bound at most
+  /// [characteristic lengths and radians per s², or per s].
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Used where the scheme has none.

@@ -85,7 +85,7 @@ class Tracker {
     loop.update(dx);
     watch(loop.kinematics, reference, result);
     result.status = loop.resolve(correction_(reference), dx);
-    result.qdd = limited(loop.kinematics.J, measured, loop.qdd, result);
+    result.qdd = limited(loop.kinematics, measured, loop.qdd, result);
     if (result.status == Status::kOk) correction_.integrate();
     return result;
   }
@@ -152,15 +152,21 @@ class Tracker {
     if (!moderate(next)) result.status = Status::kNotFinite;
     if (stopping_ || failed(result.status) || !limiter_.limits().admits(state_, next)) {
       JointVector desired = next.qd;
+      Scalar share(1);
       if constexpr (kSecondOrder) {
         desired = (next.qd - state_.qd) / dt_;
       } else if (!failed(result.status)) {
-        desired = slow_down(loop, limiter_.limits(), correction_(now), state_.q, field, desired);
+        share = slow_down(loop, limiter_.limits(), correction_(now), state_.q, field);
+        if (share < Scalar(1)) desired = share * field;
       }
       // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
       const JointVector middle = (state_.q + next.q) / Scalar(2);
       arm_.kinematics(middle, loop.kinematics);
-      const JointVector u = limited(loop.kinematics.J, state_, desired, result);
+      const JointVector u = limited(loop.kinematics, state_, desired, result);
+      if (share < Scalar(1)) {
+        result.scale *= share;
+        result.status = worse(result.status, Status::kSlowed);
+      }
       if constexpr (kSecondOrder) {
         next.q = state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * u);
         next.qd = state_.qd + dt_ * u;
@@ -178,10 +184,12 @@ class Tracker {
   }
 
   /// The desired motion within the limits; the motion to rest where the scheme failed or stop() was called.
-  [[nodiscard, gnu::noinline]] JointVector limited(const Matrix<Space::kRows, N, Scalar>& J, const JointState& state,
-                                                   const JointVector& desired, Result& result) const noexcept {
+  [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
+                                                   const JointState& state, const JointVector& desired,
+                                                   Result& result) const noexcept {
     const bool braking = stopping_ || failed(result.status);
-    const auto found = braking ? limiter_.brake(state) : limiter_.motion(J, state, desired);
+    const auto found =
+        braking ? limiter_.brake(state) : limiter_.motion(jacobian_in_metres(kinematics), state, desired);
     result.scale = found.scale;
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;
@@ -191,7 +199,7 @@ class Tracker {
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.sigma = least_singular_value_bound(kinematics.J);
     result.error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-    correction_.begin(result.error);
+    correction_.begin(result.error, kinematics.length);
   }
 
   Arm arm_;

@@ -53,24 +53,24 @@ struct AccelerationScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    return solve(b, kinematics.J, kinematics.Jd, reference.xd, state, qdd);
+    return solve<Space::kTurns>(b, kinematics.J, kinematics.Jd, reference.xd, kinematics.length, state, qdd);
   }
 
  private:
-  /// resolve() for a commanded b. Compiled once per number of rows, not per task space.
-  template <int M>
+  /// resolve() for a commanded b. Compiled once per number of rows and of angles, not per task space.
+  template <int kTurns, int M>
   [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
-                             const Vector<M, Scalar>& xd, const State<N, Scalar>& state,
+                             const Vector<M, Scalar>& xd, const Scalar& length, const State<N, Scalar>& state,
                              Vector<N, Scalar>& qdd) const noexcept {
     constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
     if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
-      return solve_pair(b, J, Jd, xd, state, qdd);
+      return solve_pair<kTurns>(b, J, Jd, xd, length, state, qdd);
     } else {
       if constexpr (kUnit) {
-        if (alpha == Scalar(0)) return unweighted(b, J, state, qdd);
+        if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, qdd);
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
-        const Status status = unweighted(b, J, state, result);
+        const Status status = unweighted<kTurns>(b, J, length, state, result);
         // Near a singular posture the brake is a motion for N_W to project: fall through to both factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
           if (!failed(status)) qdd = result;
@@ -78,33 +78,34 @@ struct AccelerationScheme {
         }
       }
       if constexpr (!kUnit) {
-        if (alpha != Scalar(1)) return solve_pair(b, J, Jd, xd, state, qdd);
+        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, qdd);
       }
       const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
         const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(gram.solve(xd));
         return weights.solve(Jdtmu);
       };
-      return least_norm<kLevel>(weights, b, drift, null_space, singular, J, state, qdd);
+      return least_norm<kLevel, kTurns>(weights, b, drift, null_space, singular, J, length, state, qdd);
     }
   }
 
   /// The law with α = 0 and W = I: one factorisation.
-  template <int M>
-  [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
+  template <int kTurns, int M>
+  [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
                                   const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
-    return least_norm<kLevel>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, state, qdd);
+    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, length, state, qdd);
   }
 
   /// Two factorisations, made side by side:
   ///
   ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
   ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z).
-  template <int M>
+  template <int kTurns, int M>
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
-                                                const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
-    DampedGram<M, N, Pair<Scalar>> gram(singular, J);                // Of JJᵀ and JW⁻¹Jᵀ.
-    const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);  // Jᵀ and W⁻¹Jᵀ.
+                                                const Scalar& length, const State<N, Scalar>& state,
+                                                Vector<N, Scalar>& qdd) const noexcept {
+    DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of JJᵀ and JW⁻¹Jᵀ.
+    const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);    // Jᵀ and W⁻¹Jᵀ.
     const Status status = gram.factor(WinvJt, Scalar(1));
     if (failed(status)) return status;
 

@@ -17,15 +17,16 @@ struct NoDrift {};
 ///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
 ///
 /// u: velocities or accelerations by level. drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ,
-/// or NoDrift. Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large
-/// translation unit may not inline small calls.
-template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Drift>
+/// or NoDrift. The last kTurns rows of J are angular; length: the arm's [m]. Returns kDamped where damping acts. Leaves
+/// u unchanged where it fails. Flattened, since a large translation unit may not inline small calls.
+template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Drift>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Drift& drift,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
-                                              const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
+                                              const Scalar& length, const State<N, Scalar>& state,
+                                              Vector<N, Scalar>& u) noexcept {
   const auto WinvJt = weights.solve_transpose(J);
-  DampedGram<M, N, Scalar> gram(damping, J);
+  DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
   if (failed(status)) return status;
 

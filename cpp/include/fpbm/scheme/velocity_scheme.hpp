@@ -43,7 +43,8 @@ struct VelocityScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    return least_norm<kLevel>(weights, v, NoDrift{}, null_space, singular, kinematics.J, state, qd);
+    return least_norm<kLevel, Space::kTurns>(weights, v, NoDrift{}, null_space, singular, kinematics.J,
+                                             kinematics.length, state, qd);
   }
 };
 

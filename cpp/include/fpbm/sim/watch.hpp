@@ -82,11 +82,11 @@ class TaskWatch {
     using std::max;
     using std::min;
     using TaskVector = Vector<Space::kRows, Scalar>;
-    const auto& [tip, J, Jd] = kinematics;
+    const auto& J = kinematics.J;
     const Scalar step = h * state.qd.cwiseAbs().maxCoeff();
     const Scalar reach = J.cwiseAbs().maxCoeff();
     const TaskVector velocity = J.lazyProduct(state.qd);
-    const TaskVector e = Space::template difference<Scalar>(arrived.x, tip);
+    const TaskVector e = Space::template difference<Scalar>(arrived.x, kinematics.tip);
     const TaskVector ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
     const Scalar growth = position_.growth(e, h);
@@ -99,7 +99,7 @@ class TaskWatch {
     }
     position_.start_from(e, ed);
     if constexpr (kLevel == Level::kAcceleration) {
-      const TaskVector edd = reference.xdd - J.lazyProduct(qdd) - Jd.lazyProduct(state.qd);
+      const TaskVector edd = reference.xdd - J.lazyProduct(qdd) - kinematics.Jd.lazyProduct(state.qd);
       const Scalar change = (arrived.xd - before_.xd).norm();
       const TaskVector ed_before = arrived.xd - velocity;
       const Scalar faster = velocity_.growth(ed_before, h);

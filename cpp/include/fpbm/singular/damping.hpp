@@ -13,6 +13,7 @@ namespace fpbm {
 ///
 /// In place of JW⁻¹Jᵀ the schemes invert JW⁻¹Jᵀ + Δ (damped least squares: Nakamura and Hanafusa 1986, Wampler 1986),
 /// with the Δ of LostDirections, which acts only in the directions that the tip is about to lose, and ε = radius ‖J‖_F.
+/// Rows of J that are angular count by the arm's characteristic length, so that all are in metres.
 /// Δ is smooth in q, and exactly zero while σ_min ≥ ε. ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, and with weights, whose W⁻¹ has a
 /// largest diagonal entry of 1, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 ///
@@ -51,16 +52,19 @@ template <int M, int N, typename Scalar>
 }
 
 /// Factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular. With Value = Pair<Scalar>, of two with different
-/// W side by side.
-template <int M, int N, typename Value>
+/// W side by side. With damping it is the factor of D(JW⁻¹Jᵀ)D + Δ, where D multiplies the last kTurns rows, which are
+/// angular, by length [m].
+template <int M, int N, typename Value, int kTurns = 0>
 class DampedGram {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
   /// J must outlive it.
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J) noexcept
-      : damping_(damping), J_(J) {}
-  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J) = delete;
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
+             const Scalar& length = Scalar(1)) noexcept
+      : damping_(damping), J_(J), length_(length) {}
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
+             const Scalar& length = Scalar(1)) = delete;
 
   /// Factorises JW⁻¹Jᵀ + Δ, given W⁻¹Jᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
   /// Returns kDamped where Δ is not zero, or why there is no factor.
@@ -74,6 +78,8 @@ class DampedGram {
       each(kFirst, next(i), [&](auto j) {
         Value sum = Value(J_.coeff(i, 0)) * weighted.derived().coeff(0, j);
         each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * weighted.derived().coeff(k, j); });
+        if (i >= kLengths) sum *= Value(length_);
+        if (j >= kLengths) sum *= Value(length_);
         gram.coeffRef(i, j) = sum;
       });
     });
@@ -81,7 +87,7 @@ class DampedGram {
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
-    const Scalar threshold = damping_.radius() * damping_.radius() * J_.squaredNorm();
+    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm();
     const Scalar bound = threshold * inverse_bound;
     const Mask<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
     if constexpr (kInLanes<Scalar>) {
@@ -92,14 +98,39 @@ class DampedGram {
     }
   }
 
-  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept { return cholesky_.solve(b); }
+  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
+    if constexpr (kTurns == 0) {
+      return cholesky_.solve(b);
+    } else {
+      Vector<M, Value> scaled = b;
+      for (int i = kLengths; i < M; ++i) scaled(i) *= Value(length_);
+      Vector<M, Value> x = cholesky_.solve(scaled);
+      for (int i = kLengths; i < M; ++i) x(i) *= Value(length_);
+      return x;
+    }
+  }
 
   /// Additional damping of the null space [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
+  static constexpr int kLengths = M - kTurns;
+
+  /// ‖DJ‖².
+  [[nodiscard]] Scalar squared_norm() const noexcept {
+    if constexpr (kTurns == 0) {
+      return J_.squaredNorm();
+    } else {
+      return J_.template topRows<kLengths>().squaredNorm() +
+             length_ * length_ * J_.template bottomRows<kTurns>().squaredNorm();
+    }
+  }
+
   [[nodiscard, gnu::noinline]] Status damped(Matrix<M, M, Value>& gram, Scalar threshold, Status undamped) noexcept {
-    const LostDirections<M, Scalar> lost(J_.lazyProduct(J_.transpose()), threshold);
+    Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());
+    even.template rightCols<kTurns>() *= length_;
+    even.template bottomRows<kTurns>() *= length_;
+    const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
@@ -111,6 +142,7 @@ class DampedGram {
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
+  Scalar length_;
   Cholesky<M, Value> cholesky_;
   Scalar lost_{0};  ///< tr Δ/ε²: about the number of lost directions.
 };
