@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -50,7 +51,7 @@ class SerialArm {
         turns_(i) = Scalar(0);
         slides_ |= std::uint32_t(1) << i;
         const Scalar range = joint.bounds.upper - joint.bounds.lower;
-        if (is_finite(range)) length_ += range;
+        if (std::isfinite(range)) length_ += range;
       }
       if (i > 0) length_ += joint.placement.p.norm();
       limits_.set(i, joint.bounds);
