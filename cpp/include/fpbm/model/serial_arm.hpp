@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
