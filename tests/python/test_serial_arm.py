@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 import fpbm_cpp as fp
 from fpbm_cpp.arms import PRESETS
-from fpbm_cpp.job.motion import READY
 
 PANDA = fp.SerialArm.preset("panda")
 
@@ -77,6 +76,9 @@ def test_an_arm_describes_itself():
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_runs_in_a_control_loop_as_it_comes(name, level, task):
+    pytest.importorskip("tomlkit", reason="needs the command line's extras")
+    from fpbm_cpp.job.motion import READY
+
     arm, q0 = fp.SerialArm.preset(name), READY[name]
     limits, ones = arm.limits, np.ones(arm.dof)
     scheme = fp.WMVN(ones, k=10) if level == "velocity" else fp.FPBM(0.6, ones, 20, 100, null_damping=2)
