@@ -176,10 +176,11 @@ dt : float
 limits : JointLimits, optional
     The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
 error_bound : float
-    Largest tip error that the feedback acts on [m, rad]: a larger one counts as this.
+    Largest tip error that the feedback acts on: a larger one counts as this. Of the position, in arm lengths (the way
+    from the first joint to the tip); of the orientation [rad].
 integral_gain, integral_bound : float
     Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
-    [m/s^2] or [m/s]. Stable below k1 k2.
+    [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
 singular_radius, singular_brake : float
     Damping near singular postures, where the scheme has none; 0 switches it off.
 
