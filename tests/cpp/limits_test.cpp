@@ -143,7 +143,7 @@ void roll_every_scheme(const char* name, const Arm& arm, const JointLimits<Arm::
               100.0 * static_cast<double>(tally.slowed) / static_cast<double>(tally.ticks), tally.worst);
 }
 
-/// 10,000 rollouts in all.
+/// 12,000 rollouts in all.
 TEST(Limits, hold_on_a_planar_arm) {
   Random random(7);
   roll_every_scheme<Position<2>>("planar, 4 joints", PlanarArm<4>(Vector<4>::Ones()), narrow_limits<4>(4, random),
@@ -156,6 +156,13 @@ TEST(Limits, hold_on_the_panda) {
 TEST(Limits, hold_on_a_rail) {
   const AnyArm<Position<3>> rail = any_arm(panda_on_rail());
   roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
+}
+TEST(Limits, hold_on_arms_without_redundancy) {
+  const SerialArm<6> ur5e(presets::ur5e());
+  roll_every_scheme<Pose>("UR5e, pose", ur5e, ur5e.limits(), trials(125));
+  Random random(2);
+  roll_every_scheme<Position<2>>("planar, 2 joints", any_planar_arm(Vector<Eigen::Dynamic>::Ones(2)),
+                                 narrow_limits<Eigen::Dynamic>(2, random), trials(125));
 }
 
 /// One joint, driven toward its end as hard as its box allows, comes to rest there. Once it brakes, its velocity falls
