@@ -181,6 +181,9 @@ error_bound : float
 integral_gain, integral_bound : float
     Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
     [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+stall_time : float
+    An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
+    until its target moves, or until resume(). math.inf: it never gives up.
 singular_radius, singular_brake : float
     Damping near singular postures, where the scheme has none; 0 switches it off.
 
@@ -190,13 +193,15 @@ ParameterError
     Where an argument is out of range, a limit is missing, or the start breaks one.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const std::string& task, double dt, const py::object& limits, double error_bound, double gain,
-                       double bound, double radius, double brake) {
-             const TrackerOptions<> options{dt, error_bound, gain, bound, SingularDamping<>(radius, brake)};
+                       double bound, double stall_time, double radius, double brake) {
+             const SingularDamping<> singular(radius, brake);
+             const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular};
              return PyTracker(arm, scheme, q0, qd0, task, limits, options);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none, py::arg("error_bound") = 0.1,
            py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
+           py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),

@@ -152,6 +152,7 @@ void bind_scheme(py::module_& m) {
       .value("COARSE", Status::kCoarse, "The motion is complete; its steps are too long for the tip error.")
       .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
       .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
+      .value("STALLED", Status::kStalled, "The arm came no nearer to its target, and rested.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
       .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")

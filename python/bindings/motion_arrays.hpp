@@ -61,14 +61,15 @@ struct MotionArrays {
   }
 };
 
-/// limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake of a motion that keeps limits.
-using LimitedOptions = std::tuple<py::object, double, double, double, double, double>;
+/// limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius and singular_brake of a motion that
+/// keeps limits.
+using LimitedOptions = std::tuple<py::object, double, double, double, double, double, double>;
 
 inline std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
   if (!given) return std::nullopt;
-  const auto& [limits, error_bound, gain, bound, radius, brake] = *given;
+  const auto& [limits, error_bound, gain, bound, stall_time, radius, brake] = *given;
   return Limited{limits.is_none() ? arm.limits() : joint_limits(limits),
-                 {1e-3, error_bound, gain, bound, SingularDamping<>(radius, brake)}};
+                 {1e-3, error_bound, gain, bound, stall_time, SingularDamping<>(radius, brake)}};
 }
 
 }  // namespace fpbm::bindings

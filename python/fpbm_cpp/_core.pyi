@@ -171,6 +171,7 @@ class Status(enum.Enum):
     OK = ...
     SINGULAR = ...
     SLOWED = ...
+    STALLED = ...
     TASK_LOST = ...
 
 class Scheme:
@@ -338,6 +339,9 @@ class Tracker:
     integral_gain, integral_bound : float
         Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
         [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+    stall_time : float
+        An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
+        until its target moves, or until resume(). math.inf: it never gives up.
     singular_radius, singular_brake : float
         Damping near singular postures, where the scheme has none; 0 switches it off.
 
@@ -359,6 +363,7 @@ class Tracker:
         error_bound: typing.SupportsFloat | typing.SupportsIndex = 0.1,
         integral_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         integral_bound: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        stall_time: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
     ) -> None: ...

@@ -268,8 +268,8 @@ TEST(StepLength, is_not_blamed_for_a_wrong_start) {
 
 /// Every status has a message, and every failure has advice.
 TEST(Status, has_a_message_and_advice) {
-  for (const Status status : {Status::kOk, Status::kCoarse, Status::kDamped, Status::kSlowed, Status::kSingular,
-                              Status::kTaskLost, Status::kNotFinite}) {
+  for (const Status status : {Status::kOk, Status::kCoarse, Status::kDamped, Status::kSlowed, Status::kStalled,
+                              Status::kSingular, Status::kTaskLost, Status::kNotFinite}) {
     EXPECT_STRNE(message(status), "");
     EXPECT_STRNE(message(status), "unknown status");
     EXPECT_EQ(std::string(advice(status)).empty(), status == Status::kOk);

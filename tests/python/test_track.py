@@ -117,6 +117,7 @@ def test_options_make_it_again(q0):
         "error_bound": 0.05,
         "integral_gain": 1.0,
         "integral_bound": 0.5,
+        "stall_time": 0.3,
         "singular_radius": 0.03,
         "singular_brake": 5.0,
     }
@@ -142,6 +143,7 @@ def test_defaults_are_the_trackers(function):
         "error_bound",
         "integral_gain",
         "integral_bound",
+        "stall_time",
         "singular_radius",
         "singular_brake",
     } <= defaults.keys()

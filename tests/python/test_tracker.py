@@ -149,9 +149,9 @@ def test_out_of_reach_and_back(panda, settling, level):
             assert (np.abs(tick.qd) <= limits.velocity + 1e-9).all()
             assert (tick.q <= limits.upper + 1e-9).all()
             assert (tick.q >= limits.lower - 1e-9).all()
-        assert np.abs(tick.qd).max() < 2e-2
+        assert np.abs(tick.qd).max() < 1e-3
     assert np.abs(tick.error).max() < 1e-9
-    assert seen == {fp.Status.OK, fp.Status.DAMPED, fp.Status.SLOWED}
+    assert seen - {fp.Status.SLOWED} == {fp.Status.OK, fp.Status.DAMPED, fp.Status.STALLED}
 
 
 def test_objectives_that_need_the_arm(panda):
@@ -171,6 +171,7 @@ def test_objectives_that_need_the_arm(panda):
         ({"dt": 0}, "dt = 0: must be positive"),
         ({"error_bound": -1}, "error_bound = -1: must be positive"),
         ({"integral_gain": -1}, "integral_gain = -1"),
+        ({"stall_time": 0}, "stall_time = 0: must be positive, or infinite"),
         ({"singular_radius": 2}, "singular_radius = 2"),
         ({"task": "dance"}, "task = 'dance'"),
         ({"limits": narrow_limits()}, "limits has 4 entries"),

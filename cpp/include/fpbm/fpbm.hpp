@@ -48,6 +48,7 @@
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/slow_down.hpp"
+#include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/track.hpp"
 #include "fpbm/realtime/tracker.hpp"

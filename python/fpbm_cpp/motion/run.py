@@ -29,7 +29,7 @@ LIMITED = ("scale", "saturated")  # Of runs that kept the joints' limits.
 class RunStatus:
     """How a motion ended: why (code), when (time of the last sample [s]) and where (q [rad], shape (n,)).
 
-    The code is OK, COARSE, DAMPED or SLOWED where the whole motion is done, and the status true.
+    The code is OK, COARSE, DAMPED, SLOWED or STALLED where the whole motion is done, and the status true.
     """
 
     code: Status

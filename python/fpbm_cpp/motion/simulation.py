@@ -20,6 +20,7 @@ class LimitOptions(NamedTuple):
     error_bound: float = 0.1
     integral_gain: float = 0.0
     integral_bound: float = 1.0
+    stall_time: float = 2.0
     singular_radius: float = 0.02
     singular_brake: float = 10.0
 
@@ -83,6 +84,7 @@ def track(
     error_bound: float = 0.1,
     integral_gain: float = 0.0,
     integral_bound: float = 1.0,
+    stall_time: float = 2.0,
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
 ) -> Run:
@@ -91,19 +93,21 @@ def track(
     The motion is a Tracker's, where simulate() has the plain law's: every joint keeps its bounds, the motion is damped
     near singular postures, and nothing makes it stop early. Sample k is the state at t_k, the tip's error there, and
     the tick that begins there: its mean acceleration, its scale, and which joints it had on a bound. The run's status
-    is the worst of all ticks: OK, DAMPED or SLOWED; without damping it may be SINGULAR, where the arm braked. Raises
-    ValueError as simulate() does, and if a limit is missing or the start breaks one.
+    is the worst of all ticks: OK, DAMPED, SLOWED or STALLED; without damping it may be SINGULAR, where the arm braked.
+    Raises ValueError as simulate() does, and if a limit is missing or the start breaks one.
 
     Parameters
     ----------
     arm, path, scheme, q0, dt, hold, qd0, task
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
-    limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake
+    limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
-    limited = LimitOptions(limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake)
+    limited = LimitOptions(
+        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
+    )
     outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
     return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})
 

@@ -114,6 +114,7 @@ def sweep(
     error_bound: float = 0.1,
     integral_gain: float = 0.0,
     integral_bound: float = 1.0,
+    stall_time: float = 2.0,
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
     executor: Executor | None = None,
@@ -141,7 +142,7 @@ def sweep(
         Joint positions at the start [rad], one row a start; all begin at rest.
     limits : JointLimits, optional
         Limits that every motion keeps: arm.limits are the arm's own. None by default.
-    error_bound, integral_gain, integral_bound, singular_radius, singular_brake : float
+    error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake : float
         As for Tracker; they need limits.
     executor : concurrent.futures.Executor, optional
         Runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
@@ -162,9 +163,11 @@ def sweep(
         raise wrong("workers", workers, ": must be left out where there is an executor, which has its own")
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be 1 at least")
-    limited = LimitOptions(limits, error_bound, integral_gain, integral_bound, singular_radius, singular_brake)
+    limited = LimitOptions(
+        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
+    )
     if limits is None and limited != LimitOptions():
-        raise wrong("limits", None, ": must be given where error_bound, an integral or a singular option is")
+        raise wrong("limits", None, ": must be given where an option that needs them is")
     kept = None if limits is None else limited
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)

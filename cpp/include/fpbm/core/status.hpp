@@ -3,12 +3,13 @@
 namespace fpbm {
 
 /// What became of one evaluation, step, tick or rollout. The loop returns it and never throws.
-/// Up to kSlowed there is a result; from kSingular on there is none.
+/// Up to kStalled there is a result; from kSingular on there is none.
 enum class Status : unsigned char {
   kOk = 0,
   kCoarse,     ///< The steps are too long: they, and not the scheme, made a tip error that counts.
   kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
   kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
+  kStalled,    ///< The arm comes no nearer to its target: it rests until this moves, or until it is told to resume.
   kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
   kTaskLost,   ///< The tip left the motion that the scheme prescribes within one step.
   kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
@@ -31,6 +32,7 @@ enum class Status : unsigned char {
     case Status::kCoarse: return "the steps are too long: they give the tip an error that the scheme does not";
     case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
     case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
+    case Status::kStalled: return "the arm comes no nearer to its target, which may be out of reach: it rests";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
     case Status::kTaskLost:
       return "the tip has left its reference: the target is out of reach, or the step is too long";
@@ -46,6 +48,7 @@ enum class Status : unsigned char {
     case Status::kCoarse: return "Shorten dt.";
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
     case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
+    case Status::kStalled: return "Move the target into reach, or call resume() to try again.";
     case Status::kSingular:
       return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";
     case Status::kTaskLost: return "Keep the path inside the workspace and away from singular postures, or shorten dt.";

@@ -37,6 +37,9 @@ class Correction {
     }
   }
 
+  /// Whether the target lies beyond error_bound.
+  [[nodiscard]] bool far() const noexcept { return far_; }
+
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
     if (far_) reference.x = Space::template displace<Scalar>(reference.x, -excess_);
     if (gain_ != Scalar(0)) (kLevel == Level::kAcceleration ? reference.xdd : reference.xd) += gain_ * integral_;

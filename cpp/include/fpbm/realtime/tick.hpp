@@ -33,6 +33,9 @@ struct TrackerOptions {
   /// [characteristic lengths and radians per s², or per s].
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
+  /// An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
+  /// until its target moves, or until resume(). Infinite: it never gives up.
+  Scalar stall_time = Scalar(2);
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Used where the scheme has none.
 };
 

@@ -4,6 +4,7 @@
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/slow_down.hpp"
+#include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
@@ -39,7 +40,13 @@ class Tracker {
   /// option is out of range, the scheme does not fit the arm, a limit is missing (Limits), or the state breaks one.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
-      : arm_(arm), scheme_(scheme), dt_(options.dt), correction_(options), limiter_(limits), state_(start) {
+      : arm_(arm),
+        scheme_(scheme),
+        dt_(options.dt),
+        correction_(options),
+        stall_(options.stall_time, options.dt),
+        limiter_(limits),
+        state_(start) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != dt_) {
@@ -70,7 +77,8 @@ class Tracker {
     return result;
   }
 
-  /// The acceleration within the limits for a measured state; the tracker's own state does not change.
+  /// The acceleration within the limits for a measured state; the tracker's own state does not change. It never stalls:
+  /// without feedback of the tip a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
@@ -92,7 +100,10 @@ class Tracker {
 
   /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called.
   void stop() noexcept { stopping_ = true; }
-  void resume() noexcept { stopping_ = false; }
+  void resume() noexcept {
+    stopping_ = false;
+    stall_.reset();
+  }
 
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
@@ -150,7 +161,8 @@ class Tracker {
       next.qd = (next.q - state_.q) / dt_;
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
-    if (stopping_ || failed(result.status) || !limiter_.limits().admits(state_, next)) {
+    if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
+    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next)) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
@@ -179,7 +191,9 @@ class Tracker {
     result.qd = next.qd;
     result.qdd = (next.qd - state_.qd) / dt_;
     state_ = next;
-    if (result.status == Status::kOk && !stopping_) correction_.integrate();
+    if (stopping_ || failed(result.status)) return result;
+    if (result.status == Status::kOk) correction_.integrate();
+    if (result.scale < Scalar(1) || correction_.far()) stall_.update(now.x, result.error, loop.kinematics.length);
     return result;
   }
 
@@ -187,7 +201,7 @@ class Tracker {
   [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
                                                    const JointState& state, const JointVector& desired,
                                                    Result& result) const noexcept {
-    const bool braking = stopping_ || failed(result.status);
+    const bool braking = stopping_ || result.status >= Status::kStalled;
     const auto found =
         braking ? limiter_.brake(state) : limiter_.motion(jacobian_in_metres(kinematics), state, desired);
     result.scale = found.scale;
@@ -206,6 +220,7 @@ class Tracker {
   Scheme scheme_;
   Scalar dt_;
   Correction<kLevel, Space, Scalar> correction_;
+  StallDetector<Space, Scalar> stall_;
   JointLimiter limiter_;
   JointState state_;
   bool stopping_ = false;

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <limits>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/validation.hpp"
+
+namespace fpbm {
+
+/// Notices an arm that comes no nearer to its target, which may be out of reach.
+///
+/// Progress is an error that is smaller than any before by 1e-3, or a target that has moved by 1e-3, in the arm's
+/// characteristic lengths and in radians. The arm has stalled where there is none for stall_time.
+template <typename Space, typename Scalar = double>
+class StallDetector {
+ public:
+  using Twist = Vector<Space::kRows, Scalar>;
+  using Point = typename Space::template Point<Scalar>;
+
+  /// stall_time: [s], infinite for never. Throws std::invalid_argument unless positive.
+  StallDetector(Scalar stall_time, Scalar dt) : stall_time_(stall_time), dt_(dt) {
+    if (!(stall_time > Scalar(0))) {
+      validation::fail("stall_time", static_cast<double>(stall_time), "positive, or infinite");
+    }
+  }
+
+  [[nodiscard]] bool stalled() const noexcept { return waited_ > stall_time_; }
+
+  /// One more tick that does not do its whole task. length: the arm's characteristic length.
+  void update(const Point& target, const Twist& error, Scalar length) noexcept {
+    const Scalar size = norm(error, length);
+    if (size < kStep || size < least_ - kStep ||
+        norm(Space::template difference<Scalar>(target, target_), length) > kStep) {
+      target_ = target;
+      least_ = size;
+      waited_ = Scalar(0);
+    } else {
+      waited_ += dt_;
+    }
+  }
+
+  /// The arm is to try again.
+  void reset() noexcept {
+    least_ = std::numeric_limits<Scalar>::infinity();
+    waited_ = Scalar(0);
+  }
+
+ private:
+  [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
+    twist.template head<Space::kRows - Space::kTurns>() /= length;
+    return twist.norm();
+  }
+
+  static constexpr Scalar kStep = Scalar(1e-3);  ///< Of progress. Smaller errors do not count.
+
+  Scalar stall_time_;
+  Scalar dt_;
+  Scalar waited_ = Scalar(0);  ///< Without progress [s].
+  Scalar least_ = std::numeric_limits<Scalar>::infinity();
+  Point target_ = Space::template origin<Scalar>();
+};
+
+}  // namespace fpbm
