@@ -444,6 +444,7 @@ def check_sweep(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
     ]
     | None = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
@@ -495,6 +496,7 @@ def rollout(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
     ]
     | None = None,
 ) -> tuple[Status, float, int, tuple[numpy.typing.NDArray[numpy.float64], ...]]: ...
@@ -521,6 +523,7 @@ def sweep_chunk(
     motions: bool,
     limited: tuple[
         typing.Any,
+        typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,

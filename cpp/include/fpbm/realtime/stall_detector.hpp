@@ -9,7 +9,7 @@ namespace fpbm {
 
 /// Notices an arm that comes no nearer to its target, which may be out of reach.
 ///
-/// Progress is an error that is smaller than any before by 1e-3, or a target that has moved by 1e-3, in the arm's
+/// Progress is an error that is smaller than any before by 0.002, or a target that has moved by 0.002, in the arm's
 /// characteristic lengths and in radians. The arm has stalled where there is none for stall_time.
 template <typename Space, typename Scalar = double>
 class StallDetector {
@@ -51,7 +51,7 @@ class StallDetector {
     return twist.norm();
   }
 
-  static constexpr Scalar kStep = Scalar(1e-3);  ///< Of progress. Smaller errors do not count.
+  static constexpr Scalar kStep = Scalar(2e-3);  ///< Of progress. Smaller errors do not count.
 
   Scalar stall_time_;
   Scalar dt_;
