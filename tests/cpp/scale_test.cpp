@@ -24,7 +24,7 @@ void expect_ok_to_be_ok(const std::string& name, const Arm& arm, const Vector<N>
   for (Eigen::Index i = 0; i < q0.size(); ++i) bounds.set(i, {-3.1, 3.1, 2.0, 10.0});
   const Limits<Level::kVelocity, N> limits(bounds, kTick);
   for (const double k : {1.0, 5.0, 20.0, 50.0}) {
-    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
       SCOPED_TRACE(name + ", k " + std::to_string(k) + ", seed " + std::to_string(seed));
       Random random(seed);
       const auto scheme = WMVN<N>(random.uniform(q0.size(), 0.5, 3.0), k);
