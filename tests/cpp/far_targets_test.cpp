@@ -96,6 +96,54 @@ TEST(FarTargets, end_at_rest_in_space) {
   check<Position<3>>("iiwa 14, position", any_arm(presets::iiwa14()));
 }
 
+/// Whether a tracker from q0 is at the target within 40 s.
+template <typename Space, typename Arm, typename Scheme>
+[[nodiscard]] bool reaches(const Arm& arm, const Scheme& scheme, const JointLimits<N>& bounds, const Vector<N>& q0,
+                           const typename Space::template Point<double>& x, double stall_time) {
+  TrackerOptions<> options;
+  options.stall_time = stall_time;
+  const Limits<Scheme::kLevel, N> limits(bounds, options.dt);
+  Tracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
+  for (int i = 0; i < 1000 * kSeconds; ++i) {
+    if (tracker.tick(Reference<Space>::hold(x)).error.norm() < 1e-6) return true;
+  }
+  return false;
+}
+
+/// Toward random postures' tips, with small velocities too: what an arm reaches that never gives up, it reaches.
+template <typename Space, typename Arm>
+void expect_no_target_lost(const Arm& arm) {
+  for (int k = 0; k < kTargets; ++k) {
+    SCOPED_TRACE(k);
+    Random random(static_cast<std::uint32_t>(1000 + k));
+    auto bounds = bounded(arm.limits(), 2.0 * std::pow(20.0, random.uniform(0.0, 1.0)));
+    if (k % 4 == 3) bounds.velocity.setConstant(0.1);
+    const Vector<N> range = bounds.upper - bounds.lower;
+    const Vector<N> q0 = bounds.lower + random.uniform(arm.dof(), 0.1, 0.9).cwiseProduct(range);
+    const Vector<N> there = bounds.lower + random.uniform(arm.dof(), 0.02, 0.98).cwiseProduct(range);
+    Kinematics<Space, N> kinematics;
+    arm.kinematics(there, kinematics);
+    const auto reached = [&](const auto& scheme, double stall_time) {
+      return reaches<Space>(arm, scheme, bounds, q0, kinematics.tip, stall_time);
+    };
+    const auto expect_same = [&](const auto& scheme) {
+      if (reached(scheme, std::numeric_limits<double>::infinity())) {
+        EXPECT_TRUE(reached(scheme, TrackerOptions<>().stall_time));
+      }
+    };
+    const Vector<N> weights = random.uniform(arm.dof(), 0.5, 5.0);
+    expect_same(FPBM<N>(0.6, weights, 4.0, 4.0, NullSpace<N>{}.with_damping(2.0)));
+    expect_same(WMVN<N>(weights, 2.0));
+  }
+}
+
+TEST(FarTargets, are_no_targets_within_reach) {
+  for (int n = 2; n <= 4; ++n) expect_no_target_lost<Position<2>>(any_planar_arm(Vector<N>::Ones(n)));
+  expect_no_target_lost<Position<3>>(any_arm(presets::panda()));
+  expect_no_target_lost<Pose>(any_arm(presets::panda()));
+  expect_no_target_lost<Pose>(any_arm(presets::ur5e()));
+}
+
 /// Two links of 1 m, their target 1 m beyond their reach.
 struct Stall : ::testing::Test {
   static constexpr double kTick = 1e-3;
