@@ -85,12 +85,13 @@ def test_a_run_comes_back_and_is_made_again(name, tmp_path, q0):
 @pytest.mark.parametrize("scheme", [fp.MVN(k=5), fp.FPBM(0.6, [1, 2, 3, 4], 10, 25, null_damping=2)], ids=repr)
 @pytest.mark.parametrize("limits", [None, LIMITS], ids=["free", "limits"])
 def test_a_run_within_limits_comes_back_and_is_made_again(scheme, limits, tmp_path, q0):
-    run = fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, q0, dt=0.01, hold=0.2, limits=limits, error_bound=1 / 3)
+    options = {"dt": 0.01, "hold": 0.2, "limits": limits, "error_bound": 1 / 3, "stall_time": np.inf}
+    run = fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, q0, **options)
     run.save(tmp_path / "run.npz")
     back = fp.load(tmp_path / "run.npz")
     assert bits(back) == bits(run)
     assert back == run
-    assert back.options["limits"] == limits
+    assert back.options == run.options
     assert bits(back.replay()) == bits(run)
     assert back.replay() == run
 

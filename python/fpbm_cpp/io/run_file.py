@@ -113,7 +113,8 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
         shape, kind = (rows, *shapes.get(name, (n,))), "bool" if name == "saturated" else "float64"
         if array.shape != shape or array.dtype != kind:
             raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")
-    status, options = meta["status"], dict(meta["options"])
+    status = meta["status"]
+    options = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
     if options.get("limits") is not None:
         options["limits"] = from_table(options["limits"], name="limits")
     ended = RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float))

@@ -21,7 +21,8 @@ struct Kinematics {
 
 /// J with all rows in metres: angles count by the arm's length.
 template <typename Space, int N, typename Scalar>
-[[nodiscard]] Matrix<Space::kRows, N, Scalar> jacobian_in_metres(const Kinematics<Space, N, Scalar>& kinematics) {
+[[nodiscard]] Matrix<Space::kRows, N, Scalar> jacobian_in_metres(
+    const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   Matrix<Space::kRows, N, Scalar> J = kinematics.J;
   if constexpr (Space::kTurns > 0) J.template bottomRows<Space::kTurns>() *= kinematics.length;
   return J;
