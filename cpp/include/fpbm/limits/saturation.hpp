@@ -53,7 +53,9 @@ class NullSpaceSaturation {
     while (result.passes < most) {
       ++result.passes;
       const JointVector rate = direction(goal);
-      const Scalar still = kStill * rate.cwiseAbs().maxCoeff();
+      const Scalar fastest = rate.cwiseAbs().maxCoeff();
+      if (fastest > kSteepest) break;
+      const Scalar still = kStill * fastest;
       Scalar step = Scalar(1) - result.scale;
       Eigen::Index hit = -1;
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -91,6 +93,8 @@ class NullSpaceSaturation {
   /// A joint can be held too where the part of its row of Z outside the held joints' rows is longer than this: about
   /// √epsilon, below which the part is mostly round-off.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
+  /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
+  static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
 
   [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
 
