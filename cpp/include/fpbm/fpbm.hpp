@@ -12,6 +12,7 @@
 #include "fpbm/core/float_model.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"
+#include "fpbm/core/quickest_stop.hpp"
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
