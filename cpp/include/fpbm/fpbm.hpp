@@ -22,6 +22,8 @@
 #include "fpbm/core/validation.hpp"
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/box_least_squares.hpp"
+#include "fpbm/limits/braking.hpp"
+#include "fpbm/limits/jerk_limited_joint.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/saturation.hpp"

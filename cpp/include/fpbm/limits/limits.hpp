@@ -7,20 +7,22 @@
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/limits/box.hpp"
+#include "fpbm/limits/jerk_limited_joint.hpp"
 #include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {
 
-/// Bounds on positions, velocities and accelerations, kept tick by tick.
+/// Bounds on positions, velocities, accelerations and jerks, kept tick by tick.
 ///
 /// A state is viable where every joint's velocity is within its bound and within the envelopes of both ends of its
 /// range. From a viable state there is always an acceleration within its bound, held for one tick of length h, that
 /// leads to a viable state, and every joint can come to rest (viability: Del Prete 2018, here in discrete time). The
 /// envelope of a bound A on accelerations has offset A h/2, the cost of one tick's delay. box() is the set of those
 /// accelerations (at velocity level: velocities): a motion that stays inside never violates a bound, at a tick or
-/// between ticks.
+/// between ticks. Joints with a bound on jerk have another viable set (JerkLimitedJoint), of which the acceleration of
+/// the last tick is a part: last, zero for an arm at rest.
 template <Level kLevel, int N, typename Scalar = double>
 class Limits {
  public:
@@ -34,13 +36,16 @@ class Limits {
     validation::require_size("limits.upper", bounds.upper.size(), n);
     validation::require_size("limits.velocity", bounds.velocity.size(), n);
     validation::require_size("limits.acceleration", bounds.acceleration.size(), n);
+    if (bounds.jerk.size() == 0) bounds_.jerk = JointLimits<N, Scalar>::unbounded(n);
+    validation::require_size("limits.jerk", bounds_.jerk.size(), n);
     upper_.resize(n);
     lower_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const JointBounds<Scalar> given{bounds.lower(i), bounds.upper(i), bounds.velocity(i), bounds.acceleration(i)};
-      bounds_.set(i, usable_bounds<kLevel>(i, given, tick));
-      upper_.set(i, bounds.upper(i), tick / Scalar(2), bounds_.acceleration(i));
-      lower_.set(i, -bounds.lower(i), tick / Scalar(2), bounds_.acceleration(i));
+      bounds_.set(i, usable_bounds<kLevel>(i, bounds_.joint(i), tick));
+      const Scalar delay = bounds_jerk(i) ? Scalar(0) : tick / Scalar(2);
+      upper_.set(i, bounds.upper(i), delay, bounds_.acceleration(i));
+      lower_.set(i, -bounds.lower(i), delay, bounds_.acceleration(i));
+      bounds_jerk_ = bounds_jerk_ || bounds_jerk(i);
     }
   }
 
@@ -59,9 +64,16 @@ class Limits {
   /// The bounds, with accelerations filled in.
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
+  /// Whether any joint has a bound on its jerk, or joint i.
+  [[nodiscard]] bool bounds_jerk() const noexcept { return bounds_jerk_; }
+  [[nodiscard]] bool bounds_jerk(Eigen::Index i) const noexcept { return std::isfinite(bounds_.jerk(i)); }
+  [[nodiscard]] JerkLimitedJoint<kLevel, Scalar> jerk_limited(Eigen::Index i) const noexcept {
+    return {{bounds_.acceleration(i), bounds_.jerk(i)}, bounds_.velocity(i), upper_[i], lower_[i], tick_};
+  }
 
   /// Throws std::invalid_argument unless the state is viable, up to round-off: a tracker's own state is.
-  void require_viable(const State<N, Scalar>& state) const {
+  void require_viable(const State<N, Scalar>& state) const { require_viable(state, at_rest(state)); }
+  void require_viable(const State<N, Scalar>& state, const JointVector& last) const {
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {
       const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
       const Scalar slack = round_off(i, q);
@@ -71,7 +83,10 @@ class Limits {
       const Scalar qd = state.qd(i);
       const Scalar margin = slack / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::abs(qd);
       const Scalar slower = qd - std::clamp(qd, -margin, margin);
-      if (!viable(i, q, slower)) {
+      if (!(std::abs(last(i)) <= bounds_.acceleration(i) + margin / tick_)) {
+        validation::fail(validation::element("qdd0", i), static_cast<double>(last(i)), "within the joint's bound");
+      }
+      if (!(bounds_jerk(i) ? jerk_limited(i).viable(q, qd, last(i), margin * tick_) : viable(i, q, slower))) {
         validation::fail(validation::element("qd0", i), static_cast<double>(qd),
                          "slow enough for the joint to stop within its bounds");
       }
@@ -80,11 +95,20 @@ class Limits {
 
   /// Whether an arm may go from one state to another in a tick, at constant acceleration.
   [[nodiscard]] bool admits(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
+    return admits(from, to, at_rest(from));
+  }
+  [[nodiscard]] bool admits(const State<N, Scalar>& from, const State<N, Scalar>& to,
+                            const JointVector& last) const noexcept {
     bool good = true;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
-      const Scalar change = (to.qd(i) - from.qd(i)) / tick_;
-      good = good && -bounds_.acceleration(i) <= change && change <= bounds_.acceleration(i) &&
-             viable(i, to.q(i), to.qd(i));
+      const Scalar u = (to.qd(i) - from.qd(i)) / tick_;
+      if (bounds_jerk(i)) {
+        const auto joint = jerk_limited(i);
+        const auto [low, high] = joint.after(last(i));
+        good = good && low <= u && u <= high && joint.viable(to.q(i), to.qd(i), u);
+      } else {
+        good = good && -bounds_.acceleration(i) <= u && u <= bounds_.acceleration(i) && viable(i, to.q(i), to.qd(i));
+      }
     }
     return good;
   }
@@ -92,9 +116,34 @@ class Limits {
   /// What each joint may do in the next tick. From a state that is not viable (a measured one may be so) the box leads
   /// back; it keeps the bound on acceleration first and the bound on velocity next. A joint beyond its range returns as
   /// fast as these allow, and can come to rest on the bound.
-  [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept {
+  [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept { return box(state, at_rest(state)); }
+  [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state, const JointVector& last) const noexcept {
+    return box_of(state, [&](Eigen::Index i, const auto& joint) { return joint.after(last(i)); });
+  }
+  /// The same without regard to the last tick: where its joints may be once their jerk has brought them there.
+  [[nodiscard]] Box<N, Scalar> box_in_time(const State<N, Scalar>& state) const noexcept {
+    return box_of(state, [](Eigen::Index, const auto& joint) { return joint.after_any(); });
+  }
+
+  /// Joint i's motion in a tick of some acceleration.
+  [[nodiscard]] Scalar motion(Scalar qd, Scalar acceleration) const noexcept {
+    return kLevel == Level::kVelocity ? qd + tick_ * acceleration : acceleration;
+  }
+
+ private:
+  using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
+
+  template <typename Reach>
+  [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Reach&& reach) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+      if (bounds_jerk(i)) {
+        const auto joint = jerk_limited(i);
+        const auto [low, high] = joint.viable(reach(i, joint), state.q(i), state.qd(i));
+        box.lower(i) = motion(state.qd(i), low);
+        box.upper(i) = motion(state.qd(i), high);
+        continue;
+      }
       const Scalar v = bounds_.velocity(i);
       const Scalar w = state.qd(i);
       const Scalar most = w + bounds_.acceleration(i) * tick_;
@@ -115,25 +164,9 @@ class Limits {
     return box;
   }
 
-  /// The motion to rest: all joints slow down in proportion, as fast as their accelerations allow; a joint that must
-  /// brake harder does. At acceleration level a joint beyond its range stops there.
-  [[nodiscard]] JointVector brake(const State<N, Scalar>& state, const Box<N, Scalar>& box) const noexcept {
-    Scalar rate = Scalar(1) / tick_;
-    for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
-      const Scalar speed = std::abs(state.qd(i));
-      if (rate * speed > bounds_.acceleration(i)) rate = bounds_.acceleration(i) / speed;
-    }
-    if constexpr (kLevel == Level::kAcceleration) {
-      // In the box of every viable state; not where a joint beyond its range should return, which may wait.
-      const JointVector halt = (state.qd / -tick_).cwiseMax(-bounds_.acceleration).cwiseMin(bounds_.acceleration);
-      const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
-      return wider.nearest(-rate * state.qd);
-    }
-    return box.nearest((Scalar(1) - rate * tick_) * state.qd);
+  [[nodiscard]] static JointVector at_rest(const State<N, Scalar>& state) noexcept {
+    return JointVector::Zero(state.q.size());
   }
-
- private:
-  using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
 
   [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
     return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
@@ -159,6 +192,9 @@ class Limits {
     if (!(envelope.offset >= envelope.deceleration * tick_ / Scalar(2))) {
       validation::fail(name("offset"), static_cast<double>(envelope.offset), "at least deceleration dt / 2");
     }
+    if (!(envelope.offset * bounds_.jerk(i) >= envelope.deceleration * envelope.deceleration)) {
+      validation::fail(name("offset"), static_cast<double>(envelope.offset), "at least deceleration squared / jerk");
+    }
     const Scalar rest = envelope.end - envelope.offset * envelope.offset / (Scalar(2) * envelope.deceleration);
     if (!(rest <= bound)) {
       validation::fail(name("end"), static_cast<double>(envelope.end), "such that the joint stops within its range");
@@ -170,6 +206,7 @@ class Limits {
   JointLimits<N, Scalar> bounds_;
   Envelopes upper_;
   Envelopes lower_;  ///< For −q.
+  bool bounds_jerk_ = false;
 };
 
 }  // namespace fpbm

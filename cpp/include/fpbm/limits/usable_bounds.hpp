@@ -15,7 +15,8 @@ namespace fpbm {
 ///
 /// At velocity level a missing acceleration is the one that changes the velocity at once. A velocity or an acceleration
 /// a thousand times what a tick can use is cut down to that, since squares of DBL_MAX overflow: no joint moves farther
-/// than its range in a tick, or changes its velocity by more than twice the largest.
+/// than its range in a tick, or changes its velocity by more than twice the largest. A jerk that takes the acceleration
+/// from one bound to the other in a tick is none.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] JointBounds<Scalar> usable_bounds(Eigen::Index i, JointBounds<Scalar> bounds, Scalar tick) {
   const auto require = [i](bool good, const char* name, Scalar value, const char* what) {
@@ -24,6 +25,7 @@ template <Level kLevel, typename Scalar>
   require(bounds.lower < bounds.upper, "limits.lower", bounds.lower, "below limits.upper");
   require(bounds.velocity > Scalar(0), "limits.velocity", bounds.velocity, "positive");
   require(bounds.acceleration > Scalar(0), "limits.acceleration", bounds.acceleration, "positive");
+  require(bounds.jerk > Scalar(0), "limits.jerk", bounds.jerk, "positive");
 
   constexpr auto kPlenty = Scalar(1024);
   const Scalar most =
@@ -33,13 +35,13 @@ template <Level kLevel, typename Scalar>
   if (std::isfinite(bounds.acceleration)) {
     const Scalar speed = std::min(bounds.velocity, Scalar(2) * (range / tick));
     bounds.acceleration = std::min({bounds.acceleration, kPlenty * (speed / tick), most});
-    return bounds;
+  } else if (std::isfinite(bounds.lower) || std::isfinite(bounds.upper) || std::isfinite(bounds.velocity)) {
+    require(kLevel == Level::kVelocity, "limits.acceleration", bounds.acceleration,
+            "finite where the joint's position or velocity is bounded: give one");
+    const Scalar speed = std::isfinite(bounds.velocity) ? bounds.velocity : range / tick;
+    if (std::isfinite(speed)) bounds.acceleration = Scalar(2) * speed / tick;
   }
-  if (!std::isfinite(bounds.lower) && !std::isfinite(bounds.upper) && !std::isfinite(bounds.velocity)) return bounds;
-  require(kLevel == Level::kVelocity, "limits.acceleration", bounds.acceleration,
-          "finite where the joint's position or velocity is bounded: give one");
-  const Scalar speed = std::isfinite(bounds.velocity) ? bounds.velocity : range / tick;
-  if (std::isfinite(speed)) bounds.acceleration = Scalar(2) * speed / tick;
+  if (bounds.jerk * tick >= Scalar(2) * bounds.acceleration) bounds.jerk = JointBounds<Scalar>::kNone;
   return bounds;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/quickest_stop.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -18,6 +19,33 @@ struct VelocityEnvelope {
   Scalar deceleration;  ///< [rad/s²] or [m/s²]
 };
 
+/// What an envelope of offset c and deceleration d says, in coordinates that grow toward the joint's end.
+template <typename Scalar>
+struct Side {
+  Scalar rest;      ///< r: beyond which the joint does not go; infinite where there is no end.
+  Scalar delay;     ///< c/d [s]
+  Scalar softness;  ///< 1/d
+
+  /// Greatest q̇²/2d + q̇ c/d + q − r, which the envelope keeps below 0, of a stop with jerk −J.
+  ///
+  /// from: a state's q − r, q̇ and acceleration. The greatest one is where the acceleration has come to −b = −d q̇/(q̇ +
+  /// c): found by iteration, which contracts where J ≥ d²/c, and whose error counts in second order.
+  [[nodiscard]] Scalar excess(Scalar jerk, const AxisState<Scalar>& from) const noexcept {
+    const auto value = [this](const AxisState<Scalar>& at) {
+      return at.v > Scalar(0) ? at.q + at.v * (delay + at.v * softness / Scalar(2)) : at.q;
+    };
+    const Scalar until = from.a / jerk;  // No acceleration is left.
+    const Scalar top = from.v + from.a * until / Scalar(2);
+    Scalar v = top;
+    Scalar b = Scalar(0);
+    for (int i = 0; i < 3 && v > Scalar(0); ++i) {
+      b = v / (v * softness + delay);
+      v = top - b * b / (Scalar(2) * jerk);
+    }
+    return from.a <= -b ? value(from) : value(from.ahead(until + b / jerk, -jerk));
+  }
+};
+
 /// Envelopes of all joints toward one end of their ranges, in coordinates that grow toward it.
 ///
 /// With the position r = end − c²/(2d) where an envelope of offset c and deceleration d is zero, (w + c)² ≤ 2d (end −
@@ -28,6 +56,8 @@ class VelocityEnvelopes {
   void resize(Eigen::Index n) {
     for (JointVector* row : {&rest_, &delay_, &softness_}) row->resize(n);
   }
+
+  [[nodiscard]] Side<Scalar> operator[](Eigen::Index i) const noexcept { return {rest_(i), delay_(i), softness_(i)}; }
 
   /// rest: r, beyond which the joint does not go; infinite where there is no end. delay: c/d [s]. Infinite d: as hard
   /// as need be.

@@ -56,6 +56,7 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
   if (!(bounds.acceleration > Scalar(0))) {
     validation::fail(name + ".acceleration", static_cast<double>(bounds.acceleration), "positive");
   }
+  if (!(bounds.jerk > Scalar(0))) validation::fail(name + ".jerk", static_cast<double>(bounds.jerk), "positive");
 }
 
 }  // namespace chain_check

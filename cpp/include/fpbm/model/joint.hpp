@@ -23,6 +23,7 @@ struct JointBounds {
   Scalar upper = kNone;         ///< [rad] or [m]
   Scalar velocity = kNone;      ///< Either way [rad/s] or [m/s].
   Scalar acceleration = kNone;  ///< Either way [rad/s²] or [m/s²].
+  Scalar jerk = kNone;          ///< Either way [rad/s³] or [m/s³].
 };
 
 /// Coupling of a joint to another, its leader: position = ratio · leader's position + offset.
@@ -47,21 +48,22 @@ struct Joint {
 /// Bounds on the motion of all joints of an arm; infinite where there is none.
 template <int N, typename Scalar = double>
 struct JointLimits {
-  Vector<N, Scalar> lower;         ///< [rad] or [m]
-  Vector<N, Scalar> upper;         ///< [rad] or [m]
-  Vector<N, Scalar> velocity;      ///< [rad/s] or [m/s]
-  Vector<N, Scalar> acceleration;  ///< [rad/s²] or [m/s²]
+  Vector<N, Scalar> lower;                                  ///< [rad] or [m]
+  Vector<N, Scalar> upper;                                  ///< [rad] or [m]
+  Vector<N, Scalar> velocity;                               ///< [rad/s] or [m/s]
+  Vector<N, Scalar> acceleration;                           ///< [rad/s²] or [m/s²]
+  Vector<N, Scalar> jerk = unbounded(acceleration.size());  ///< [rad/s³] or [m/s³]
 
   /// No bounds at all, for dof joints.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
-    const Vector<N, Scalar> infinite = Vector<N, Scalar>::Constant(dof, JointBounds<Scalar>::kNone);
-    return {-infinite, infinite, infinite, infinite};
+    const Vector<N, Scalar> infinite = unbounded(dof);
+    return {-infinite, infinite, infinite, infinite, infinite};
   }
 
   template <typename Other>
   [[nodiscard]] JointLimits<N, Other> cast() const {
     return {lower.template cast<Other>(), upper.template cast<Other>(), velocity.template cast<Other>(),
-            acceleration.template cast<Other>()};
+            acceleration.template cast<Other>(), jerk.template cast<Other>()};
   }
 
   /// Sets the bounds of joint i.
@@ -70,6 +72,17 @@ struct JointLimits {
     upper(i) = bounds.upper;
     velocity(i) = bounds.velocity;
     acceleration(i) = bounds.acceleration;
+    jerk(i) = bounds.jerk;
+  }
+
+  /// The bounds of joint i.
+  [[nodiscard]] JointBounds<Scalar> joint(Eigen::Index i) const noexcept {
+    return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i)};
+  }
+
+  /// No bound, for dof joints.
+  [[nodiscard]] static Vector<N, Scalar> unbounded(Eigen::Index dof) {
+    return Vector<N, Scalar>::Constant(dof, JointBounds<Scalar>::kNone);
   }
 };
 

@@ -40,13 +40,19 @@ class Tracker {
   /// option is out of range, the scheme does not fit the arm, a limit is missing (Limits), or the state breaks one.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
+      : Tracker(arm, Space{}, scheme, start, options, limits, JointVector::Zero(start.q.size())) {}
+
+  /// qdd0: acceleration of the tick before, for bounds on jerk.
+  Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
+          const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0)
       : arm_(arm),
         scheme_(scheme),
         dt_(options.dt),
         correction_(options),
         stall_(options.stall_time, options.dt),
         limiter_(limits),
-        state_(start) {
+        state_(start),
+        last_(qdd0) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != dt_) {
@@ -54,7 +60,8 @@ class Tracker {
     }
     validation::require_joint_vector("q0", start.q, arm.dof());
     validation::require_joint_vector("qd0", start.qd, arm.dof());
-    limits.require_viable(start);
+    validation::require_joint_vector("qdd0", qdd0, arm.dof());
+    limits.require_viable(start, qdd0);
     set_damping(scheme_, options.singular);
   }
 
@@ -86,6 +93,7 @@ class Tracker {
     if (!moderate(measured)) {
       result.status = Status::kNotFinite;
       result.scale = Scalar(0);
+      result.qdd = last_ = fade(limiter_.limits(), last_);
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
@@ -93,7 +101,7 @@ class Tracker {
     loop.update(dx);
     watch(loop.kinematics, reference, result);
     result.status = loop.resolve(correction_(reference), dx);
-    result.qdd = limited(loop.kinematics, measured, loop.qdd, result);
+    result.qdd = last_ = limited(loop.kinematics, measured, loop.qdd, result);
     if (result.status == Status::kOk) correction_.integrate();
     return result;
   }
@@ -106,6 +114,8 @@ class Tracker {
   }
 
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
+  /// Acceleration of the last tick.
+  [[nodiscard]] const JointVector& acceleration() const noexcept { return last_; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
 
   /// Tip f(q) of the tracker's own state, where a PathFollower usually starts.
@@ -157,12 +167,13 @@ class Tracker {
     JointState next{x.col(0), state_.qd};
     if constexpr (kSecondOrder) {
       next.qd = x.col(1);
+      if (limiter_.limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
     } else {
       next.qd = (next.q - state_.q) / dt_;
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
     if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
-    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next)) {
+    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next, last_)) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
@@ -180,7 +191,7 @@ class Tracker {
         result.status = worse(result.status, Status::kSlowed);
       }
       if constexpr (kSecondOrder) {
-        next.q = state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * u);
+        next.q = moved(u);
         next.qd = state_.qd + dt_ * u;
       } else {
         next.q = state_.q + dt_ * u;
@@ -189,12 +200,17 @@ class Tracker {
     }
     result.q = next.q;
     result.qd = next.qd;
-    result.qdd = (next.qd - state_.qd) / dt_;
+    result.qdd = last_ = (next.qd - state_.qd) / dt_;
     state_ = next;
     if (stopping_ || failed(result.status)) return result;
     if (result.status == Status::kOk) correction_.integrate();
     if (result.scale < Scalar(1) || correction_.far()) stall_.update(now.x, result.error, loop.kinematics.length);
     return result;
+  }
+
+  /// The position after a tick of constant acceleration.
+  [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
+    return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
   }
 
   /// The desired motion within the limits; the motion to rest where the scheme failed or stop() was called.
@@ -203,7 +219,7 @@ class Tracker {
                                                    Result& result) const noexcept {
     const bool braking = stopping_ || result.status >= Status::kStalled;
     const auto found =
-        braking ? limiter_.brake(state) : limiter_.motion(jacobian_in_metres(kinematics), state, desired);
+        braking ? limiter_.brake(state, last_) : limiter_.motion(jacobian_in_metres(kinematics), state, last_, desired);
     result.scale = found.scale;
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;
@@ -223,6 +239,7 @@ class Tracker {
   StallDetector<Space, Scalar> stall_;
   JointLimiter limiter_;
   JointState state_;
+  JointVector last_;  ///< Acceleration of the last tick, or the last answer for a measured state.
   bool stopping_ = false;
 };
 

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "fpbm/limits/limits.hpp"
+
+namespace fpbm {
+
+/// All joints slow down in proportion, as fast as their accelerations allow; a joint that must brake harder, as a box
+/// of the limits says, does. At acceleration level a joint beyond its range stops there.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
+                                                    const State<N, Scalar>& state, const Box<N, Scalar>& box) noexcept {
+  using JointVector = Vector<N, Scalar>;
+  const JointVector& most = limits.bounds().acceleration;
+  Scalar rate = Scalar(1) / limits.tick();
+  for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
+    const Scalar speed = std::abs(state.qd(i));
+    if (rate * speed > most(i)) rate = most(i) / speed;
+  }
+  if constexpr (kLevel == Level::kAcceleration) {
+    // In the box of every viable state; not where a joint beyond its range should return, which may wait.
+    const JointVector halt = (state.qd / -limits.tick()).cwiseMax(-most).cwiseMin(most);
+    const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
+    return wider.nearest(-rate * state.qd);
+  }
+  return box.nearest((Scalar(1) - rate * limits.tick()) * state.qd);
+}
+
+/// The motion to rest after a tick of acceleration last: as brake_in_proportion(), but each joint with a bound on its
+/// jerk takes its quickest stop.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> brake(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state,
+                                      const Vector<N, Scalar>& last) noexcept {
+  const Box<N, Scalar> box = limits.box(state, last);
+  const JointLimits<N, Scalar>& bounds = limits.bounds();
+  Vector<N, Scalar> u = brake_in_proportion(limits, state, box);
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    if (!limits.bounds_jerk(i)) continue;
+    const Scalar quickest = limits.motion(state.qd(i), limits.jerk_limited(i).brake(state.qd(i), last(i)));
+    const bool within = bounds.lower(i) <= state.q(i) && state.q(i) <= bounds.upper(i);
+    u(i) = within || kLevel == Level::kVelocity ? std::clamp(quickest, box.lower(i), box.upper(i)) : quickest;
+  }
+  return u;
+}
+
+/// The acceleration of a joint whose state is not known: toward zero, within the bound on its jerk.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> fade(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& last) noexcept {
+  const Vector<N, Scalar> step = limits.tick() * limits.bounds().jerk;
+  return last - last.cwiseMin(step).cwiseMax(-step);
+}
+
+}  // namespace fpbm

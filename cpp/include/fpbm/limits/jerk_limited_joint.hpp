@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/quickest_stop.hpp"
+#include "fpbm/limits/velocity_envelope.hpp"
+
+namespace fpbm {
+
+/// Accelerations of a joint from low to high.
+template <typename Scalar>
+struct Interval {
+  Scalar low;
+  Scalar high;
+};
+
+/// A joint with a bound J on its jerk, in a loop of ticks of length h.
+///
+/// Its acceleration u is constant over a tick; its jerk is (u − u₋)/h, with u₋ the tick before. A state (q, q̇, u) is
+/// viable where the quickest stop from it keeps all bounds. A stop in ticks leaves a little room, since its steps of
+/// acceleration come at the start of a tick, before the ramps that they stand for; so from a viable state one of the
+/// accelerations in reach always leads to a viable state, with no margin. Both the furthest position and the greatest
+/// velocity of the stop rise with u, so that those accelerations are an interval.
+///
+/// At velocity level, where q moves by h q̇ of the tick's end, it is q̂ + h q̇/2, and q̂ moves as at acceleration level.
+template <Level kLevel, typename Scalar>
+struct JerkLimitedJoint {
+  QuickestStop<Scalar> stop;
+  Scalar velocity;     ///< Bound on q̇ either way.
+  Side<Scalar> upper;  ///< Bounds on q, and on q̇ near them.
+  Side<Scalar> lower;  ///< For −q.
+  Scalar tick;         ///< h [s]
+
+  /// Up to a slack, in the unit of q.
+  [[nodiscard]] bool viable(Scalar q, Scalar qd, Scalar u, Scalar slack = Scalar(0)) const noexcept {
+    return viable(upper, q, qd, u, slack) && viable(lower, -q, -qd, -u, slack);
+  }
+
+  /// Accelerations within the bounds on acceleration and jerk after another one.
+  [[nodiscard]] Interval<Scalar> after(Scalar last) const noexcept {
+    const Scalar step = stop.jerk * tick;
+    return {std::clamp(last - step, -stop.acceleration, stop.acceleration),
+            std::clamp(last + step, -stop.acceleration, stop.acceleration)};
+  }
+  /// After any other.
+  [[nodiscard]] Interval<Scalar> after_any() const noexcept { return {-stop.acceleration, stop.acceleration}; }
+
+  /// Which of some accelerations lead to a viable state; the nearest to them where none does. A joint beyond its range
+  /// returns, and comes to rest at its end.
+  [[nodiscard]] Interval<Scalar> viable(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
+    const Scalar high = most(upper, q, qd, some);
+    const Scalar low = -most(lower, -q, -qd, {-some.high, -some.low});
+    if (low <= high) return {low, high};
+    const Scalar between = (low + high) / Scalar(2);
+    return {between, between};
+  }
+
+  /// Greatest acceleration b from which steps of Jh to zero, h (b + (b − Jh) + (b − 2Jh) + …), change the velocity by
+  /// no more than a given amount.
+  [[nodiscard]] Scalar change(Scalar amount) const noexcept {
+    using std::floor;
+    using std::sqrt;
+    const Scalar step = stop.jerk * tick;
+    const Scalar sum = amount / tick;
+    const Scalar steps = floor((sqrt(Scalar(1) + Scalar(8) * sum / step) - Scalar(1)) / Scalar(2));
+    return std::min(stop.acceleration, (sum + step * steps * (steps + Scalar(1)) / Scalar(2)) / (steps + Scalar(1)));
+  }
+
+  /// Acceleration of the next tick on the quickest way to q̇ = u = 0.
+  [[nodiscard]] Scalar brake(Scalar qd, Scalar last) const noexcept {
+    const auto [low, high] = after(last);
+    const Scalar most = change(std::abs(qd));
+    return std::clamp(qd > Scalar(0) ? -most : most, low, high);
+  }
+
+ private:
+  [[nodiscard]] bool viable(const Side<Scalar>& side, Scalar q, Scalar qd, Scalar u, Scalar slack) const noexcept {
+    const Scalar rises = std::max(u, Scalar(0));
+    return qd + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack / tick &&
+           excess(side, q - side.rest, qd, u) <= slack;
+  }
+
+  /// Largest of some accelerations that keep the bounds of one side; the smallest where none does.
+  [[nodiscard]] Scalar most(const Side<Scalar>& side, Scalar q, Scalar qd, Interval<Scalar> some) const noexcept {
+    using std::sqrt;
+    const Scalar room = velocity - qd;
+    const Scalar fastest =
+        room > Scalar(0) ? Scalar(2) * room / (tick + sqrt(tick * tick + Scalar(2) * room / stop.jerk)) : room / tick;
+    const Scalar from = q - side.rest;
+    const auto beyond = [&](Scalar u) noexcept {
+      const Scalar next = qd + tick * u;
+      const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
+      if (from > Scalar(0)) return stop.rest({from + way, next, u});
+      const Scalar most = excess(side, from + way, next, u);
+      // Where the joint turns back within the tick.
+      return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
+    };
+    return largest_below_zero(beyond, some.low, std::clamp(fastest, some.low, some.high));
+  }
+
+  /// How far the stop from a distance to the end goes beyond it, or beyond an envelope.
+  [[nodiscard]] Scalar excess(const Side<Scalar>& side, Scalar from, Scalar qd, Scalar u) const noexcept {
+    if (kLevel == Level::kVelocity && qd < Scalar(0)) from -= tick * qd / Scalar(2);
+    const Scalar beyond = stop.furthest({from, qd, u});
+    return side.delay > Scalar(0) ? std::max(beyond, side.excess(stop.jerk, {from, qd, u})) : beyond;
+  }
+};
+
+}  // namespace fpbm
