@@ -120,7 +120,8 @@ typename Space::template Point<double> point(const ArrayLike& argument, const ch
   }
 }
 
-/// Any object with lower, upper, velocity and acceleration, one number a joint each, none of them NaN.
+/// Any object with lower, upper, velocity and acceleration, one number a joint each, none of them NaN; jerk,
+/// velocity_offset and deceleration where it has them.
 inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
   const auto bound = [&](const char* name) {
     const Vector<Eigen::Dynamic> values = joint_vector(ArrayLike(py::object(limits.attr(name))), name);
@@ -129,7 +130,12 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
     }
     return values;
   };
-  return {bound("lower"), bound("upper"), bound("velocity"), bound("acceleration")};
+  JointLimits<Eigen::Dynamic> result{bound("lower"), bound("upper"), bound("velocity"), bound("acceleration")};
+  const auto has = [&](const char* name) { return py::hasattr(limits, name) && !limits.attr(name).is_none(); };
+  if (has("jerk")) result.jerk = bound("jerk");
+  if (has("velocity_offset")) result.velocity_offset = bound("velocity_offset");
+  if (has("deceleration")) result.deceleration = bound("deceleration");
+  return result;
 }
 
 /// A vector, a matrix or a point of a task space as Python has it.

@@ -35,7 +35,8 @@ Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& ti
     joint.type = joint_type(py::cast<std::string>(given.attr("type")), name + ".type");
     joint.placement = transform(array("placement"), (name + ".placement").text.c_str());
     joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text.c_str());
-    joint.bounds = {number("lower"), number("upper"), number("velocity"), number("acceleration")};
+    joint.bounds = {number("lower"), number("upper"),           number("velocity"),    number("acceleration"),
+                    number("jerk"),  number("velocity_offset"), number("deceleration")};
     joint.name = py::cast<std::string>(given.attr("name"));
     if (const py::object mimic = given.attr("mimic"); !mimic.is_none()) {
       const auto [index, ratio, offset] = py::cast<std::tuple<int, double, double>>(mimic);
@@ -62,6 +63,9 @@ PlainChain plain(const Chain<>& chain) {
     fields["upper"] = joint.bounds.upper;
     fields["velocity"] = joint.bounds.velocity;
     fields["acceleration"] = joint.bounds.acceleration;
+    fields["jerk"] = joint.bounds.jerk;
+    fields["velocity_offset"] = joint.bounds.velocity_offset;
+    fields["deceleration"] = joint.bounds.deceleration;
     fields["name"] = joint.name;
     joints.append(fields);
   }
@@ -188,12 +192,19 @@ void bind_arm(py::module_& m) {
           "joint_names", [](const Arm& arm) { return arm.joint_names; }, "Names of the joints, from the base on.")
       .def(
           "bounds",
-          [](const Arm& arm) -> py::typing::Tuple<Array, Array, Array, Array> {
+          [](const Arm& arm) -> py::typing::Dict<py::str, Array> {
             const auto& limits = arm.limits();
-            return py::make_tuple(array_of(limits.lower), array_of(limits.upper), array_of(limits.velocity),
-                                  array_of(limits.acceleration));
+            py::dict bounds;
+            bounds["lower"] = array_of(limits.lower);
+            bounds["upper"] = array_of(limits.upper);
+            bounds["velocity"] = array_of(limits.velocity);
+            bounds["acceleration"] = array_of(limits.acceleration);
+            bounds["jerk"] = array_of(limits.jerk);
+            bounds["velocity_offset"] = array_of(limits.velocity_offset);
+            bounds["deceleration"] = array_of(limits.deceleration);
+            return bounds;
           },
-          "(lower, upper, velocity, acceleration) of the joints, shape (n,) each; infinite where there is no bound.")
+          "The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.")
       .def("forward", &forward, py::arg("q"),
            "Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous\n"
            "matrix, shape (4, 4), of one in space. q: shape (n,) [rad].")

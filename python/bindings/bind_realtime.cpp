@@ -53,14 +53,16 @@ class PyTracker {
 
  public:
   PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-            const std::string& task, const py::object& limits, const TrackerOptions<>& options)
+            const OptionalArray& qdd0, const std::string& task, const py::object& limits,
+            const TrackerOptions<>& options)
       : dof_(arm.dof()), any_(arm.visit(task, [&](const auto& any, auto space) {
           using Space = decltype(space);
           State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
           if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
+          const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
           require_enough_joints<Space>(dof_);
-          return Any(
-              make_tracker<Space>(any, scheme, start, options, limits.is_none() ? arm.limits() : joint_limits(limits)));
+          return Any(make_tracker<Space>(any, scheme, start, options,
+                                         limits.is_none() ? arm.limits() : joint_limits(limits), before));
         })) {}
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
@@ -105,6 +107,9 @@ class PyTracker {
   }
   [[nodiscard]] Array qd() {
     return visit([](auto& tracker, auto) { return array_of(tracker.state().qd); });
+  }
+  [[nodiscard]] Array qdd() {
+    return visit([](auto& tracker, auto) { return array_of(tracker.acceleration()); });
   }
   [[nodiscard]] Array tip() {
     return visit([](auto& tracker, auto) { return array_of(tracker.tip()); });
@@ -167,8 +172,9 @@ arm, scheme
     What moves, and how.
 q0 : array_like, shape (n,)
     Joint positions at the start [rad], within the limits.
-qd0 : array_like, shape (n,), optional
-    Joint velocities at the start [rad/s], zero unless given.
+qd0, qdd0 : array_like, shape (n,), optional
+    Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
+    zero unless given.
 task : str
     'position' or 'pose'.
 dt : float
@@ -192,15 +198,15 @@ Raises
 ParameterError
     Where an argument is out of range, a limit is missing, or the start breaks one.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-                       const std::string& task, double dt, const py::object& limits, double error_bound, double gain,
-                       double bound, double stall_time, double radius, double brake) {
+                       const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
+                       double error_bound, double gain, double bound, double stall_time, double radius, double brake) {
              const SingularDamping<> singular(radius, brake);
              const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular};
-             return PyTracker(arm, scheme, q0, qd0, task, limits, options);
+             return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
-           py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none, py::arg("error_bound") = 0.1,
-           py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
+           py::arg("qdd0") = none, py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none,
+           py::arg("error_bound") = 0.1, py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
            py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake())
@@ -221,6 +227,7 @@ where no motion can be found the arm brakes, and the tick's status says why.)")
       .def("resume", &PyTracker::resume, "Follows references again.")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")
       .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of its own state [rad/s].")
+      .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of its last tick [rad/s^2].")
       .def_property_readonly("tip", &PyTracker::tip, "Where the tip of its own state is, in the base frame [m].");
 }
 

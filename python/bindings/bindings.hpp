@@ -9,6 +9,7 @@ namespace fpbm::bindings {
 void bind_arm(py::module_& m);
 void bind_path(py::module_& m);
 void bind_scheme(py::module_& m);
+void bind_limits(py::module_& m);
 void bind_sim(py::module_& m);
 void bind_sweep(py::module_& m);
 void bind_realtime(py::module_& m);

@@ -10,7 +10,8 @@ template <typename Space>
 AnyTracker<Space> tracker_of(const Motion<Space>& motion, const Limited& limited) {
   TrackerOptions<> options = limited.options;
   options.dt = motion.grid.dt();
-  return make_tracker<Space>(motion.arm, motion.scheme, motion.start, options, limited.limits);
+  return make_tracker<Space>(motion.arm, motion.scheme, motion.start, options, limited.limits,
+                             JointVector::Zero(motion.start.q.size()));
 }
 
 }  // namespace

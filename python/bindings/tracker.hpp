@@ -21,10 +21,12 @@ using AnyFollower = PathFollower<AnyPath<Space>>;
 /// Throws std::invalid_argument where scheme, state, options or limits do not fit, as fpbm::Tracker does.
 template <typename Space>
 AnyTracker<Space> make_tracker(const AnyArmFor<Space>& arm, const Scheme& scheme, const State<kDynamic>& start,
-                               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits) {
+                               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits,
+                               const JointVector& qdd0) {
   const auto make = [&](const auto& any) -> AnyTracker<Space> {
     constexpr Level kLevel = std::decay_t<decltype(any)>::kLevel;
-    return TrackerAt<kLevel, Space>(arm, Space{}, any, start, options, Limits<kLevel, kDynamic>(limits, options.dt));
+    return TrackerAt<kLevel, Space>(arm, Space{}, any, start, options, Limits<kLevel, kDynamic>(limits, options.dt),
+                                    qdd0);
   };
   return std::visit(make, scheme.with_default_damping(options.singular).make<Space>(arm));
 }

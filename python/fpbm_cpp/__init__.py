@@ -9,6 +9,8 @@ from . import arms, paths, schemes
 from ._core import (
     MAX_DOF,
     Kinematics,
+    LimitedMotion,
+    Limiter,
     PathFollower,
     Status,
     Tick,
@@ -31,6 +33,6 @@ from .tuning import Tuning, tune
 from .viewer import view
 
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune", "view"]
-__all__ += ["Kinematics", "PathFollower", "Status", "Tick", "Tracker", "failed", "rotation", "rotation_vector"]
+__all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "Tick", "Tracker", "failed", "rotation", "rotation_vector"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "__version__"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__

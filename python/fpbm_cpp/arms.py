@@ -38,10 +38,22 @@ class JointLimits(Data):
     upper: ArrayField = parameter("Highest positions.", BOUND, unit="rad")
     velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, unit="rad/s")
     acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, unit="rad/s^2")
+    jerk: ArrayField | None = parameter("Highest jerks, either way.", BOUND, default=None, unit="rad/s^3")
+    velocity_offset: ArrayField | None = parameter(
+        "Toward an end, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        BOUND,
+        default=None,
+        unit="rad/s",
+    )
+    deceleration: ArrayField | None = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
 
     def _finish(self) -> None:
-        for name in ("upper", "velocity", "acceleration"):
-            require_length(name, getattr(self, name), len(self.lower))
+        dof = len(self.lower)
+        for name, missing in (("jerk", inf), ("velocity_offset", 0.0), ("deceleration", inf)):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, np.full(dof, missing))
+        for name in ("upper", "velocity", "acceleration", "jerk", "velocity_offset", "deceleration"):
+            require_length(name, getattr(self, name), dof)
 
 
 @data
@@ -55,6 +67,13 @@ class Joint(Data):
     upper: float = parameter("Highest position.", default=inf, infinite=True, unit="rad")
     velocity: float = parameter("Highest velocity, either way.", default=inf, infinite=True, unit="rad/s")
     acceleration: float = parameter("Highest acceleration, either way.", default=inf, infinite=True, unit="rad/s^2")
+    jerk: float = parameter("Highest jerk, either way.", default=inf, infinite=True, unit="rad/s^3")
+    velocity_offset: float = parameter(
+        "Toward an end, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        default=0.0,
+        unit="rad/s",
+    )
+    deceleration: float = parameter("See velocity_offset.", default=inf, infinite=True, unit="rad/s^2")
     name: str = parameter("'joint_1' and so on where empty.", default="")
     mimic: tuple[int, float, float] | None = parameter(
         "Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is ratio "
@@ -76,7 +95,7 @@ class Arm(Data, CoreArm):
     @cached_property
     def limits(self) -> JointLimits:
         """Bounds of the joints' motion."""
-        return JointLimits(**dict(zip(parameters(JointLimits), self.bounds())))
+        return JointLimits(**self.bounds())
 
     def first(self, joints: int) -> Arm:
         """The arm of the first so many joints: of an elbow, say. Raises ParameterError."""
@@ -151,6 +170,7 @@ class SerialArm(Arm):
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         acceleration: ArrayLike | None = None,
+        jerk: ArrayLike | None = None,
         names: Sequence[str] | None = None,
         base: ArrayLike | None = None,
         tip: ArrayLike | None = None,
@@ -167,14 +187,14 @@ class SerialArm(Arm):
             the joint is prismatic.
         convention : str
             'classic' or 'modified'.
-        types, lower, upper, velocity, acceleration, names : array_like, shape (n,), optional
+        types, lower, upper, velocity, acceleration, jerk, names : array_like, shape (n,), optional
             As for each Joint: 'revolute' (unless given), 'continuous' or 'prismatic', bounds of its motion, its name.
         base, tip : array_like, shape (4, 4), optional
             Frame 0 in the base frame, and the tip's frame seen from frame n.
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
-        bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration}
+        bounds = {"lower": lower, "upper": upper, "velocity": velocity, "acceleration": acceleration, "jerk": jerk}
         columns = {name: replace(BOUND, name=name, default=None).check(values) for name, values in bounds.items()}
         for name, values in {**columns, "names": names}.items():
             if values is not None:

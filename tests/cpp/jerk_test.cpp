@@ -103,6 +103,39 @@ TEST(Jerk, one_joint_keeps_all_bounds_whatever_it_is_asked_for) {
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }
 
+/// Every viable state is one from which the brake keeps all bounds, near an end and at any scale.
+template <Level kLevel>
+void expect_to_stop_from_viable_states() {
+  int stopped = 0;
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(100000)); ++seed) {
+    Random random(seed);
+    const Limits<kLevel, 1> limits(random_bounds<double>(random), kTick);
+    const JointLimits<1>& bounds = limits.bounds();
+    if (!std::isfinite(bounds.jerk(0))) continue;
+    const double step = bounds.jerk(0) * kTick;
+    const double ticks = std::pow(10.0, random.uniform(-1.0, 2.0));
+    Vector<1> last(
+        std::clamp(random.uniform(-1.0, 1.0) * ticks * step, -bounds.acceleration(0), bounds.acceleration(0)));
+    State<1> state{bounds.upper, Vector<1>(random.uniform(-1.0, 1.0) * ticks * ticks * kTick * step)};
+    state.q(0) -= random.uniform(0.0, 0.5) * ticks * ticks * ticks * kTick * kTick * step;
+    if (!complaint([&] { limits.require_viable(state, last); }).empty()) continue;
+    ++stopped;
+    for (int tick = 0; tick < 2000 && state.qd(0) != 0.0; ++tick) {
+      const Vector<1> u = brake(limits, state, last);
+      last = kLevel == Level::kVelocity ? Vector<1>((u - state.qd) / kTick) : u;
+      state.qd += kTick * last;
+      state.q += kTick * (kLevel == Level::kVelocity ? state.qd : Vector<1>(state.qd - kTick / 2.0 * last));
+      ASSERT_LE(state.q(0), bounds.upper(0) + 1e-12) << "seed " << seed << ", tick " << tick;
+    }
+  }
+  EXPECT_GE(stopped, trials(10000));
+}
+
+TEST(Jerk, every_viable_state_can_be_stopped) {
+  expect_to_stop_from_viable_states<Level::kAcceleration>();
+  expect_to_stop_from_viable_states<Level::kVelocity>();
+}
+
 /// The quickest stop in ticks is at most a tick longer than the quickest one in continuous time.
 TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(20000)); ++seed) {
@@ -192,10 +225,10 @@ void roll(const Arm& arm, JointLimits<Arm::kDof> given, MakeScheme&& make_scheme
     given.jerk = std::pow(10.0, random.uniform(1.0, 2.7)) * given.acceleration;
     const Limits<std::decay_t<decltype(scheme)>::kLevel, N> limits(given, kTick);
     const JointLimits<N>& bounds = limits.bounds();
-    State<N> start{given.lower, Vector<N>::Zero(arm.dof())};
+    State<N> start{bounds.lower, Vector<N>::Zero(arm.dof())};
     for (int i = 0; i < arm.dof(); ++i) {
-      const double low = std::max(given.lower(i), -3.0);
-      const double high = std::min(given.upper(i), 3.0);
+      const double low = std::max(bounds.lower(i), -3.0);
+      const double high = std::min(bounds.upper(i), 3.0);
       start.q(i) = std::clamp(random.uniform(low, high), low, high);
       if (seed % 4 == 0 && i % 2 == 0) start.q(i) = i % 4 == 0 ? high : low;
     }

@@ -52,7 +52,8 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 }};
 
 /// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration toward
+/// an end; what is left out has no bound.
 inline fpbm::Chain<> chain() {{
 {none}  fpbm::Chain<> chain;
   chain.joints.resize({len(joints)});
@@ -89,8 +90,10 @@ def _joint_lines(i: int, joint: Joint) -> list[str]:
         *_transform_lines(f"{member}.placement", joint.placement),
         f"{member}.axis = {_braced(joint.axis)};",
     ]
-    bounds = [joint.lower, joint.upper, joint.velocity, joint.acceleration]
-    if bounds != [-inf, inf, inf, inf]:
+    bounds = [joint.lower, joint.upper, joint.velocity, joint.acceleration, joint.jerk]
+    if joint.deceleration < inf:
+        bounds += [joint.velocity_offset, joint.deceleration]
+    if bounds != [-inf, inf, inf, inf, inf]:
         while bounds[-1] == inf:
             bounds.pop()
         lines.append(f"{member}.bounds = {_braced(bounds)};")

@@ -16,7 +16,7 @@ from .._core import MAX_DOF, rotation
 from .._types import Array
 from ..arms import Joint
 from ..errors import ParameterError, wrong
-from .urdf_file import UrdfJoint, read_robot
+from .urdf_file import ENVELOPE, UrdfJoint, read_robot
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
 Tree = dict[str, "UrdfJoint | None"]  # The joint above each link, None above the root.
@@ -174,7 +174,8 @@ def _frame(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
 
 
 def _joint(joint: UrdfJoint, placement: Array) -> Joint:
-    limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, **joint.limit}  # The format's defaults.
+    # The format's defaults.
+    limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, "jerk": inf, **joint.limit}
     if joint.type == "continuous":
         limit = {"velocity": inf, **limit, "lower": -inf, "upper": inf}
     if "velocity" not in limit:
@@ -182,10 +183,22 @@ def _joint(joint: UrdfJoint, placement: Array) -> Joint:
     lower, upper = limit["lower"], limit["upper"]
     if lower >= upper:
         raise ValueError(f"joint {joint.name!r}: lower = {lower:g}: must be below upper = {upper:g}")
-    for what in ("velocity", "acceleration"):
+    limit |= _envelope(joint)
+    for what in ("velocity", "acceleration", "jerk"):
         if limit[what] <= 0.0:
             raise ValueError(f"joint {joint.name!r}: {what} = {limit[what]:g}: must be positive")
     return Joint(str(joint.type), placement, joint.axis, **limit, name=joint.name)
+
+
+def _envelope(joint: UrdfJoint) -> dict[str, float]:
+    """A Franka's bound on velocity that depends on position, as libfranka reads it."""
+    if not joint.envelope:
+        return {}
+    offset, deceleration = (joint.envelope.get(name) for name in ENVELOPE)
+    if offset is None or deceleration is None or offset < 0.0 or deceleration <= 0.0:
+        needs = f"must have {' and '.join(ENVELOPE)}, not negative"
+        raise ValueError(f"joint {joint.name!r}: <position_based_velocity_limits> {needs}")
+    return {"velocity_offset": offset, "deceleration": deceleration}
 
 
 def _coupled(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
@@ -210,5 +223,6 @@ def _coupled(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
             upper=upper,
             velocity=min(leader.velocity, follower.velocity / abs(ratio)),
             acceleration=min(leader.acceleration, follower.acceleration / abs(ratio)),
+            jerk=min(leader.jerk, follower.jerk / abs(ratio)),
         )
     return coupled

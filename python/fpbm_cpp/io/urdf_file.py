@@ -13,7 +13,8 @@ MAX_DEPTH = 64
 MAX_TEXT = 256  # Characters of an attribute.
 
 # The attributes that are read, by the elements that they are in.
-LIMITS = ("lower", "upper", "velocity", "acceleration")
+LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
+ENVELOPE = ("velocity_offset", "deceleration_limit")  # Of a Franka: a bound on velocity that depends on position.
 KEPT: dict[tuple[str, ...], dict[str, tuple[str, ...]]] = {
     ("robot",): {"link": ("name",), "joint": ("name", "type")},
     ("robot", "joint"): {
@@ -22,6 +23,7 @@ KEPT: dict[tuple[str, ...], dict[str, tuple[str, ...]]] = {
         "origin": ("xyz", "rpy"),
         "axis": ("xyz",),
         "limit": LIMITS,
+        "position_based_velocity_limits": ENVELOPE,
         "mimic": ("joint", "multiplier", "offset"),
     },
 }
@@ -40,6 +42,7 @@ class UrdfJoint:
     rpy: list[float]
     axis: list[float]
     limit: dict[str, float]  # What is stated of LIMITS.
+    envelope: dict[str, float]  # What is stated of ENVELOPE.
     mimic: tuple[str, float, float] | None  # Another joint, multiplier, offset.
 
 
@@ -134,8 +137,10 @@ def _joint(name: str, parts: Parts) -> UrdfJoint:
     xyz, rpy = (numbers("origin", key, [0.0, 0.0, 0.0]) for key in ("xyz", "rpy"))
     axis = numbers("axis", "xyz", [1.0, 0.0, 0.0])
     limit = {key: numbers("limit", key, [0.0])[0] for key in LIMITS if key in parts.get("limit", {})}
+    tag = "position_based_velocity_limits"
+    envelope = {key: numbers(tag, key, [0.0])[0] for key in ENVELOPE if key in parts.get(tag, {})}
     mimic = None
     if "mimic" in parts:
         (multiplier,), (offset,) = numbers("mimic", "multiplier", [1.0]), numbers("mimic", "offset", [0.0])
         mimic = (required("mimic", "joint"), multiplier, offset)
-    return UrdfJoint(name, kind, parent, child, xyz, rpy, axis, limit, mimic)
+    return UrdfJoint(name, kind, parent, child, xyz, rpy, axis, limit, envelope, mimic)

@@ -38,7 +38,7 @@ class Controls:
     def __init__(self, gui: GuiApi, run: Run, on_change: Callable[[], None]) -> None:
         self._on_change = on_change
         limits, names = run.limits, joint_labels(run.arm)
-        bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration]
+        bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
             self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}

@@ -24,7 +24,8 @@ struct Interval {
 /// accelerations in reach always leads to a viable state, with no margin. Both the furthest position and the greatest
 /// velocity of the stop rise with u, so that those accelerations are an interval.
 ///
-/// At velocity level, where q moves by h q̇ of the tick's end, it is q̂ + h q̇/2, and q̂ moves as at acceleration level.
+/// At velocity level q moves by h q̇ of the tick's end, less than its ramps while it stops; where it still speeds up,
+/// the room that is left makes up for that.
 template <Level kLevel, typename Scalar>
 struct JerkLimitedJoint {
   QuickestStop<Scalar> stop;
@@ -102,7 +103,6 @@ struct JerkLimitedJoint {
 
   /// How far the stop from a distance to the end goes beyond it, or beyond an envelope.
   [[nodiscard]] Scalar excess(const Side<Scalar>& side, Scalar from, Scalar qd, Scalar u) const noexcept {
-    if (kLevel == Level::kVelocity && qd < Scalar(0)) from -= tick * qd / Scalar(2);
     const Scalar beyond = stop.furthest({from, qd, u});
     return side.delay > Scalar(0) ? std::max(beyond, side.excess(stop.jerk, {from, qd, u})) : beyond;
   }

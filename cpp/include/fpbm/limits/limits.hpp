@@ -30,21 +30,26 @@ class Limits {
 
   /// tick: h [s]. A joint that has bounds needs one on its acceleration, except at velocity level, where it may then
   /// change its velocity at once. Throws std::invalid_argument naming the joint and the value.
-  Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds) {
+  Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds.complete()) {
     validation::require_positive("dt", static_cast<double>(tick));
     const Eigen::Index n = bounds.lower.size();
     validation::require_size("limits.upper", bounds.upper.size(), n);
     validation::require_size("limits.velocity", bounds.velocity.size(), n);
     validation::require_size("limits.acceleration", bounds.acceleration.size(), n);
-    if (bounds.jerk.size() == 0) bounds_.jerk = JointLimits<N, Scalar>::unbounded(n);
     validation::require_size("limits.jerk", bounds_.jerk.size(), n);
+    validation::require_size("limits.velocity_offset", bounds_.velocity_offset.size(), n);
+    validation::require_size("limits.deceleration", bounds_.deceleration.size(), n);
     upper_.resize(n);
     lower_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      bounds_.set(i, usable_bounds<kLevel>(i, bounds_.joint(i), tick));
-      const Scalar delay = bounds_jerk(i) ? Scalar(0) : tick / Scalar(2);
-      upper_.set(i, bounds.upper(i), delay, bounds_.acceleration(i));
-      lower_.set(i, -bounds.lower(i), delay, bounds_.acceleration(i));
+      const JointBounds<Scalar> joint = usable_bounds<kLevel>(i, bounds_.joint(i), tick);
+      bounds_.set(i, joint);
+      const bool enveloped = std::isfinite(joint.deceleration);
+      const Scalar least = bounds_jerk(i) ? Scalar(0) : tick / Scalar(2);
+      const Scalar delay = enveloped ? joint.velocity_offset / joint.deceleration : least;
+      const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
+      upper_.set(i, joint.upper, delay, deceleration);
+      lower_.set(i, -joint.lower, delay, deceleration);
       bounds_jerk_ = bounds_jerk_ || bounds_jerk(i);
     }
   }

@@ -13,6 +13,9 @@ namespace fpbm {
 /// Bounds on a joint as a loop of ticks of length h uses them. Throws std::invalid_argument naming the joint where they
 /// are none.
 ///
+/// Where the velocity is bounded toward an end, the ends become the places where that bound is zero. A joint that
+/// cannot brake along that bound gets one that is zero at the same place with the same slope, and lies below it.
+///
 /// At velocity level a missing acceleration is the one that changes the velocity at once. A velocity or an acceleration
 /// a thousand times what a tick can use is cut down to that, since squares of DBL_MAX overflow: no joint moves farther
 /// than its range in a tick, or changes its velocity by more than twice the largest. A jerk that takes the acceleration
@@ -26,6 +29,9 @@ template <Level kLevel, typename Scalar>
   require(bounds.velocity > Scalar(0), "limits.velocity", bounds.velocity, "positive");
   require(bounds.acceleration > Scalar(0), "limits.acceleration", bounds.acceleration, "positive");
   require(bounds.jerk > Scalar(0), "limits.jerk", bounds.jerk, "positive");
+  require(bounds.deceleration > Scalar(0), "limits.deceleration", bounds.deceleration, "positive");
+  require(bounds.velocity_offset >= Scalar(0) && std::isfinite(bounds.velocity_offset), "limits.velocity_offset",
+          bounds.velocity_offset, "finite and not negative");
 
   constexpr auto kPlenty = Scalar(1024);
   const Scalar most =
@@ -42,6 +48,15 @@ template <Level kLevel, typename Scalar>
     if (std::isfinite(speed)) bounds.acceleration = Scalar(2) * speed / tick;
   }
   if (bounds.jerk * tick >= Scalar(2) * bounds.acceleration) bounds.jerk = JointBounds<Scalar>::kNone;
+  if (!std::isfinite(bounds.deceleration)) return bounds;
+  const Scalar short_of = bounds.velocity_offset * bounds.velocity_offset / (Scalar(2) * bounds.deceleration);
+  bounds.upper -= short_of;
+  bounds.lower += short_of;
+  require(bounds.lower < bounds.upper, "limits.velocity_offset", bounds.velocity_offset,
+          "such that the joint may move somewhere");
+  const Scalar delay = std::max(bounds.velocity_offset / bounds.deceleration, tick / Scalar(2));
+  bounds.deceleration = std::min({bounds.deceleration, bounds.acceleration, bounds.jerk * delay});
+  bounds.velocity_offset = delay * bounds.deceleration;
   return bounds;
 }
 

@@ -20,7 +20,7 @@ inline constexpr int kNullity = N == Eigen::Dynamic ? Eigen::Dynamic : N - M;
 template <int M, int N, typename Scalar>
 class RowSpace {
  public:
-  explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.transpose()) {
+  explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.transpose()), beta_(A.rows()) {
     using std::sqrt;
     const Eigen::Index n = V_.rows();
     const Eigen::Index m = V_.cols();

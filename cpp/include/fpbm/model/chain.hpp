@@ -57,6 +57,10 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
     validation::fail(name + ".acceleration", static_cast<double>(bounds.acceleration), "positive");
   }
   if (!(bounds.jerk > Scalar(0))) validation::fail(name + ".jerk", static_cast<double>(bounds.jerk), "positive");
+  if (!(bounds.deceleration > Scalar(0))) {
+    validation::fail(name + ".deceleration", static_cast<double>(bounds.deceleration), "positive");
+  }
+  validation::require_non_negative(name + ".velocity_offset", static_cast<double>(bounds.velocity_offset));
 }
 
 }  // namespace chain_check

@@ -111,6 +111,10 @@ class CoupledArm {
     limits_.velocity(k) = std::min(limits_.velocity(k), bounds.velocity / std::abs(ratio));
     limits_.acceleration(k) = std::min(limits_.acceleration(k), bounds.acceleration / std::abs(ratio));
     limits_.jerk(k) = std::min(limits_.jerk(k), bounds.jerk / std::abs(ratio));
+    if (bounds.deceleration < JointBounds<Scalar>::kNone) {
+      validation::fail(chain_check::name_of(chain, i) + ".deceleration", static_cast<double>(bounds.deceleration),
+                       "infinite, since the joint follows another");
+    }
     if (!(lower < upper)) {
       const std::string room = "below upper = " + std::to_string(upper) + " for its followers to keep their bounds";
       validation::fail(chain_check::name_of(chain, leader) + ".lower", static_cast<double>(lower), room.c_str());

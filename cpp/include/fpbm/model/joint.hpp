@@ -24,6 +24,9 @@ struct JointBounds {
   Scalar velocity = kNone;      ///< Either way [rad/s] or [m/s].
   Scalar acceleration = kNone;  ///< Either way [rad/s²] or [m/s²].
   Scalar jerk = kNone;          ///< Either way [rad/s³] or [m/s³].
+  /// Toward an end, the velocity is at most −velocity_offset + √(2 deceleration · distance to it).
+  Scalar velocity_offset = 0;   ///< [rad/s] or [m/s]
+  Scalar deceleration = kNone;  ///< [rad/s²] or [m/s²]
 };
 
 /// Coupling of a joint to another, its leader: position = ratio · leader's position + offset.
@@ -53,17 +56,21 @@ struct JointLimits {
   Vector<N, Scalar> velocity;                               ///< [rad/s] or [m/s]
   Vector<N, Scalar> acceleration;                           ///< [rad/s²] or [m/s²]
   Vector<N, Scalar> jerk = unbounded(acceleration.size());  ///< [rad/s³] or [m/s³]
+  /// As in JointBounds [rad/s, rad/s²] or [m/s, m/s²].
+  Vector<N, Scalar> velocity_offset = Vector<N, Scalar>::Zero(acceleration.size());
+  Vector<N, Scalar> deceleration = unbounded(acceleration.size());
 
   /// No bounds at all, for dof joints.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
     const Vector<N, Scalar> infinite = unbounded(dof);
-    return {-infinite, infinite, infinite, infinite, infinite};
+    return {-infinite, infinite, infinite, infinite};
   }
 
   template <typename Other>
   [[nodiscard]] JointLimits<N, Other> cast() const {
-    return {lower.template cast<Other>(), upper.template cast<Other>(), velocity.template cast<Other>(),
-            acceleration.template cast<Other>(), jerk.template cast<Other>()};
+    return {lower.template cast<Other>(),        upper.template cast<Other>(), velocity.template cast<Other>(),
+            acceleration.template cast<Other>(), jerk.template cast<Other>(),  velocity_offset.template cast<Other>(),
+            deceleration.template cast<Other>()};
   }
 
   /// Sets the bounds of joint i.
@@ -73,11 +80,23 @@ struct JointLimits {
     velocity(i) = bounds.velocity;
     acceleration(i) = bounds.acceleration;
     jerk(i) = bounds.jerk;
+    velocity_offset(i) = bounds.velocity_offset;
+    deceleration(i) = bounds.deceleration;
   }
 
   /// The bounds of joint i.
   [[nodiscard]] JointBounds<Scalar> joint(Eigen::Index i) const noexcept {
-    return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i)};
+    return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i)};
+  }
+
+  /// The same, with no bound where the last three have not been given a size.
+  [[nodiscard]] JointLimits complete() const {
+    const JointLimits given{lower, upper, velocity, acceleration};
+    JointLimits all = *this;
+    if (jerk.size() == 0) all.jerk = given.jerk;
+    if (velocity_offset.size() == 0) all.velocity_offset = given.velocity_offset;
+    if (deceleration.size() == 0) all.deceleration = given.deceleration;
+    return all;
   }
 
   /// No bound, for dof joints.

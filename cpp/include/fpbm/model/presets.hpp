@@ -11,7 +11,7 @@
 ///
 /// Each is a chain. Build a SerialArm<7> or SerialArm<6> from it, or change it first: chain.tip = chain.tip * tool adds
 /// a tool. All run in a Tracker as they come. Where the maker publishes no bound on acceleration, the figure here is
-/// another's, as said there: set chain.joints[i].bounds.acceleration to your own.
+/// another's, as said there: set chain.joints[i].bounds.acceleration to your own. Only Franka publish bounds on jerk.
 namespace fpbm::presets {
 
 namespace arms {
@@ -59,12 +59,34 @@ template <typename Bounds>
   });
   chain.tip.p(2) = 0.107;
   const std::vector<JointBounds<>> bounds = {
-      // [rad], [rad], [rad/s], [rad/s²]
-      {-2.8973, 2.8973, 2.1750, 15.0},  {-1.7628, 1.7628, 2.1750, 7.5},  {-2.8973, 2.8973, 2.1750, 10.0},
-      {-3.0718, -0.0698, 2.1750, 12.5}, {-2.8973, 2.8973, 2.6100, 15.0}, {-0.0175, 3.7525, 2.6100, 20.0},
-      {-2.8973, 2.8973, 2.6100, 20.0},
+      // [rad], [rad], [rad/s], [rad/s²], [rad/s³]
+      {-2.8973, 2.8973, 2.1750, 15.0, 7500.0},  {-1.7628, 1.7628, 2.1750, 7.5, 3750.0},
+      {-2.8973, 2.8973, 2.1750, 10.0, 5000.0},  {-3.0718, -0.0698, 2.1750, 12.5, 6250.0},
+      {-2.8973, 2.8973, 2.6100, 15.0, 7500.0},  {-0.0175, 3.7525, 2.6100, 20.0, 10000.0},
+      {-2.8973, 2.8973, 2.6100, 20.0, 10000.0},
   };
   return arms::driven(chain, "panda_joint", bounds);
+}
+
+/// Franka Research 3, 7 joints, to its flange: the Panda's links.
+///
+/// Bounds on position and velocity, and those on velocity near the ends, from the robot's URDF in libfranka 0.21,
+/// test/fr3.urdf; accelerations and jerks from the Franka Control Interface documentation of August 2025, "Limits for
+/// Franka Research 3".
+[[nodiscard]] inline Chain<> fr3() {
+  constexpr double kAcceleration = 10.0;
+  constexpr double kJerk = 5000.0;
+  const std::vector<JointBounds<>> bounds = {
+      // [rad], [rad], [rad/s], [rad/s²], [rad/s³], offset [rad/s], deceleration [rad/s²]
+      {-2.7501, 2.7501, 2.62, kAcceleration, kJerk, 0.30, 6.0},
+      {-1.7918, 1.7918, 2.62, kAcceleration, kJerk, 0.20, 2.585},
+      {-2.9065, 2.9065, 2.62, kAcceleration, kJerk, 0.20, 3.5},
+      {-3.0481, -0.1458, 2.62, kAcceleration, kJerk, 0.30, 4.0},
+      {-2.8101, 2.8101, 5.26, kAcceleration, kJerk, 0.35, 17.0},
+      {0.54092, 4.5205, 4.18, kAcceleration, kJerk, 0.35, 5.5},
+      {-3.0196, 3.0196, 5.26, kAcceleration, kJerk, 0.35, 17.0},
+  };
+  return arms::driven(panda(), "fr3_joint", bounds);
 }
 
 /// KUKA LBR iiwa 14 R820, 7 joints, to its flange.
@@ -171,7 +193,7 @@ struct Preset {
   const char* name;
   Chain<> (*chain)();
 };
-inline constexpr Preset kAll[] = {
-    {"panda", panda}, {"iiwa14", iiwa14}, {"gen3", gen3}, {"ur5e", ur5e}, {"ur10e", ur10e}};
+inline constexpr Preset kAll[] = {{"panda", panda}, {"fr3", fr3},   {"iiwa14", iiwa14},
+                                  {"gen3", gen3},   {"ur5e", ur5e}, {"ur10e", ur10e}};
 
 }  // namespace fpbm::presets

@@ -1,0 +1,112 @@
+#include <string>
+#include <variant>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "fpbm/limits/limiter.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+constexpr int kOpen = Eigen::Dynamic;
+using Array = py::array_t<double>;
+
+/// A motion within limits, as Python has it.
+struct PyMotion {
+  Array u;
+  double scale;
+  py::array_t<bool> saturated;
+};
+
+/// A limiter of either level.
+class PyLimiter {
+ public:
+  PyLimiter(const py::object& limits, double dt, const std::string& level)
+      : any_(make(joint_limits(limits), dt, level)) {}
+
+  [[nodiscard]] PyMotion motion(const ArrayLike& J, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& desired,
+                                const OptionalArray& last) const {
+    return std::visit(
+        [&](const auto& limiter) {
+          const auto n = static_cast<int>(limiter.limits().bounds().lower.size());
+          const auto rows = real_array(J, "J", 2).shape(0);
+          if (rows < 1 || rows > n) {
+            validation::fail("J's number of rows", static_cast<double>(rows), "from 1 to the number of joints");
+          }
+          const State<kOpen> state{joint_vector(q, "q", n), joint_vector(qd, "qd", n)};
+          const Vector<kOpen> before = last ? joint_vector(*last, "last", n) : Vector<kOpen>::Zero(n);
+          const Matrix<kOpen, kOpen> jacobian = matrix(J, "J", rows, n);
+          return python(limiter.template motion<kOpen>(jacobian, state, before, joint_vector(desired, "desired", n)));
+        },
+        any_);
+  }
+
+  [[nodiscard]] PyMotion brake(const ArrayLike& q, const ArrayLike& qd, const OptionalArray& last) const {
+    return std::visit(
+        [&](const auto& limiter) {
+          const auto n = static_cast<int>(limiter.limits().bounds().lower.size());
+          const State<kOpen> state{joint_vector(q, "q", n), joint_vector(qd, "qd", n)};
+          return python(limiter.brake(state, last ? joint_vector(*last, "last", n) : Vector<kOpen>::Zero(n)));
+        },
+        any_);
+  }
+
+ private:
+  using Any = std::variant<Limiter<Level::kAcceleration, kOpen>, Limiter<Level::kVelocity, kOpen>>;
+
+  static Any make(const JointLimits<kOpen>& limits, double dt, const std::string& level) {
+    if (level == "acceleration") return Limiter(Limits<Level::kAcceleration, kOpen>(limits, dt));
+    if (level == "velocity") return Limiter(Limits<Level::kVelocity, kOpen>(limits, dt));
+    validation::reject("level", " = '" + level + "': must be 'acceleration' or 'velocity'");
+  }
+
+  static PyMotion python(const Saturated<kOpen>& found) {
+    py::array_t<bool> saturated(found.u.size());
+    for (Eigen::Index i = 0; i < found.u.size(); ++i) saturated.mutable_at(i) = ((found.joints >> i) & 1U) != 0;
+    return {array_of(found.u), found.scale, saturated};
+  }
+
+  Any any_;
+};
+
+}  // namespace
+
+void bind_limits(py::module_& m) {
+  const auto none = py::none();
+  py::class_<PyMotion>(m, "LimitedMotion", "A motion of one tick within limits.")
+      .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).")
+      .def_readonly("scale", &PyMotion::scale, "How much of the task is left, from 0 to 1.")
+      .def_readonly("saturated", &PyMotion::saturated, "Which joints are on a bound, shape (n,).");
+
+  py::class_<PyLimiter>(m, "Limiter",
+                        R"(Keeps joint limits in a loop of one's own, with a Jacobian from anywhere.
+
+A motion that keeps every bound over the next tick, and can be brought to rest within them, passes unchanged. Otherwise
+other joints take over in the null space of J; where they cannot, the task is scaled down along its direction.
+
+Parameters
+----------
+limits : JointLimits
+    Bounds of the joints; one with bounds needs one on its acceleration, except at velocity level.
+dt : float
+    Length of a tick [s].
+level : str
+    'acceleration' or 'velocity': what is limited.
+
+Raises
+------
+ParameterError
+    Where an argument is out of range or a bound is missing.)")
+      .def(py::init<const py::object&, double, const std::string&>(), py::arg("limits"), py::arg("dt"), py::kw_only(),
+           py::arg("level") = "acceleration")
+      .def("motion", &PyLimiter::motion, py::arg("J"), py::arg("q"), py::arg("qd"), py::arg("desired"), py::kw_only(),
+           py::arg("last") = none,
+           R"(The motion nearest to a desired one.
+
+J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. qd is the last command's velocity, and
+last its acceleration [rad/s^2], from which bounds on jerk start: zero unless given.)")
+      .def("brake", &PyLimiter::brake, py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("last") = none,
+           "The motion that brings every joint to rest, as motion.");
+}
+
+}  // namespace fpbm::bindings
