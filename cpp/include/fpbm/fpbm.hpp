@@ -78,6 +78,7 @@
 #include "fpbm/task/shapes.hpp"
 #include "fpbm/task/spline.hpp"
 #include "fpbm/task/time_law.hpp"
+#include "fpbm/task/time_optimal_axis.hpp"
 #include "fpbm/task/tip_bounds.hpp"
 #include "fpbm/task/waypoints.hpp"
 #include "fpbm/task/with_rotation.hpp"
