@@ -11,6 +11,7 @@ from ._core import (
     Kinematics,
     PathFollower,
     Status,
+    TargetFilter,
     Tick,
     Tracker,
     __version__,
@@ -31,6 +32,6 @@ from .tuning import Tuning, tune
 from .viewer import view
 
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune", "view"]
-__all__ += ["Kinematics", "PathFollower", "Status", "Tick", "Tracker", "failed", "rotation", "rotation_vector"]
-__all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "__version__"]
+__all__ += ["Kinematics", "PathFollower", "Status", "TargetFilter", "Tick", "Tracker", "failed", "rotation"]
+__all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted", "__version__", "rotation_vector"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__
