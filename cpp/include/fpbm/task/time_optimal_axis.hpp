@@ -25,22 +25,22 @@ struct TimeOptimalAxis {
     return next;
   }
 
-  /// Some seconds later on the way to q = 0, in the frame of a target that moves at a velocity within the bound.
-  /// A stop that ends nearer than the tolerance is followed, and ends at 0 exactly: no round-off becomes jerk.
-  [[nodiscard]] AxisState<Scalar> approach(const AxisState<Scalar>& state, Scalar target_velocity, Scalar seconds,
-                                           Scalar tolerance) const noexcept {
-    const Scalar rest = stop.rest(state);
+  /// Some seconds later on the way to a target, in its frame, which moves at a velocity within the bound.
+  /// A stop that ends nearer than the tolerance is followed, and ends at the target exactly: no round-off becomes jerk.
+  [[nodiscard]] AxisState<Scalar> approach(const AxisState<Scalar>& state, Scalar target, Scalar target_velocity,
+                                           Scalar seconds, Scalar tolerance) const noexcept {
+    const Scalar left = target - stop.rest(state);
     AxisState<Scalar> from = state;
     Scalar gone(0);
-    if (!(std::abs(rest) <= tolerance)) {
-      const Scalar d = rest > Scalar(0) ? Scalar(-1) : Scalar(1);
+    if (!(std::abs(left) <= tolerance)) {
+      const Scalar d = left < Scalar(0) ? Scalar(-1) : Scalar(1);
       const Scalar wanted = d * velocity - target_velocity;
-      const auto beyond = [&](Scalar t) noexcept { return d * stop.rest(change(state, wanted, t)); };
+      const auto beyond = [&](Scalar t) noexcept { return d * (stop.rest(change(state, wanted, t)) - target); };
       gone = largest_below_zero(beyond, Scalar(0), seconds, kRounds);
       from = change(state, wanted, gone);
     }
     AxisState<Scalar> next = stop.ahead(from, seconds - gone);
-    if (next.v == Scalar(0) && next.a == Scalar(0) && std::abs(next.q) <= tolerance) next.q = Scalar(0);
+    if (next.v == Scalar(0) && next.a == Scalar(0) && std::abs(next.q - target) <= tolerance) next.q = target;
     return next;
   }
 
