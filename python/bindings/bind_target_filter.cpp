@@ -45,7 +45,8 @@ typename Space::template Point<double> any_point(const ArrayLike& argument, cons
 PyTargetFilter target_filter(const ArrayLike& x0, double velocity, double acceleration, double jerk,
                              Number angular_velocity, Number angular_acceleration, Number angular_jerk,
                              const std::string& task, double dt, double timeout, Number start) {
-  if (task != "position" && task != "pose") validation::reject("task", " = '" + task + "': must be 'position' or 'pose'");
+  if (task != "position" && task != "pose")
+    validation::reject("task", " = '" + task + "': must be 'position' or 'pose'");
   const auto make = [&](auto space) -> PyTargetFilter {
     using Space = decltype(space);
     TargetBounds<> bounds{velocity, acceleration, jerk};

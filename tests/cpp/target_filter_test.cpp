@@ -271,6 +271,17 @@ TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
   EXPECT_LT(watched.reach(x0, 10000), 10000);
 }
 
+/// A float's round-off does not add up to a matrix that is no rotation.
+TEST(TargetFilter, turns_for_minutes) {
+  TargetFilter<Pose, float> filter({}, {0.5F, 3.0F, 100.0F, 1.5F, 8.0F, 300.0F});
+  for (int k = 0; k < trials(300000); ++k) {
+    ASSERT_TRUE(filter.push_twist(Vector<6, float>(0.0F, 0.0F, 0.0F, 0.3F, -0.5F, 0.9F)));
+    filter.advance();
+  }
+  const Matrix<3, 3, float> R = filter.reference().x.R;
+  EXPECT_LE((R.transpose() * R - Matrix<3, 3, float>::Identity()).cwiseAbs().maxCoeff(), 1e-6F);
+}
+
 /// Within a tick the reference is the motion that the next tick goes on from.
 TYPED_TEST(TargetFilters, tell_what_is_ahead_within_the_tick) {
   using Space = typename TypeParam::S;
