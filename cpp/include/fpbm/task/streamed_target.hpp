@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fpbm/core/space.hpp"
 
@@ -19,8 +20,8 @@ class StreamedTarget {
 
   /// At rest at x, until points come. No quotient is of points nearer in time than least, or farther than most [s]; no
   /// velocity exceeds the fastest.
-  StreamedTarget(const Point& x, Scalar least, Scalar most, const Twist& fastest) noexcept
-      : least_(least), most_(most), fastest_(fastest) {
+  StreamedTarget(const Point& x, Scalar least, Scalar most, Twist fastest) noexcept
+      : least_(least), most_(most), fastest_(std::move(fastest)) {
     rest_at(x);
   }
 

@@ -37,6 +37,13 @@ struct TargetFilterOptions {
   Scalar dt = Scalar(1e-3);      ///< Length of a tick [s].
   Scalar timeout = Scalar(0.2);  ///< How long a target moves on, and a twist holds, without news [s].
   std::optional<double> start;   ///< Time at the first tick on the stamps' clock; learnt unless given [s].
+
+  /// Throws std::invalid_argument where one is out of range.
+  void require_good() const {
+    validation::require_positive("dt", dt);
+    validation::require_positive("timeout", timeout);
+    if (start) validation::require_finite("start", *start);
+  }
 };
 
 }  // namespace fpbm

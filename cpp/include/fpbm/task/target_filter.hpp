@@ -38,11 +38,8 @@ class TargetFilter {
         reference_(Reference<Space, Scalar>::hold(x0)),
         clock_(options.dt, options.timeout, options.start),
         target_(x0, options.dt / Scalar(2), options.timeout, fastest()) {
-    validation::require_positive("dt", dt_);
-    validation::require_positive("timeout", timeout_);
-    if (options.start) validation::require_finite("start", *options.start);
+    options.require_good();
     if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
-    reset(x0);
   }
 
   /// A target [m, rad], seen at a time [s] on any clock. Returns whether it is taken: it is not where it is no point,
@@ -85,21 +82,25 @@ class TargetFilter {
     if (free_) {
       for (int i = 0; i < Space::kRows; ++i) {
         const AxisState<Scalar> state{Scalar(0), reference_.xd(i), reference_.xdd(i)};
-        keep(axis(i).change(state, wanted_(i), seconds), next, way, i);
+        const AxisState<Scalar> to = axis(i).change(state, wanted_(i), seconds);
+        way(i) = to.q;
+        next.xd(i) = to.v;
+        next.xdd(i) = to.a;
       }
       next.x = displaced(way);
       return next;
     }
     const Twist error = Space::template difference<Scalar>(target_.at(age()), reference_.x);
     const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
-    const Scalar size = extent(reference_.x);
     bool there = true;
     for (int i = 0; i < Space::kRows; ++i) {
       const Scalar v = velocity(i);
       const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
-      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance(axis(i), state, size));
+      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance(axis(i), state));
       there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
-      keep({to.q + seconds * v, v + to.v, to.a}, next, way, i);
+      way(i) = to.q + seconds * v;
+      next.xd(i) = to.v + v;
+      next.xdd(i) = to.a;
     }
     // To the last bit, but for an angle in the plane, which may be whole turns away.
     const bool exact = there && Space::kTurns != 1;
@@ -161,28 +162,31 @@ class TargetFilter {
     if (clock_.age() < timeout_) return;
     wanted_.setZero();
     if (!target_.streams()) return;
+    const Point x = target_.at(age());
+    const Twist velocity = target_.velocity();
+    const Twist error = Space::template difference<Scalar>(x, reference_.x);
     Twist way;
+    bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
-      const Scalar v = target_.velocity()(i);
-      way(i) = std::copysign(axis(i).stop.way(std::abs(v)), v);
+      const auto& stop = axis(i).stop;
+      way(i) = std::copysign(stop.way(std::abs(velocity(i))), velocity(i));
+      const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
+      const Scalar change = stop.jerk * dt_ * dt_;
+      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= change * dt_;
     }
-    target_.rest_at(Space::template displace<Scalar>(target_.at(age()), way));
+    target_.rest_at(Space::template displace<Scalar>(x, way));
+    free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
   }
 
   /// How far from its target an axis may end its stop: round-off, and a millionth of a tick's way at the bound on jerk.
-  [[nodiscard]] Scalar tolerance(const Axis& axis, const AxisState<Scalar>& state, Scalar size) const noexcept {
+  [[nodiscard]] Scalar tolerance(const Axis& axis, const AxisState<Scalar>& state) const noexcept {
     const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
     return std::max(Scalar(1e-6) * axis.stop.jerk * dt_ * dt_ * dt_,
-                    round_off * (size + std::abs(axis.stop.rest(state))));
-  }
-
-  static void keep(const AxisState<Scalar>& to, Reference<Space, Scalar>& next, Twist& way, int i) noexcept {
-    way(i) = to.q;
-    next.xd(i) = to.v;
-    next.xdd(i) = to.a;
+                    round_off * (extent(reference_.x) + std::abs(axis.stop.rest(state))));
   }
 
   [[nodiscard]] Point displaced(const Twist& way) const noexcept {
+    if (way.isZero(Scalar(0))) return reference_.x;
     return straightened(Space::template displace<Scalar>(reference_.x, way));
   }
 
