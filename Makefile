@@ -161,7 +161,7 @@ $(VENV)/bench: pyproject.toml | $(VENV)/package
 	-for peer in pinocchio toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
-# What the arms are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
+# What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
 # the URDFs are read, so what it needs is left out; Debian's PyKDL is for a Python of Debian's version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package

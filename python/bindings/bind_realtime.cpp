@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "path.hpp"
 #include "scheme.hpp"
+#include "target_filter.hpp"
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
@@ -55,7 +56,7 @@ class PyTracker {
   PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& limits,
             const TrackerOptions<>& options)
-      : dof_(arm.dof()), any_(arm.visit(task, [&](const auto& any, auto space) {
+      : dof_(arm.dof()), dt_(options.dt), any_(arm.visit(task, [&](const auto& any, auto space) {
           using Space = decltype(space);
           State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
           if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
@@ -74,6 +75,15 @@ class PyTracker {
     return visit([&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
       if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
+      return python_tick(tracker.tick(*same));
+    });
+  }
+
+  [[nodiscard]] PyTick tick(PyTargetFilter& filter) {
+    return visit([&](auto& tracker, auto space) {
+      auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
+      if (same == nullptr) validation::reject("filter", ": it is for another task");
+      if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
       return python_tick(tracker.tick(*same));
     });
   }
@@ -125,6 +135,7 @@ class PyTracker {
   }
 
   int dof_;
+  double dt_;
   Any any_;
 };
 
@@ -212,6 +223,8 @@ ParameterError
            py::arg("singular_brake") = SingularDamping<>().brake())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")
+      .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
+           "One tick behind a filter of targets, which goes on, also after stop.")
       .def("tick", py::overload_cast<const ArrayLike&, const OptionalArray&, const OptionalArray&>(&PyTracker::tick),
            py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
            R"(One tick toward a reference, at rest unless its velocity and acceleration are given.

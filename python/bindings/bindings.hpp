@@ -12,6 +12,7 @@ void bind_scheme(py::module_& m);
 void bind_limits(py::module_& m);
 void bind_sim(py::module_& m);
 void bind_sweep(py::module_& m);
+void bind_target_filter(py::module_& m);
 void bind_realtime(py::module_& m);
 
 }  // namespace fpbm::bindings

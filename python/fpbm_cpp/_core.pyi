@@ -20,6 +20,7 @@ __all__: list[str] = [
     "Status",
     "Stop",
     "TIME_LAWS",
+    "TargetFilter",
     "Tick",
     "Tracker",
     "advice",
@@ -243,6 +244,92 @@ class Stop:
         From any thread.
         """
 
+class TargetFilter:
+    """
+    Makes a smooth reference of targets that come at any rate, late, twice or not at all.
+
+    Each axis of the base frame goes to the target in the least time within its bounds, in the frame of a target that moves:
+    without overshoot to one at rest, without lag behind one that moves evenly. The target's velocity is estimated from the
+    points that come. One without news for a timeout comes to rest. An orientation takes the least time where it turns about
+    one axis.
+
+    Parameters
+    ----------
+    x0 : array_like, shape (2,), (3,) or (4, 4)
+        Where it starts, at rest, in the base frame [m, rad].
+    velocity, acceleration, jerk : float
+        Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
+    angular_velocity, angular_acceleration, angular_jerk : float
+        The same of each axis' angle [rad/s], [rad/s^2] and [rad/s^3]; needed for poses.
+    task : str
+        'pose' makes (3,) a pose in the plane.
+    dt : float
+        Length of a tick [s].
+    timeout : float
+        How long a target moves on, and a twist holds, without news [s].
+    start : float, optional
+        Time at the first tick on the stamps' clock [s]. Unless given the clock is learnt: the least delayed stamp counts as
+        not delayed.
+
+    Raises
+    ------
+    ParameterError
+        Where an argument is out of range.
+    """
+    def __init__(
+        self,
+        x0: numpy.typing.ArrayLike,
+        *,
+        velocity: typing.SupportsFloat | typing.SupportsIndex,
+        acceleration: typing.SupportsFloat | typing.SupportsIndex,
+        jerk: typing.SupportsFloat | typing.SupportsIndex,
+        angular_velocity: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_jerk: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        task: str = "position",
+        dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
+        timeout: typing.SupportsFloat | typing.SupportsIndex = 0.2,
+        start: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    ) -> None: ...
+    def advance(self) -> None:
+        """
+        Goes one tick on; Tracker.tick does so by itself.
+        """
+    def push(self, x: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None) -> bool:
+        """
+        A target, seen at a stamp [s] on any clock, or now.
+
+        Returns whether it is taken: not where x or the stamp is not finite, R is no rotation, or the stamp is not newer than all
+        before. Raises ParameterError where x has another shape than x0.
+        """
+    def push_twist(
+        self, v: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None
+    ) -> bool:
+        """
+        A velocity [m/s, rad/s] to go at, as far as the bounds allow, until the timeout.
+
+        v has shape (m,), linear rows first, in the base frame's axes. Returns whether it is taken, as push does.
+        """
+    def reset(self, x: numpy.typing.ArrayLike) -> None:
+        """
+        Starts anew, at rest at x; a clock that was learnt is forgotten.
+        """
+    @property
+    def x(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Reference at the start of the coming tick, shape (2,), (3,) or (4, 4) [m, rad].
+        """
+    @property
+    def xd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Its velocity, shape (m,), linear rows first [m/s, rad/s].
+        """
+    @property
+    def xdd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Its acceleration, shape (m,) [m/s^2, rad/s^2].
+        """
+
 class Tick:
     """
     What one tick of a control loop did.
@@ -394,6 +481,11 @@ class Tracker:
     def tick(self, follower: PathFollower) -> Tick:
         """
         One tick along a path, whose clock advances with it.
+        """
+    @typing.overload
+    def tick(self, filter: TargetFilter) -> Tick:
+        """
+        One tick behind a filter of targets, which goes on, also after stop.
         """
     @typing.overload
     def tick(

@@ -165,6 +165,7 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
     }
   }();
   PathFollower follower(path, tracker.tip());
+  TargetFilter<Space> filter(tracker.tip(), {0.5, 3.0, 100.0, 1.5, 8.0, 300.0});
   const AllocationWatch watch;
   for (int i = 0; i < 2000; ++i) {
     if (i == 100) follower.pause();
@@ -172,6 +173,9 @@ void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
     if (i == 300) tracker.stop();
     if (i == 400) tracker.resume();
     (void)tracker.tick(follower);
+    if (i % 33 == 0) (void)filter.push(follower.ahead(0.0).x, 1e-3 * i);
+    if (i % 500 == 0) (void)filter.push_twist(home.xd);
+    (void)tracker.tick(filter);
     auto wild = home;
     wild.xdd.setConstant(i % 100 == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.1 * i);
     wild.xd.setConstant(i < 1000 ? 0.0 : 10.0);

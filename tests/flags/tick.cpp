@@ -22,6 +22,11 @@ Tick<PlanarPose, 4, float> tick(Tracker<PlanarArm<4, float>, PlanarPose, Velocit
   return tracker.tick(reference);
 }
 
+Tick<Pose, 7, float> tick(Tracker<SerialArm<7, float>, Pose, AccelerationScheme<7, float>>& tracker,
+                          TargetFilter<Pose, float>& filter) {
+  return tracker.tick(filter);
+}
+
 Status resolve(const CoupledArm<6, float>& arm, const VelocityScheme<6, float>& scheme, const State<6, float>& state,
                const Reference<Position<3>, float>& reference, Vector<6, float>& qd) {
   Kinematics<Position<3>, 6, float> kinematics;

@@ -51,6 +51,25 @@ struct QuickestStop {
     return q + s * v * lost + a * lost * lost / Scalar(3) + s * way(most);
   }
 
+  /// Some seconds along the stop, from |a| ≤ A; at rest exactly once it has ended.
+  [[nodiscard]] AxisState<Scalar> ahead(const AxisState<Scalar>& state, Scalar seconds) const noexcept {
+    using std::sqrt;
+    const auto [q, v, a] = state;
+    const Scalar s = sign(v, a);
+    const Scalar most = std::max(s * v + a * a / (Scalar(2) * jerk), Scalar(0));
+    const Scalar ramp = acceleration / jerk;
+    const bool even = most > acceleration * ramp;
+    const Scalar last = even ? ramp : sqrt(most / jerk);
+    const Scalar first = std::max(s * a / jerk + last, Scalar(0));
+    const Scalar left = first + (even ? most / acceleration - ramp : Scalar(0)) + last - seconds;
+    const AxisState<Scalar> end{rest(state), Scalar(0), Scalar(0)};
+    if (!(left > Scalar(0))) return end;
+    // Back from the end, so that velocity and acceleration vanish together.
+    if (left <= last) return end.ahead(-left, s * jerk);
+    if (seconds <= first) return state.ahead(seconds, -s * jerk);
+    return state.ahead(first, -s * jerk).ahead(seconds - first, Scalar(0));
+  }
+
   /// Largest position on the way to rest.
   [[nodiscard]] Scalar furthest(const AxisState<Scalar>& state) const noexcept {
     using std::sqrt;
@@ -62,17 +81,17 @@ struct QuickestStop {
   }
 };
 
-/// Largest x in [low, high] where a rising function is not above zero, or low where it is above zero all the way. In 8
-/// evaluations at most, by the Illinois method; what it returns is never above zero.
+/// Largest x in [low, high] where a rising function is not above zero, or low where it is above zero all the way. In
+/// rounds + 2 evaluations at most, by the Illinois method; what it returns is never above zero.
 template <typename Scalar, typename Function>
-[[nodiscard]] Scalar largest_below_zero(Function&& function, Scalar low, Scalar high) noexcept {
+[[nodiscard]] Scalar largest_below_zero(Function&& function, Scalar low, Scalar high, int rounds = 6) noexcept {
   Scalar above = function(high);
   if (above <= Scalar(0)) return high;
   Scalar below = function(low);
   if (!(below <= Scalar(0))) return low;
   bool moved_low = false;
   bool moved_high = false;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < rounds; ++i) {
     Scalar x = high - (high - low) * (above / (above - below));
     if (!(low < x && x < high)) x = (low + high) / Scalar(2);
     const Scalar y = function(x);

@@ -102,6 +102,13 @@ template <typename Scalar>
   return rotation(quaternion(r));
 }
 
+/// The rotation next to a matrix that is one but for small errors.
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
+  const Vector<4, Scalar> q = quaternion(R);
+  return rotation(Vector<4, Scalar>(q / q.norm()));
+}
+
 /// Rotation vector of a rotation matrix, |r| ≤ π [rad]; the inverse of rotation().
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {

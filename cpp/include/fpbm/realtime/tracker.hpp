@@ -9,6 +9,7 @@
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/rk4.hpp"
+#include "fpbm/task/target_filter.hpp"
 
 /// One tick of a control loop.
 ///
@@ -81,6 +82,13 @@ class Tracker {
   Result tick(PathFollower<Path>& follower) noexcept {
     const Result result = advance([&follower](Scalar seconds) noexcept { return follower.ahead(seconds); });
     if (!stopping_) follower.advance(dt_);
+    return result;
+  }
+
+  /// One tick behind a filter of targets, which goes on where the arm stops, too.
+  Result tick(TargetFilter<Space, Scalar>& filter) noexcept {
+    const Result result = advance([&filter](Scalar seconds) noexcept { return filter.ahead(seconds); });
+    filter.advance();
     return result;
   }
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fpbm/core/rotation.hpp"
+
+/// What to make of points that come from elsewhere.
+namespace fpbm {
+
+/// Whether it is finite, and its R a rotation but for errors of 1e-4.
+template <typename Derived>
+[[nodiscard]] bool is_point(const Eigen::MatrixBase<Derived>& x) noexcept {
+  return x.allFinite();
+}
+template <typename Scalar>
+[[nodiscard]] bool is_point(const Transform<Scalar>& x) noexcept {
+  const Matrix<3, 3, Scalar> excess = x.R.transpose().lazyProduct(x.R) - Matrix<3, 3, Scalar>::Identity();
+  const Scalar handed = x.R.col(0).dot(cross<Scalar>(x.R.col(1), x.R.col(2)));
+  return x.p.allFinite() && excess.cwiseAbs().maxCoeff() <= Scalar(1e-4) && handed > Scalar(0);
+}
+
+/// The same point, its R a rotation to round-off.
+template <typename Derived>
+[[nodiscard]] typename Derived::PlainObject straightened(const Eigen::MatrixBase<Derived>& x) noexcept {
+  return x;
+}
+template <typename Scalar>
+[[nodiscard]] Transform<Scalar> straightened(const Transform<Scalar>& x) noexcept {
+  return {x.p, orthonormal(x.R)};
+}
+
+/// Its largest entry, for round-off.
+template <typename Derived>
+[[nodiscard]] typename Derived::Scalar extent(const Eigen::MatrixBase<Derived>& x) noexcept {
+  return x.cwiseAbs().maxCoeff();
+}
+template <typename Scalar>
+[[nodiscard]] Scalar extent(const Transform<Scalar>& x) noexcept {
+  return std::max(extent(x.p), Scalar(1));
+}
+
+}  // namespace fpbm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/task/time_optimal_axis.hpp"
+
+namespace fpbm {
+
+/// Bounds on a reference's motion, for each axis of the base frame; angular ones where the task has angles.
+template <typename Scalar = double>
+struct TargetBounds {
+  Scalar velocity{0};              ///< [m/s]
+  Scalar acceleration{0};          ///< [m/s²]
+  Scalar jerk{0};                  ///< [m/s³]
+  Scalar angular_velocity{0};      ///< [rad/s]
+  Scalar angular_acceleration{0};  ///< [rad/s²]
+  Scalar angular_jerk{0};          ///< [rad/s³]
+
+  /// An axis within the bounds. Throws std::invalid_argument where one is not positive and finite.
+  [[nodiscard]] TimeOptimalAxis<Scalar> lengths() const {
+    validation::require_positive("velocity", velocity);
+    validation::require_positive("acceleration", acceleration);
+    validation::require_positive("jerk", jerk);
+    return {velocity, {acceleration, jerk}};
+  }
+  [[nodiscard]] TimeOptimalAxis<Scalar> angles() const {
+    validation::require_positive("angular_velocity", angular_velocity);
+    validation::require_positive("angular_acceleration", angular_acceleration);
+    validation::require_positive("angular_jerk", angular_jerk);
+    return {angular_velocity, {angular_acceleration, angular_jerk}};
+  }
+};
+
+template <typename Scalar = double>
+struct TargetFilterOptions {
+  Scalar dt = Scalar(1e-3);      ///< Length of a tick [s].
+  Scalar timeout = Scalar(0.2);  ///< How long a target moves on, and a twist holds, without news [s].
+  std::optional<double> start;   ///< Time at the first tick on the stamps' clock; learnt unless given [s].
+
+  /// Throws std::invalid_argument where one is out of range.
+  void require_good() const {
+    validation::require_positive("dt", dt);
+    validation::require_positive("timeout", timeout);
+    if (start) validation::require_finite("start", *start);
+  }
+};
+
+}  // namespace fpbm

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/task/point.hpp"
+#include "fpbm/task/reference.hpp"
+#include "fpbm/task/stamp_clock.hpp"
+#include "fpbm/task/streamed_target.hpp"
+#include "fpbm/task/target_bounds.hpp"
+#include "fpbm/task/time_optimal_axis.hpp"
+
+namespace fpbm {
+
+/// Makes a smooth reference of targets that come at any rate, late, twice, out of order or not at all.
+///
+/// Each axis of the base frame goes to the target in the least time within its bounds (TimeOptimalAxis), in the frame
+/// of a target that moves: it does not overshoot one at rest, and does not lag behind one that moves evenly. Of an
+/// orientation the axes are the rotation vector's from the target, and its way is the quickest where it turns about one
+/// axis. A target without news for a timeout stops as quickly as the bounds allow.
+///
+/// After construction nothing allocates, throws or loops without a bound, whatever is pushed, and no bound is exceeded.
+template <typename Space, typename Scalar = double>
+class TargetFilter {
+ public:
+  using Point = typename Space::template Point<Scalar>;
+  using Twist = Vector<Space::kRows, Scalar>;
+
+  /// At rest at x0 [m, rad]. Throws std::invalid_argument where it is no point, or a number is out of range.
+  TargetFilter(const Point& x0, const TargetBounds<Scalar>& bounds, const TargetFilterOptions<Scalar>& options = {})
+      : dt_(options.dt),
+        timeout_(options.timeout),
+        lengths_(bounds.lengths()),
+        angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()),
+        reference_(Reference<Space, Scalar>::hold(x0)),
+        clock_(options.dt, options.timeout, options.start),
+        target_(x0, options.dt / Scalar(2), options.timeout, fastest()) {
+    options.require_good();
+    if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
+  }
+
+  /// A target [m, rad], seen at a time [s] on any clock. Returns whether it is taken: it is not where it is no point,
+  /// or its stamp not finite or not newer than all before.
+  bool push(const Point& x, double stamp) noexcept {
+    if (!is_point(x)) return false;
+    const std::optional<Scalar> elapsed = clock_.hear(stamp);
+    if (elapsed) take(x, *elapsed);
+    return elapsed.has_value();
+  }
+
+  /// A target seen now.
+  bool push(const Point& x) noexcept {
+    if (!is_point(x)) return false;
+    take(x, clock_.hear_now());
+    return true;
+  }
+
+  /// A velocity to go at [m/s, rad/s], as far as the bounds allow, until the timeout.
+  bool push_twist(const Twist& v, double stamp) noexcept {
+    if (!v.allFinite() || !clock_.hear(stamp)) return false;
+    take(v);
+    return true;
+  }
+  bool push_twist(const Twist& v) noexcept {
+    if (!v.allFinite()) return false;
+    (void)clock_.hear_now();
+    take(v);
+    return true;
+  }
+
+  /// The reference at the start of the coming tick.
+  [[nodiscard]] const Reference<Space, Scalar>& reference() const noexcept { return reference_; }
+
+  /// Some seconds into the coming tick.
+  [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
+    if (seconds == Scalar(0)) return reference_;
+    Reference<Space, Scalar> next = reference_;
+    Twist way;
+    if (free_) {
+      for (int i = 0; i < Space::kRows; ++i) {
+        const AxisState<Scalar> state{Scalar(0), reference_.xd(i), reference_.xdd(i)};
+        const AxisState<Scalar> to = axis(i).change(state, wanted_(i), seconds);
+        way(i) = to.q;
+        next.xd(i) = to.v;
+        next.xdd(i) = to.a;
+      }
+      next.x = displaced(way);
+      return next;
+    }
+    const Twist error = Space::template difference<Scalar>(target_.at(age()), reference_.x);
+    const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
+    bool there = true;
+    for (int i = 0; i < Space::kRows; ++i) {
+      const Scalar v = velocity(i);
+      const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
+      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance(axis(i), state));
+      there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
+      way(i) = to.q + seconds * v;
+      next.xd(i) = to.v + v;
+      next.xdd(i) = to.a;
+    }
+    // To the last bit, but for an angle in the plane, which may be whole turns away.
+    const bool exact = there && Space::kTurns != 1;
+    next.x = exact ? target_.at(age() + clock_.rate() * seconds) : displaced(way);
+    return next;
+  }
+
+  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
+
+  /// Goes one tick on.
+  void advance() noexcept {
+    reference_ = ahead(dt_);
+    clock_.advance();
+    settle();
+  }
+
+  /// Starts anew, at rest at a point; a clock that was learnt is forgotten. Leaves all as it is where x is no point.
+  bool reset(const Point& x) noexcept {
+    if (!is_point(x)) return false;
+    reference_ = Reference<Space, Scalar>::hold(x);
+    target_.rest_at(reference_.x);
+    clock_.forget();
+    free_ = false;
+    return true;
+  }
+
+ private:
+  using Axis = TimeOptimalAxis<Scalar>;
+  static constexpr int kLengths = Space::kRows - Space::kTurns;
+
+  [[nodiscard]] const Axis& axis(int i) const noexcept { return i < kLengths ? lengths_ : angles_; }
+
+  [[nodiscard]] Twist fastest() const noexcept {
+    Twist result;
+    for (int i = 0; i < Space::kRows; ++i) result(i) = axis(i).velocity;
+    return result;
+  }
+  [[nodiscard]] Twist within_bounds(const Twist& v) const noexcept {
+    return v.cwiseMax(-fastest()).cwiseMin(fastest());
+  }
+
+  void take(const Point& x, Scalar elapsed) noexcept {
+    if (free_) target_.rest_at(x);
+    free_ = false;
+    target_.push(x, elapsed);
+    settle();
+  }
+  void take(const Twist& v) noexcept {
+    free_ = true;
+    wanted_ = within_bounds(v);
+    settle();
+  }
+
+  /// Age of the target; one that was late already when it came is no older than one that has just become so.
+  [[nodiscard]] Scalar age() const noexcept { return std::min(clock_.age(), timeout_ + dt_); }
+
+  /// Lets a target come to rest that had no news for too long.
+  void settle() noexcept {
+    if (clock_.age() < timeout_) return;
+    wanted_.setZero();
+    if (!target_.streams()) return;
+    const Point x = target_.at(age());
+    const Twist velocity = target_.velocity();
+    const Twist error = Space::template difference<Scalar>(x, reference_.x);
+    Twist way;
+    bool in_step = !velocity.isZero(Scalar(0));
+    for (int i = 0; i < Space::kRows; ++i) {
+      const auto& stop = axis(i).stop;
+      way(i) = std::copysign(stop.way(std::abs(velocity(i))), velocity(i));
+      const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
+      const Scalar change = stop.jerk * dt_ * dt_;
+      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= change * dt_;
+    }
+    target_.rest_at(Space::template displace<Scalar>(x, way));
+    free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
+  }
+
+  /// How far from its target an axis may end its stop: round-off, and a millionth of a tick's way at the bound on jerk.
+  [[nodiscard]] Scalar tolerance(const Axis& axis, const AxisState<Scalar>& state) const noexcept {
+    const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
+    return std::max(Scalar(1e-6) * axis.stop.jerk * dt_ * dt_ * dt_,
+                    round_off * (extent(reference_.x) + std::abs(axis.stop.rest(state))));
+  }
+
+  [[nodiscard]] Point displaced(const Twist& way) const noexcept {
+    if (way.isZero(Scalar(0))) return reference_.x;
+    return straightened(Space::template displace<Scalar>(reference_.x, way));
+  }
+
+  Scalar dt_;
+  Scalar timeout_;
+  Axis lengths_;
+  Axis angles_;
+  Reference<Space, Scalar> reference_;
+  StampClock<Scalar> clock_;
+  StreamedTarget<Space, Scalar> target_;
+  bool free_ = false;  ///< Whether it goes at a velocity, to no point.
+  Twist wanted_ = Twist::Zero();
+};
+
+}  // namespace fpbm

@@ -1,0 +1,156 @@
+#include "target_filter.hpp"
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "arrays.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+using Number = std::optional<double>;
+
+template <typename Space>
+Space space_of(const TargetFilter<Space>&) {
+  return {};
+}
+
+/// Numbers of a wrong shape are an error; wrong numbers are for the filter to refuse.
+template <int Size>
+Vector<Size> any_vector(const ArrayLike& argument, const char* name) {
+  const auto array = real_array(argument, name, 1);
+  if (array.size() != Size) {
+    validation::reject(name, " has " + std::to_string(array.size()) + " entries: must have " + std::to_string(Size));
+  }
+  return Eigen::Map<const Vector<Size>>(array.data());
+}
+
+template <typename Space>
+typename Space::template Point<double> any_point(const ArrayLike& argument, const char* name) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    const auto array = real_array(argument, name, 2);
+    if (array.shape(0) != 4 || array.shape(1) != 4) {
+      validation::reject(name, ": must have shape (4, 4), got " + shape_text(array));
+    }
+    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> H(array.data());
+    Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
+    if (H.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) result.p.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return result;
+  } else {
+    return any_vector<Space::kRows>(argument, name);
+  }
+}
+
+PyTargetFilter target_filter(const ArrayLike& x0, double velocity, double acceleration, double jerk,
+                             Number angular_velocity, Number angular_acceleration, Number angular_jerk,
+                             const std::string& task, double dt, double timeout, Number start) {
+  if (task != "position" && task != "pose")
+    validation::reject("task", " = '" + task + "': must be 'position' or 'pose'");
+  const auto make = [&](auto space) -> PyTargetFilter {
+    using Space = decltype(space);
+    TargetBounds<> bounds{velocity, acceleration, jerk};
+    if constexpr (Space::kTurns > 0) {
+      const auto given = [](const char* name, Number value) {
+        if (!value) validation::reject(name, ": must be given, since the task has angles");
+        return *value;
+      };
+      bounds.angular_velocity = given("angular_velocity", angular_velocity);
+      bounds.angular_acceleration = given("angular_acceleration", angular_acceleration);
+      bounds.angular_jerk = given("angular_jerk", angular_jerk);
+    }
+    return {TargetFilter<Space>(point<Space>(x0, "x0"), bounds, {dt, timeout, start})};
+  };
+  if (dimensions(x0) == 2) return make(Pose{});
+  if (task == "pose") return make(PlanarPose{});
+  return real_array(x0, "x0", 1).size() == 2 ? make(Position<2>{}) : make(Position<3>{});
+}
+
+}  // namespace
+
+void bind_target_filter(py::module_& m) {
+  const auto visit = [](auto visitor) {
+    return [visitor](const PyTargetFilter& self) { return std::visit(visitor, self.any); };
+  };
+  const auto none = py::none();
+  py::class_<PyTargetFilter>(m, "TargetFilter",
+                             R"(Makes a smooth reference of targets that come at any rate, late, twice or not at all.
+
+Each axis of the base frame goes to the target in the least time within its bounds, in the frame of a target that moves:
+without overshoot to one at rest, without lag behind one that moves evenly. The target's velocity is estimated from the
+points that come. One without news for a timeout comes to rest. An orientation takes the least time where it turns about
+one axis.
+
+Parameters
+----------
+x0 : array_like, shape (2,), (3,) or (4, 4)
+    Where it starts, at rest, in the base frame [m, rad].
+velocity, acceleration, jerk : float
+    Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
+angular_velocity, angular_acceleration, angular_jerk : float
+    The same of each axis' angle [rad/s], [rad/s^2] and [rad/s^3]; needed for poses.
+task : str
+    'pose' makes (3,) a pose in the plane.
+dt : float
+    Length of a tick [s].
+timeout : float
+    How long a target moves on, and a twist holds, without news [s].
+start : float, optional
+    Time at the first tick on the stamps' clock [s]. Unless given the clock is learnt: the least delayed stamp counts as
+    not delayed.
+
+Raises
+------
+ParameterError
+    Where an argument is out of range.)")
+      .def(py::init(&target_filter), py::arg("x0"), py::kw_only(), py::arg("velocity"), py::arg("acceleration"),
+           py::arg("jerk"), py::arg("angular_velocity") = none, py::arg("angular_acceleration") = none,
+           py::arg("angular_jerk") = none, py::arg("task") = "position", py::arg("dt") = TargetFilterOptions<>().dt,
+           py::arg("timeout") = TargetFilterOptions<>().timeout, py::arg("start") = none)
+      .def(
+          "push",
+          [](PyTargetFilter& self, const ArrayLike& x, Number stamp) {
+            return std::visit(
+                [&](auto& filter) {
+                  const auto target = any_point<decltype(space_of(filter))>(x, "x");
+                  return stamp ? filter.push(target, *stamp) : filter.push(target);
+                },
+                self.any);
+          },
+          py::arg("x"), py::arg("stamp") = none,
+          R"(A target, seen at a stamp [s] on any clock, or now.
+
+Returns whether it is taken: not where x or the stamp is not finite, R is no rotation, or the stamp is not newer than all
+before. Raises ParameterError where x has another shape than x0.)")
+      .def(
+          "push_twist",
+          [](PyTargetFilter& self, const ArrayLike& v, Number stamp) {
+            return std::visit(
+                [&](auto& filter) {
+                  const auto twist = any_vector<decltype(space_of(filter))::kRows>(v, "v");
+                  return stamp ? filter.push_twist(twist, *stamp) : filter.push_twist(twist);
+                },
+                self.any);
+          },
+          py::arg("v"), py::arg("stamp") = none,
+          R"(A velocity [m/s, rad/s] to go at, as far as the bounds allow, until the timeout.
+
+v has shape (m,), linear rows first, in the base frame's axes. Returns whether it is taken, as push does.)")
+      .def_property_readonly("x", visit([](const auto& filter) { return array_of(filter.reference().x); }),
+                             "Reference at the start of the coming tick, shape (2,), (3,) or (4, 4) [m, rad].")
+      .def_property_readonly("xd", visit([](const auto& filter) { return array_of(filter.reference().xd); }),
+                             "Its velocity, shape (m,), linear rows first [m/s, rad/s].")
+      .def_property_readonly("xdd", visit([](const auto& filter) { return array_of(filter.reference().xdd); }),
+                             "Its acceleration, shape (m,) [m/s^2, rad/s^2].")
+      .def(
+          "advance", [](PyTargetFilter& self) { std::visit([](auto& filter) { filter.advance(); }, self.any); },
+          "Goes one tick on; Tracker.tick does so by itself.")
+      .def(
+          "reset",
+          [](PyTargetFilter& self, const ArrayLike& x) {
+            std::visit([&](auto& filter) { filter.reset(point<decltype(space_of(filter))>(x, "x")); }, self.any);
+          },
+          py::arg("x"), "Starts anew, at rest at x; a clock that was learnt is forgotten.");
+}
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <variant>
+
+#include "fpbm/task/target_filter.hpp"
+
+namespace fpbm::bindings {
+
+/// A filter of targets of any task.
+struct PyTargetFilter {
+  std::variant<TargetFilter<Position<2>>, TargetFilter<PlanarPose>, TargetFilter<Position<3>>, TargetFilter<Pose>> any;
+};
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,169 @@
+#include "fpbm/core/quickest_stop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "support/random.hpp"
+
+/// The closed form of the quickest stop against motion along it, for bounds and states of every size.
+namespace fpbm::test {
+namespace {
+
+template <typename Scalar>
+class QuickestStops : public ::testing::Test {
+ protected:
+  static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
+
+  struct Case {
+    QuickestStop<Scalar> stop;
+    AxisState<Scalar> state;
+    Scalar duration;  ///< Of the stop, at most.
+    Scalar size;      ///< Of positions on the way, for round-off.
+  };
+
+  /// Bounds that differ by up to ten orders of magnitude, and velocities from far below A²/J to far above it.
+  Case next() {
+    const auto power = [this](double most) {
+      return static_cast<Scalar>(std::pow(10.0, random_.uniform(-most, most)));
+    };
+    const Scalar A = power(2.0);
+    const Scalar J = A * power(3.0);
+    const Scalar a = A * static_cast<Scalar>(random_.uniform(-1.0, 1.0));
+    const Scalar v = (random_.uniform(0.0, 1.0) < 0.5 ? Scalar(-1) : Scalar(1)) * A * A / J * power(1.5);
+    const Scalar most = std::abs(v) + A * A / J;
+    const Scalar duration = Scalar(2) * most / A + Scalar(4) * A / J;
+    const Scalar q = most * duration * static_cast<Scalar>(random_.uniform(-1.0, 1.0));
+    const bool unbounded = random_.uniform(0.0, 1.0) < 0.1;
+    return {{unbounded ? std::numeric_limits<Scalar>::infinity() : A, J}, {q, v, a}, duration, most * duration};
+  }
+
+  Random random_{31};
+};
+
+using Scalars = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(QuickestStops, Scalars, );
+
+/// Simpson's rule is exact between two changes of the jerk, of which there are three.
+TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_says) {
+  using Scalar = TypeParam;
+  constexpr int kSteps = 400;
+  for (int i = 0; i < trials(2000); ++i) {
+    const auto [stop, start, duration, size] = this->next();
+    const auto where = "case " + std::to_string(i);
+    const Scalar h = duration / kSteps;
+    const Scalar bend = stop.jerk * h;  // What a changes by in a step.
+    Scalar way(0);
+    Scalar furthest = start.q;
+    AxisState<Scalar> now = stop.ahead(start, Scalar(0));
+    ASSERT_NEAR(now.q, start.q, 64 * this->kEpsilon * size) << where;
+    ASSERT_NEAR(now.v, start.v, 64 * this->kEpsilon * size / duration) << where;
+    ASSERT_NEAR(now.a, start.a, 64 * this->kEpsilon * (std::abs(start.a) + size / duration / duration)) << where;
+    for (int k = 1; k <= kSteps; ++k) {
+      const auto middle = stop.ahead(start, (static_cast<Scalar>(k) - Scalar(0.5)) * h);
+      const auto next = stop.ahead(start, static_cast<Scalar>(k) * h);
+      const Scalar slack = 64 * this->kEpsilon * (std::abs(start.a) + size / duration / duration);
+      ASSERT_LE(std::abs(next.a - now.a),
+                bend * (1 + 64 * this->kEpsilon) + slack + 4 * this->kEpsilon * stop.jerk * duration);
+      ASSERT_LE(std::abs(next.a),
+                std::min(stop.acceleration, std::numeric_limits<Scalar>::max()) * (1 + 8 * this->kEpsilon))
+          << where;
+      ASSERT_NEAR(next.v - now.v, h * (now.a + next.a) / 2, bend * h / 4 + 256 * this->kEpsilon * size / duration)
+          << where;
+      way += h * (now.v + Scalar(4) * middle.v + next.v) / 6;
+      ASSERT_NEAR(next.q, start.q + way, bend * h * h + 1024 * this->kEpsilon * size) << where << ", step " << k;
+      furthest = std::max({furthest, middle.q, next.q});
+      now = next;
+    }
+    ASSERT_EQ(now.v, Scalar(0)) << where;
+    ASSERT_EQ(now.a, Scalar(0)) << where;
+    ASSERT_EQ(now.q, stop.rest(start)) << where;
+    // From here on, where the axis falls first and ends below. The largest sample is short of the peak by what a
+    // parabola of the peak's acceleration has within half a step.
+    const Scalar peak = std::max(start.q, stop.furthest(start));
+    ASSERT_GE(peak, furthest - 256 * this->kEpsilon * size) << where;
+    ASSERT_LE(peak, furthest + (std::abs(start.a) + bend * kSteps) * h * h / 8 + 256 * this->kEpsilon * size) << where;
+  }
+}
+
+/// Later on the stop the rest of the stop is the same.
+TYPED_TEST(QuickestStops, go_on_as_they_began) {
+  using Scalar = TypeParam;
+  for (int i = 0; i < trials(10000); ++i) {
+    const auto [stop, start, duration, size] = this->next();
+    const Scalar t = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
+    const Scalar s = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
+    const auto later = stop.ahead(start, t);
+    ASSERT_NEAR(stop.rest(later), stop.rest(start), 512 * this->kEpsilon * size) << i;
+    ASSERT_NEAR(stop.ahead(later, s).q, stop.ahead(start, t + s).q, 1024 * this->kEpsilon * size) << i;
+    ASSERT_LE(stop.furthest(later), stop.furthest(start) + 512 * this->kEpsilon * size) << i;
+  }
+}
+
+/// An acceleration u over a tick from (v, a = u): the larger it is, the farther the stop ends.
+TYPED_TEST(QuickestStops, end_farther_the_more_the_axis_accelerates) {
+  using Scalar = TypeParam;
+  for (int i = 0; i < trials(2000); ++i) {
+    const auto [stop, start, duration, size] = this->next();
+    const Scalar h = duration * static_cast<Scalar>(this->random_.uniform(1e-3, 0.1));
+    const Scalar most = std::isinf(stop.acceleration) ? Scalar(2) * std::abs(start.a) : stop.acceleration;
+    const auto held = [&](Scalar u) {
+      return AxisState<Scalar>{start.q + h * start.v + h * h * u / 2, start.v + h * u, u};
+    };
+    Scalar rest = stop.rest(held(-most));
+    const auto peak = [&](const AxisState<Scalar>& state) { return std::max(state.q, stop.furthest(state)); };
+    Scalar furthest = peak(held(-most));
+    for (int k = -19; k <= 20; ++k) {
+      const auto state = held(most * static_cast<Scalar>(k) / 20);
+      ASSERT_GE(stop.rest(state), rest - 64 * this->kEpsilon * size) << i << ", " << k;
+      ASSERT_GE(peak(state), furthest - 64 * this->kEpsilon * size) << i << ", " << k;
+      rest = stop.rest(state);
+      furthest = peak(state);
+    }
+  }
+}
+
+TYPED_TEST(QuickestStops, are_the_same_in_a_mirror) {
+  using Scalar = TypeParam;
+  for (int i = 0; i < trials(10000); ++i) {
+    const auto [stop, start, duration, size] = this->next();
+    const AxisState<Scalar> mirrored{-start.q, -start.v, -start.a};
+    const Scalar t = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
+    ASSERT_EQ(stop.rest(mirrored), -stop.rest(start)) << i;
+    const auto one = stop.ahead(start, t);
+    const auto other = stop.ahead(mirrored, t);
+    ASSERT_EQ(other.q, -one.q) << i;
+    ASSERT_EQ(other.v, -one.v) << i;
+    ASSERT_EQ(other.a, -one.a) << i;
+  }
+}
+
+TYPED_TEST(QuickestStops, of_an_axis_at_rest_leave_it_alone) {
+  const QuickestStop<TypeParam> stop{TypeParam(2), TypeParam(30)};
+  const auto later = stop.ahead({TypeParam(0.7), TypeParam(0), TypeParam(0)}, TypeParam(0.1));
+  EXPECT_EQ(later.q, TypeParam(0.7));
+  EXPECT_EQ(later.v, TypeParam(0));
+  EXPECT_EQ(later.a, TypeParam(0));
+}
+
+/// The root of a cube is found as far as the rounds allow, and never overshot.
+TYPED_TEST(QuickestStops, find_the_largest_below_zero) {
+  using Scalar = TypeParam;
+  for (int i = 0; i < trials(1000); ++i) {
+    const auto root = static_cast<Scalar>(this->random_.uniform(0.05, 1.0));
+    const auto cube = [&](Scalar x) { return x * x * x - root * root * root; };
+    const Scalar found = largest_below_zero(cube, Scalar(0), Scalar(1), 20);
+    ASSERT_LE(cube(found), Scalar(0));
+    ASSERT_NEAR(found, root, 32 * this->kEpsilon / root) << i;
+  }
+  const auto above = [](Scalar) { return Scalar(1); };
+  const auto below = [](Scalar) { return Scalar(-1); };
+  EXPECT_EQ(largest_below_zero(above, Scalar(2), Scalar(3)), Scalar(2));
+  EXPECT_EQ(largest_below_zero(below, Scalar(2), Scalar(3)), Scalar(3));
+}
+
+}  // namespace
+}  // namespace fpbm::test

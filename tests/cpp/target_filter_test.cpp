@@ -1,0 +1,490 @@
+#include "fpbm/task/target_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fpbm/model/planar_arm.hpp"
+#include "fpbm/realtime/tracker.hpp"
+#include "fpbm/scheme/schemes.hpp"
+#include "support/random.hpp"
+
+/// What a filter makes of targets keeps every bound whatever they are, and arrives where they are.
+namespace fpbm::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr TargetBounds<> kBounds{0.5, 3.0, 100.0, 1.5, 8.0, 300.0};
+
+template <typename Space, typename Scalar>
+struct Kind {
+  using S = Space;
+  using T = Scalar;
+};
+
+/// Any point of a space, not farther than some metres and, as a rule, radians.
+template <typename Space, typename Scalar>
+typename Space::template Point<Scalar> random_point(Random& random, double size) {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    const Vector<3, Scalar> turn = random.uniform(3, -2.0, 2.0).cast<Scalar>();
+    return {random.uniform(3, -size, size).cast<Scalar>(), rotation(turn)};
+  } else {
+    return random.uniform(Space::kRows, -size, size).template cast<Scalar>();
+  }
+}
+
+template <typename Space, typename Scalar>
+TargetBounds<Scalar> random_bounds(Random& random) {
+  const auto power = [&](double low, double high) {
+    return static_cast<Scalar>(std::pow(10.0, random.uniform(low, high)));
+  };
+  TargetBounds<Scalar> bounds;
+  for (auto [v, a, j] : {std::tie(bounds.velocity, bounds.acceleration, bounds.jerk),
+                         std::tie(bounds.angular_velocity, bounds.angular_acceleration, bounds.angular_jerk)}) {
+    v = power(-1.0, 0.5);
+    a = power(0.0, 1.5);
+    j = a * power(0.5, 2.7);
+  }
+  return bounds;
+}
+
+/// Goes tick by tick, and checks that velocity, acceleration and jerk keep their bounds, by what the filter says and by
+/// the way of each tick.
+template <typename Space, typename Scalar>
+class Watched {
+ public:
+  using Filter = TargetFilter<Space, Scalar>;
+
+  Watched(const typename Filter::Point& x0, const TargetBounds<Scalar>& bounds,
+          const TargetFilterOptions<Scalar>& options = {})
+      : filter(x0, bounds, options), bounds_(bounds), dt_(options.dt) {}
+
+  void advance() {
+    const Reference<Space, Scalar> before = filter.reference();
+    filter.advance();
+    const Reference<Space, Scalar>& now = filter.reference();
+    const auto way = Space::template difference<Scalar>(now.x, before.x);
+    constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
+    for (int i = 0; i < Space::kRows; ++i) {
+      const bool turns = i >= Space::kRows - Space::kTurns;
+      const Scalar V = turns ? bounds_.angular_velocity : bounds_.velocity;
+      const Scalar A = turns ? bounds_.angular_acceleration : bounds_.acceleration;
+      const Scalar J = turns ? bounds_.angular_jerk : bounds_.jerk;
+      ASSERT_LE(std::abs(now.xd(i)), V * (1 + 256 * kEpsilon)) << i;
+      ASSERT_LE(std::abs(now.xdd(i)), A * (1 + 64 * kEpsilon)) << i;
+      ASSERT_LE(std::abs(now.xdd(i) - before.xdd(i)), J * dt_ * (1 + 64 * kEpsilon) + 64 * kEpsilon * A) << i;
+      ASSERT_NEAR(now.xd(i) - before.xd(i), dt_ * (now.xdd(i) + before.xdd(i)) / 2,
+                  J * dt_ * dt_ / 4 * Scalar(1.001) + 64 * kEpsilon * V)
+          << i;
+      const Scalar size = extent(now.x) + extent(before.x);
+      ASSERT_NEAR(way(i), dt_ * (now.xd(i) + before.xd(i)) / 2,
+                  J * dt_ * dt_ * dt_ / 12 * Scalar(1.001) + 64 * kEpsilon * (size + V))
+          << i;
+    }
+  }
+
+  /// Goes until it rests at a point to the last bit (an angle in the plane to round-off); how many ticks that took.
+  int reach(const typename Filter::Point& x, int most) {
+    for (int k = 0; k < most; ++k) {
+      advance();
+      if (::testing::Test::HasFatalFailure()) return most;
+      if (filter.reference().xd.isZero(0) && filter.reference().xdd.isZero(0) && at(x)) return k + 1;
+    }
+    return most;
+  }
+
+  [[nodiscard]] bool at(const typename Filter::Point& x) const {
+    if constexpr (std::is_same_v<Space, Pose>) {
+      return filter.reference().x.p == x.p && filter.reference().x.R == x.R;
+    } else {
+      return Space::template difference<Scalar>(filter.reference().x, x).cwiseAbs().maxCoeff() <=
+             Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(x);
+    }
+  }
+
+  Filter filter;
+
+ private:
+  TargetBounds<Scalar> bounds_;
+  Scalar dt_;
+};
+
+template <typename Kind>
+class TargetFilters : public ::testing::Test {};
+using Kinds = ::testing::Types<Kind<Position<2>, double>, Kind<Position<3>, float>, Kind<PlanarPose, double>,
+                               Kind<Pose, double>, Kind<Pose, float>>;
+TYPED_TEST_SUITE(TargetFilters, Kinds, );
+
+/// From rest and from any motion, under any bounds, whatever was wanted before.
+TYPED_TEST(TargetFilters, come_to_rest_on_the_last_target) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  Random random(41);
+  for (int i = 0; i < trials(60); ++i) {
+    SCOPED_TRACE("trial " + std::to_string(i));
+    const auto bounds = random_bounds<Space, Scalar>(random);
+    Watched<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), bounds);
+    auto x = random_point<Space, Scalar>(random, 1.0);
+    for (int target = 0; target < 5; ++target) {
+      x = random_point<Space, Scalar>(random, std::pow(10.0, random.uniform(-5.0, 0.0)));
+      ASSERT_TRUE(watched.filter.push(x));
+      const int ticks = target < 4 ? static_cast<int>(random.uniform(201.0, 800.0)) : 0;
+      for (int k = 0; k < ticks; ++k) ASSERT_NO_FATAL_FAILURE(watched.advance());
+    }
+    ASSERT_LT(watched.reach(x, 100000), 100000);
+    for (int k = 0; k < 100; ++k) {
+      watched.advance();
+      ASSERT_TRUE(watched.at(x));
+      ASSERT_TRUE(watched.filter.reference().xd.isZero(0));
+    }
+  }
+}
+
+/// Lies of every kind leave it within its bounds, and the next target in order is reached.
+TYPED_TEST(TargetFilters, keep_their_bounds_whatever_is_pushed) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  Random random(42);
+  for (int i = 0; i < trials(30); ++i) {
+    SCOPED_TRACE("trial " + std::to_string(i));
+    TargetFilterOptions<Scalar> options;
+    if (i % 3 == 0) options.start = 100.0;
+    Watched<Space, Scalar> watched(random_point<Space, Scalar>(random, 1.0), random_bounds<Space, Scalar>(random),
+                                   options);
+    double stamp = 100.0;
+    for (int k = 0; k < 3000; ++k) {
+      stamp += 1e-3;
+      if (random.uniform(0.0, 1.0) < 0.05) {
+        auto x = random_point<Space, Scalar>(random, random.uniform(0.0, 1.0) < 0.1 ? 1e6 : 1.0);
+        double when = stamp + random.uniform(-0.1, 0.1);
+        const double what = random.uniform(0.0, 1.0);
+        if (what < 0.1) when = what < 0.05 ? kNaN : stamp - 1e6;
+        if (what > 0.9) {
+          if constexpr (std::is_same_v<Space, Pose>) {
+            what > 0.95 ? x.R.setZero() : x.R.setConstant(Scalar(kNaN));
+          } else {
+            x.setConstant(static_cast<Scalar>(what > 0.95 ? kNaN : std::numeric_limits<double>::infinity()));
+          }
+          ASSERT_FALSE(watched.filter.push(x, when));
+        } else if (what > 0.8) {
+          (void)watched.filter.push(x);
+        } else if (what > 0.7) {
+          (void)watched.filter.push_twist(random.uniform(Space::kRows, -5.0, 5.0).template cast<Scalar>(), when);
+        } else {
+          (void)watched.filter.push(x, when);
+          ASSERT_FALSE(watched.filter.push(x, when));
+        }
+      }
+      ASSERT_NO_FATAL_FAILURE(watched.advance()) << k;
+    }
+    for (int k = 0; k < 500; ++k) watched.advance();
+    const auto x = random_point<Space, Scalar>(random, 1.0);
+    ASSERT_TRUE(watched.filter.push(x));
+    ASSERT_LT(watched.reach(x, 200000), 200000);
+  }
+}
+
+/// A target that moves evenly, seen at 30 Hz, up to 10 ms late, one in ten lost.
+TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  using Twist = Vector<Space::kRows, Scalar>;
+  Random random(43);
+  for (int i = 0; i < trials(20); ++i) {
+    SCOPED_TRACE("trial " + std::to_string(i));
+    TargetFilterOptions<Scalar> options;
+    // A camera's clock, that is learnt: then the first stamp is punctual, so that it is known when all were seen.
+    const double epoch = i % 2 == 0 ? 5000.0 : 0.0;
+    if (i % 2 != 0) options.start = 0.0;
+    const auto x0 = random_point<Space, Scalar>(random, 1.0);
+    Watched<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)},
+                                   options);
+    Twist v = random.uniform(Space::kRows, -0.4, 0.4).template cast<Scalar>();
+    const auto target = [&](double t) { return Space::template displace<Scalar>(x0, static_cast<Scalar>(t) * v); };
+    const auto lag = [&](double t) {
+      return Space::template difference<Scalar>(target(t), watched.filter.reference().x).cwiseAbs().maxCoeff();
+    };
+    std::vector<std::pair<double, double>> seen;  // When it comes, and of when it is.
+    for (int k = 0; k < 120; ++k) {
+      if (k == 0 || random.uniform(0.0, 1.0) >= 0.1)
+        seen.emplace_back(k / 30.0 + (k == 0 ? 0.0 : random.uniform(0.0, 0.02)), k / 30.0);
+    }
+    std::size_t next = 0;
+    int ticks = 0;
+    for (; next < seen.size(); ++ticks) {
+      for (; next < seen.size() && seen[next].first <= ticks * 1e-3; ++next) {
+        ASSERT_TRUE(watched.filter.push(target(seen[next].second), epoch + seen[next].second));
+      }
+      const Scalar most = ticks > 2000 ? v.cwiseAbs().maxCoeff() * Scalar(1e-3) : Scalar(10);
+      ASSERT_LE(lag(ticks * 1e-3), most) << ticks;
+      ASSERT_NO_FATAL_FAILURE(watched.advance());
+    }
+    // At rest within its stopping time after the timeout, and it turns round nowhere.
+    const double last = seen.back().second + 0.2;
+    const Scalar slowest = Scalar(0.4) / 3 + Scalar(3) / 100;  // v/A + A/J
+    const Twist onward = watched.filter.reference().xd;
+    for (; ticks * 1e-3 < last + slowest + 2e-3; ++ticks) {
+      watched.advance();
+      for (int axis = 0; axis < Space::kRows; ++axis) {
+        ASSERT_GE(watched.filter.reference().xd(axis) * onward(axis), -Scalar(1e-6) * onward(axis) * onward(axis));
+      }
+    }
+    ASSERT_TRUE(watched.filter.reference().xd.template head<Space::kRows - Space::kTurns>().isZero(0));
+    const auto there = watched.filter.reference().x;
+    for (int k = 0; k < 1000; ++k) watched.advance();
+    ASSERT_TRUE(watched.filter.reference().xd.isZero(0));
+    ASSERT_LE((Space::template difference<Scalar>(watched.filter.reference().x, there).norm()), Scalar(1e-3));
+  }
+}
+
+/// A joystick: the velocity is reached as fast as the bounds allow, and left after the timeout.
+TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  using Twist = Vector<Space::kRows, Scalar>;
+  Random random(44);
+  const auto x0 = random_point<Space, Scalar>(random, 1.0);
+  Watched<Space, Scalar> watched(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)});
+  Twist v = Twist::Constant(Scalar(0.3));
+  v(0) = Scalar(-9);
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_TRUE(watched.filter.push_twist(v));
+    ASSERT_NO_FATAL_FAILURE(watched.advance());
+  }
+  v(0) = Scalar(-0.5);
+  EXPECT_EQ(watched.filter.reference().xd, v);
+  EXPECT_TRUE(watched.filter.reference().xdd.isZero(0));
+  ASSERT_FALSE(watched.filter.push_twist(Twist::Constant(Scalar(kNaN))));
+  for (int k = 0; k < 195; ++k) watched.advance();
+  EXPECT_EQ(watched.filter.reference().xd, v);
+  for (int k = 0; k < 210; ++k) ASSERT_NO_FATAL_FAILURE(watched.advance());
+  EXPECT_TRUE(watched.filter.reference().xd.isZero(0));
+  const auto there = watched.filter.reference().x;
+  for (int k = 0; k < 1000; ++k) watched.advance();
+  EXPECT_TRUE(watched.at(there));
+  ASSERT_TRUE(watched.filter.push(x0));
+  EXPECT_LT(watched.reach(x0, 10000), 10000);
+}
+
+/// A float's round-off does not add up to a matrix that is no rotation.
+TEST(TargetFilter, turns_for_minutes) {
+  TargetFilter<Pose, float> filter({}, {0.5F, 3.0F, 100.0F, 1.5F, 8.0F, 300.0F});
+  for (int k = 0; k < trials(300000); ++k) {
+    ASSERT_TRUE(filter.push_twist(Vector<6, float>(0.0F, 0.0F, 0.0F, 0.3F, -0.5F, 0.9F)));
+    filter.advance();
+  }
+  const Matrix<3, 3, float> R = filter.reference().x.R;
+  EXPECT_LE((R.transpose() * R - Matrix<3, 3, float>::Identity()).cwiseAbs().maxCoeff(), 1e-6F);
+}
+
+/// Within a tick the reference is the motion that the next tick goes on from.
+TYPED_TEST(TargetFilters, tell_what_is_ahead_within_the_tick) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  Random random(45);
+  const auto bounds = random_bounds<Space, Scalar>(random);
+  TargetFilterOptions<Scalar> options;
+  options.dt = Scalar(1e-2);
+  options.timeout = Scalar(1);
+  TargetFilter<Space, Scalar> filter(random_point<Space, Scalar>(random, 1.0), bounds, options);
+  const Scalar jerk = std::max(bounds.jerk, bounds.angular_jerk);
+  for (int k = 0; k < 500; ++k) {
+    if (k % 40 == 0) filter.push(random_point<Space, Scalar>(random, 0.1));
+    const auto start = filter.reference();
+    const auto middle = filter.ahead(options.dt / 2);
+    const auto end = filter.ahead(options.dt);
+    EXPECT_EQ(filter.ahead(Scalar(0)).xd, start.xd);
+    filter.advance();
+    EXPECT_EQ(filter.reference().xdd, end.xdd);
+    // Simpson's rule, whose error is what a change of the jerk within the tick makes.
+    const auto way = Space::template difference<Scalar>(end.x, start.x);
+    const auto simpson = (options.dt / 6 * (start.xd + 4 * middle.xd + end.xd)).eval();
+    const Scalar slack =
+        jerk * options.dt * options.dt * options.dt / 100 + 1000 * std::numeric_limits<Scalar>::epsilon();
+    EXPECT_LE((way - simpson).cwiseAbs().maxCoeff(), slack) << k;
+  }
+}
+
+TYPED_TEST(TargetFilters, give_the_same_bits_for_the_same_targets) {
+  using Space = typename TypeParam::S;
+  using Scalar = typename TypeParam::T;
+  const auto run = [] {
+    Random random(46);
+    TargetFilter<Space, Scalar> filter(random_point<Space, Scalar>(random, 1.0), random_bounds<Space, Scalar>(random));
+    for (int k = 0; k < 1000; ++k) {
+      if (k % 33 == 0) filter.push(random_point<Space, Scalar>(random, 0.1), 1e-3 * k);
+      filter.advance();
+    }
+    return filter.reference();
+  };
+  const auto one = run();
+  const auto other = run();
+  EXPECT_EQ(one.xd, other.xd);
+  EXPECT_EQ(one.xdd, other.xdd);
+  Scalar bits[2][Space::kSize];
+  Space::store(one.x, bits[0]);
+  Space::store(other.x, bits[1]);
+  EXPECT_TRUE(std::equal(bits[0], bits[0] + Space::kSize, bits[1]));
+}
+
+TYPED_TEST(TargetFilters, promise_not_to_throw) {
+  using Filter = TargetFilter<typename TypeParam::S, typename TypeParam::T>;
+  using Point = typename Filter::Point;
+  using Twist = typename Filter::Twist;
+  static_assert(noexcept(std::declval<Filter&>().push(std::declval<Point>(), 0.0)));
+  static_assert(noexcept(std::declval<Filter&>().push(std::declval<Point>())));
+  static_assert(noexcept(std::declval<Filter&>().push_twist(std::declval<Twist>(), 0.0)));
+  static_assert(noexcept(std::declval<Filter&>().push_twist(std::declval<Twist>())));
+  static_assert(noexcept(std::declval<Filter&>().ahead(typename TypeParam::T(0))));
+  static_assert(noexcept(std::declval<Filter&>().advance()));
+  static_assert(noexcept(std::declval<Filter&>().reset(std::declval<Point>())));
+}
+
+/// From rest to a target at rest: never beyond it, and the position's third differences are within the bound on jerk.
+TEST(TargetFilter, does_not_overshoot) {
+  Random random(47);
+  for (int i = 0; i < trials(300); ++i) {
+    const auto bounds = random_bounds<Position<2>, double>(random);
+    Watched<Position<2>, double> watched({0.0, 0.0}, bounds);
+    const double x = std::pow(10.0, random.uniform(-8.0, 0.0));
+    watched.filter.push({x, -x});
+    std::vector<double> path{0.0, 0.0, 0.0};
+    while (path.size() < 100000 && !watched.at({x, -x})) {
+      ASSERT_NO_FATAL_FAILURE(watched.advance());
+      path.push_back(watched.filter.reference().x(0));
+      ASSERT_LE(path.back(), x * (1 + 1e-15));
+    }
+    for (std::size_t k = 3; k < path.size(); ++k) {
+      const double third = path[k] - 3 * path[k - 1] + 3 * path[k - 2] - path[k - 3];
+      ASSERT_LE(std::abs(third), bounds.jerk * 1e-9 * (1 + 1e-5) + 1e-15 * x) << i << ", tick " << k;
+    }
+  }
+}
+
+/// Half a turn and more, each time by the shorter way.
+TEST(TargetFilter, turns_by_the_shorter_way) {
+  Watched<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
+  planar.filter.push({0.0, 0.0, -3.0});
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_NO_FATAL_FAILURE(planar.advance());
+    ASSERT_GE(planar.filter.reference().xd(2), 0.0);
+  }
+  EXPECT_NEAR(planar.filter.reference().x(2), kTwoPi - 3.0, 1e-15);
+
+  Watched<Pose, double> spatial({}, kBounds);
+  const Transform<> turned{Vector<3>::Zero(), rotation(Vector<3>(0.0, kTwoPi / 2, 0.0))};
+  spatial.filter.push(turned);
+  EXPECT_LT(spatial.reach(turned, 3000), 3000);
+}
+
+/// A jump of the target is no velocity, and a third point of an even motion is enough.
+TEST(TargetFilter, takes_no_jump_for_a_velocity) {
+  StreamedTarget<Position<2>, double> target({0.0, 0.0}, 5e-4, 0.2, {1.0, 1.0});
+  const auto push = [&](double x, double elapsed) {
+    target.push({x, 0.0}, elapsed);
+    return target.velocity()(0);
+  };
+  EXPECT_EQ(push(0.0, 9.0), 0.0);
+  EXPECT_EQ(push(0.0, 0.03), 0.0);
+  EXPECT_EQ(push(0.5, 0.03), 0.0);               // A jump,
+  EXPECT_EQ(push(0.5, 0.03), 0.0);               // at rest again.
+  EXPECT_EQ(push(0.503, 0.03), 0.0);             // It begins to move,
+  EXPECT_NEAR(push(0.505, 0.02), 0.1, 1e-12);    // evenly,
+  EXPECT_NEAR(push(0.506, 0.0001), 0.1, 1e-12);  // too soon for a quotient,
+  EXPECT_NEAR(push(0.508, 0.0299), 0.1, 1e-12);
+  EXPECT_EQ(push(0.505, 0.03), 0.0);  // turns round,
+  EXPECT_NEAR(push(0.415, 0.03), -0.1, 1e-12);
+  EXPECT_NEAR(push(-0.415, 0.03), -1.0, 1e-12);  // and is too fast.
+  EXPECT_EQ(push(-0.8, 0.3), 0.0);               // News after too long.
+}
+
+/// A learnt clock counts the least delayed stamp as punctual, follows one that drifts, and is never ahead of it by more
+/// than it lost.
+TEST(StampClock, learns_from_the_least_delayed) {
+  Random random(48);
+  for (const double drift : {-5e-5, 0.0, 5e-5}) {
+    StampClock<double> clock(1e-3, 0.2, {});
+    const auto now = [&](int tick) { return 1e6 + tick * 1e-3 * (1.0 + drift); };
+    double newest = 0.0;
+    double worst = 0.0;
+    for (int k = 0; k < 600000; ++k) {
+      if (k % 33 == 0) {
+        const double stamp = now(k) - (k % 330 == 0 ? 0.0 : random.uniform(0.0, 0.02));
+        if (clock.hear(stamp)) newest = stamp;
+      }
+      if (k > 1000) worst = std::max(worst, std::abs(newest + clock.age() - now(k)));
+      clock.advance();
+    }
+    EXPECT_LE(worst, 2e-4) << drift;
+  }
+}
+
+TEST(StampClock, takes_only_news) {
+  StampClock<double> clock(1e-3, 0.2, {});
+  EXPECT_TRUE(clock.hear(50.0));
+  EXPECT_FALSE(clock.hear(50.0));
+  EXPECT_FALSE(clock.hear(49.9));
+  EXPECT_FALSE(clock.hear(kNaN));
+  EXPECT_FALSE(clock.hear(std::numeric_limits<double>::infinity()));
+  for (int k = 0; k < 100; ++k) clock.advance();
+  EXPECT_NEAR(clock.age(), 0.1, 1.1e-5);
+  EXPECT_NEAR(clock.hear(50.06).value(), 0.06, 1e-12);  // 40 ms late.
+  EXPECT_NEAR(clock.age(), 0.04, 1.1e-5);
+  clock.forget();
+  EXPECT_TRUE(clock.hear(0.0));
+
+  StampClock<double> known(1e-3, 0.2, 7.0);
+  EXPECT_TRUE(known.hear(6.9));
+  EXPECT_NEAR(known.age(), 0.1, 1e-12);
+  EXPECT_FALSE(known.hear(7.3));  // From the future.
+  EXPECT_TRUE(known.hear(7.1));
+  EXPECT_NEAR(known.age(), -0.1, 1e-12);
+}
+
+TEST(TargetFilter, refuses_bad_numbers_by_name) {
+  const auto refusal = [](const TargetBounds<>& bounds, const TargetFilterOptions<>& options,
+                          double x0) -> std::string {
+    try {
+      TargetFilter<PlanarPose>({x0, 0.0, 0.0}, bounds, options);
+    } catch (const std::invalid_argument& refused) {
+      return refused.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal(kBounds, {}, 0.0), "accepted");
+  EXPECT_EQ(refusal(kBounds, {}, kNaN), "x0: must be finite, and its R a rotation");
+  EXPECT_EQ(refusal({0.5, 3.0, 0.0}, {}, 0.0), "jerk = 0: must be positive and finite");
+  EXPECT_EQ(refusal({0.5, 3.0, 1.0}, {}, 0.0), "angular_velocity = 0: must be positive and finite");
+  EXPECT_EQ(refusal({-0.5, 3.0, 1.0}, {}, 0.0), "velocity = -0.5: must be positive and finite");
+  EXPECT_EQ(refusal(kBounds, {0.0, 0.2, {}}, 0.0), "dt = 0: must be positive and finite");
+  EXPECT_EQ(refusal(kBounds, {1e-3, kNaN, {}}, 0.0), "timeout = nan: must be positive and finite");
+  EXPECT_EQ(refusal(kBounds, {1e-3, 0.2, kNaN}, 0.0), "start = nan: must be finite");
+  EXPECT_NO_THROW(TargetFilter<Position<2>>({0.0, 0.0}, TargetBounds<>{0.5, 3.0, 1.0}));
+}
+
+/// An arm follows what the filter makes of a jump.
+TEST(TargetFilter, leads_a_tracker) {
+  const PlanarArm<4> arm({1, 1, 1, 1});
+  const auto scheme = FPBM<4>(0.6, UnitWeights{}, 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
+  Tracker tracker(arm, Position<2>{}, scheme, Vector<4>(0.26, 0.26, 0.21, 0.21));
+  const Vector<2> start = tracker.tip();
+  TargetFilter<Position<2>> filter(start, kBounds);
+  const Vector<2> target = start - Vector<2>(0.3, 0.2);
+  filter.push(target);
+  double worst = 0.0;
+  for (int k = 0; k < 3000; ++k) worst = std::max(worst, tracker.tick(filter).error.norm());
+  EXPECT_LE(worst, 1e-9);
+  EXPECT_LE((tracker.tip() - target).norm(), 1e-9);
+  tracker.stop();
+  filter.push(start);
+  for (int k = 0; k < 3000; ++k) tracker.tick(filter);
+  EXPECT_EQ(filter.reference().x, start);  // It went on.
+}
+
+}  // namespace
+}  // namespace fpbm::test
