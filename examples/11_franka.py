@@ -44,8 +44,8 @@ LIMITS = fp.JointLimits(
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
 
 CIRCLE = fp.Circle(0.08, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
-TIP = {"velocity": 0.5, "acceleration": 2.0, "jerk": 40.0}  # What the filter may ask of the tip [m, s],
-TURN = {"angular_velocity": 1.0, "angular_acceleration": 4.0, "angular_jerk": 80.0}  # and of its orientation [rad, s].
+TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # What the filter may ask of the tip [m, s],
+TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # and of its orientation [rad, s].
 
 interrupted = Event()
 
@@ -104,7 +104,8 @@ class Motion:
 
     q: list[np.ndarray]  # The first is the start.
     sent: list[int] = field(default_factory=list)  # Which of them were sent,
-    desired: list[list[float]] = field(default_factory=list)  # and what the robot said that it was commanded before.
+    time: list[float] = field(default_factory=list)  # when, by the robot's clock [s],
+    desired: list[list[float]] = field(default_factory=list)  # and which command it followed until then, as it said.
     error: list[np.ndarray] = field(default_factory=list)  # Of the tip, on its path or the filter's [m], [rad].
     statuses: Counter[str] = field(default_factory=Counter)
 
@@ -151,6 +152,7 @@ def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> M
         command = franka.JointPositions(motion.q[-1].tolist())
         command.motion_finished = finished
         motion.sent.append(len(motion.q) - 1)
+        motion.time.append(state.time.to_sec())
         motion.desired.append(state.q_d)
         control.writeOnce(command)
     return motion
