@@ -165,7 +165,7 @@ $(VENV)/bench: pyproject.toml | $(VENV)/package
 # the URDFs are read, so what it needs is left out; Debian's PyKDL is for a Python of Debian's version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
-	-$(BIN)/python -m pip install --quiet --group peers
+	-for group in peers franka; do $(BIN)/python -m pip install --quiet --group $$group; done
 	-$(BIN)/python -m pip install --quiet --no-deps ManipulaPy==1.4.2
 	-$(if $(filter $(call SUFFIX,/usr/bin/python3),$(call SUFFIX,$(BIN)/python)),\
 	  tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,$(BIN)/python):python3-pykdl)

@@ -51,7 +51,9 @@ class JointLimits(Data):
         dof = len(self.lower)
         for name, missing in (("jerk", inf), ("velocity_offset", 0.0), ("deceleration", inf)):
             if getattr(self, name) is None:
-                object.__setattr__(self, name, np.full(dof, missing))
+                values = np.full(dof, missing)
+                values.flags.writeable = False
+                object.__setattr__(self, name, values)
         for name in ("upper", "velocity", "acceleration", "jerk", "velocity_offset", "deceleration"):
             require_length(name, getattr(self, name), dof)
 

@@ -103,6 +103,37 @@ TEST(Jerk, one_joint_keeps_all_bounds_whatever_it_is_asked_for) {
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }
 
+/// Pushed against its end all the time, a joint comes to rest on it: once it brakes, its velocity falls all the way.
+template <Level kLevel, typename Scalar>
+void expect_to_rest_at_the_end() {
+  constexpr auto kH = static_cast<Scalar>(kTick);
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(100)); ++seed) {
+    Random random(seed);
+    const Limits<kLevel, 1, Scalar> limits(random_bounds<Scalar>(random), kH);
+    const JointLimits<1, Scalar>& bounds = limits.bounds();
+    State<1, Scalar> state{Vector<1, Scalar>(Scalar(0)), Vector<1, Scalar>(Scalar(0))};
+    Vector<1, Scalar> last(Scalar(0));
+    bool brakes = false;
+    const Scalar slack = std::numeric_limits<Scalar>::epsilon() * Scalar(8) / kH;
+    for (int tick = 0; tick < 40000; ++tick) {
+      const Vector<1, Scalar> u = limits.box(state, last).upper;
+      const Scalar before = state.qd(0);
+      last = kLevel == Level::kVelocity ? Vector<1, Scalar>((u - state.qd) / kH) : u;
+      state.qd += kH * last;
+      state.q += kH * (kLevel == Level::kVelocity ? state.qd : Vector<1, Scalar>(state.qd - kH / Scalar(2) * last));
+      brakes = brakes || state.qd(0) < before - slack;
+      ASSERT_FALSE(brakes && state.qd(0) > before + slack) << "seed " << seed << ", tick " << tick;
+    }
+    EXPECT_NEAR(state.q(0), bounds.upper(0), Scalar(64) * std::numeric_limits<Scalar>::epsilon()) << "seed " << seed;
+    EXPECT_NEAR(state.qd(0), Scalar(0), slack) << "seed " << seed;
+  }
+}
+
+TEST(Jerk, a_joint_pushed_against_its_end_does_not_tremble) {
+  expect_to_rest_at_the_end<Level::kAcceleration, double>();
+  expect_to_rest_at_the_end<Level::kVelocity, double>();
+}
+
 /// Every viable state is one from which the brake keeps all bounds, near an end and at any scale.
 template <Level kLevel>
 void expect_to_stop_from_viable_states() {

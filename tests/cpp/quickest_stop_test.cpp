@@ -57,7 +57,6 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_sa
     const Scalar h = duration / kSteps;
     const Scalar bend = stop.jerk * h;  // What a changes by in a step.
     Scalar way(0);
-    Scalar furthest = start.q;
     AxisState<Scalar> now = stop.ahead(start, Scalar(0));
     ASSERT_NEAR(now.q, start.q, 64 * this->kEpsilon * size) << where;
     ASSERT_NEAR(now.v, start.v, 64 * this->kEpsilon * size / duration) << where;
@@ -75,17 +74,11 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_sa
           << where;
       way += h * (now.v + Scalar(4) * middle.v + next.v) / 6;
       ASSERT_NEAR(next.q, start.q + way, bend * h * h + 1024 * this->kEpsilon * size) << where << ", step " << k;
-      furthest = std::max({furthest, middle.q, next.q});
       now = next;
     }
     ASSERT_EQ(now.v, Scalar(0)) << where;
     ASSERT_EQ(now.a, Scalar(0)) << where;
     ASSERT_EQ(now.q, stop.rest(start)) << where;
-    // From here on, where the axis falls first and ends below. The largest sample is short of the peak by what a
-    // parabola of the peak's acceleration has within half a step.
-    const Scalar peak = std::max(start.q, stop.furthest(start));
-    ASSERT_GE(peak, furthest - 256 * this->kEpsilon * size) << where;
-    ASSERT_LE(peak, furthest + (std::abs(start.a) + bend * kSteps) * h * h / 8 + 256 * this->kEpsilon * size) << where;
   }
 }
 
@@ -99,7 +92,6 @@ TYPED_TEST(QuickestStops, go_on_as_they_began) {
     const auto later = stop.ahead(start, t);
     ASSERT_NEAR(stop.rest(later), stop.rest(start), 512 * this->kEpsilon * size) << i;
     ASSERT_NEAR(stop.ahead(later, s).q, stop.ahead(start, t + s).q, 1024 * this->kEpsilon * size) << i;
-    ASSERT_LE(stop.furthest(later), stop.furthest(start) + 512 * this->kEpsilon * size) << i;
   }
 }
 
@@ -114,14 +106,10 @@ TYPED_TEST(QuickestStops, end_farther_the_more_the_axis_accelerates) {
       return AxisState<Scalar>{start.q + h * start.v + h * h * u / 2, start.v + h * u, u};
     };
     Scalar rest = stop.rest(held(-most));
-    const auto peak = [&](const AxisState<Scalar>& state) { return std::max(state.q, stop.furthest(state)); };
-    Scalar furthest = peak(held(-most));
     for (int k = -19; k <= 20; ++k) {
       const auto state = held(most * static_cast<Scalar>(k) / 20);
       ASSERT_GE(stop.rest(state), rest - 64 * this->kEpsilon * size) << i << ", " << k;
-      ASSERT_GE(peak(state), furthest - 64 * this->kEpsilon * size) << i << ", " << k;
       rest = stop.rest(state);
-      furthest = peak(state);
     }
   }
 }

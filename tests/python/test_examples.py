@@ -17,6 +17,9 @@ def test_example(example: Path, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
     if "mujoco" in example.read_text():
         pytest.importorskip("mujoco")
+    if "franka" in example.stem:
+        pytest.importorskip("pylibfranka", exc_type=ImportError)
+        pytest.importorskip("franky_sim", exc_type=ImportError)
     if "tune" in example.stem:
         pytest.importorskip("cmaes")
     command = [sys.executable, str(example)]
@@ -30,5 +33,5 @@ def test_example(example: Path, tmp_path: Path) -> None:
 
 def test_pairs() -> None:
     assert len(EXAMPLES) >= 5
-    alone = {"08_mujoco_panda", "10_tune"}  # A simulator and an optimiser, driven from Python.
+    alone = {"08_mujoco_panda", "10_tune", "11_franka"}  # Simulators and an optimiser, driven from Python.
     assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES if path.stem not in alone)

@@ -190,7 +190,7 @@ def test_bounds_of_a_table():
             "types has 1 entries: must have 2",
         ),
         (lambda: fp.SerialArm.from_dh(np.zeros((1, 4)), "classic", types=["fixed"]), r"types\[0\] = 'fixed'"),
-        (lambda: fp.SerialArm.preset("ur5"), "name = 'ur5': must be one of panda, iiwa14, gen3, ur5e, ur10e"),
+        (lambda: fp.SerialArm.preset("ur5"), "name = 'ur5': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e"),
         (lambda: PANDA.forward(np.zeros(6)), "q has 6 entries: must have 7"),
         (lambda: PANDA.jacobian(np.zeros(7), task="planar"), "task = 'planar': must be 'position' or 'pose'"),
     ],

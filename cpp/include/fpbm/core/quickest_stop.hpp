@@ -69,16 +69,6 @@ struct QuickestStop {
     if (seconds <= first) return state.ahead(seconds, -s * jerk);
     return state.ahead(first, -s * jerk).ahead(seconds - first, Scalar(0));
   }
-
-  /// Largest position on the way to rest.
-  [[nodiscard]] Scalar furthest(const AxisState<Scalar>& state) const noexcept {
-    using std::sqrt;
-    const auto [q, v, a] = state;
-    if (sign(v, a) > Scalar(0)) return rest(state);
-    if (!(v > Scalar(0))) return q;
-    const Scalar turn = Scalar(2) * v / (sqrt(std::max(a * a - Scalar(2) * jerk * v, Scalar(0))) - a);
-    return state.ahead(turn, jerk).q;
-  }
 };
 
 /// Largest x in [low, high] where a rising function is not above zero, or low where it is above zero all the way. In

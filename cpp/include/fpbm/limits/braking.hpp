@@ -14,7 +14,8 @@ template <Level kLevel, int N, typename Scalar>
   Scalar rate = Scalar(1) / limits.tick();
   for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
     const Scalar speed = std::abs(state.qd(i));
-    if (rate * speed > most(i)) rate = most(i) / speed;
+    const Scalar fastest = limits.bounds_jerk(i) ? limits.jerk_limited(i).change(speed) : most(i);
+    if (rate * speed > fastest) rate = fastest / speed;
   }
   if constexpr (kLevel == Level::kAcceleration) {
     // In the box of every viable state; not where a joint beyond its range should return, which may wait.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/quickest_stop.hpp"
@@ -19,20 +20,24 @@ struct Interval {
 /// A joint with a bound J on its jerk, in a loop of ticks of length h.
 ///
 /// Its acceleration u is constant over a tick; its jerk is (u − u₋)/h, with u₋ the tick before. A state (q, q̇, u) is
-/// viable where the quickest stop from it keeps all bounds. A stop in ticks leaves a little room, since its steps of
-/// acceleration come at the start of a tick, before the ramps that they stand for; so from a viable state one of the
-/// accelerations in reach always leads to a viable state, with no margin. Both the furthest position and the greatest
-/// velocity of the stop rise with u, so that those accelerations are an interval.
+/// viable where u can be let go, at jerk −J, before q̇ exceeds its bounds or the envelopes of both ends of the range. An
+/// envelope of offset c and deceleration d ≤ A can then be followed to rest, since that takes jerks of d²/c ≤ J.
+/// Letting go in ticks leaves a little room, since steps of acceleration come at the start of a tick, before the ramps
+/// that they stand for; so from a viable state one of the accelerations in reach always leads to a viable state, with
+/// no margin. The greatest velocity rises with u, and so does the excess over an envelope: those accelerations are an
+/// interval.
+///
+/// Where no envelope is given, c = 2A²/J: with c = 0 a joint that is pushed against its end would tremble there.
 ///
 /// At velocity level q moves by h q̇ of the tick's end, less than its ramps while it stops; where it still speeds up,
 /// the room that is left makes up for that.
 template <Level kLevel, typename Scalar>
 struct JerkLimitedJoint {
   QuickestStop<Scalar> stop;
-  Scalar velocity;     ///< Bound on q̇ either way.
-  Side<Scalar> upper;  ///< Bounds on q, and on q̇ near them.
-  Side<Scalar> lower;  ///< For −q.
-  Scalar tick;         ///< h [s]
+  Scalar velocity;             ///< Bound on q̇ either way.
+  Side<kLevel, Scalar> upper;  ///< Bounds on q, and on q̇ near them.
+  Side<kLevel, Scalar> lower;  ///< For −q.
+  Scalar tick;                 ///< h [s]
 
   /// Up to a slack, in the unit of q.
   [[nodiscard]] bool viable(Scalar q, Scalar qd, Scalar u, Scalar slack = Scalar(0)) const noexcept {
@@ -77,34 +82,34 @@ struct JerkLimitedJoint {
   }
 
  private:
-  [[nodiscard]] bool viable(const Side<Scalar>& side, Scalar q, Scalar qd, Scalar u, Scalar slack) const noexcept {
+  [[nodiscard]] bool viable(const Side<kLevel, Scalar>& side, Scalar q, Scalar qd, Scalar u,
+                            Scalar slack) const noexcept {
     const Scalar rises = std::max(u, Scalar(0));
     return qd + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack / tick &&
-           excess(side, q - side.rest, qd, u) <= slack;
+           !(side.excess(stop.jerk, {q - side.rest, qd, u}) > slack);
   }
 
   /// Largest of some accelerations that keep the bounds of one side; the smallest where none does.
-  [[nodiscard]] Scalar most(const Side<Scalar>& side, Scalar q, Scalar qd, Interval<Scalar> some) const noexcept {
+  [[nodiscard]] Scalar most(const Side<kLevel, Scalar>& side, Scalar q, Scalar qd,
+                            Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar room = velocity - qd;
     const Scalar fastest =
         room > Scalar(0) ? Scalar(2) * room / (tick + sqrt(tick * tick + Scalar(2) * room / stop.jerk)) : room / tick;
+    const Scalar high = std::clamp(fastest, some.low, some.high);
+    if (!(side.rest < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - side.rest;
+    // Enough where the acceleration falls already: a little too much elsewhere.
+    const Scalar falling = (side.furthest(q, qd, tick) - qd) / tick;
     const auto beyond = [&](Scalar u) noexcept {
       const Scalar next = qd + tick * u;
       const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
       if (from > Scalar(0)) return stop.rest({from + way, next, u});
-      const Scalar most = excess(side, from + way, next, u);
+      const Scalar most = side.excess(stop.jerk, {from + way, next, u});
       // Where the joint turns back within the tick.
       return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
     };
-    return largest_below_zero(beyond, some.low, std::clamp(fastest, some.low, some.high));
-  }
-
-  /// How far the stop from a distance to the end goes beyond it, or beyond an envelope.
-  [[nodiscard]] Scalar excess(const Side<Scalar>& side, Scalar from, Scalar qd, Scalar u) const noexcept {
-    const Scalar beyond = stop.furthest({from, qd, u});
-    return side.delay > Scalar(0) ? std::max(beyond, side.excess(stop.jerk, {from, qd, u})) : beyond;
+    return largest_below_zero(beyond, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high));
   }
 };
 

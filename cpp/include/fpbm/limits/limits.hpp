@@ -45,7 +45,7 @@ class Limits {
       const JointBounds<Scalar> joint = usable_bounds<kLevel>(i, bounds_.joint(i), tick);
       bounds_.set(i, joint);
       const bool enveloped = std::isfinite(joint.deceleration);
-      const Scalar least = bounds_jerk(i) ? Scalar(0) : tick / Scalar(2);
+      const Scalar least = bounds_jerk(i) ? kSoft * joint.acceleration / joint.jerk : tick / Scalar(2);
       const Scalar delay = enveloped ? joint.velocity_offset / joint.deceleration : least;
       const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
       upper_.set(i, joint.upper, delay, deceleration);
@@ -212,6 +212,8 @@ class Limits {
   Envelopes upper_;
   Envelopes lower_;  ///< For −q.
   bool bounds_jerk_ = false;
+
+  static constexpr Scalar kSoft = Scalar(2);  ///< c J/A² of a joint with a bound on its jerk and no envelope.
 };
 
 }  // namespace fpbm

@@ -20,11 +20,28 @@ struct VelocityEnvelope {
 };
 
 /// What an envelope of offset c and deceleration d says, in coordinates that grow toward the joint's end.
-template <typename Scalar>
+template <Level kLevel, typename Scalar>
 struct Side {
   Scalar rest;      ///< r: beyond which the joint does not go; infinite where there is no end.
   Scalar delay;     ///< c/d [s]
   Scalar softness;  ///< 1/d
+
+  /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
+  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
+  ///
+  /// Its mirror image where that is negative, beyond r: there the joint has to return at the speed from which it can
+  /// still stop at r. Not a number where there is no end.
+  [[nodiscard]] Scalar furthest(Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
+    using std::abs;
+    using std::sqrt;
+    Scalar way = Scalar(2) * (rest - q);
+    Scalar late = delay + h;
+    if constexpr (kLevel == Level::kAcceleration) {
+      way -= h * w;
+      late = delay + h / Scalar(2);
+    }
+    return way / (sqrt(late * late + abs(way) * softness) + late);
+  }
 
   /// Greatest q̇²/2d + q̇ c/d + q − r, which the envelope keeps below 0, of a stop with jerk −J.
   ///
@@ -57,7 +74,9 @@ class VelocityEnvelopes {
     for (JointVector* row : {&rest_, &delay_, &softness_}) row->resize(n);
   }
 
-  [[nodiscard]] Side<Scalar> operator[](Eigen::Index i) const noexcept { return {rest_(i), delay_(i), softness_(i)}; }
+  [[nodiscard]] Side<kLevel, Scalar> operator[](Eigen::Index i) const noexcept {
+    return {rest_(i), delay_(i), softness_(i)};
+  }
 
   /// rest: r, beyond which the joint does not go; infinite where there is no end. delay: c/d [s]. Infinite d: as hard
   /// as need be.
@@ -72,21 +91,9 @@ class VelocityEnvelopes {
            (qd <= Scalar(0) || qd * (qd * softness_(i) + Scalar(2) * delay_(i)) <= Scalar(2) * (rest_(i) - q));
   }
 
-  /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
-  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
-  ///
-  /// Its mirror image where that is negative, beyond r: there the joint has to return at the speed from which it can
-  /// still stop at r. Not a number where there is no end.
-  [[nodiscard]] Scalar furthest(Eigen::Index i, Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
-    using std::abs;
-    using std::sqrt;
-    Scalar way = Scalar(2) * (rest_(i) - q);
-    Scalar delay = delay_(i) + h;
-    if constexpr (kLevel == Level::kAcceleration) {
-      way -= h * w;
-      delay = delay_(i) + h / Scalar(2);
-    }
-    return way / (sqrt(delay * delay + abs(way) * softness_(i)) + delay);
+  /// Side::furthest() of joint i.
+  [[nodiscard]] Scalar furthest(Eigen::Index i, Scalar q, Scalar w, Scalar h) const noexcept {
+    return (*this)[i].furthest(q, w, h);
   }
 
  private:

@@ -1,0 +1,208 @@
+"""A Franka Research 3 at 1 kHz through libfranka: a circle, then targets that come as they can, 30 a second.
+
+    python examples/11_franka.py                        against franky-sim, a simulated robot that is started here
+    python examples/11_franka.py --robot 172.16.0.2     against a real one
+
+libfranka reports every millisecond and takes joint positions; the robot refuses those whose velocity, acceleration or
+jerk is out of bounds. The tracker keeps its commands within all of them. A TargetFilter makes of bare poses, late,
+uneven and with gaps, a motion that the arm can follow. This has never run on a robot: begin slowly, with the stop
+button at hand. Ctrl-C brings the arm to rest and ends.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from threading import Event
+from typing import NamedTuple
+
+import numpy as np
+
+import fpbm_cpp as fp
+
+try:
+    import pylibfranka as franka
+except ImportError:
+    sys.exit("this example needs libfranka: pip install pylibfranka franky-sim")
+
+DT = 1e-3  # A tick, which is the robot's [s].
+ARM = fp.SerialArm.preset("panda")  # A Franka Research 3 has the same links, but other limits:
+MARGIN = 1e-3  # The distance that libfranka's own limiter keeps from every bound (kLimitEps).
+LIMITS = fp.JointLimits(
+    lower=[-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159],  # [rad]
+    upper=[2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159],
+    velocity=np.array([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]) - MARGIN,
+    acceleration=np.full(7, 10.0 - MARGIN),
+    jerk=np.full(7, 5000.0 - MARGIN),
+)
+WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
+
+CIRCLE = fp.Circle(0.08, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
+TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # What the filter may ask of the tip [m, s],
+TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # and of its orientation [rad, s].
+
+interrupted = Event()
+
+
+class Target(NamedTuple):
+    """A pose [m], the time at which it was seen and the time at which it comes, from the stream's beginning [s]."""
+
+    comes: float
+    stamp: float
+    x: np.ndarray
+
+
+def hand(start: np.ndarray, t: float) -> np.ndarray:
+    """Where somebody's hand leads the tip: sideways, up and down and round the vertical for 3 s, then nowhere."""
+    sideways, up = np.sin(np.pi * min(t, 3.0) / np.array([2.0, 1.5])) ** 2
+    x = start.copy()
+    x[:3, 3] += 0.0, 0.1 * sideways, 0.06 * up
+    x[:3, :3] = fp.rotation([0, 0, 0.3 * sideways]) @ x[:3, :3]
+    return x
+
+
+def stream(start: np.ndarray, seconds: float, seed: int = 1) -> list[Target]:
+    """What a camera would tell of the hand: 30 poses a second, 10 ms early or late, on their way for 5 to 40 ms.
+
+    One in ten is lost, and from 1.2 to 1.6 s there are none.
+    """
+    rng = np.random.default_rng(seed)
+    targets = []
+    for t in np.arange(0, seconds, 1 / 30):
+        stamp = max(0.0, t + rng.uniform(-0.01, 0.01))
+        comes = stamp + rng.uniform(0.005, 0.04)
+        if rng.random() > 0.1 and not 1.2 < stamp < 1.6:
+            targets.append(Target(comes, stamp, hand(start, stamp)))
+    return sorted(targets, key=lambda target: target.comes)
+
+
+def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator[fp.Tick]:
+    """One tick a millisecond without end: along the path, then after the targets, then at rest at the last."""
+    follower = tracker.follow(path)
+    while not follower.done:
+        yield tracker.tick(follower)
+    target_filter = fp.TargetFilter(tracker.tip, **TIP, **TURN)
+    waiting = list(targets)
+    t = 0.0
+    while True:
+        while waiting and waiting[0].comes <= t:
+            target = waiting.pop(0)
+            target_filter.push(target.x, target.stamp)
+        yield tracker.tick(target_filter)
+        t += DT
+
+
+@dataclass
+class Motion:
+    """Joint positions of every tick [rad], those that the robot was sent among them, and how it went."""
+
+    q: list[np.ndarray]  # The first is the start.
+    sent: list[int] = field(default_factory=list)  # Which of them were sent,
+    time: list[float] = field(default_factory=list)  # when, by the robot's clock [s],
+    desired: list[list[float]] = field(default_factory=list)  # and which command it followed until then, as it said.
+    error: list[np.ndarray] = field(default_factory=list)  # Of the tip, on its path or the filter's [m], [rad].
+    statuses: Counter[str] = field(default_factory=Counter)
+
+    def missed(self) -> int:
+        """Milliseconds in which the robot got no command."""
+        return len(self.q) - len(self.sent)
+
+    def shares(self) -> dict[str, float]:
+        """The most that any joint uses of each limit, by finite differences of the positions, from rest to rest."""
+        q = np.array([self.q[0]] * 3 + self.q + [self.q[-1]] * 3)
+        middle, half = (LIMITS.upper + LIMITS.lower) / 2, (LIMITS.upper - LIMITS.lower) / 2
+        used = {"position": abs(q - middle) / half}
+        for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
+            used[name] = abs(np.diff(q, order, axis=0)) / DT**order / getattr(LIMITS, name)
+        return {name: float(share.max()) for name, share in used.items()}
+
+
+def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> Motion:
+    """The robot along a path, then after so many seconds of targets, then at rest. Raises where libfranka does."""
+    start = np.array(robot.read_once().q)
+    scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
+    tracker = fp.Tracker(ARM, scheme, start, task="pose", dt=DT, limits=LIMITS)
+    motion = Motion([start])
+    due = ticks(tracker, path, stream(tracker.tip, seconds))
+    enough = (path.duration + seconds) / DT
+    lost = stopping = finished = False
+
+    control = robot.start_joint_position_control(franka.ControllerMode.JointImpedance)
+    while not finished:
+        # The measured state is not used: the tracker goes on from its own command, which the robot follows. The first
+        # call makes no tick. After lost packets there are several, since the robot has moved on meanwhile.
+        state, period = control.readOnce()
+        for _ in range(round(period.to_sec() / DT)):
+            tick = next(due)
+            motion.q.append(tick.q)
+            motion.error.append(tick.error)
+            motion.statuses[tick.status.name] += 1
+            lost = lost or fp.failed(tick.status)
+        speed = abs(tracker.qd).max()
+        if interrupted.is_set() or lost or (len(motion.q) > enough and speed < 1e-3):
+            tracker.stop()
+            stopping = True
+        finished = stopping and speed < 1e-9
+        command = franka.JointPositions(motion.q[-1].tolist())
+        command.motion_finished = finished
+        motion.sent.append(len(motion.q) - 1)
+        motion.time.append(state.time.to_sec())
+        motion.desired.append(state.q_d)
+        control.writeOnce(command)
+    return motion
+
+
+SERVE = "import signal; signal.alarm({}); from franky_sim import run_server_main; run_server_main()"
+
+
+@contextmanager
+def simulator(lifetime: int = 120) -> Iterator[str]:
+    """The address of a simulated robot on the loopback interface, a process of its own that ends with the block.
+
+    After its lifetime [s] it ends in any case, so that libfranka, which may wait for a robot forever, does not.
+    Raises RuntimeError where it does not start.
+    """
+    command = [sys.executable, "-u", "-c", SERVE.format(lifetime), "--simulator", "mujoco"]
+    # In a session of its own: a Ctrl-C is for the arm.
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
+        try:
+            said = next((line for line in process.stdout or () if line.startswith("Connect")), None)
+            if said is None:
+                raise RuntimeError("franky-sim did not start: pip install franky-sim")
+            yield said.split("'")[1]
+        finally:
+            process.kill()
+
+
+def report(motion: Motion) -> None:
+    tip = 1e3 * np.linalg.norm(np.array(motion.error)[:, :3], axis=1)
+    shares = ", ".join(f"{name} {share:.3f}" for name, share in motion.shares().items())
+    statuses = ", ".join(f"{count} {name}" for name, count in motion.statuses.items())
+    print(f"{len(motion.q)} cycles, {motion.missed()} of them missed; ticks: {statuses}")
+    print(f"largest tip error: {tip.max():.4f} mm")
+    print(f"{len(motion.sent)} commands sent; of each limit the worst joint used: {shares}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="A circle, then targets that come as they can, through libfranka.")
+    parser.add_argument("--robot", metavar="ADDRESS", help="a real robot, in place of a simulated one")
+    address = parser.parse_args().robot
+    signal.signal(signal.SIGINT, lambda *_: interrupted.set())
+    if address is not None:
+        report(move(franka.Robot(address)))
+        return
+    with simulator() as address:
+        report(move(franka.Robot(address, franka.RealtimeConfig.kIgnore)))  # No real-time kernel is needed for it.
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except RuntimeError as error:  # From libfranka, or where the simulator does not start.
+        sys.exit(str(error))

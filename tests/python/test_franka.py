@@ -1,0 +1,242 @@
+"""The tracker through the real libfranka, against a simulated robot that speaks its protocol.
+
+That robot follows whatever it is sent. So the commands are checked here, by libfranka's own conditions.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import xml.etree.ElementTree as ET
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+franka = pytest.importorskip("pylibfranka", reason="pylibfranka cannot be imported", exc_type=ImportError)
+franky_sim = pytest.importorskip("franky_sim", reason="franky-sim cannot be imported", exc_type=ImportError)
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+example = importlib.import_module("11_franka")
+
+PATH = fp.Circle(0.05, 2.0, time_law="quintic").in_plane("xy")
+STREAM = 3.5  # [s]
+
+# libfranka 0.15, include/franka/rate_limiting.h: kLimitEps, kMaxJointAcceleration, kMaxJointJerk.
+EPS = 1e-3
+ACCELERATION = 10.0 - EPS
+JERK = 5000.0 - EPS
+ROUNDING = 1 + 1e-8  # Of third differences.
+
+
+def joint_limits(element: str, attribute: str) -> np.ndarray:
+    """What the URDF that the robot serves to libfranka tells of its seven joints."""
+    joints = [joint for joint in ET.fromstring(franky_sim.FR3_URDF).iter("joint") if joint.get("type") == "revolute"]
+    values = np.array([float(joint.find(element).attrib[attribute]) for joint in joints])
+    assert values.shape == (7,)
+    return values
+
+
+def derivative(t: np.ndarray, q: np.ndarray, order: int) -> np.ndarray:
+    """By divided differences: where no time is left out, the finite differences that libfranka takes.
+
+    Over times left out they are means of those, so that the bounds hold for them as well.
+    """
+    for k in range(1, order + 1):
+        q = k * np.diff(q, axis=0) / (t[k:] - t[:-k])[:, None]
+    return q
+
+
+def refused(t: np.ndarray, q: np.ndarray) -> set[str]:
+    """Which conditions commands q [rad] at times t [s] break.
+
+    Velocity: libfranka 0.21, joint_velocity_limits.h, with the position-based limits of the robot's URDF, at the
+    position commanded before. The rest: limitRate() in src/rate_limiting.cpp, where every clamp is a condition here.
+    """
+    lower, upper, fastest = (joint_limits("limit", name) for name in ("lower", "upper", "velocity"))
+    offset = joint_limits("position_based_velocity_limits", "velocity_offset")
+    deceleration = joint_limits("position_based_velocity_limits", "deceleration_limit")
+
+    def speed_limit(way: np.ndarray) -> np.ndarray:
+        root = np.sqrt(np.maximum(0, 2 * deceleration * way))
+        return np.minimum(fastest, np.maximum(0, root - offset)) - EPS
+
+    v, a, j = (derivative(t, q, order) for order in (1, 2, 3))
+    up, down = speed_limit(upper - q[:-1]), -speed_limit(q[:-1] - lower)
+    steepest = JERK / ACCELERATION
+    broken = {
+        "position": (q < lower) | (q > upper),
+        "velocity": (v > up) | (v < down),
+        "acceleration": abs(a) > ACCELERATION * ROUNDING,
+        "approach": (a > steepest * (up[1:] - v[:-1])) | (a < steepest * (down[1:] - v[:-1])),
+        "jerk": abs(j) > JERK * ROUNDING,
+    }
+    return {name for name, where in broken.items() if where.any()}
+
+
+def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times [s] and positions, with three at rest before and after."""
+    before, after = np.arange(-3, 0), ticks[-1] + np.arange(1, 4)
+    return 1e-3 * np.r_[before, ticks, after], np.r_[[q[0]] * 3, q, [q[-1]] * 3]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def schedule():
+    """libfranka gives its thread the highest priority; the tests after these are to have none."""
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    yield
+    os.sched_setscheduler(0, *before)
+
+
+def drive_robot():
+    """A whole motion, and the joints' positions after it."""
+    with ExitStack() as stack:
+        try:
+            address = stack.enter_context(example.simulator())
+        except RuntimeError as error:
+            pytest.skip(str(error))
+        robot = franka.Robot(address, franka.RealtimeConfig.kIgnore)
+        return example.move(robot, PATH, STREAM), np.array(robot.read_once().q)
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return drive_robot()
+
+
+@pytest.fixture(scope="module")
+def motion(drive):
+    return drive[0]
+
+
+def commands(motion) -> tuple[np.ndarray, np.ndarray]:
+    """What was sent, and in which millisecond of the robot's."""
+    return np.rint(1e3 * (np.array(motion.time) - motion.time[0])), np.array(motion.q)[motion.sent]
+
+
+def test_libfranka_has_nothing_to_refuse(motion):
+    assert refused(*from_rest_to_rest(*commands(motion))) == set()
+    assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
+    shares = motion.shares()
+    assert max(shares.values()) <= ROUNDING
+    assert shares["velocity"] > 0.1  # It was a motion indeed.
+    assert shares["jerk"] < 0.2  # Which the bare targets would not keep.
+
+
+def test_a_tick_is_the_robots_millisecond(motion):
+    assert commands(motion)[0].tolist() == motion.sent
+
+
+def step(q: np.ndarray) -> None:
+    q[500:, 2] += 1e-4
+
+
+def spike(q: np.ndarray) -> None:
+    q[500, 2] += 2.5e-6
+
+
+def beyond(q: np.ndarray) -> None:
+    q[:, 3] += -0.1 - q[:, 3].max()
+
+
+def hasty(q: np.ndarray) -> None:
+    """From rest to rest in 1 s, at most at 2.7 rad/s."""
+    s = np.linspace(0, 1, 1001)
+    q[:1001, 0] += 1.44 * s**3 * (10 - 15 * s + 6 * s**2)
+    q[1001:, 0] += 1.44
+
+
+@pytest.mark.parametrize(
+    ("fault", "conditions"),
+    [
+        (step, {"acceleration", "jerk"}),
+        (spike, {"jerk"}),
+        (beyond, {"position", "velocity", "approach"}),
+        (hasty, {"velocity", "approach"}),
+    ],
+)
+def test_faults_are_seen(motion, fault, conditions):
+    q = np.tile(motion.q[0], (1500, 1))
+    assert refused(*from_rest_to_rest(np.arange(1500), q)) == set()
+    fault(q)
+    assert refused(*from_rest_to_rest(np.arange(1500), q)) == conditions
+
+
+@pytest.mark.parametrize(("way", "conditions"), [(0.30, set()), (0.20, {"velocity", "approach"})])
+def test_near_the_end_of_its_range_a_joint_must_be_slower(motion, way, conditions):
+    """At 0.9 rad/s, which joint 2 may be so far from its end as (0.9 + 0.25)^2 / 5.17 rad = 0.256 rad."""
+    q = np.tile(motion.q[0], (50, 1))
+    t = 1e-3 * np.arange(50)
+    q[:, 1] = joint_limits("limit", "upper")[1] - way + 0.9 * (t - t[-1])
+    assert refused(t, q) == conditions
+
+
+def test_lost_cycles_hide_no_fault(motion):
+    q = np.array(motion.q)
+    ticks = np.arange(len(q))
+    kept = np.random.default_rng(1).random(len(ticks)) > 0.2
+    kept[499:502] = True
+    assert refused(*from_rest_to_rest(ticks[kept], q[kept])) == set()
+    step(q)
+    assert refused(*from_rest_to_rest(ticks[kept], q[kept])) >= {"acceleration", "jerk"}
+
+
+def test_the_robot_was_sent_what_was_recorded(motion):
+    """It tells each command in the state after, as a float."""
+    told = {tuple(np.float32(q).tolist()) for q in commands(motion)[1]}
+    unknown = [desired for desired in motion.desired if tuple(desired) not in told]
+    assert all(desired == motion.desired[0] for desired in unknown)  # It held its first position until it got some.
+    assert len(unknown) < len(told) / 2
+
+
+def test_the_tip_is_on_the_circle(motion):
+    start = example.ARM.forward(motion.q[0])
+    for k in range(round(PATH.duration / example.DT)):
+        way = PATH.sample(k * example.DT)[0]
+        off = example.ARM.forward(motion.q[k]) - start
+        np.testing.assert_allclose(off[:3, 3], way, atol=1e-6)
+        np.testing.assert_allclose(off[:3, :3], 0, atol=1e-6)
+
+
+def test_targets_are_late_uneven_and_lost():
+    targets = example.stream(np.eye(4), STREAM)
+    stamps = np.array([target.stamp for target in targets])
+    assert 0.6 < len(targets) / (30 * STREAM) < 0.9
+    assert (np.diff([target.comes for target in targets]) >= 0).all()
+    assert (np.diff(stamps) < 0).any()  # One overtakes another.
+    assert np.diff(stamps).max() > 0.35
+
+
+def test_the_targets_are_reached(drive):
+    motion, q = drive
+    start = example.ARM.forward(motion.q[round(PATH.duration / example.DT)])
+    off = example.ARM.forward(motion.q[-1]) - example.hand(start, STREAM)
+    np.testing.assert_allclose(off, 0, atol=1e-3)
+    np.testing.assert_allclose(q, motion.q[-1], atol=0.02)  # The simulated robot lags by 0.1 s.
+
+
+class Interrupted:
+    """A Ctrl-C after so many cycles."""
+
+    def __init__(self, cycles: int) -> None:
+        self.left = cycles
+
+    def is_set(self) -> bool:
+        self.left -= 1
+        return self.left < 0
+
+
+def test_ctrl_c_stops_within_bounds_too(monkeypatch):
+    monkeypatch.setattr(example, "interrupted", Interrupted(700))  # In the midst of the circle.
+    motion = drive_robot()[0]
+    assert len(motion.q) < 1500
+    assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
+
+
+def test_a_robot_that_falls_silent_is_an_error():
+    """And no endless wait: the simulator ends in the motion, if not before."""
+    with pytest.raises(RuntimeError), example.simulator(lifetime=3) as address:
+        example.move(franka.Robot(address, franka.RealtimeConfig.kIgnore))
