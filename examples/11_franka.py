@@ -18,7 +18,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from threading import Event
 from typing import NamedTuple
 
@@ -32,14 +32,14 @@ except ImportError:
     sys.exit("this example needs libfranka: pip install pylibfranka franky-sim")
 
 DT = 1e-3  # A tick, which is the robot's [s].
-ARM = fp.SerialArm.preset("panda")  # A Franka Research 3 has the same links, but other limits:
+ARM = fp.SerialArm.preset("fr3")
 MARGIN = 1e-3  # The distance that libfranka's own limiter keeps from every bound (kLimitEps).
-LIMITS = fp.JointLimits(
-    lower=[-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159],  # [rad]
-    upper=[2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159],
-    velocity=np.array([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]) - MARGIN,
-    acceleration=np.full(7, 10.0 - MARGIN),
-    jerk=np.full(7, 5000.0 - MARGIN),
+LIMITS = replace(
+    ARM.limits,
+    velocity=ARM.limits.velocity - MARGIN,
+    acceleration=ARM.limits.acceleration - MARGIN,
+    jerk=ARM.limits.jerk - MARGIN,
+    velocity_offset=ARM.limits.velocity_offset + MARGIN,
 )
 WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
 

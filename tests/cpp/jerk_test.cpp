@@ -124,7 +124,7 @@ void expect_to_rest_at_the_end() {
       brakes = brakes || state.qd(0) < before - slack;
       ASSERT_FALSE(brakes && state.qd(0) > before + slack) << "seed " << seed << ", tick " << tick;
     }
-    EXPECT_NEAR(state.q(0), bounds.upper(0), Scalar(64) * std::numeric_limits<Scalar>::epsilon()) << "seed " << seed;
+    EXPECT_NEAR(state.q(0), bounds.upper(0), kSlack) << "seed " << seed;
     EXPECT_NEAR(state.qd(0), Scalar(0), slack) << "seed " << seed;
   }
 }

@@ -57,8 +57,8 @@ struct Keeper {
 
   static constexpr double kSlack = 1e-9;
 
-  void require_kept(const fpbm::State<N>& from, const fpbm::Vector<N>& q, const fpbm::Vector<N>& qd,
-                    const fpbm::Vector<N>& qdd, bool evenly) const {
+  void require_kept(const fpbm::State<N>& from, const fpbm::Vector<N>& last, const fpbm::Vector<N>& q,
+                    const fpbm::Vector<N>& qd, const fpbm::Vector<N>& qdd, bool evenly) const {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       require(q(i) <= bounds.upper(i) + kSlack && q(i) >= bounds.lower(i) - kSlack, "positions keep their bounds");
       require(std::abs(qd(i)) <= bounds.velocity(i) + kSlack, "velocities keep their bounds");
@@ -66,6 +66,8 @@ struct Keeper {
       const double rounding = 1e-15 * (std::abs(qd(i)) + std::abs(from.qd(i))) / tick;
       require(std::abs(qdd(i)) <= bounds.acceleration(i) * (1.0 + kSlack) + kSlack + rounding,
               "accelerations keep their bounds");
+      require(std::abs(qdd(i) - last(i)) <= bounds.jerk(i) * tick * (1.0 + kSlack) + kSlack + rounding,
+              "jerks keep their bounds");
       if (evenly && from.qd(i) * qd(i) < 0.0) {
         const double turn = from.q(i) - from.qd(i) * from.qd(i) / (2.0 * (qd(i) - from.qd(i)) / tick);
         require(turn <= bounds.upper(i) + kSlack && turn >= bounds.lower(i) - kSlack, "no joint turns beyond a bound");
@@ -93,13 +95,15 @@ fpbm::JointLimits<N> any_limits(Bytes& bytes, Eigen::Index dof, bool& wild) {
     const std::uint8_t which = bytes.byte();
     const double middle = bytes.within(-2.0, 2.0);
     const double half = bytes.spread(1e-3, 10.0);
-    limits.set(
-        i, {(which & 1) != 0 ? middle - half : -none, (which & 2) != 0 ? middle + half : none,
-            (which & 4) != 0 ? bytes.spread(1e-3, 100.0) : none, (which & 24) != 0 ? bytes.spread(1e-2, 1e3) : none});
+    limits.set(i,
+               {(which & 1) != 0 ? middle - half : -none, (which & 2) != 0 ? middle + half : none,
+                (which & 4) != 0 ? bytes.spread(1e-3, 100.0) : none, (which & 24) != 0 ? bytes.spread(1e-2, 1e3) : none,
+                (which & 32) != 0 ? bytes.spread(1.0, 1e6) : none, (which & 64) != 0 ? bytes.spread(1e-3, 1.0) : 0.0,
+                (which & 192) == 192 ? bytes.spread(0.1, 100.0) : none});
   }
   if (bytes.chance(4)) {
     wild = true;
-    limits.set(bytes.byte() % dof, {bytes.any(), bytes.any(), bytes.any(), bytes.any()});
+    limits.set(bytes.byte() % dof, {bytes.any(), bytes.any(), bytes.any(), bytes.any(), bytes.any()});
   }
   return limits;
 }
@@ -163,12 +167,15 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
   const Keeper<N> keeper{limits.bounds(), options.dt};
   constexpr bool kEvenly = Scheme::kLevel == fpbm::Level::kAcceleration;
 
+  fpbm::Vector<N> last = tracker.acceleration();
+  fpbm::Vector<N> answer = last;
   const auto checked = [&](const fpbm::State<N>& before, const auto& result) {
     require_sane(result);
     require(result.q.allFinite() && result.qd.allFinite(), "positions and velocities are finite");
     require(same_bits(result.q, tracker.state().q) && same_bits(result.qd, tracker.state().qd),
             "the state is the command");
-    if (!wild) keeper.require_kept(before, result.q, result.qd, result.qdd, kEvenly);
+    if (!wild) keeper.require_kept(before, last, result.q, result.qd, result.qdd, kEvenly);
+    last = result.qdd;
   };
 
   for (int tick = 0; tick < 100 && !bytes.empty(); ++tick) {
@@ -193,7 +200,10 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
         for (Eigen::Index i = 0; !wild && i < result.qdd.size(); ++i) {
           require(std::abs(result.qdd(i)) <= keeper.bounds.acceleration(i) * (1.0 + 1e-9) + 1e-9,
                   "accelerations for a measured state keep their bounds");
+          require(std::abs(result.qdd(i) - answer(i)) <= keeper.bounds.jerk(i) * options.dt * (1.0 + 1e-9) + 1e-9,
+                  "accelerations for a measured state do not jump");
         }
+        answer = result.qdd;
         require(same_bits(tracker.state().q, before.q), "a measured state leaves the tracker's own alone");
       }
     } else {

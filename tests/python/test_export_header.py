@@ -67,14 +67,14 @@ def coupling(joints: Sequence[Joint]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bounds_of_drives(joints: Sequence[Joint]) -> np.ndarray:
-    """Lower, upper, velocity and acceleration of the drives, within which every joint of the chain keeps its own."""
+    """Lower, upper, velocity, acceleration and jerk of the drives, within which every joint of the chain keeps its own."""
     A, b = coupling(joints)
     rows = []
     for column in A.T:
         moved = [(ratio, offset, joint) for ratio, offset, joint in zip(column, b, joints) if ratio]
         ends = [sorted(((j.lower - offset) / ratio, (j.upper - offset) / ratio)) for ratio, offset, j in moved]
         lower, upper = max(low for low, _ in ends), min(high for _, high in ends)
-        speeds = [min(getattr(j, name) / abs(ratio) for ratio, _, j in moved) for name in ("velocity", "acceleration")]
+        speeds = [min(getattr(j, name) / abs(ratio) for ratio, _, j in moved) for name in ("velocity", "acceleration", "jerk")]
         rows.append([lower, upper, *speeds])
     return np.transpose(rows)
 
@@ -129,7 +129,7 @@ template <int N, typename Arm>
 void run(const Arm& arm, const std::array<const char*, N>& names) {
   const auto& limits = arm.limits();
   for (const char* name : names) std::printf("%s%c", name, 0);
-  print(limits.lower), print(limits.upper), print(limits.velocity), print(limits.acceleration);
+  print(limits.lower), print(limits.upper), print(limits.velocity), print(limits.acceleration), print(limits.jerk);
   fpbm::State<N> state;
   for (int sample = 0; sample < 20; ++sample) {
     for (int i = 0; i < N; ++i) if (std::scanf("%lf", &state.q(i)) != 1) return;
@@ -169,8 +169,8 @@ def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
         expected_names = [joint.name or f"joint_{joints.index(joint) + 1}" for joint in drives]
         assert [next(parts).decode() for _ in drives] == expected_names
         n = len(drives)
-        limits, *samples = np.split(np.array(next(parts).split(), float), 4 * n + np.arange(20) * (12 + 12 * n))
-        np.testing.assert_array_equal(limits.reshape(4, n), bounds_of_drives(joints))
+        limits, *samples = np.split(np.array(next(parts).split(), float), 5 * n + np.arange(20) * (12 + 12 * n))
+        np.testing.assert_array_equal(limits.reshape(5, n), bounds_of_drives(joints))
         for (q, qd), sample in zip(states[name], samples):
             p, R, J, Jd = np.split(sample, [3, 12, 12 + 6 * n])
             tip, jacobian = product_of_exponentials(joints, q)

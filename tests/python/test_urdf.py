@@ -151,6 +151,20 @@ def test_names_types_and_bounds(write) -> None:
     assert all(j.mimic is None for j in joints)
 
 
+def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(write) -> None:
+    limit = '<limit lower="-2" upper="2" velocity="3" acceleration="10" jerk="5000"/>'
+    envelope = '<position_based_velocity_limits velocity_offset="0.3" deceleration_limit="6.0"/>'
+    (a, b), _ = read_urdf(write(three_links(Z + limit + envelope, Z + LIMIT)), "tip")
+    assert (a.jerk, a.velocity_offset, a.deceleration) == (5000, 0.3, 6)
+    assert (b.jerk, b.velocity_offset, b.deceleration) == (inf, 0, inf)
+    (a, b), _ = read_urdf(write(three_links(Z + limit, mimic("a", 'multiplier="-2"', limit))), "tip")
+    assert (a.jerk, b.jerk) == (2500, 5000)
+    for broken in ('velocity_offset="0.3"', 'velocity_offset="-1" deceleration_limit="6"'):
+        urdf = write(three_links(Z + limit + f"<position_based_velocity_limits {broken}/>", Z + LIMIT))
+        with pytest.raises(ValueError, match="joint 'a': <position_based_velocity_limits> must have velocity_offset and"):
+            read_urdf(urdf, "tip")
+
+
 def test_acceleration_is_read_where_it_is_stated(write) -> None:
     """Of a leader it is narrowed as its velocity is."""
     limit = '<limit lower="-1" upper="2" velocity="3" acceleration="{}"/>'

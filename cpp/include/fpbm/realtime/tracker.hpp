@@ -53,7 +53,8 @@ class Tracker {
         stall_(options.stall_time, options.dt),
         limiter_(limits),
         state_(start),
-        last_(qdd0) {
+        last_(qdd0),
+        answer_(qdd0) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != dt_) {
@@ -101,7 +102,7 @@ class Tracker {
     if (!moderate(measured)) {
       result.status = Status::kNotFinite;
       result.scale = Scalar(0);
-      result.qdd = last_ = fade(limiter_.limits(), last_);
+      result.qdd = answer_ = fade(limiter_.limits(), answer_);
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
@@ -109,7 +110,7 @@ class Tracker {
     loop.update(dx);
     watch(loop.kinematics, reference, result);
     result.status = loop.resolve(correction_(reference), dx);
-    result.qdd = last_ = limited(loop.kinematics, measured, loop.qdd, result);
+    result.qdd = answer_ = limited(loop.kinematics, measured, answer_, loop.qdd, result);
     if (result.status == Status::kOk) correction_.integrate();
     return result;
   }
@@ -193,7 +194,7 @@ class Tracker {
       // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
       const JointVector middle = (state_.q + next.q) / Scalar(2);
       arm_.kinematics(middle, loop.kinematics);
-      const JointVector u = limited(loop.kinematics, state_, desired, result);
+      const JointVector u = limited(loop.kinematics, state_, last_, desired, result);
       if (share < Scalar(1)) {
         result.scale *= share;
         result.status = worse(result.status, Status::kSlowed);
@@ -221,13 +222,14 @@ class Tracker {
     return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
   }
 
-  /// The desired motion within the limits; the motion to rest where the scheme failed or stop() was called.
+  /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
+  /// failed or stop() was called.
   [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
-                                                   const JointState& state, const JointVector& desired,
-                                                   Result& result) const noexcept {
+                                                   const JointState& state, const JointVector& last,
+                                                   const JointVector& desired, Result& result) const noexcept {
     const bool braking = stopping_ || result.status >= Status::kStalled;
     const auto found =
-        braking ? limiter_.brake(state, last_) : limiter_.motion(jacobian_in_metres(kinematics), state, last_, desired);
+        braking ? limiter_.brake(state, last) : limiter_.motion(jacobian_in_metres(kinematics), state, last, desired);
     result.scale = found.scale;
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;
@@ -247,7 +249,8 @@ class Tracker {
   StallDetector<Space, Scalar> stall_;
   JointLimiter limiter_;
   JointState state_;
-  JointVector last_;  ///< Acceleration of the last tick, or the last answer for a measured state.
+  JointVector last_;    ///< Acceleration of the last tick.
+  JointVector answer_;  ///< The last one for a measured state.
   bool stopping_ = false;
 };
 

@@ -1,0 +1,151 @@
+"""Bounds up to jerk: the limiter from Python, and Ruckig as an oracle for stops."""
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+DT = 1e-3
+
+
+def random_joints(rng, n):
+    """Bounds whose jerk takes 3 ms to 0.3 s to bring an acceleration to its bound, and states of joints within them."""
+    acceleration = rng.uniform(1, 30, n)
+    jerk = acceleration * 10 ** rng.uniform(0.5, 2.5, n)
+    limits = fp.JointLimits(
+        lower=-rng.uniform(0.5, 3, n),
+        upper=rng.uniform(0.5, 3, n),
+        velocity=rng.uniform(0.3, 3, n),
+        acceleration=acceleration,
+        jerk=jerk,
+    )
+    qdd = rng.uniform(-1, 1, n) * acceleration
+    room = limits.velocity - qdd**2 / (2 * jerk)
+    return limits, rng.uniform(-1, 1, n) * np.maximum(room, 0.0), qdd
+
+
+def quickest_stop(ruckig, qd, qdd, acceleration, jerk):
+    """Duration of a stop and its way, by Ruckig."""
+    given = ruckig.InputParameter(1)
+    given.control_interface = ruckig.ControlInterface.Velocity
+    given.current_position, given.current_velocity, given.current_acceleration = [0.0], [qd], [qdd]
+    given.target_velocity, given.target_acceleration = [0.0], [0.0]
+    given.max_acceleration, given.max_jerk = [acceleration], [jerk]
+    trajectory = ruckig.Trajectory(1)
+    assert ruckig.Ruckig(1).calculate(given, trajectory) in (ruckig.Result.Working, ruckig.Result.Finished)
+    extrema = trajectory.position_extrema[0]
+    return trajectory.duration, extrema.min, extrema.max
+
+
+def test_a_stop_takes_at_most_a_tick_longer_than_ruckigs():
+    ruckig = pytest.importorskip("ruckig", reason="Ruckig is not installed")
+    rng = np.random.default_rng(1)
+    n, late, count = 32, [], 0
+    for _ in range(320):
+        limits, qd, qdd = random_joints(rng, n)
+        free = fp.JointLimits(
+            lower=np.full(n, -1e3),
+            upper=np.full(n, 1e3),
+            velocity=np.full(n, 1e3),
+            acceleration=limits.acceleration,
+            jerk=limits.jerk,
+        )
+        limiter = fp.Limiter(free, DT)
+        least = [quickest_stop(ruckig, *state)[0] for state in zip(qd, qdd, limits.acceleration, limits.jerk)]
+        q, ticks = np.zeros(n), np.zeros(n)
+        for tick in range(1, 40000):
+            qdd = limiter.brake(q, qd, last=qdd).u
+            q, qd = q + DT * (qd + DT / 2 * qdd), qd + DT * qdd
+            moving = (np.abs(qd) > 1e-12) | (np.abs(qdd) > 1e-9)
+            ticks[moving] = tick + 1
+            if not moving.any():
+                break
+        late.append(ticks - np.ceil(np.array(least) / DT))
+        count += n
+    print(f"{count} stops: at most {np.max(late):g} ticks longer than Ruckig's")
+    assert np.max(late) <= 1
+
+
+def test_no_state_is_refused_that_ruckig_can_stop_but_for_the_room_of_the_envelope():
+    ruckig = pytest.importorskip("ruckig", reason="Ruckig is not installed")
+    rng = np.random.default_rng(2)
+    arm = fp.PlanarArm([0.5, 0.5])
+    scheme = fp.MAN()
+    stopped = refused = 0
+    for _ in range(10000):
+        limits, qd, qdd = random_joints(rng, 2)
+        q = rng.uniform(limits.lower, limits.upper)
+        lowest, highest, room = np.zeros(2), np.zeros(2), np.zeros(2)
+        for i in range(2):
+            _, low, high = quickest_stop(ruckig, qd[i], qdd[i], limits.acceleration[i], limits.jerk[i])
+            lowest[i], highest[i] = q[i] + low - limits.lower[i], limits.upper[i] - q[i] - high
+            fastest = max(abs(qd[i]), abs(qd[i] + qdd[i] * abs(qdd[i]) / (2 * limits.jerk[i])))
+            room[i] = 2 * limits.acceleration[i] / limits.jerk[i] * fastest
+        try:
+            fp.Tracker(arm, scheme, q, qd0=qd, qdd0=qdd, limits=limits)
+            taken = True
+        except fp.ParameterError:
+            taken = False
+        if np.any(np.minimum(lowest, highest) < -1e-9):
+            assert not taken
+        elif np.all(np.minimum(lowest, highest) > room):
+            assert taken
+        stopped += 1
+        refused += not taken and bool(np.all(np.minimum(lowest, highest) > 0))
+    print(f"{stopped} states: {refused} refused that Ruckig can stop, each within the room that an envelope takes")
+
+
+def test_the_limiter_is_the_trackers():
+    rng = np.random.default_rng(3)
+    arm = fp.SerialArm.preset("panda")
+    q, qd, last = np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8]), np.zeros(7), np.zeros(7)
+    limiter = fp.Limiter(arm.limits, DT)
+    for _ in range(500):
+        J = arm.jacobian(q, task="pose")
+        desired = rng.uniform(-60, 60, 7)
+        motion = limiter.motion(J, q, qd, desired, last=last)
+        assert 0.0 <= motion.scale <= 1.0 and motion.saturated.shape == (7,)
+        assert (np.abs(motion.u) <= arm.limits.acceleration * (1 + 1e-12)).all()
+        assert (np.abs(motion.u - last) <= arm.limits.jerk * DT * (1 + 1e-12)).all()
+        q, qd, last = q + DT * (qd + DT / 2 * motion.u), qd + DT * motion.u, motion.u
+        assert (np.abs(qd) <= arm.limits.velocity + 1e-12).all()
+        assert (q >= arm.limits.lower).all() and (q <= arm.limits.upper).all()
+    unhindered = limiter.motion(J, np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8]), np.zeros(7), np.full(7, 0.1))
+    np.testing.assert_array_equal(unhindered.u, np.full(7, 0.1))
+    assert unhindered.scale == 1.0
+
+
+def test_velocities_are_limited_too():
+    limits = fp.JointLimits(lower=[-1, -1, -1], upper=[1, 1, 1], velocity=[1, 1, 1], acceleration=[5, 5, 5])
+    limiter = fp.Limiter(limits, DT, level="velocity")
+    motion = limiter.motion(np.ones((1, 3)), np.zeros(3), np.zeros(3), np.full(3, 2.0))
+    np.testing.assert_allclose(motion.u, np.full(3, 0.005), rtol=1e-12)
+    np.testing.assert_array_equal(limiter.brake(np.zeros(3), np.full(3, 0.5)).u, np.full(3, 0.495))
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda limits: fp.Limiter(limits, 0.0), "dt = 0: must be positive"),
+        (lambda limits: fp.Limiter(limits, DT, level="torque"), "level = 'torque': must be 'acceleration' or"),
+        (lambda limits: fp.Limiter(limits, DT).motion(np.ones((3, 2)), [0, 0], [0, 0], [1, 1]), "number of rows = 3"),
+        (lambda limits: fp.Limiter(limits, DT).motion(np.ones((1, 3)), [0, 0], [0, 0], [1, 1]), "J: must have shape"),
+        (lambda limits: fp.Limiter(limits, DT).brake([0], [0, 0]), "q has 1 entries"),
+    ],
+)
+def test_bad_calls(make, words):
+    limits = fp.JointLimits(lower=[-1, -1], upper=[1, 1], velocity=[1, 1], acceleration=[5, 5], jerk=[50, 50])
+    with pytest.raises(fp.ParameterError, match=words):
+        make(limits)
+
+
+def test_a_tracker_goes_on_from_anothers_state():
+    arm = fp.SerialArm.preset("panda")
+    scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
+    first = fp.Tracker(arm, scheme, [0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8])
+    target = first.tip + [0.2, 0.1, -0.1]
+    for _ in range(60):
+        first.tick(target)
+    second = fp.Tracker(arm, scheme, first.q, qd0=first.qd, qdd0=first.qdd)
+    for _ in range(100):
+        np.testing.assert_array_equal(first.tick(target).q, second.tick(target).q)
