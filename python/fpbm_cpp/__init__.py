@@ -34,7 +34,17 @@ from .tuning import Tuning, tune
 from .viewer import view
 
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune", "view"]
-__all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "TargetFilter", "Tick", "Tracker", "failed"]
+__all__ += [
+    "Kinematics",
+    "LimitedMotion",
+    "Limiter",
+    "PathFollower",
+    "Status",
+    "TargetFilter",
+    "Tick",
+    "Tracker",
+    "failed",
+]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__

@@ -447,6 +447,10 @@ TEST(Jerk, nonsense_is_refused) {
   bounds.jerk(1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.jerk[1] = nan: must be positive");
   bounds.jerk(1) = 100.0;
+  bounds.acceleration(1) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(complaint([&] { Limits<Level::kVelocity, 2>(bounds, kTick); }),
+            "limits.acceleration[1] = inf: must be finite where the joint's jerk is bounded: give one");
+  bounds.acceleration(1) = 10.0;
   const Accelerations limits(bounds, kTick);
   const Vector<2> still = Vector<2>::Zero();
   EXPECT_EQ(complaint([&] {

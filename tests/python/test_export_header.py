@@ -74,7 +74,9 @@ def bounds_of_drives(joints: Sequence[Joint]) -> np.ndarray:
         moved = [(ratio, offset, joint) for ratio, offset, joint in zip(column, b, joints) if ratio]
         ends = [sorted(((j.lower - offset) / ratio, (j.upper - offset) / ratio)) for ratio, offset, j in moved]
         lower, upper = max(low for low, _ in ends), min(high for _, high in ends)
-        speeds = [min(getattr(j, name) / abs(ratio) for ratio, _, j in moved) for name in ("velocity", "acceleration", "jerk")]
+        speeds = [
+            min(getattr(j, name) / abs(ratio) for ratio, _, j in moved) for name in ("velocity", "acceleration", "jerk")
+        ]
         rows.append([lower, upper, *speeds])
     return np.transpose(rows)
 

@@ -19,9 +19,9 @@ def random_joints(rng, n):
         acceleration=acceleration,
         jerk=jerk,
     )
-    qdd = rng.uniform(-1, 1, n) * acceleration
+    qdd = rng.uniform(-1, 1, n) * np.minimum(acceleration, 0.99 * np.sqrt(2 * jerk * limits.velocity))
     room = limits.velocity - qdd**2 / (2 * jerk)
-    return limits, rng.uniform(-1, 1, n) * np.maximum(room, 0.0), qdd
+    return limits, rng.uniform(-1, 1, n) * room, qdd
 
 
 def quickest_stop(ruckig, qd, qdd, acceleration, jerk):

@@ -67,7 +67,7 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
     rng = np.random.default_rng(3)
     task = case.split()[-1]
     arm = panda if "panda" in case else fp.PlanarArm([1, 1, 1, 1])
-    limits = arm.limits if "panda" in case else narrow_limits()
+    limits = replace(arm.limits, jerk=None) if "panda" in case else narrow_limits()
     n = arm.dof
     middle = (limits.lower + limits.upper) / 2
     scheme = fp.FPBM(0.6, rng.uniform(1, 4, n), 10, 25, null_damping=2, singular_radius=0.02)
@@ -134,18 +134,24 @@ def test_it_stops_and_goes_on(panda, settling):
     assert np.abs(tick.error).max() < 1e-9
 
 
+@pytest.mark.parametrize("jerk", [np.inf, 1.0, 0.2])
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
-def test_out_of_reach_and_back(panda, settling, level):
+def test_out_of_reach_and_back(panda, settling, level, jerk):
+    """Limits keep the elbow from passing its outstretched posture, as docs/limits.md says."""
+    stretched = np.array([np.inf, np.inf, np.inf, -0.47, np.inf, np.inf, np.inf])
+    limits = replace(panda.limits, upper=np.minimum(panda.limits.upper, stretched), jerk=jerk * panda.limits.jerk)
     scheme = settling if level == "acceleration" else fp.MVN(k=5, rest_posture=BENT, null_stiffness=1)
-    tracker = fp.Tracker(panda, scheme, BENT, task="position")
+    tracker = fp.Tracker(panda, scheme, BENT, task="position", limits=limits)
     home = tracker.tip
-    limits = panda.limits
+    last = tracker.qdd
     seen = set()
     for target, ticks in ((home + np.array([0.6, 0, 0]), 8000), (home, 6000)):
         for _ in range(ticks):
             tick = tracker.tick(target)
             seen.add(tick.status)
             assert (np.abs(tick.qdd) <= limits.acceleration + 1e-9).all()
+            assert (np.abs(tick.qdd - last) <= limits.jerk * DT * (1 + 1e-9)).all()
+            last = tick.qdd
             assert (np.abs(tick.qd) <= limits.velocity + 1e-9).all()
             assert (tick.q <= limits.upper + 1e-9).all()
             assert (tick.q >= limits.lower - 1e-9).all()

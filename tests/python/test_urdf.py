@@ -161,7 +161,9 @@ def test_jerk_and_a_frankas_bound_on_velocity_are_read_where_they_are_stated(wri
     assert (a.jerk, b.jerk) == (2500, 5000)
     for broken in ('velocity_offset="0.3"', 'velocity_offset="-1" deceleration_limit="6"'):
         urdf = write(three_links(Z + limit + f"<position_based_velocity_limits {broken}/>", Z + LIMIT))
-        with pytest.raises(ValueError, match="joint 'a': <position_based_velocity_limits> must have velocity_offset and"):
+        with pytest.raises(
+            ValueError, match="joint 'a': <position_based_velocity_limits> must have velocity_offset and"
+        ):
             read_urdf(urdf, "tip")
 
 

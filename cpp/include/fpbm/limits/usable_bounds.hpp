@@ -29,6 +29,8 @@ template <Level kLevel, typename Scalar>
   require(bounds.velocity > Scalar(0), "limits.velocity", bounds.velocity, "positive");
   require(bounds.acceleration > Scalar(0), "limits.acceleration", bounds.acceleration, "positive");
   require(bounds.jerk > Scalar(0), "limits.jerk", bounds.jerk, "positive");
+  require(!std::isfinite(bounds.jerk) || std::isfinite(bounds.acceleration), "limits.acceleration", bounds.acceleration,
+          "finite where the joint's jerk is bounded: give one");
   require(bounds.deceleration > Scalar(0), "limits.deceleration", bounds.deceleration, "positive");
   require(bounds.velocity_offset >= Scalar(0) && std::isfinite(bounds.velocity_offset), "limits.velocity_offset",
           bounds.velocity_offset, "finite and not negative");
