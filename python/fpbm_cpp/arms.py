@@ -16,7 +16,7 @@ from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
 from ._types import ArrayField
 from .errors import ParameterError, not_one_of, wrong
-from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
+from .parameter import POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["Arm", "Joint", "JointLimits", "PlanarArm", "SerialArm"]
 

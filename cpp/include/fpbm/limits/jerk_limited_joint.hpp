@@ -94,8 +94,10 @@ struct JerkLimitedJoint {
                             Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar room = velocity - qd;
+    // Root of u h + u²/2J = room, or of u h = room where u falls; infinite where the velocity is not bounded.
+    const Scalar share = tick / room;
     const Scalar fastest =
-        room > Scalar(0) ? Scalar(2) * room / (tick + sqrt(tick * tick + Scalar(2) * room / stop.jerk)) : room / tick;
+        room > Scalar(0) ? Scalar(2) / (share + sqrt(share * share + Scalar(2) / (room * stop.jerk))) : room / tick;
     const Scalar high = std::clamp(fastest, some.low, some.high);
     if (!(side.rest < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - side.rest;
