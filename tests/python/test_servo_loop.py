@@ -122,7 +122,7 @@ def test_it_comes_to_rest_on_a_handle_that_is_let_go(which, task):
 def test_out_of_reach_it_rests_and_comes_back(which, task):
     loop, clock = a_loop(which, task)
     q0, start = loop.q, loop.target
-    loop.push(moved(start, [5.0, 1.0]))
+    loop.push(moved(start, [0.0, 5.0]))
     ticks = play(loop, clock, 40)
     assert loop.status is fp.Status.STALLED
     assert np.abs(loop.tick.qd).max() < 1e-6

@@ -24,15 +24,14 @@ __all__ = ["Servo", "Viewer", "servo", "view"]
 
 def __getattr__(name: str) -> Any:
     """Import Servo and Viewer, which need viser, when they are first used."""
-    if name == "Servo":
+    if name not in ("Servo", "Viewer"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
         from .servoing import Servo
-
-        return Servo
-    if name == "Viewer":
         from .viewer import Viewer
-
-        return Viewer
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    except ModuleNotFoundError as missing:
+        raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
+    return {"Servo": Servo, "Viewer": Viewer}[name]
 
 
 def view(
@@ -61,7 +60,7 @@ def view(
     Raises ValueError if an argument is out of range, or the URDF file is not that of the arm: nothing is served then;
     OSError if the port is in use, or the URDF file cannot be read; ImportError if the extra 'view' is missing.
     """
-    from .viewer import Viewer
+    from . import Viewer
 
     run = simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task, partial=True)
     Viewer(run, urdf=urdf, host=host, port=port, open_browser=open_browser).wait()
@@ -93,7 +92,7 @@ def servo(
 
     Raises what Tracker and view() raise, and ValueError where targets is for another task or tick.
     """
-    from .servoing import Servo
+    from . import Servo
 
     Servo(
         arm,

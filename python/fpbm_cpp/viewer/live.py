@@ -13,13 +13,13 @@ from .readout import BAD, GOOD, LINES, sentence, table
 from .strip import SECONDS, Strip
 
 FAIR = "#8A6100"
-REST = 1e-3  # Of every bound, or [rad/s].
+NEAR = 0.01  # To an end of its range [rad].
 COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR}
 # What to do about it here.
 HINTS = {
     Status.DAMPED: "In all other directions it follows.",
     Status.SLOWED: "It follows as fast as its joints may.",
-    Status.STALLED: "Drag the handle into reach, and it follows again.",
+    Status.STALLED: "Drag the handle into reach or, where a joint is at its end, round another way.",
 }
 NAMES = ("speed", "acceleration", "jerk")
 
@@ -44,7 +44,7 @@ class LiveReadout:
 def _words(loop: ServoLoop) -> tuple[str, str]:
     """How the arm fares, and a colour."""
     if loop.stopped:
-        moves = loop.tick is not None and bool(np.abs(loop.tick.qd).max() > REST)
+        moves = loop.tick is not None and loop.tick.qd.any()
         return ("stopping: every joint brakes" if moves else "stopped: the arm is at rest"), FAIR
     status = loop.status
     text = f"{message(status)}. {HINTS.get(status, advice(status))}".strip()
@@ -60,14 +60,20 @@ def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
     names = [*(f"joint {name}" for name in NAMES), "task's scale"]
     known = [*loop.strip.bounded, True]
     cells = [(_percent(a), _percent(b)) if there else ("no bound", "") for a, b, there in zip(now, far, known)]
-    flags = np.zeros(loop.arm.dof) if loop.tick is None else loop.tick.saturated
-    joints = [label for label, flag in zip(joint_labels(loop.arm), flags) if flag]
+    joints = [label for label, flag in zip(joint_labels(loop.arm), _on_bounds(loop)) if flag]
     return [
         ("th", "worst joint, of its bound", "now", f"in {SECONDS:g} s"),
         *(("td", name, *cell) for name, cell in zip(names, cells)),
         ("td", "joints on a bound", ", ".join(joints) or "none", ""),
         ("td", "from tip to handle", _error(loop), ""),
     ]
+
+
+def _on_bounds(loop: ServoLoop) -> list[bool]:
+    """Which joints the last tick had on a bound, or are at an end of their range."""
+    limits, q = loop.limits, loop.q
+    ends = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
+    return list(ends if loop.tick is None else ends | loop.tick.saturated)
 
 
 def _percent(share: float) -> str:

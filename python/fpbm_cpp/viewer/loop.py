@@ -55,6 +55,8 @@ class ServoLoop:
         self._tracker.tick(self._targets)  # Refuses a filter that does not suit.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
         self._tick: Tick | None = None
+        self._heard: float = 0.0  # When the newest target came, and when the last ticks were made.
+        self._last: float = 0.0
         self.restart()
 
     def push(self, x: ArrayLike) -> bool:

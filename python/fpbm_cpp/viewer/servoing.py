@@ -17,15 +17,15 @@ from .._types import Array
 from ..arms import Arm, JointLimits
 from ..schemes import Scheme
 from ..skeleton import joint_points
-from .browser import Page
 from .controls import RATE, Controls
 from .handle import Handle
 from .live import LiveReadout, StripChart
 from .loop import ServoLoop
+from .page import Page
 from .scene import TARGET, TIP, Meshes, in_space, segments, set_up, tip_pose
 from .strip import SECONDS
 
-REACH = 0.5  # Of the arm's length, about its base, is in view.
+REACH = 0.65  # Of the arm's length, about its base, is in view.
 
 
 class Servo(Page):
@@ -168,7 +168,7 @@ class LiveScene:
         reach = REACH * float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
         around = points[0] + reach * np.vstack([np.eye(3)[:2], -np.eye(3)[:2], points[-1:] - points[0]])
         self._arm, self._tip, radius = set_up(server, loop.arm, loop.q, meshes, np.vstack([points, around]))
-        self.handle = Handle(server.scene, loop.arm, loop.task, 0.35 * radius, loop.push)
+        self.handle = Handle(server.scene, loop.arm, loop.task, 0.3 * radius, loop.push)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         self._way, self._gap = (
             server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")

@@ -9,8 +9,8 @@ import webbrowser
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
-from .browser import Page  # Before the others: it says what is missing.
 from .controls import Controls, Player
+from .page import Page
 from .readout import Chart, Readout
 from .scene import Meshes, Playback, Scene
 

@@ -10,12 +10,8 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import TypeVar
 
-try:
-    import rich
-    import viser
-    import yourdfpy  # noqa: F401
-except ModuleNotFoundError as missing:
-    raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
+import rich
+import viser
 
 P = TypeVar("P", bound="Page")
 
