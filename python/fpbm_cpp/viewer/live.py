@@ -110,6 +110,7 @@ class StripChart:
                 title="worst joint, of its bound [%]",
                 scales={"x": {"time": False}, "y": {"range": (0.0, 105.0)}},
                 axes=({"size": 36}, {"size": 44}),
+                legend={"live": False},
                 height=220,
                 padding=(8, 16, 0, 0),
             )
