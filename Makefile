@@ -22,7 +22,7 @@ CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make test             build and run every test'
-	@echo 'make test-view        test the viewer in a browser'
+	@echo 'make test-view        test the pages in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
@@ -76,7 +76,7 @@ test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 
 test-view: $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium
-	$(BIN)/python -m pytest tests/python/test_view.py
+	$(BIN)/python -m pytest tests/python/test_view.py tests/python/test_servo.py
 
 lint: $(VENV)/package $(VENV)/lint
 	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)

@@ -615,6 +615,65 @@ def test_ctrl_c_ends_the_viewer_while_it_starts(seconds: float) -> None:
     assert (code, err) == (0, "")
 
 
+# Servo
+
+
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Hands on what is asked for, to a page that ends at once."""
+    shown = []
+    monkeypatch.setitem(vars(viewer), "Servo", lambda *what, **how: shown.append((what, how)) or Shown())
+    bounds = ["--limit-velocity", "0.5", "--limit-jerk", "1000"]
+    result = call("servo", "panda", "--task", task, "--port", "9000", "--no-browser", "--k1", "7", *bounds)
+    assert result.exit_code == 0, result.output
+    (((arm, scheme, q0), how),) = shown
+    panda = fp.SerialArm.preset("panda")
+    assert (arm, scheme) == (panda, fp.FPBM(0.6, np.ones(7), 7, 25, null_damping=2))
+    assert q0[3] == -2.3562
+    limits = how.pop("limits")
+    assert how == {"task": task, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
+    assert (limits.velocity == 0.5).all()
+    assert (limits.jerk == 1000).all()
+    np.testing.assert_array_equal(limits.acceleration, panda.limits.acceleration)
+    lines = result.stdout.splitlines()
+    assert (lines[0], lines[-1]) == ("panda, fpbm", "waited")
+    assert "radius" not in result.stdout
+
+
+def test_servo_has_no_path_and_always_limits() -> None:
+    result = call("servo", "--help")
+    headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
+    assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:"]
+    assert result.output.isascii()
+    assert len(examples("servo")) == 3
+    for option in ("--radius", "--hold", "--qd0", "--limits", "--no-limits"):
+        assert call("servo", "panda", option, "1").exit_code == 2
+
+
+def test_servo_says_what_is_wrong() -> None:
+    shutil.copy(ROOT / "examples/04_exported_arm.urdf", "arm.urdf")
+    said = "--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
+    assert refused("servo", "arm.urdf", "--tip", "tool") == said
+    assert refused("servo", "planar:1,1,1", "--limit-velocity", "1") == said
+    assert refused("servo", "panda", "--task", "dance").startswith("--task = 'dance': must be one of")
+    assert refused("servo", "panda", "--q0", "1,2").startswith("--q0 has 2 entries")
+    assert refused("servo", "robot").startswith("ARM = 'robot': must be one of")
+    Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nqd0 = [0.1, 0, 0, 0, 0, 0, 0]")
+    assert refused("servo", "--job", "job.toml") == "servo begins at rest: leave qd0 out, or use track"
+    pytest.importorskip("viser")
+    assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == "--q0[0] = 9: must be within the joint's range"
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        assert f"port {port} is in use" in refused("servo", "panda", "--port", str(port), "--no-browser")
+
+
+@posix
+def test_ctrl_c_ends_servo_in_peace() -> None:
+    pytest.importorskip("viser")
+    out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C ends it.", 1.0)
+    assert (code, err, out) == (0, "", "")
+
+
 def test_bench() -> None:
     result = call("bench", "--seconds", "0.01")
     assert result.exit_code == 0, result.output

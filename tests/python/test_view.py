@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import signal
 import socket
 import subprocess
@@ -14,6 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from browser import eventually, opened
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -599,33 +599,10 @@ viewer = Viewer(run, port=0)
     assert (run.stdout, run.stderr) == ("", "")
 
 
-FLAGS = [
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--no-first-run",
-    "--disable-quic",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-
-
 @pytest.fixture
-def page(shared, tmp_path):
-    """The page in a browser without a screen."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    if chromium is None:
-        pytest.skip("chromium is not installed")
-    playwright = pytest.importorskip("playwright.sync_api")
-    size = {"width": 640, "height": 480}
-    with playwright.sync_playwright() as tools:
-        how = {"executable_path": chromium, "args": FLAGS, "viewport": size, "headless": True}
-        with tools.chromium.launch_persistent_context(tmp_path, **how) as browser:
-            browser.set_default_timeout(120_000)
-            yield browser.pages[0]
+def page(tmp_path):
+    with opened(tmp_path, 640, 480) as page:
+        yield page
 
 
 def picture(page, viewer):
@@ -637,14 +614,6 @@ def picture(page, viewer):
     while thread.is_alive():
         page.wait_for_timeout(20)
     return pictures[0][..., :3].astype(float)
-
-
-def eventually(page, check):
-    """Waits until a check holds, as long as a machine without a graphics processor may need."""
-    end = time.monotonic() + 120
-    while not check():
-        assert time.monotonic() < end, check
-        page.wait_for_timeout(50)
 
 
 def test_in_a_browser(page, viewer):

@@ -1,17 +1,24 @@
-"""Commands that make a motion: track, compare, view."""
+"""Commands that make a motion: track, compare, view, servo."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
 from .._core import Status
 from ..errors import not_one_of
+from ..job.sections import job_errors
 from ..motion.run import Run
 from ..schemes import SCHEMES
 from .plain import Writer, dark_option, import_viser, out_option, picture, write_files
 from .request import Request, motion_command
 from .text import FIGURES, Row, figure_table, summary
 
+port_option = click.option(
+    "--port", type=click.IntRange(0, 65535), default=8080, help="Port to serve at; 0 takes one that is free."
+)
+browser_option = click.option("--browser/--no-browser", default=True, help="Open the page in the browser, or not.")
 ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 
 
@@ -114,8 +121,8 @@ def _row(kind: str, run: Run) -> Row:
     fpbm-cpp view my_arm.urdf --tip tool0 --path lissajous --port 9000
     fpbm-cpp view --job job.toml --no-browser""",
 )
-@click.option("--port", type=click.IntRange(0, 65535), default=8080, help="Port to serve at; 0 takes one that is free.")
-@click.option("--browser/--no-browser", default=True, help="Open the page in the browser, or not.")
+@port_option
+@browser_option
 def view(request: Request, port: int, browser: bool) -> None:
     """Show an arm on its path in the browser, with the scheme and its gains at hand.
 
@@ -124,12 +131,57 @@ def view(request: Request, port: int, browser: bool) -> None:
     motion = request.motion()
     with request.plain():
         run = motion.run()
-    try:
+    with _served():
         request.say(motion)
         import_viser()
         from ..viewer import Viewer
 
         Viewer(run, urdf=motion.job["arm"].get("file"), port=port, open_browser=browser).wait()
+
+
+@motion_command(
+    "Drag an arm's tip in the browser.",
+    """
+    fpbm-cpp servo panda --task pose
+    fpbm-cpp servo planar:1,1,1,1 --limit-velocity 2 --limit-acceleration 10 --limit-jerk 200
+    fpbm-cpp servo my_arm.urdf --tip tool0 --limit-acceleration 10 --port 9000""",
+    path=False,
+)
+@port_option
+@browser_option
+def servo(request: Request, port: int, browser: bool) -> None:
+    """Drag a handle in the browser, and the arm's tip follows, within its joint limits.
+
+    1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
+    keeps the arm from the handle. A URDF file is shown with its meshes. Ctrl-C ends it. ARM and the options are those
+    of track; of a job, the path does not matter.
+    """
+    motion = request.motion(at_rest=True, limited=True)
+    with _served():
+        request.say(motion, path=False)
+        import_viser()
+        from ..viewer import Servo
+
+        with request.plain(), job_errors():
+            page = Servo(
+                motion.arm,
+                motion.scheme,
+                motion.q0,
+                task=motion.options.task,
+                dt=motion.options.dt,
+                limits=motion.limits,
+                urdf=motion.job["arm"].get("file"),
+                port=port,
+                open_browser=browser,
+            )
+        page.wait()
+
+
+@contextmanager
+def _served() -> Iterator[None]:
+    """Say plainly that a page cannot be served; Ctrl-C ends it in peace."""
+    try:
+        yield
     except OSError as error:
         raise click.ClickException(error.strerror or str(error)) from None
     except KeyboardInterrupt:

@@ -54,14 +54,20 @@ class JobOption(click.Option):
         self.section, self.key, self.heading = section, key, HEADING[section]
 
 
-def _job_options(kind: bool) -> Iterator[JobOption]:
-    """The options of a job: all, or without the kind of scheme."""
+LIVE = {"task", "q0"}  # Of a run, where there is no path.
+
+
+def _job_options(kind: bool, path: bool) -> Iterator[JobOption]:
+    """The options of a job: all, or without the kind of scheme; or of an arm without a path, which keeps its limits."""
     urdf = known("arm", "urdf")
     yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
     yield _option("arm", "base", replace(urdf["base"], help="Link of a URDF file that stays."))
     for key, declared in known("run").items():
-        yield _option("run", key, declared)
+        if path or key in LIVE:
+            yield _option("run", key, declared)
     for section, usual in FREE.items():
+        if section == "path" and not path:
+            continue
         keys = {each: known(section, each) for each in (usual, *SECTIONS[section])}
         if kind or section != "scheme":
             words = Word(list(SECTIONS[section]))
@@ -70,7 +76,8 @@ def _job_options(kind: bool) -> Iterator[JobOption]:
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
     text = "Keep them: the arm's, but for those below. Where it has no accelerations, give some: 10 rad/s^2 is usual."
-    yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
+    if path:
+        yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     for key, declared in known("limits").items():
         yield _option("limits", key, declared, prefix="limit-")
 
@@ -89,11 +96,13 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
     return JobOption(section, key, flag, type=kind, metavar=metavar, help=f"{text}  [{extra}]" if extra else text)
 
 
-def motion_command(short_help: str, examples: str, *, kind: bool = True) -> Callable[[Callable[..., None]], Plain]:
+def motion_command(
+    short_help: str, examples: str, *, kind: bool = True, path: bool = True
+) -> Callable[[Callable[..., None]], Plain]:
     """A command, named as its function, which gets a Request for ARM, --job, --save-job and the options of a job."""
 
     def make(function: Callable[..., None]) -> Plain:
-        ours = list(_job_options(kind))
+        ours = list(_job_options(kind, path))
 
         @click.argument("arm", required=False, metavar="ARM")
         @click.option("--job", type=PLACE, metavar="FILE", help="TOML file with what options do not say.")
@@ -138,9 +147,12 @@ class Request:
         given = self.table.get("scheme")
         return str(given.get("kind")) if isinstance(given, dict) else FREE["scheme"]
 
-    def motion(self, kind: str | None = None, *, at_rest: bool = False) -> Motion:
-        """The motion, under a kind of scheme where one is named; at_rest: whether it has to begin at rest."""
-        table = self.table
+    def motion(self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False) -> Motion:
+        """The motion, under a kind of scheme where one is named.
+
+        at_rest: whether it has to begin at rest; limited: whether limits are kept though nobody asks.
+        """
+        table = {"limits": {}, **self.table} if limited else self.table
         if kind is not None:
             table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):
@@ -150,14 +162,16 @@ class Request:
             raise click.ClickException(f"{command} begins at rest: leave qd0 out, or use track")
         return motion
 
-    def say(self, motion: Motion, *, scheme: bool = True) -> None:
+    def say(self, motion: Motion, *, scheme: bool = True, path: bool = True) -> None:
         """Write the job where it is asked for; print what is run, and what was taken where nothing was said."""
         if self.copy is not None:
             with file_errors("write to", self.copy):
                 motion.save(self.copy)
-        click.echo(f"{motion.label}, {motion.scheme.kind}" if scheme else motion.label)
-        if motion.taken:
-            click.echo(click.wrap_text(f"by default: {', '.join(motion.taken)}", WIDTH, subsequent_indent="  "))
+        name = motion.label if path else motion.name
+        click.echo(f"{name}, {motion.scheme.kind}" if scheme else name)
+        taken = [text for section, texts in motion.taken.items() if path or section != "path" for text in texts]
+        if taken:
+            click.echo(click.wrap_text(f"by default: {', '.join(taken)}", WIDTH, subsequent_indent="  "))
         click.echo()
 
     @contextmanager

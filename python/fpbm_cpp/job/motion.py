@@ -47,7 +47,7 @@ class Motion:
     """A motion to be run."""
 
     job: Table  # What was asked for, with every blank filled.
-    taken: list[str]  # What was filled in, as in 'k1 = 10'.
+    taken: dict[str, list[str]]  # What was filled in, by section, as in 'k1 = 10'.
     arm: Arm
     path: Path
     scheme: Scheme
@@ -63,9 +63,14 @@ class Motion:
     @property
     def label(self) -> str:
         """What to call the arm and the path."""
-        arm, path = self.job["arm"], self.job["path"]
-        name = arm.get("name") or arm.get("file") or f"arm of {self.arm.dof} joints"
-        return f"{name}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
+        path = self.job["path"]
+        return f"{self.name}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
+
+    @property
+    def name(self) -> str:
+        """What to call the arm."""
+        arm = self.job["arm"]
+        return str(arm.get("name") or arm.get("file") or f"arm of {self.arm.dof} joints")
 
     @property
     def keywords(self) -> dict[str, Any]:
@@ -105,7 +110,7 @@ def prepare(job: Table) -> Motion:
         if np.any(bounded & np.isinf(limits.acceleration)):
             missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(wrong("limits.acceleration", None, missing))
-    motion = Motion(full, list(taken(job, full)), arm, path, scheme, options, limits)
+    motion = Motion(full, taken(job, full), arm, path, scheme, options, limits)
     with job_errors():
         try:
             check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
@@ -129,14 +134,18 @@ def filled(job: Table, arm: Arm) -> Table:
     return {**job, "path": pieces, "scheme": scheme, "run": run}
 
 
-def taken(job: Table, full: Table) -> Iterator[str]:
-    """What the full job has and the job did not say, as in 'k1 = 10', but for what is off."""
-    for section in ("path", "scheme", "run"):
-        said, whole = (each if isinstance(each, list) else [each] for each in (job.get(section, {}), full[section]))
-        for before, after in zip(said, whole):
-            for key, value in after.items():
-                if key not in before and key != "kind" and value:
-                    yield f"{key} = {_text(value)}"
+def taken(job: Table, full: Table) -> dict[str, list[str]]:
+    """What the full job has and the job did not say, by section, as in 'k1 = 10', but for what is off."""
+    texts = {section: list(_taken(job.get(section, {}), full[section])) for section in ("path", "scheme", "run")}
+    return {section: each for section, each in texts.items() if each}
+
+
+def _taken(said: Any, full: Any) -> Iterator[str]:
+    """The same of a section."""
+    for before, after in zip(*(each if isinstance(each, list) else [each] for each in (said, full))):
+        for key, value in after.items():
+            if key not in before and key != "kind" and value:
+                yield f"{key} = {_text(value)}"
 
 
 def _filled(section: str, said: Table) -> Table:

@@ -1,6 +1,7 @@
-"""The viewer: a page in the browser with the arm, the time and the scheme's parameters. Needs the extra 'view'.
+"""Pages in the browser: a motion, and an arm that follows a handle. They need the extra 'view'.
 
-The page asks for a scheme and a time (controls); the viewer makes the motion again; scene and readout draw it.
+The viewer's page asks for a scheme and a time (controls); the viewer makes the motion again; scene and readout draw it.
+The servo's page asks for a target (handle); the loop makes ticks at the pace of the clock; scene and live draw them.
 """
 
 import os
@@ -8,24 +9,29 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from ..arms import Arm
+from .._core import TargetFilter
+from ..arms import Arm, JointLimits
 from ..motion.simulation import simulate
 from ..paths import Path
 from ..schemes import Scheme
 
 if TYPE_CHECKING:
+    from .servoing import Servo
     from .viewer import Viewer
 
-__all__ = ["Viewer", "view"]
+__all__ = ["Servo", "Viewer", "servo", "view"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import Viewer, which needs viser, when it is first used."""
-    if name != "Viewer":
+    """Import Servo and Viewer, which need viser, when they are first used."""
+    if name not in ("Servo", "Viewer"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .viewer import Viewer
-
-    return Viewer
+    try:
+        from .servoing import Servo
+        from .viewer import Viewer
+    except ModuleNotFoundError as missing:
+        raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
+    return {"Servo": Servo, "Viewer": Viewer}[name]
 
 
 def view(
@@ -54,7 +60,50 @@ def view(
     Raises ValueError if an argument is out of range, or the URDF file is not that of the arm: nothing is served then;
     OSError if the port is in use, or the URDF file cannot be read; ImportError if the extra 'view' is missing.
     """
-    from .viewer import Viewer
+    from . import Viewer
 
     run = simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task, partial=True)
     Viewer(run, urdf=urdf, host=host, port=port, open_browser=open_browser).wait()
+
+
+def servo(
+    arm: Arm,
+    scheme: Scheme,
+    q0: ArrayLike,
+    *,
+    task: str = "position",
+    dt: float = 1e-3,
+    limits: JointLimits | None = None,
+    targets: TargetFilter | None = None,
+    urdf: str | os.PathLike[str] | None = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    open_browser: bool = True,
+) -> None:
+    """Show an arm in the browser with a handle at its tip to drag, which it follows live, until Ctrl-C.
+
+    Prints the page's address. The arm is moved by a Tracker, a tick each dt, as many as have passed on the clock: every
+    bound of limits is kept, through singular postures and at the edge of reach. On a machine that is too slow, the arm
+    is late. fpbm_cpp.viewer.Servo does not wait.
+
+    The handle's places, 20 a second, go through targets, a TargetFilter with bounds of one's own. Unless given, the
+    bounds suit the arm's length L: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2, 200 rad/s^3. task, dt and
+    limits are those of Tracker, urdf, host and port those of view().
+
+    Raises what Tracker and view() raise, and ValueError where targets is for another task or tick.
+    """
+    from . import Servo
+
+    Servo(
+        arm,
+        scheme,
+        q0,
+        task=task,
+        dt=dt,
+        limits=limits,
+        targets=targets,
+        urdf=urdf,
+        host=host,
+        port=port,
+        open_browser=open_browser,
+    ).wait()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiSliderHandle, Icon
 
-from ..motion.run import Run
+from ..arms import Arm, JointLimits
 from ..parameter import Parameter, parameters
 from ..schemes import SCHEMES, Scheme
 from ..skeleton import joint_labels
@@ -33,28 +33,38 @@ def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Sche
 
 
 class Controls:
-    """Inputs for the scheme, its parameters and joint limits; calls `on_change` when one is changed on the page."""
+    """Inputs for the scheme and its parameters; calls `on_change` when one is changed on the page.
 
-    def __init__(self, gui: GuiApi, run: Run, on_change: Callable[[], None]) -> None:
+    limits: those that are kept on request, and whether they are at first; without them nobody is asked.
+    """
+
+    def __init__(
+        self,
+        gui: GuiApi,
+        arm: Arm,
+        scheme: Scheme,
+        on_change: Callable[[], None],
+        limits: JointLimits | None = None,
+        limited: bool = False,
+    ) -> None:
         self._on_change = on_change
-        limits, names = run.limits, joint_labels(run.arm)
-        bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
             self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
-                self._weights = [gui.add_slider(name, 0.1, 10.0, step=0.1, initial_value=1.0) for name in names]
-            there = bool(np.isfinite(bounds).any())
+                self._weights = [
+                    gui.add_slider(name, 0.1, 10.0, step=0.1, initial_value=1.0) for name in joint_labels(arm)
+                ]
             self._limited = gui.add_checkbox(
-                "keep joint limits", run.scale is not None, visible=there, hint="The bounds of every joint"
+                "keep joint limits", limited, visible=_bounded(limits), hint="The bounds of every joint"
             )
             reset = gui.add_button("reset", color="gray")
-        self.take(run.scheme)
+        self.take(scheme)
         for widget in (self._kind, self._limited, *self._sliders.values(), *self._weights):
             widget.on_update(self._on_update)
-        reset.on_click(lambda _: self._reset(run.scheme))
+        reset.on_click(lambda _: self._reset(scheme))
 
     @property
     def limited(self) -> bool:
@@ -96,6 +106,13 @@ class Controls:
     def _reset(self, scheme: Scheme) -> None:
         self.take(scheme)
         self._on_change()
+
+
+def _bounded(limits: JointLimits | None) -> bool:
+    if limits is None:
+        return False
+    bounds = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
+    return bool(np.isfinite(np.array(bounds, dtype=float)).any())
 
 
 def _add_slider(gui: GuiApi, known: Parameter, initial: float) -> GuiSliderHandle[float]:

@@ -1,7 +1,7 @@
 """A run in words, numbers and curves: how it ended, figures of the sample shown, and one quantity over time."""
 
 import html
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from viser import GuiApi
@@ -53,12 +53,22 @@ class Readout:
             ("td", "fastest joint", fastest(run.qd[sample : sample + 1]), fastest(run.qd)),
             ("td", "manipulability", f"{w[playback.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
-        lines = ("".join(f'<{tag} style="{CELL}">{html.escape(cell)}</{tag}>' for cell in row) for tag, *row in rows)
-        self._table.content = f'<table style="{TABLE}">{"".join(f"<tr>{line}</tr>" for line in lines)}</table>'
+        self._table.content = table(rows)
 
     def _say(self, text: str, colour: str) -> None:
-        style = f"padding:0.4em 0.9em 0;font-size:0.85em;font-weight:600;color:{colour}"
-        self._status.content = f'<div style="{style}">{html.escape(text)}</div>'
+        self._status.content = sentence(text, colour)
+
+
+def sentence(text: str, colour: str) -> str:
+    """A sentence as HTML."""
+    style = f"padding:0.4em 0.9em 0;font-size:0.85em;font-weight:600;color:{colour}"
+    return f'<div style="{style}">{html.escape(text)}</div>'
+
+
+def table(rows: Iterable[Sequence[str]]) -> str:
+    """A table as HTML, from rows of a tag, th or td, and cells."""
+    lines = ("".join(f'<{tag} style="{CELL}">{html.escape(cell)}</{tag}>' for cell in row) for tag, *row in rows)
+    return f'<table style="{TABLE}">{"".join(f"<tr>{line}</tr>" for line in lines)}</table>'
 
 
 # Values at the frames, and their unit; in two dimensions those of the joints, which have the joints' unit and this.

@@ -1,5 +1,7 @@
 """What is drawn of a run: its samples and curves, prepared for drawing, the scene, and the arm in it."""
 
+from __future__ import annotations
+
 import logging
 import os
 import warnings
@@ -10,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import yourdfpy
-from viser import ClientHandle, SceneApi, SceneNodeHandle, ViserServer
+from viser import ClientHandle, FrameHandle, SceneApi, SceneNodeHandle, ViserServer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
@@ -52,10 +54,7 @@ class Playback:
 
     def pose(self, sample: int) -> Array:
         """The tip's frame at a sample, shape (4, 4)."""
-        arm, q = self.run.arm, self.run.q[sample]
-        R, p, pose = tip_axes(arm, q), joint_points(arm, q)[-1], np.eye(4)
-        pose[: len(p), : len(p)], pose[: len(p), 3] = R, p
-        return pose
+        return tip_pose(self.run.arm, self.run.q[sample])
 
 
 def _at_start(run: Run) -> Run:
@@ -65,6 +64,13 @@ def _at_start(run: Run) -> Run:
     x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.task).tip)[None]
     error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.task))))
     return replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
+
+
+def tip_pose(arm: Arm, q: Array) -> Array:
+    """The tip's frame in a posture, shape (4, 4)."""
+    R, p, pose = tip_axes(arm, q), joint_points(arm, q)[-1], np.eye(4)
+    pose[: len(p), : len(p)], pose[: len(p), 3] = R, p
+    return pose
 
 
 def in_space(points: Array) -> Array:
@@ -157,20 +163,8 @@ class Scene:
 
     def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
         run, self._server = playback.run, server
-        planar = isinstance(run.arm, PlanarArm)
-        self._arm: Links | Meshes
-        if meshes is not None and meshes.found:
-            meshes.show(server)
-            self._arm = meshes
-        else:
-            self._arm = Links(server.scene, run.arm, run.q[0])
         points = np.vstack([in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3), playback.target])
-        centre = (points.min(axis=0) + points.max(axis=0)) / 2
-        radius = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-3)
-        _add_ground(server.scene, radius, planar)
-        _place_camera(server, centre, radius, planar)
-        size = 0.16 * radius
-        self._tip = server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size)
+        self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
         self._start, self._target, self._path = (
@@ -180,8 +174,8 @@ class Scene:
 
     def show(self, playback: Playback) -> None:
         self._playback, run = playback, playback.run
-        self._start.points = _segments(in_space(joint_points(run.arm, run.q[0])))
-        target = _segments(playback.target)
+        self._start.points = segments(in_space(joint_points(run.arm, run.q[0])))
+        target = segments(playback.target)
         self._target.points = target[::2] if len(target) > 50 else target  # Dashes.
 
     def at(self, sample: int) -> None:
@@ -192,10 +186,29 @@ class Scene:
             self._arm.pose(playback.run.q[sample])
             self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
             passed = playback.tip[: playback.frame(sample) + 1]
-            self._path.points = _segments(np.vstack([passed, pose[None, :3, 3]]))
+            self._path.points = segments(np.vstack([passed, pose[None, :3, 3]]))
 
 
-def _segments(points: Array) -> Array:
+def set_up(
+    server: ViserServer, arm: Arm, q: Array, meshes: Meshes | None, points: Array
+) -> tuple[Links | Meshes, FrameHandle, float]:
+    """The arm on the ground, the axes of its tip, and a camera that sees points in space; the radius about these."""
+    shown: Links | Meshes
+    if meshes is not None and meshes.found:
+        meshes.show(server)
+        shown = meshes
+    else:
+        shown = Links(server.scene, arm, q)
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    radius = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-3)
+    _add_ground(server.scene, radius, isinstance(arm, PlanarArm))
+    _place_camera(server, centre, radius, isinstance(arm, PlanarArm))
+    size = 0.16 * radius
+    return shown, server.scene.add_frame("/tip", axes_length=size, axes_radius=0.06 * size), radius
+
+
+def segments(points: Array) -> Array:
+    """The lines from each point to the next, shape (N - 1, 2, 3)."""
     return np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
 
 

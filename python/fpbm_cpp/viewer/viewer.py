@@ -1,33 +1,21 @@
-"""The viewer: a server, the parts of the page, and their connections."""
+"""The viewer: the parts of its page, and their connections."""
 
 from __future__ import annotations
 
-import atexit
-import errno
 import os
-import socket
 import threading
-import time
 import webbrowser
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, suppress
-
-try:
-    import rich
-    import viser
-    import yourdfpy  # noqa: F401
-except ModuleNotFoundError as missing:
-    raise ImportError('viewing needs viser: pip install "fpbm_cpp[view]"') from missing
 
 from ..motion.run import Run
 from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 from .controls import Controls, Player
+from .page import Page
 from .readout import Chart, Readout
 from .scene import Meshes, Playback, Scene
 
 
-class Viewer(AbstractContextManager["Viewer"]):
+class Viewer(Page):
     """A page in the browser with a run, which is simulated again whenever a parameter is changed on the page.
 
     Serves from another thread until it is closed, or until the end of a with block; url is the page's address. All
@@ -46,23 +34,15 @@ class Viewer(AbstractContextManager["Viewer"]):
     ) -> None:
         playback = Playback(run)
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
-        _require_free(host, port)
+        super().__init__(host, port)
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
         self._lock = threading.RLock()
-        with _quiet():
-            self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
-        atexit.register(self.close)  # Before viser's own exit, which prints.
-        shown = {"0.0.0.0": "localhost", "::": "localhost"}.get(host, f"[{host}]" if ":" in host else host)
-        self.url = f"http://{shown}:{self._server.get_port()}"
         gui, duration = self._server.gui, run.path.duration + run.options.get("hold", 0.0)
         with self._lock:  # The page's first events wait until all parts are there.
-            # The share button would show the page to others, through somebody's server.
-            gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
-            gui.main_panel.dock_right()
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)
-            self._controls = Controls(gui, run, self._on_change)
+            self._controls = Controls(gui, run.arm, run.scheme, self._on_change, run.limits, run.scale is not None)
             self._chart = Chart(gui, playback, duration)
             self._scene = Scene(self._server, playback, meshes)
             self._show(run)
@@ -103,25 +83,10 @@ class Viewer(AbstractContextManager["Viewer"]):
         """Stop the clock."""
         self._player.pause()
 
-    def wait(self) -> None:
-        """Print the address, serve until Ctrl-C, then close."""
-        with self, suppress(KeyboardInterrupt):
-            print(f"{self.url}: Ctrl-C ends it.", flush=True)
-            while True:
-                time.sleep(3600.0)
-
     def close(self) -> None:
         """Stop serving. Closing twice does no harm."""
-        atexit.unregister(self.close)
         self._player.close()
-        with _quiet():
-            self._server.stop()
-
-    def __exit__(self, *error: object) -> None:
-        self.close()
-
-    def _repr_html_(self) -> str:
-        return f'<iframe src="{self.url}" style="width:100%;height:640px;border:1px solid #ddd"></iframe>'
+        super().close()
 
     def _on_change(self) -> None:
         """Simulate the scheme that the page asks for; of several requests at once, the last one counts."""
@@ -158,31 +123,3 @@ def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
         return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
     options = {name: run.options[name] for name in ("dt", "hold", "qd0") if name in run.options}
     return simulate(run.arm, run.path, scheme, q0, task=run.task, partial=True, **options)
-
-
-def _require_free(host: str, port: int) -> None:
-    """Raise OSError if the port cannot be served at; viser would silently take another one."""
-    if not 0 <= port <= 65535:
-        raise ValueError(f"port = {port}: must be 0 to 65535")
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except socket.gaierror as error:
-            raise ValueError(f"host = {host!r}: {error.strerror}") from None
-        except OSError as error:
-            text = f"cannot serve at {host}, port {port}: {error.strerror}"
-            if error.errno == errno.EADDRINUSE:
-                text = f"port {port} is in use: choose another one, or 0 for one that is free"
-            raise OSError(error.errno, text) from None
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep viser's messages off the terminal: it prints them with rich, whether it is to be verbose or not."""
-    console = rich.get_console()
-    before, console.quiet = console.quiet, True
-    try:
-        yield
-    finally:
-        console.quiet = before

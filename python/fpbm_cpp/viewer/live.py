@@ -1,0 +1,123 @@
+"""A live arm in words, numbers and curves: how it fares, and its motion of the last ten seconds against its bounds."""
+
+from typing import Any
+
+import numpy as np
+from viser import GuiApi
+
+from .._core import Status, advice, message, rotation_vector
+from .._types import Array
+from ..skeleton import joint_labels
+from .loop import ServoLoop
+from .readout import BAD, GOOD, LINES, sentence, table
+from .strip import SECONDS, Strip
+
+FAIR = "#8A6100"
+NEAR = 0.01  # To an end of its range [rad].
+COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR}
+# What to do about it here.
+HINTS = {
+    Status.DAMPED: "In all other directions it follows.",
+    Status.SLOWED: "It follows as fast as its joints may.",
+    Status.STALLED: "Drag the handle into reach or, where a joint is at its end, round another way.",
+}
+NAMES = ("speed", "acceleration", "jerk")
+
+
+class LiveReadout:
+    """How the arm fares, in a sentence, and a table of what is near its bounds."""
+
+    def __init__(self, gui: GuiApi) -> None:
+        self._status = gui.add_html("")
+        self._table = gui.add_html("")
+        self._refused = ""
+
+    def refuse(self, reason: str) -> None:
+        """Say why the scheme asked for is not taken, until another one is."""
+        self._refused = f"not taken: {reason}" if reason else ""
+
+    def show(self, loop: ServoLoop) -> None:
+        self._status.content = sentence(*((self._refused, BAD) if self._refused else _words(loop)))
+        self._table.content = table(_rows(loop))
+
+
+def _words(loop: ServoLoop) -> tuple[str, str]:
+    """How the arm fares, and a colour."""
+    if loop.stopped:
+        moves = loop.tick is not None and loop.tick.qd.any()
+        return ("stopping: every joint brakes" if moves else "stopped: the arm is at rest"), FAIR
+    status = loop.status
+    text = f"{message(status)}. {HINTS.get(status, advice(status))}".strip()
+    return text, COLOURS.get(status, BAD)
+
+
+def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
+    _, worst = loop.strip.curves()
+    nothing = np.full(len(worst), np.nan)
+    there = worst[:, ~np.isnan(worst[0])]
+    now = there[:, -1] if there.size else nothing
+    far = np.append(there[:3].max(axis=1), there[3].min()) if there.size else nothing
+    names = [*(f"joint {name}" for name in NAMES), "task's scale"]
+    known = [*loop.strip.bounded, True]
+    cells = [(_percent(a), _percent(b)) if there else ("no bound", "") for a, b, there in zip(now, far, known)]
+    joints = [label for label, flag in zip(joint_labels(loop.arm), _on_bounds(loop)) if flag]
+    return [
+        ("th", "worst joint, of its bound", "now", f"in {SECONDS:g} s"),
+        *(("td", name, *cell) for name, cell in zip(names, cells)),
+        ("td", "joints on a bound", ", ".join(joints) or "none", ""),
+        ("td", "from tip to handle", _error(loop), ""),
+    ]
+
+
+def _on_bounds(loop: ServoLoop) -> list[bool]:
+    """Which joints the last tick had on a bound, or are at an end of their range."""
+    limits, q = loop.limits, loop.q
+    ends = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
+    return list(ends if loop.tick is None else ends | loop.tick.saturated)
+
+
+def _percent(share: float) -> str:
+    return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
+
+
+def _error(loop: ServoLoop) -> str:
+    """How far the tip is from the handle."""
+    x, tip = loop.target, loop.tip
+    if x.shape == (4, 4):
+        angle = float(np.linalg.norm(rotation_vector(x[:3, :3] @ tip[:3, :3].T)))
+        x, tip = x[:3, 3], tip[:3, 3]
+    elif loop.task == "pose":
+        angle = abs(float(np.remainder(x[2] - tip[2] + np.pi, 2.0 * np.pi) - np.pi))
+        x, tip = x[:2], tip[:2]
+    distance = f"{np.linalg.norm(x - tip):.3f} m"
+    return f"{distance}, {angle:.3f} rad" if loop.task == "pose" else distance
+
+
+class StripChart:
+    """The last ten seconds: each quantity of the joint nearest to its bound, and the task's scale [%]."""
+
+    def __init__(self, gui: GuiApi, strip: Strip) -> None:
+        known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], strip.bounded)
+        curves: list[dict[str, Any]] = [
+            {"label": name if there else f"{name} (no bound)", "stroke": colour, "width": 1.6}
+            for name, colour, there in known
+        ]
+        scale = {"label": "task's scale", "stroke": LINES[6], "width": 1.6, "dash": [6, 3]}
+        with gui.add_folder(f"Last {SECONDS:g} s"):
+            self._plot = gui.add_uplot(
+                self._data(strip),
+                ({"label": "t [s]"}, *({**curve, "points": {"show": False}} for curve in (*curves, scale))),
+                title="worst joint, of its bound [%]",
+                scales={"x": {"time": False}, "y": {"range": (0.0, 105.0)}},
+                axes=({"size": 36}, {"size": 44}),
+                legend={"live": False},
+                height=220,
+                padding=(8, 16, 0, 0),
+            )
+
+    def show(self, strip: Strip) -> None:
+        self._plot.data = self._data(strip)
+
+    def _data(self, strip: Strip) -> tuple[Array, ...]:
+        t, worst = strip.curves()
+        return (t, *(100.0 * worst))

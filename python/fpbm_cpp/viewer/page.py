@@ -1,0 +1,84 @@
+"""A page in the browser: its server, its address, and its end."""
+
+from __future__ import annotations
+
+import atexit
+import errno
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
+from typing import TypeVar
+
+import rich
+import viser
+
+P = TypeVar("P", bound="Page")
+
+
+class Page(AbstractContextManager["Page"]):
+    """Serves from another thread until it is closed, or until the end of a with block; url is its address.
+
+    Raises OSError if the port is in use, ValueError if there is no such host or port.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        _require_free(host, port)
+        with _quiet():
+            self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
+        atexit.register(self.close)  # Before viser's own exit, which prints.
+        shown = {"0.0.0.0": "localhost", "::": "localhost"}.get(host, f"[{host}]" if ":" in host else host)
+        self.url = f"http://{shown}:{self._server.get_port()}"
+        # The share button would show the page to others, through somebody's server.
+        self._server.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+        self._server.gui.main_panel.dock_right()
+
+    def wait(self) -> None:
+        """Print the address, serve until Ctrl-C, then close."""
+        with self, suppress(KeyboardInterrupt):
+            print(f"{self.url}: Ctrl-C ends it.", flush=True)
+            while True:
+                time.sleep(3600.0)
+
+    def close(self) -> None:
+        """Stop serving. Closing twice does no harm."""
+        atexit.unregister(self.close)
+        with _quiet():
+            self._server.stop()
+
+    def __enter__(self: P) -> P:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def _repr_html_(self) -> str:
+        return f'<iframe src="{self.url}" style="width:100%;height:640px;border:1px solid #ddd"></iframe>'
+
+
+def _require_free(host: str, port: int) -> None:
+    """Raise OSError if the port cannot be served at; viser would silently take another one."""
+    if not 0 <= port <= 65535:
+        raise ValueError(f"port = {port}: must be 0 to 65535")
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except socket.gaierror as error:
+            raise ValueError(f"host = {host!r}: {error.strerror}") from None
+        except OSError as error:
+            text = f"cannot serve at {host}, port {port}: {error.strerror}"
+            if error.errno == errno.EADDRINUSE:
+                text = f"port {port} is in use: choose another one, or 0 for one that is free"
+            raise OSError(error.errno, text) from None
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep viser's messages off the terminal: it prints them with rich, whether it is to be verbose or not."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before

@@ -1,0 +1,58 @@
+"""The last ten seconds of a motion, against its bounds."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .._core import Tick
+from .._types import Array
+from ..arms import JointLimits
+
+SECONDS = 10.0
+POINTS = 200  # Of a curve.
+
+
+class Strip:
+    """Speed, acceleration and jerk of the joint that is nearest to its bound, as shares of it, and the task's scale.
+
+    Shares are of all ticks in the last ten seconds, shape (4, N), a row each; 0 where nothing is bounded. The jerk of a
+    tick is the difference of its mean acceleration from that of the tick before, by the tick.
+    """
+
+    def __init__(self, limits: JointLimits, dt: float) -> None:
+        self._dt, self._count = dt, 0
+        self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk], dtype=float)
+        self._before = np.zeros(len(limits.velocity))
+        self._width = max(round(SECONDS / dt / POINTS), 1)
+        self._shares = np.empty((4, 0))
+
+    def add(self, ticks: Sequence[Tick]) -> None:
+        """Ticks that follow each other, one at least."""
+        qd, qdd = np.array([tick.qd for tick in ticks]), np.array([tick.qdd for tick in ticks])
+        jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
+        shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk), self._bounds)]
+        new = np.array([*shares, [tick.scale for tick in ticks]])
+        self._before, self._count = qdd[-1], self._count + len(ticks)
+        self._shares = np.hstack([self._shares, new])[:, -(POINTS + 1) * self._width :]
+
+    @property
+    def shares(self) -> Array:
+        return self._shares
+
+    @property
+    def bounded(self) -> tuple[bool, ...]:
+        """Whether any joint has a bound on its speed, its acceleration, its jerk."""
+        return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
+
+    def curves(self) -> tuple[Array, Array]:
+        """Times [s], shape (POINTS,), and the worst of the stretch that ends at each, shape (4, POINTS).
+
+        A stretch is always of the same ticks: a peak keeps its height on its way. NaN where nothing was.
+        """
+        end = self._shares.shape[1] - self._count % self._width
+        there = self._shares[:, :end][:, -POINTS * self._width :]
+        there = np.pad(there, [(0, 0), (POINTS * self._width - there.shape[1], 0)], constant_values=np.nan)
+        stretches = there.reshape(4, POINTS, self._width)
+        worst = np.vstack([stretches[:3].max(axis=2), stretches[3:].min(axis=2)])
+        times: Array = (self._count // self._width + np.arange(1.0 - POINTS, 1.0)) * self._width * self._dt
+        return times, worst

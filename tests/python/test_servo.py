@@ -1,0 +1,291 @@
+"""The page with the handle: what is dragged there is followed, and what it says is what the arm does."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from browser import eventually, opened
+
+import fpbm_cpp as fp
+
+pytest.importorskip("viser")
+pytest.importorskip("yourdfpy")
+
+from viser.transforms import SO3
+
+from fpbm_cpp.viewer import Servo
+
+PANDA = fp.SerialArm.preset("panda")
+READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
+PLANAR = fp.PlanarArm([1, 1, 1, 1])
+BENT = np.pi / np.array([12, 12, 15, 15])
+CLICK = SimpleNamespace(client="somebody", target=None)
+
+
+def fpbm(n):
+    return fp.FPBM(0.6, np.ones(n), 10, 25, null_damping=2)
+
+
+def bounds(n=4):
+    wide = np.full(n, 2.5)
+    return fp.JointLimits(lower=-wide, upper=wide, velocity=wide, acceleration=8 * wide, jerk=400 * wide)
+
+
+def a_servo(which="planar", task="position", **how):
+    arm, q0, limits = (PANDA, READY, None) if which == "panda" else (PLANAR, BENT, bounds())
+    return Servo(arm, fpbm(arm.dof), q0, **{"task": task, "limits": limits, "port": 0, **how})
+
+
+@pytest.fixture(scope="module")
+def shared():
+    with a_servo() as servo:
+        yield servo
+
+
+@pytest.fixture
+def servo(shared):
+    shared.scheme = fpbm(4)
+    shared.restart()
+    return shared
+
+
+def says(servo):
+    return servo._readout._status.content + servo._readout._table.content
+
+
+def until(check):
+    """Waits until a check holds, as long as a busy machine may need."""
+    end = time.monotonic() + 60
+    while not check():
+        assert time.monotonic() < end, check
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize(("which", "task"), [("panda", "pose"), ("panda", "position"), ("planar", "pose")])
+def test_a_handle_stands_for_a_target(which, task):
+    with a_servo(which, task) as servo:
+        np.testing.assert_allclose(servo.target, servo.tip, atol=1e-12)
+        x = servo.target
+        if x.shape == (4, 4):
+            x[:3, :3] = fp.rotation([0.1, -0.2, 0.3]) @ x[:3, :3]
+            x[:3, 3] += [-0.05, 0.1, 0.02]
+        else:
+            x += [-0.3, 0.1, 0.2][: len(x)]
+        servo.target = x
+        np.testing.assert_allclose(servo.target, x, atol=1e-9)
+        until(lambda: np.abs(servo.tip - x).max() < 1e-3)
+        for lie in (np.nan * x, [0.0]):
+            with pytest.raises(ValueError, match=r"target|entries|shape"):
+                servo.target = lie
+
+
+def test_it_says_how_the_arm_fares(servo):
+    until(lambda: "all is well" in says(servo))
+    servo.target = [8.0, 3.0]
+    until(lambda: "it is slowed. It follows as fast as its joints may." in says(servo))
+    until(lambda: "it rests. Drag the handle into reach" in says(servo))
+    assert servo.status is fp.Status.STALLED
+    assert "100 %" in says(servo)
+    servo.target = [1.5, 2.0]
+    until(lambda: "all is well" in says(servo) and "0.000 m" in says(servo))
+    np.testing.assert_allclose(servo.tip, [1.5, 2.0], atol=1e-3)
+    shown = np.array(servo._chart._plot.data)
+    assert shown.shape == (5, 200)
+    assert np.nanmax(shown[1:], axis=1) == pytest.approx(100.0, abs=70.0)
+
+
+def test_stop_go_on_and_back(servo):
+    servo.target = [1.0, 2.0]
+    until(lambda: servo.tick and np.abs(servo.tick.qd).max() > 0.1)
+    servo.stop()
+    assert servo._button.label == "go on"
+    until(lambda: "stopped: the arm is at rest" in says(servo))
+    stopped = servo.q
+    time.sleep(0.2)
+    np.testing.assert_array_equal(servo.q, stopped)
+    servo.resume()
+    assert servo._button.label == "stop"
+    until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
+    servo.restart()
+    until(lambda: servo.tick is not None)
+    np.testing.assert_allclose(servo.q, BENT, atol=1e-6)
+    np.testing.assert_allclose(servo.target, PLANAR.forward(BENT), atol=1e-9)
+
+
+def test_the_page_chooses_schemes(servo):
+    controls = servo._controls
+    assert not controls._limited.visible
+    servo.target = [1.0, 2.0]
+    controls._kind.value = "WMVN"
+    controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
+    assert isinstance(servo.scheme, fp.WMVN)
+    controls._weights[0].value = -1.0
+    controls._on_update(CLICK)
+    until(lambda: "not taken: weights" in says(servo))
+    controls._reset(fpbm(4))
+    until(lambda: "not taken" not in says(servo))
+    assert servo.scheme == fpbm(4)
+
+
+def test_without_bounds_there_is_nothing_to_keep():
+    with a_servo(limits=None) as servo:
+        servo.target = [1.0, 2.0]
+        until(lambda: np.abs(servo.tip - [1.0, 2.0]).max() < 1e-3)
+        until(lambda: says(servo).count("no bound") == 3)
+        assert "speed (no bound)" in str(servo._chart._plot.series)
+
+
+def test_it_keeps_pace_with_the_clock(servo):
+    until(lambda: servo.tick is not None)
+    begin, moment = time.perf_counter(), servo._loop.time
+    time.sleep(2.0)
+    passed = time.perf_counter() - begin
+    assert 0.5 * passed < servo._loop.time - moment < passed + 0.1
+
+
+def test_it_serves_until_it_is_closed():
+    before = threading.active_count()
+    servo = a_servo()
+    with urllib.request.urlopen(servo.url) as page:
+        assert b"<html" in page.read()
+    servo.close()
+    servo.close()
+    assert threading.active_count() <= before + 1
+    with pytest.raises(OSError, match="refused"):
+        urllib.request.urlopen(servo.url)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"dt": 0.0}, "dt = 0"),
+        ({"task": "dance"}, "task = 'dance'"),
+        ({"q0": [0, 0]}, "q0 has 2 entries"),
+        ({"q0": [9, 0, 0, 0]}, r"q0\[0\] = 9: must be within"),
+        ({"port": -1}, "port = -1"),
+        ({"urdf": "none.urdf"}, "must be left out where the arm is planar"),
+        ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),
+    ],
+)
+def test_bad_arguments(change, words):
+    def servo(q0=BENT, **how):
+        fp.servo(PLANAR, fpbm(4), q0, **{"limits": bounds(), "port": 0, "open_browser": False, **how})
+
+    before = threading.active_count()
+    with pytest.raises(ValueError, match=words):
+        servo(**change)
+    assert threading.active_count() == before
+
+
+def test_a_port_in_use():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=f"port {port} is in use"):
+            a_servo(port=port)
+
+
+SCRIPT = """
+import signal
+import fpbm_cpp as fp
+signal.signal(signal.SIGINT, signal.default_int_handler)
+fp.servo(fp.PlanarArm([1, 1, 1]), fp.MVN(k=5), [0.3, 0.4, 0.5], port=0, open_browser=False)
+print("closed")
+"""
+
+
+def test_it_prints_its_address_and_ctrl_c_closes_it():
+    command = [sys.executable, "-c", SCRIPT]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+        said = child.stdout.readline()
+        assert said, child.stderr.read()
+        with urllib.request.urlopen(said.removesuffix(": Ctrl-C ends it.\n")) as page:
+            assert b"<html" in page.read()
+        child.send_signal(signal.SIGINT)
+        rest, errors = child.communicate(timeout=30)
+    assert (rest, errors, child.returncode) == ("closed\n", "", 0)
+
+
+def test_without_viser():
+    code = """
+import sys
+sys.modules["viser"] = None
+import fpbm_cpp as fp
+try:
+    fp.servo(fp.PlanarArm([1, 1, 1]), fp.MVN(), [0.3, 0.4, 0.5])
+except ImportError as error:
+    print(error)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == 'viewing needs viser: pip install "fpbm_cpp[view]"\n'
+
+
+# In a browser
+
+
+@pytest.fixture
+def page(tmp_path):
+    with opened(tmp_path, 1000, 600) as page:
+        yield page
+
+
+def seen(page, servo, point):
+    """Where on the page a point of the scene is [pixels]."""
+    (client,) = servo._server.get_clients().values()
+    box = page.locator("canvas").first.bounding_box()
+    x, y, z = SO3(client.camera.wxyz).as_matrix().T @ (point - client.camera.position)
+    focus = box["height"] / 2 / np.tan(client.camera.fov / 2)
+    return np.array([box["x"] + box["width"] / 2 + focus * x / z, box["y"] + box["height"] / 2 + focus * y / z])
+
+
+def drag(page, servo, goal):
+    """Takes the handle by the square between its axes, in the plane, and lets it go at a goal."""
+    handle = servo._scene.handle
+    grip = np.array([0.3, 0.3, 0.0]) * handle._gizmo.scale
+    begin, end = (seen(page, servo, point + grip) for point in (handle.position, np.array([*goal, 0.0])))
+    page.mouse.move(*begin)
+    page.wait_for_timeout(200)
+    page.mouse.down()
+    for share in np.linspace(0, 1, 12)[1:]:
+        page.mouse.move(*(begin + share * (end - begin)))
+        page.wait_for_timeout(30)
+    page.mouse.up()
+    eventually(page, lambda: np.abs(servo.target - goal).max() < 0.1)
+
+
+def test_dragged_in_a_browser(page, servo):
+    """By true mouse events: within reach, out of reach and back."""
+    page.goto(servo.url)
+    eventually(page, servo._server.get_clients)
+    page.get_by_text("from tip to handle").wait_for()
+    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no graphics processor.
+    page.wait_for_timeout(2000)  # The scene comes last.
+    for goal in ([2.0, 2.5], [2.5, 1.0]):
+        drag(page, servo, goal)
+        eventually(page, lambda: np.abs(servo.tip - servo.target).max() < 0.01)
+    page.get_by_text("all is well").wait_for()
+    drag(page, servo, [4.5, 2.0])
+    page.get_by_text("it rests. Drag the handle into reach").wait_for()
+    assert np.linalg.norm(servo.target) > 4 > np.linalg.norm(servo.tip) > 3
+    drag(page, servo, [1.0, 2.0])
+    page.get_by_text("all is well").wait_for()
+    eventually(page, lambda: np.abs(servo.tip - servo.target).max() < 0.01)
+
+    drawn = "Object.values(window.__viserTestpoints.uplots)[0].chart.data"
+    t, *shares = page.evaluate(f"{drawn}.map(each => Math.max(...each.filter(Number.isFinite)))")
+    assert t == pytest.approx(servo._loop.time, abs=3.0)
+    assert all(0 < share <= 100.001 for share in shares)
+    page.get_by_role("button", name="stop").click()
+    page.get_by_text("stopped: the arm is at rest").wait_for()
+    page.get_by_role("button", name="go on").click()
+    page.get_by_text("all is well").wait_for()
+    page.get_by_role("button", name="back to start").click()
+    eventually(page, lambda: np.abs(servo.q - BENT).max() < 1e-6)

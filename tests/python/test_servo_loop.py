@@ -1,0 +1,308 @@
+"""The loop behind the handle: whatever is asked of it, the arm keeps its limits, follows where it can, and rests."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import fpbm_cpp as fp
+from fpbm_cpp.viewer.loop import MOST, ServoLoop
+
+PANDA = fp.SerialArm.preset("panda")
+READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
+PLANAR = fp.PlanarArm([1, 1, 1, 1])
+BENT = np.pi / np.array([12, 12, 15, 15])
+FRAME = 1 / 30
+
+
+def bounds(n=4, jerk=200.0):
+    wide = np.full(n, 2.5)
+    return fp.JointLimits(lower=-wide, upper=wide, velocity=wide, acceleration=4 * wide, jerk=np.full(n, jerk))
+
+
+class Clock:
+    """One that goes when it is told."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def __call__(self):
+        self.now += 1e-9  # No two targets come at once.
+        return self.now
+
+
+def fpbm(n, **options):
+    return fp.FPBM(0.6, np.ones(n), 10, 25, **{"null_damping": 2, **options})
+
+
+def a_loop(which="panda", task="pose", scheme=None, **how):
+    arm, q0, limits = (PANDA, READY, None) if which == "panda" else (PLANAR, BENT, bounds())
+    clock = Clock()
+    how = {"limits": limits, "task": task, **how}
+    return ServoLoop(arm, scheme or fpbm(arm.dof), q0, clock=clock, **how), clock
+
+
+def play(loop, clock, seconds, frame=FRAME):
+    ticks = []
+    for _ in range(round(seconds / frame)):
+        clock.now += frame
+        ticks += loop.advance()
+    return ticks
+
+
+def moved(x, way):
+    """A target, moved by so much [m]."""
+    x = np.array(x)
+    if x.shape == (4, 4):
+        x[: len(way), 3] += way
+    else:
+        x[: len(way)] += way
+    return x
+
+
+def kept(loop, q0, ticks):
+    """Every bound, by differences of the positions and velocities that were sent."""
+    limits, h = loop.limits, loop.dt
+    q, qd = np.array([q0, *(t.q for t in ticks)]), np.array([0 * q0, *(t.qd for t in ticks)])
+    qdd = np.diff(qd, axis=0) / h
+    jerk = np.diff(qdd, axis=0, prepend=0 * q0[None]) / h
+    assert ((q >= limits.lower - 1e-9) & (q <= limits.upper + 1e-9)).all()
+    assert (np.abs(qd) <= limits.velocity * (1 + 1e-9)).all()
+    assert (np.abs(np.diff(q, axis=0)) <= h * limits.velocity * (1 + 1e-9)).all()
+    assert (np.abs(qdd) <= limits.acceleration * (1 + 1e-9)).all()
+    assert (np.abs(jerk) <= limits.jerk * (1 + 1e-9) + 1e-9 / h**2).all()
+
+
+KINDS = [("panda", "pose"), ("panda", "position"), ("planar", "pose"), ("planar", "position")]
+
+
+@pytest.mark.parametrize(("which", "task"), KINDS)
+@settings(max_examples=15, deadline=None)
+@given(data=st.data())
+def test_limits_hold_wherever_the_handle_jumps(which, task, data):
+    """Near, far out of reach, through the base; with frames of any length, stops, and other schemes."""
+    loop, clock = a_loop(which, task)
+    q0, start, ticks = loop.q, loop.target, []
+    size = 3 if which == "panda" else 2
+    schemes = [fp.MAN(null_damping=1), fpbm(len(q0), joint_centring=1), fp.WMVN(np.arange(1, len(q0) + 1), k=5)]
+    for _ in range(data.draw(st.integers(3, 12))):
+        way = np.array(data.draw(st.lists(st.floats(-1, 1), min_size=size, max_size=size)))
+        assert loop.push(moved(start, data.draw(st.sampled_from([0.1, 0.5, 5.0])) * way))
+        deed = data.draw(st.sampled_from(["", "", "stop", "resume", "scheme"]))
+        if deed == "scheme":
+            loop.scheme = data.draw(st.sampled_from(schemes))
+        elif deed:
+            getattr(loop, deed)()
+        ticks += play(loop, clock, 0.6, data.draw(st.sampled_from([0.0005, 0.01, FRAME, 0.1])))
+    kept(loop, q0, ticks)
+    shares = loop.strip.shares
+    assert (shares[:3] <= 1 + 1e-6).all()
+    assert ((shares[3] >= 0) & (shares[3] <= 1)).all()
+
+
+@pytest.mark.parametrize(("which", "task"), KINDS)
+def test_it_comes_to_rest_on_a_handle_that_is_let_go(which, task):
+    loop, clock = a_loop(which, task)
+    q0, start, ticks = loop.q, loop.target, []
+    for share in np.linspace(0, 1, 20):
+        loop.push(moved(start, share * np.array([-0.1, 0.15])))
+        ticks += play(loop, clock, 0.05, 0.05)
+    ticks += play(loop, clock, 8)
+    kept(loop, q0, ticks)
+    np.testing.assert_allclose(loop.tip, moved(start, [-0.1, 0.15]), atol=1e-6)
+    assert np.abs(loop.tick.qd).max() < 1e-3
+    assert loop.status is fp.Status.OK
+
+
+@pytest.mark.parametrize(("which", "task"), KINDS)
+def test_out_of_reach_it_rests_and_comes_back(which, task):
+    loop, clock = a_loop(which, task)
+    q0, start = loop.q, loop.target
+    loop.push(moved(start, [0.0, 5.0]))
+    ticks = play(loop, clock, 40)
+    assert loop.status is fp.Status.STALLED
+    assert np.abs(loop.tick.qd).max() < 1e-6
+    assert {tick.status for tick in ticks} >= {fp.Status.OK, fp.Status.SLOWED, fp.Status.STALLED}
+    loop.push(start)
+    ticks += play(loop, clock, 15)
+    np.testing.assert_allclose(loop.tip, start, atol=1e-4)
+    assert loop.status is fp.Status.OK
+    kept(loop, q0, ticks)
+
+
+def test_the_status_is_the_worst_of_a_quarter_of_a_second():
+    loop, clock = a_loop("planar", "position")
+    loop.push([1.0, 3.0])
+    ticks, mixed = [], 0
+    for _ in range(100):
+        ticks += play(loop, clock, FRAME)
+        recent = [tick.status for tick in ticks[-250:]]
+        mixed += len(set(recent)) > 1
+        assert loop.status is max(recent, key=lambda status: status.value)
+    assert mixed
+
+
+def test_through_a_singular_posture():
+    """The handle goes from one side of a planar arm's base to the other, through the stretched posture's line."""
+    loop, clock = a_loop("planar", "position")
+    q0, ticks = loop.q, []
+    for share in np.linspace(0, 1, 100):
+        loop.push([4.2 * np.cos(2 * share), 4.2 * np.sin(2 * share)])  # The reach is 4 m.
+        ticks += play(loop, clock, 0.05, 0.05)
+    assert {tick.status for tick in ticks} & {fp.Status.DAMPED, fp.Status.SLOWED}
+    loop.push([-1.0, 2.0])
+    ticks += play(loop, clock, 15)
+    np.testing.assert_allclose(loop.tip, [-1.0, 2.0], atol=1e-4)
+    kept(loop, q0, ticks)
+
+
+def test_stop_and_go_on():
+    loop, clock = a_loop()
+    q0, target = loop.q, moved(loop.target, [0.1, 0.2])
+    loop.push(target)
+    ticks = play(loop, clock, 0.3)
+    assert np.abs(loop.tick.qd).max() > 0.1
+    loop.stop()
+    assert loop.stopped
+    ticks += play(loop, clock, 1)
+    assert np.abs(loop.tick.qd).max() == 0
+    stopped = loop.q
+    ticks += play(loop, clock, 1)
+    np.testing.assert_array_equal(loop.q, stopped)
+    loop.scheme = fpbm(7, joint_centring=1)  # It stays stopped.
+    ticks += play(loop, clock, 0.2)
+    np.testing.assert_array_equal(loop.q, stopped)
+    loop.scheme = fpbm(7)
+    loop.resume()
+    ticks += play(loop, clock, 8)
+    np.testing.assert_allclose(loop.tip, target, atol=1e-6)
+    kept(loop, q0, ticks)
+
+
+def test_back_to_the_start():
+    loop, clock = a_loop()
+    loop.push(moved(loop.target, [0.1, 0.2]))
+    play(loop, clock, 0.5)
+    loop.stop()
+    loop.restart()
+    assert not loop.stopped
+    assert (loop.tick, loop.time, loop.status) == (None, 0.0, fp.Status.OK)
+    assert loop.strip.shares.shape == (4, 0)
+    ticks = play(loop, clock, 1)
+    np.testing.assert_allclose(loop.q, READY, atol=1e-9)
+    kept(loop, READY, ticks)
+
+
+@pytest.mark.parametrize("frame", [1e-4, 7e-4, 0.01, FRAME, MOST])
+def test_simulated_time_keeps_pace_with_the_clock(frame):
+    loop, clock = a_loop()
+    assert len(play(loop, clock, 0.5, frame)) == pytest.approx(round(0.5 / frame) * frame / loop.dt, abs=1)
+    assert loop.time == pytest.approx(round(0.5 / frame) * frame, abs=loop.dt)
+
+
+def test_a_slow_machine_drops_time():
+    loop, clock = a_loop()
+    for seconds in (0.5, 3600.0):
+        clock.now += seconds
+        assert len(loop.advance()) == pytest.approx(MOST / loop.dt, abs=1)
+    target = moved(loop.target, [0.0, 0.1])
+    loop.push(target)
+    for _ in range(100):  # A frame takes five times as long as what it simulates.
+        clock.now += 5 * MOST
+        loop.push(target)
+        ticks = loop.advance()
+        assert len(ticks) <= MOST / loop.dt + 1
+    np.testing.assert_allclose(loop.tip, target, atol=1e-6)
+
+
+def test_the_strip_is_what_the_ticks_did():
+    limits = bounds()
+    loop, clock = a_loop("planar", "position", limits=limits)
+    loop.push([1.0, 2.0])
+    ticks = play(loop, clock, 3)
+    qd, qdd = np.array([t.qd for t in ticks]), np.array([t.qdd for t in ticks])
+    jerk = np.diff(qdd, axis=0, prepend=0) / loop.dt
+    expected = [np.abs(qd / limits.velocity), np.abs(qdd / limits.acceleration), np.abs(jerk / limits.jerk)]
+    expected = np.array([*(each.max(axis=1) for each in expected), [t.scale for t in ticks]])
+    np.testing.assert_allclose(loop.strip.shares, expected)
+    t, worst = loop.strip.curves()
+    there = ~np.isnan(worst[0])
+    assert t[-1] == pytest.approx(3.0, abs=0.06)
+    np.testing.assert_allclose(worst[:3, there].max(axis=1), expected[:3].max(axis=1), rtol=1e-12)
+    assert worst[3, there].min() == expected[3].min()
+    first = worst[:, there]
+    play(loop, clock, 0.52, 0.013)  # A peak keeps its height on its way.
+    later = loop.strip.curves()[1]
+    np.testing.assert_array_equal(later[:, ~np.isnan(later[0])][:, : first.shape[1]], first)
+    play(loop, clock, 20)
+    t, worst = loop.strip.curves()
+    assert (t[-1] - t[0], worst.shape) == (pytest.approx(9.95), (4, 200))
+    assert worst[0].max() < 0.01
+
+
+def test_what_is_not_bounded_has_no_share():
+    loop, clock = a_loop("planar", "position", limits=None)
+    loop.push([1.0, 2.0])
+    play(loop, clock, 1)
+    assert loop.strip.bounded == (False, False, False)
+    assert (loop.strip.shares[:3] == 0).all()
+    assert ServoLoop(PANDA, fpbm(7), READY).strip.bounded == (True, True, True)
+
+
+def test_own_bounds_of_the_tip():
+    tip = fp.Tracker(PANDA, fpbm(7), READY).tip
+    targets = fp.TargetFilter(tip, velocity=0.02, acceleration=1, jerk=10)
+    loop, clock = a_loop("panda", "position", targets=targets)
+    loop.push(moved(tip, [0.2]))
+    tips = []
+    for _ in range(60):
+        play(loop, clock, FRAME)
+        tips.append(loop.tip)
+    assert np.abs(np.diff(tips, axis=0)).max() / FRAME < 0.021
+
+
+def test_what_does_not_suit_is_refused():
+    bent = fp.PlanarArm([1, 1, 1])
+    limits = fp.JointLimits(lower=[-3] * 3, upper=[3] * 3, velocity=[1] * 3, acceleration=[np.inf] * 3)
+    with pytest.raises(ValueError, match=r"limits.acceleration\[0\] = inf: must be finite"):
+        ServoLoop(bent, fpbm(3), [0.1, 1, 1], limits=limits)
+    other = fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)
+    with pytest.raises(ValueError, match="it is for another task"):
+        a_loop("panda", "pose", targets=other)
+    with pytest.raises(ValueError, match="dt"):
+        a_loop("panda", "position", targets=other, dt=0.002)
+    loop, clock = a_loop()
+    for lie in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1.0])):
+        assert not loop.push(lie)
+    with pytest.raises(ValueError, match="shape"):
+        loop.push([0, 0, 0])
+    scheme = loop.scheme
+    with pytest.raises(ValueError, match="weights has 3 entries"):
+        loop.scheme = fp.WMVN([1, 2, 3])
+    assert loop.scheme is scheme
+    play(loop, clock, 1)
+    np.testing.assert_allclose(loop.q, READY, atol=1e-9)
+
+
+def test_many_threads_at_once():
+    loop = ServoLoop(PANDA, fpbm(7), READY)  # By the true clock.
+    start, errors = loop.target, []
+    deeds = [loop.advance, loop.stop, loop.resume, lambda: loop.push(start), lambda: loop.status, loop.restart]
+
+    def work(deed):
+        try:
+            for _ in range(200):
+                deed()
+        except Exception as error:
+            errors.append(error)
+
+    threads = [threading.Thread(target=work, args=(deed,)) for deed in deeds]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not errors
