@@ -12,6 +12,8 @@ import typing
 __all__: list[str] = [
     "Arm",
     "Kinematics",
+    "LimitedMotion",
+    "Limiter",
     "MAX_DOF",
     "PRESETS",
     "Path",
@@ -100,16 +102,9 @@ class Arm:
     def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
     @typing.overload
     def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
-    def bounds(
-        self,
-    ) -> tuple[
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-        numpy.typing.NDArray[numpy.float64],
-    ]:
+    def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
-        (lower, upper, velocity, acceleration) of the joints, shape (n,) each; infinite where there is no bound.
+        The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.
         """
     def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -242,6 +237,72 @@ class Stop:
     def set(self) -> None:
         """
         From any thread.
+        """
+
+class LimitedMotion:
+    """
+    A motion of one tick within limits.
+    """
+    @property
+    def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Which joints are on a bound, shape (n,).
+        """
+    @property
+    def scale(self) -> float:
+        """
+        How much of the task is left, from 0 to 1.
+        """
+    @property
+    def u(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).
+        """
+
+class Limiter:
+    """
+    Keeps joint limits in a loop of one's own, with a Jacobian from anywhere.
+
+    A motion that keeps every bound over the next tick, and can be brought to rest within them, passes unchanged. Otherwise
+    other joints take over in the null space of J; where they cannot, the task is scaled down along its direction.
+
+    Parameters
+    ----------
+    limits : JointLimits
+        Bounds of the joints; one with bounds needs one on its acceleration, except at velocity level.
+    dt : float
+        Length of a tick [s].
+    level : str
+        'acceleration' or 'velocity': what is limited.
+
+    Raises
+    ------
+    ParameterError
+        Where an argument is out of range or a bound is missing.
+    """
+    def __init__(
+        self, limits: typing.Any, dt: typing.SupportsFloat | typing.SupportsIndex, *, level: str = "acceleration"
+    ) -> None: ...
+    def brake(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, last: numpy.typing.ArrayLike | None = None
+    ) -> LimitedMotion:
+        """
+        The motion that brings every joint to rest, as motion.
+        """
+    def motion(
+        self,
+        J: numpy.typing.ArrayLike,
+        q: numpy.typing.ArrayLike,
+        qd: numpy.typing.ArrayLike,
+        desired: numpy.typing.ArrayLike,
+        *,
+        last: numpy.typing.ArrayLike | None = None,
+    ) -> LimitedMotion:
+        """
+        The motion nearest to a desired one.
+
+        J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. qd is the last command's velocity, and
+        last its acceleration [rad/s^2], from which bounds on jerk start: zero unless given.
         """
 
 class TargetFilter:
@@ -412,8 +473,9 @@ class Tracker:
         What moves, and how.
     q0 : array_like, shape (n,)
         Joint positions at the start [rad], within the limits.
-    qd0 : array_like, shape (n,), optional
-        Joint velocities at the start [rad/s], zero unless given.
+    qd0, qdd0 : array_like, shape (n,), optional
+        Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
+        zero unless given.
     task : str
         'position' or 'pose'.
     dt : float
@@ -444,6 +506,7 @@ class Tracker:
         q0: numpy.typing.ArrayLike,
         *,
         qd0: numpy.typing.ArrayLike | None = None,
+        qdd0: numpy.typing.ArrayLike | None = None,
         task: str = "position",
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
         limits: typing.Any = None,
@@ -509,6 +572,11 @@ class Tracker:
     def qd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint velocities of its own state [rad/s].
+        """
+    @property
+    def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint accelerations of its last tick [rad/s^2].
         """
     @property
     def tip(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -643,6 +711,6 @@ def waypoints(
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 
 MAX_DOF: int = 32
-PRESETS: tuple[str, ...] = ("panda", "iiwa14", "gen3", "ur5e", "ur10e")
+PRESETS: tuple[str, ...] = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")
 TIME_LAWS: tuple[str, ...] = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"

@@ -104,12 +104,14 @@ def test_the_limiter_is_the_trackers():
         J = arm.jacobian(q, task="pose")
         desired = rng.uniform(-60, 60, 7)
         motion = limiter.motion(J, q, qd, desired, last=last)
-        assert 0.0 <= motion.scale <= 1.0 and motion.saturated.shape == (7,)
+        assert 0.0 <= motion.scale <= 1.0
+        assert motion.saturated.shape == (7,)
         assert (np.abs(motion.u) <= arm.limits.acceleration * (1 + 1e-12)).all()
         assert (np.abs(motion.u - last) <= arm.limits.jerk * DT * (1 + 1e-12)).all()
         q, qd, last = q + DT * (qd + DT / 2 * motion.u), qd + DT * motion.u, motion.u
         assert (np.abs(qd) <= arm.limits.velocity + 1e-12).all()
-        assert (q >= arm.limits.lower).all() and (q <= arm.limits.upper).all()
+        assert (q >= arm.limits.lower).all()
+        assert (q <= arm.limits.upper).all()
     unhindered = limiter.motion(J, np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8]), np.zeros(7), np.full(7, 0.1))
     np.testing.assert_array_equal(unhindered.u, np.full(7, 0.1))
     assert unhindered.scale == 1.0
@@ -124,7 +126,7 @@ def test_velocities_are_limited_too():
 
 
 @pytest.mark.parametrize(
-    "make, words",
+    ("make", "words"),
     [
         (lambda limits: fp.Limiter(limits, 0.0), "dt = 0: must be positive"),
         (lambda limits: fp.Limiter(limits, DT, level="torque"), "level = 'torque': must be 'acceleration' or"),
@@ -143,7 +145,7 @@ def test_a_tracker_goes_on_from_anothers_state():
     arm = fp.SerialArm.preset("panda")
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
     first = fp.Tracker(arm, scheme, [0.0, -0.3, 0.0, -1.8, 0.0, 1.6, 0.8])
-    target = first.tip + [0.2, 0.1, -0.1]
+    target = first.tip + np.array([0.2, 0.1, -0.1])
     for _ in range(60):
         first.tick(target)
     second = fp.Tracker(arm, scheme, first.q, qd0=first.qd, qdd0=first.qdd)

@@ -36,8 +36,8 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
     """Move an arm along a path, and say how it went.
 
-    ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e, planar: and lengths of links as in planar:1,1,1,1, or a URDF file with
-    --tip. Everything else has a default, and what was taken is printed. Several numbers go between commas.
+    ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e, planar: and lengths of links as in planar:1,1,1,1, or a URDF file
+    with --tip. Everything else has a default, and what was taken is printed. Several numbers go between commas.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
     Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.

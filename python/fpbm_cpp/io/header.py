@@ -52,7 +52,7 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 }};
 
 /// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration toward
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
 /// an end; what is left out has no bound.
 inline fpbm::Chain<> chain() {{
 {none}  fpbm::Chain<> chain;
