@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ._core import PRESETS, dh, preset
 from ._core import Arm as CoreArm
-from ._types import ArrayField, DerivedField
+from ._types import ArrayField, FilledArrayField
 from .errors import ParameterError, not_one_of, wrong
 from .parameter import POSITIVE, Data, Parameter, data, parameter
 
@@ -38,14 +38,14 @@ class JointLimits(Data):
     upper: ArrayField = parameter("Highest positions.", BOUND, unit="rad")
     velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, unit="rad/s")
     acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, unit="rad/s^2")
-    jerk: DerivedField = parameter("Highest jerks, either way.", BOUND, default=None, unit="rad/s^3")
-    velocity_offset: DerivedField = parameter(
+    jerk: FilledArrayField = parameter("Highest jerks, either way.", BOUND, default=None, unit="rad/s^3")
+    velocity_offset: FilledArrayField = parameter(
         "Toward an end, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
         BOUND,
         default=None,
         unit="rad/s",
     )
-    deceleration: DerivedField = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
+    deceleration: FilledArrayField = parameter("See velocity_offset.", BOUND, default=None, unit="rad/s^2")
 
     def _finish(self) -> None:
         dof = len(self.lower)
