@@ -19,7 +19,8 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
 };
 
 /// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration; what is left out has no bound.
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
+/// an end; what is left out has no bound.
 inline fpbm::Chain<> chain() {
   constexpr double kNone = fpbm::JointBounds<>::kNone;
   fpbm::Chain<> chain;

@@ -315,7 +315,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
     [
         (
             ["pnada"],
-            "ARM = 'pnada': must be one of panda, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1, a URDF file; did you mean "
+            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1, a URDF file; did you mean "
             "'panda'?",
         ),
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
@@ -368,7 +368,7 @@ def test_everything_that_is_wrong_is_said() -> None:
 def test_an_arm_is_asked_for() -> None:
     result = call("track")
     assert result.exit_code == 2
-    assert "Missing argument 'ARM': panda, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1 or a URDF file." in result.stderr
+    assert "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1 or a URDF file." in result.stderr
 
 
 def test_a_folder_that_cannot_be_written_to() -> None:
