@@ -43,7 +43,7 @@ void advance(State<7>& state, const Vector<7>& qdd) {
 }
 
 TEST(Outside, joints_return_as_fast_as_they_may) {
-  const SerialArm<7> panda(presets::panda());
+  const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   const auto scheme = holding_scheme(kReady);
   long outside = 0;
@@ -90,7 +90,7 @@ TEST(Outside, joints_return_as_fast_as_they_may) {
 /// After stop() a joint beyond its bound comes to rest like the others, in the least time; it does not set out for the
 /// bound.
 TEST(Outside, joints_come_to_rest_when_told_to_stop) {
-  const SerialArm<7> panda(presets::panda());
+  const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   Tracker tracker(panda, Position<3>{}, holding_scheme(kReady), kReady);
   const auto hold = Reference<Position<3>>::hold(tracker.tip());
@@ -146,7 +146,7 @@ TEST(Outside, nothing_kicks_at_a_bound) {
 /// A joint that is pressed on its bound, measured with noise, accelerates within its bound and strays as far as the
 /// noise.
 TEST(Outside, noise_about_a_bound_does_no_harm) {
-  const SerialArm<7> panda(presets::panda());
+  const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   for (Eigen::Index joint = 0; joint < 7; ++joint) {
     Vector<7> rest = kReady;

@@ -93,7 +93,8 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
       const double broken = violation(bounds, before, tick);
       ASSERT_LE(broken, kSlack) << "seed " << seed << ", tick " << i;
       ASSERT_FALSE(failed(tick.status));
-      ASSERT_EQ(complaint([&] { limits.require_viable(tracker.state()); }), "") << "seed " << seed << ", tick " << i;
+      ASSERT_EQ(complaint([&] { limits.require_viable(tracker.state(), tracker.acceleration()); }), "")
+          << "seed " << seed << ", tick " << i;
       ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);
       tally.worst = std::max(tally.worst, broken);
       tally.limited += tick.saturated != 0 ? 1 : 0;

@@ -35,7 +35,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 }
 
 [[nodiscard]] SerialArm<7> panda() {
-  return SerialArm<7>(presets::panda());
+  return SerialArm<7>(panda_without_jerk());
 }
 
 template <typename Space = Pose, typename Scheme>
@@ -433,7 +433,7 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   q0(3) = 0.5;
   EXPECT_EQ(complaint([&] { Tracker(panda(), Pose{}, settling(), q0); }),
             "q0[3] = 0.5: must be within the joint's range");
-  Chain<> chain = presets::panda();
+  Chain<> chain = panda_without_jerk();
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);
   EXPECT_EQ(complaint([&] { Tracker(unbounded, Pose{}, settling(), bent()); }),

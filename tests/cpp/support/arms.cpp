@@ -2,6 +2,12 @@
 
 namespace fpbm::test {
 
+Chain<> panda_without_jerk() {
+  Chain<> chain = presets::panda();
+  for (Joint<>& joint : chain.joints) joint.bounds.jerk = JointBounds<>::kNone;
+  return chain;
+}
+
 Chain<> panda_on_rail() {
   Chain<> chain = presets::panda();
   Joint<> rail;

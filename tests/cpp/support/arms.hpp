@@ -16,6 +16,9 @@
 /// One arm of every kind, for what must hold on all of them.
 namespace fpbm::test {
 
+/// The Panda without its bounds on jerk.
+[[nodiscard]] Chain<> panda_without_jerk();
+
 /// The Panda on a rail along y.
 [[nodiscard]] Chain<> panda_on_rail();
 
