@@ -368,7 +368,9 @@ def test_everything_that_is_wrong_is_said() -> None:
 def test_an_arm_is_asked_for() -> None:
     result = call("track")
     assert result.exit_code == 2
-    assert "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1 or a URDF file." in result.stderr
+    assert (
+        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1 or a URDF file." in result.stderr
+    )
 
 
 def test_a_folder_that_cannot_be_written_to() -> None:
