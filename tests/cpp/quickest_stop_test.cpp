@@ -102,8 +102,8 @@ TYPED_TEST(QuickestStops, end_farther_the_more_the_axis_accelerates) {
     const auto [stop, start, duration, size] = this->next();
     const Scalar h = duration * static_cast<Scalar>(this->random_.uniform(1e-3, 0.1));
     const Scalar most = std::isinf(stop.acceleration) ? Scalar(2) * std::abs(start.a) : stop.acceleration;
-    const auto held = [&](Scalar u) {
-      return AxisState<Scalar>{start.q + h * start.v + h * h * u / 2, start.v + h * u, u};
+    const auto held = [h, &from = start](Scalar u) {
+      return AxisState<Scalar>{from.q + h * from.v + h * h * u / 2, from.v + h * u, u};
     };
     Scalar rest = stop.rest(held(-most));
     for (int k = -19; k <= 20; ++k) {
