@@ -158,7 +158,7 @@ $(VENV)/wheel: pyproject.toml
 
 # Who else is timed from Python, each as far as it is to be had.
 $(VENV)/bench: pyproject.toml | $(VENV)/package
-	-for peer in pinocchio toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
+	-for peer in pinocchio qp toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
 # What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only

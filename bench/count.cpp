@@ -40,6 +40,11 @@ int main(int argc, char** argv) {
   count<Step<Ours<Case<Planar<7>, fpbm::Position<2>>, Law::kFPBM>>>("step/planar7/position/fpbm", calls);
   count<Step<Ours<Case<Panda, fpbm::Position<3>>, Law::kFPBM>>>("step/panda/position/fpbm", calls);
   count<Rk4Step<4, Law::kFPBM>>("rk4/planar4/position/fpbm", calls);
-  count<Tick>("loop/panda/pose/tick", calls);
+  count<Tick<false>>("loop/panda/pose/tick", calls);
+  count<Tick<true>>("loop/panda/pose/tick_jerk", calls);
   count<Measured>("loop/panda/pose/measured", calls);
+  count<LimitedTick<fpbm::Pose, false>>("loop/panda/pose/limited", calls);
+  count<LimitedTick<fpbm::Pose, true>>("loop/panda/pose/limited_jerk", calls);
+  count<LimitedTick<fpbm::Position<3>, false>>("loop/panda/position/limited", calls);
+  count<LimitedTick<fpbm::Position<3>, true>>("loop/panda/position/limited_jerk", calls);
 }

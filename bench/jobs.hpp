@@ -111,14 +111,19 @@ class Rk4Step {
   fpbm::Status status_;
 };
 
-/// A scheme that runs a Panda by poses within its limits.
+/// A scheme that runs a Panda within its limits.
 inline auto damped() {
   auto fpbm = scheme<Law::kFPBM, 7>();
   fpbm.null_space = fpbm::NullSpace<7>().with_damping(2.0);
   return fpbm;
 }
-inline auto tracker() {
-  return fpbm::Tracker(Panda::arm(), fpbm::Pose{}, damped(), Panda::bent());
+template <typename Space, bool kJerk>
+auto tracker() {
+  auto chain = Panda::chain();
+  for (auto& joint : chain.joints) {
+    if (!kJerk) joint.bounds.jerk = fpbm::JointBounds<>::kNone;
+  }
+  return fpbm::Tracker(fpbm::SerialArm<7>(chain), Space{}, damped(), Panda::bent());
 }
 
 /// Slow states, and references at rest near by: what they ask for is within the limits.
@@ -132,6 +137,7 @@ inline auto calm() {
 }
 
 /// A tick of 1 ms by the tracker's own state.
+template <bool kJerk>
 class Tick {
  public:
   void operator()() noexcept {
@@ -141,11 +147,29 @@ class Tick {
   }
 
  private:
-  decltype(tracker()) loop_ = tracker();
+  decltype(tracker<fpbm::Pose, kJerk>()) loop_ = tracker<fpbm::Pose, kJerk>();
   fpbm::Reference<fpbm::Pose> home_ = fpbm::Reference<fpbm::Pose>::hold(loop_.tip());
 };
 
-/// The answer for a measured state.
+/// A tick of a tracker that is pressed on its limits: its target jumps every 64 ticks.
+template <typename Space, bool kJerk>
+class LimitedTick {
+ public:
+  void operator()() noexcept {
+    if (turn_++ % 64 == 0) target_ = fpbm::Reference<Space>::hold(ring_.next().reference.x);
+    auto result = loop_.tick(target_);
+    escape(result);
+    escape(*this);
+  }
+
+ private:
+  decltype(tracker<Space, kJerk>()) loop_ = tracker<Space, kJerk>();
+  Ring<Case<Panda, Space>> ring_;
+  fpbm::Reference<Space> target_;
+  int turn_ = 0;
+};
+
+/// The answer for a measured state, without bounds on jerk: the states have nothing to do with each other.
 class Measured {
  public:
   void operator()() noexcept {
@@ -156,7 +180,7 @@ class Measured {
   }
 
  private:
-  decltype(tracker()) loop_ = tracker();
+  decltype(tracker<fpbm::Pose, false>()) loop_ = tracker<fpbm::Pose, false>();
   Ring<PandaPose> ring_{calm()};
 };
 

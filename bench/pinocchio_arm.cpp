@@ -4,6 +4,8 @@
 #include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
 
+#include "pinocchio_model.hpp"
+
 namespace bench {
 
 struct PinocchioArm::Model {
@@ -14,13 +16,8 @@ struct PinocchioArm::Model {
 
 PinocchioArm::PinocchioArm(const fpbm::Chain<>& chain) : model_(std::make_unique<Model>()) {
   pinocchio::Model& model = model_->model;
-  pinocchio::JointIndex parent = 0;
-  for (const auto& joint : chain.joints) {
-    const pinocchio::SE3 placement(joint.placement.R, joint.placement.p);
-    parent = model.addJoint(parent, pinocchio::JointModelRZ(), placement, std::to_string(parent + 1));
-  }
-  const pinocchio::SE3 end(chain.tip.R, chain.tip.p);
-  model_->tip = model.addFrame(pinocchio::Frame("tip", parent, 0, end, pinocchio::OP_FRAME));
+  model = pinocchio_model(chain);
+  model_->tip = model.getFrameId("tip");
   model_->data = pinocchio::Data(model);
   motion_.J.setZero(6, model.nv);
   motion_.Jd.setZero(6, model.nv);

@@ -25,6 +25,12 @@ LANES = {
     "avx2": "in 4 lanes, AVX2",
     "avx512": "in 8 lanes, AVX-512",
 }
+LIMITED = {
+    "fpbm_cpp": "fpbm_cpp",
+    "eiquadprog_rt": "eiquadprog-rt (QP)",
+    "eiquadprog_fast": "eiquadprog-fast (QP)",
+    "tsid": "TSID (QP)",
+}
 PYTHON = {
     "fpbm_cpp": "fpbm_cpp",
     "pinocchio_numpy": "Pinocchio + NumPy",
@@ -58,7 +64,7 @@ def nanoseconds(time: float) -> str:
 class Results:
     def __init__(self, values: dict[str, Any]) -> None:
         self.values = values
-        sections = ("step", "parts", "loop", "growth", "lanes", "python")
+        sections = ("step", "limited", "parts", "loop", "growth", "lanes", "python")
         self.rows: dict[str, Row] = {row["name"]: row for name in sections for row in values.get(name, [])}
         self.tails: list[Row] = values.get("tail", [])
         self.sweeps: list[Row] = values.get("sweeps", [])
@@ -74,8 +80,10 @@ class Results:
         return ours / theirs if ours and theirs else None
 
 
-def comparison(results: Results, part: str, libraries: dict[str, str], rows: list[str] | None = None) -> list[str]:
-    """Rows of a part, arm/task/scheme each, with a column a library and its multiple of fpbm_cpp's time."""
+def comparison(
+    results: Results, part: str, libraries: dict[str, str], rows: list[str] | None = None, kind: str = "scheme"
+) -> list[str]:
+    """Rows of a part, arm/task/kind each, with a column a library and its multiple of fpbm_cpp's time."""
     if rows is None:
         names = (name.split("/") for name in results.rows)
         rows = list(dict.fromkeys("/".join(parts[1:-1]) for parts in names if parts[0] == part))
@@ -90,7 +98,7 @@ def comparison(results: Results, part: str, libraries: dict[str, str], rows: lis
         return f"{nanoseconds(time)} ({time / ours:.{1 if time >= ours else 2}f} ×)"
 
     lines = ([row.replace("/", ", "), *(cell(row, library) for library in present)] for row in rows)
-    return table(["arm, task, scheme", *(libraries[library] for library in present)], lines)
+    return table([f"arm, task, {kind}", *(libraries[library] for library in present)], lines)
 
 
 def bars(results: Results) -> list[str]:
@@ -110,6 +118,11 @@ def bars(results: Results) -> list[str]:
         if row["caches"] == "warm" and row["name"] != "timer":
             name = row["name"].replace("/", " ")
             add(f"p99.9 over p50 in a warm loop, {name}", row["p99.9"] / row["p50"], 1.5, "{:.2f}")
+    for task in ("pose", "position"):
+        counts = results.values.get("instructions", {})
+        plain_count, jerk = (counts.get(f"loop/panda/{task}/limited{suffix}") for suffix in ("", "_jerk"))
+        ratio = jerk / plain_count if plain_count and jerk else None
+        add(f"limited tick, Panda {task}, with bounds on jerk: share of one without", ratio, 1.3, "{:.2f}")
     for kind, bar in (("avx2", 60.0), ("avx512", 40.0)):
         add(f"Panda pose step of FPBM, an arm {LANES[kind]}", results.least(f"{fpbm}/{kind}"), bar, "{:.0f} ns")
     best = max((row["ratio"] for row in results.sweeps if row["name"] == "planar4/position"), default=None)
@@ -181,6 +194,38 @@ def in_lanes(results: Results) -> list[str]:
     ]
 
 
+def limited(results: Results) -> list[str]:
+    """Limited steps of each library, the share of them that limits take, and how its answers compare."""
+    rows = list(dict.fromkeys(name.split("/", 1)[1] for name in results.rows if name.startswith("limited/")))
+    alone = {}
+    scores = []
+    for row in rows:
+        whole, bare = results.rows[f"limited/{row}"], results.rows[f"unlimited/{row}"]
+        alone[f"limits/{row}"] = {"name": f"limits/{row}", "least": whole["least"] - bare["least"]}
+        *case, library = row.split("/")
+        if library == "fpbm_cpp":
+            continue
+        jerk = case[-1] == "jerk"
+        counts = (str(whole[key]) for key in ("unsolved", "outside", "off_line", "smaller", "larger"))
+        scores.append(
+            [f"{', '.join(case)}: {LIMITED[library]}", *("" if jerk and i > 1 else n for i, n in enumerate(counts))]
+        )
+    results.rows |= alone
+    return [
+        "Kinematics, scheme and limits, in random states whose scheme asks for more than the limits allow:",
+        "",
+        *comparison(results, "limited", LIMITED, kind="bounds"),
+        "The limits alone: the difference to the same step without them.",
+        "",
+        *comparison(results, "limits", LIMITED, kind="bounds"),
+        "Of 10,000 answers each; this library gives one in every state.",
+        "",
+        *table(
+            ["arm, task, bounds: library", "none", "outside the box", "off the line", "smaller s", "larger s"], scores
+        ),
+    ]
+
+
 def sweeps(results: Results) -> list[str]:
     """A row for lanes × threads, and for each case its rate and ratio."""
     cases = list(dict.fromkeys(row["name"] for row in results.sweeps))
@@ -211,6 +256,8 @@ def page(results: Results) -> str:
     ]
     lines += ["## Steps in C++", "", *comparison(results, "step", CPLUSPLUS)]
     lines += ["## Kinematics in C++", "", *comparison(results, "kinematics", CPLUSPLUS)]
+    if values.get("limited"):
+        lines += ["## Limited steps", "", *limited(results)]
     if values.get("lanes"):
         lines += ["## Steps in lanes", "", "Time an arm, of several side by side.", "", *in_lanes(results)]
     if "python" in values:

@@ -26,8 +26,10 @@ HERE = Path(__file__).parent
 RESULTS = HERE / "results"
 
 # Programs of Google Benchmark, a section of the report each; one of 20 repetitions of a row takes SECONDS.
-PROGRAMS = ("step", "parts", "loop", "growth")
+PROGRAMS = ("step", "limited", "parts", "loop", "growth")
 SECONDS = 0.02
+# What bench_limited says of 10,000 answers.
+SCORES = ("unsolved", "outside", "off_line", "smaller", "larger")
 LATEST = "out.json"
 
 
@@ -75,7 +77,11 @@ def google_benchmark(program: Path, quick: bool) -> list[dict[str, Any]]:
         if run["run_type"] == "iteration":
             runs.setdefault(run["run_name"], []).append(run)
     # Time on the processor leaves out what others took of it.
-    return [summary(name, [repetition["cpu_time"] for repetition in runs[name]]) for name in runs]
+    return [
+        summary(name, [run["cpu_time"] for run in rounds])
+        | {score: int(rounds[0][score]) for score in SCORES if score in rounds[0]}
+        for name, rounds in runs.items()
+    ]
 
 
 def summary(name: str, times: list[float]) -> dict[str, Any]:

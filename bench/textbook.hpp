@@ -59,6 +59,8 @@ class Textbook {
     return fpbm::Status::kOk;
   }
 
+  [[nodiscard]] const auto& J() const { return motion_.J; }
+
  private:
   using Joints = Eigen::Matrix<double, N, 1>;
   using Rows = Eigen::Matrix<double, M, 1>;

@@ -94,6 +94,12 @@ struct JerkLimitedJoint {
                             Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar room = velocity - qd;
+    const Scalar greatest = std::max(some.high, Scalar(0));
+    const Scalar gain = greatest * (tick + greatest / (Scalar(2) * stop.jerk));
+    // Most joints, most of the time, are far from all bounds.
+    const Scalar top = std::max(qd + gain, Scalar(0));
+    const Scalar late = tick + (stop.acceleration + greatest) / stop.jerk + side.delay;
+    if (gain <= room && q - side.rest + top * (late + top * side.softness / Scalar(2)) <= Scalar(0)) return some.high;
     // Root of u h + u²/2J = room, or of u h = room where u falls; infinite where the velocity is not bounded.
     const Scalar share = tick / room;
     const Scalar fastest =

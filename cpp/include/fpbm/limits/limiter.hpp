@@ -37,9 +37,10 @@ class Limiter {
                                             const JointVector& last, const JointVector& desired) const noexcept {
     const Box<N, Scalar> box = limits_.box(state, last);
     if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
-    if (!limits_.bounds_jerk()) return within(J, state, box, desired);
-    const Saturated<N, Scalar> found = within(J, state, limits_.box_in_time(state), desired);
-    return toward(J, box, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+    NullSpaceSaturation<M, N, Scalar> saturation(J, unit_);
+    if (!limits_.bounds_jerk()) return within(saturation, J, state, box, desired);
+    const Saturated<N, Scalar> found = within(saturation, J, state, limits_.box_in_time(state), desired);
+    return toward(saturation, box, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
   }
 
   /// The motion for an arm whose last acceleration does not matter: without bounds on jerk, or at rest.
@@ -57,11 +58,12 @@ class Limiter {
  private:
   /// The motion within a box that does as much as possible of a desired one.
   template <int M>
-  [[nodiscard]] Saturated<N, Scalar> within(const Matrix<M, N, Scalar>& J, const JointState& state,
+  [[nodiscard]] Saturated<N, Scalar> within(NullSpaceSaturation<M, N, Scalar>& saturation,
+                                            const Matrix<M, N, Scalar>& J, const JointState& state,
                                             const Box<N, Scalar>& box, const JointVector& desired) const noexcept {
     if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
     const JointVector rest = brake_in_proportion(limits_, state, box);
-    auto found = NullSpaceSaturation<M, N, Scalar>(J, unit_)(box, rest, desired);
+    auto found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) yield(J, state, box, desired, found);
     if (!found.u.allFinite()) found = {rest, Scalar(0), found.joints, found.passes};
     return found;
@@ -70,11 +72,11 @@ class Limiter {
   /// From the motion of a tick without jerk as far toward a goal as a box allows. found: what the goal does of the
   /// task.
   template <int M>
-  [[nodiscard]] Saturated<N, Scalar> toward(const Matrix<M, N, Scalar>& J, const Box<N, Scalar>& box,
+  [[nodiscard]] Saturated<N, Scalar> toward(NullSpaceSaturation<M, N, Scalar>& saturation, const Box<N, Scalar>& box,
                                             const JointVector& steady, const JointVector& goal,
                                             const Saturated<N, Scalar>& found) const noexcept {
     if (box.contains(goal)) return {goal, found.scale, found.joints, found.passes};
-    Saturated<N, Scalar> next = NullSpaceSaturation<M, N, Scalar>(J, unit_)(box, steady, goal);
+    Saturated<N, Scalar> next = saturation(box, steady, goal);
     if (!next.u.allFinite()) return {steady, Scalar(0), next.joints, next.passes};
     next.scale *= found.scale;
     return next;

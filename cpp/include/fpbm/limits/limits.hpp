@@ -141,32 +141,38 @@ class Limits {
   template <typename Reach>
   [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Reach&& reach) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
-    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
-      if (bounds_jerk(i)) {
-        const auto joint = jerk_limited(i);
-        const auto [low, high] = joint.viable(reach(i, joint), state.q(i), state.qd(i));
-        box.lower(i) = motion(state.qd(i), low);
-        box.upper(i) = motion(state.qd(i), high);
-        continue;
-      }
-      const Scalar v = bounds_.velocity(i);
-      const Scalar w = state.qd(i);
-      const Scalar most = w + bounds_.acceleration(i) * tick_;
-      const Scalar least = w - bounds_.acceleration(i) * tick_;
-      const Scalar fastest = std::clamp(v, least, most);
-      const Scalar slowest = std::clamp(-v, least, most);
-      // In this order min and max pass over what is not a number, where a side has no end.
-      Scalar up = std::max(slowest, std::min(fastest, upper_.furthest(i, state.q(i), w, tick_)));
-      Scalar down = std::min(fastest, std::max(slowest, -lower_.furthest(i, -state.q(i), -w, tick_)));
-      if (down > up) down = up = (down + up) / Scalar(2);
-      if constexpr (kLevel == Level::kAcceleration) {
-        up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
-        down = std::clamp((down - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
-      }
-      box.upper(i) = up;
-      box.lower(i) = down;
+    // No joint is told from another where none has a bound on jerk: the compiler makes vectors of them.
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) set(box, i, motions_of(i, state.q(i), state.qd(i)));
+    for (Eigen::Index i = 0; bounds_jerk_ && i < state.q.size(); ++i) {
+      if (!bounds_jerk(i)) continue;
+      const auto joint = jerk_limited(i);
+      const auto [low, high] = joint.viable(reach(i, joint), state.q(i), state.qd(i));
+      set(box, i, {motion(state.qd(i), low), motion(state.qd(i), high)});
     }
     return box;
+  }
+
+  static void set(Box<N, Scalar>& box, Eigen::Index i, const Interval<Scalar>& motions) noexcept {
+    box.lower(i) = motions.low;
+    box.upper(i) = motions.high;
+  }
+
+  /// The motions of a joint without a bound on its jerk, at velocity w.
+  [[nodiscard]] Interval<Scalar> motions_of(Eigen::Index i, Scalar q, Scalar w) const noexcept {
+    const Scalar v = bounds_.velocity(i);
+    const Scalar most = w + bounds_.acceleration(i) * tick_;
+    const Scalar least = w - bounds_.acceleration(i) * tick_;
+    const Scalar fastest = std::clamp(v, least, most);
+    const Scalar slowest = std::clamp(-v, least, most);
+    // In this order min and max pass over what is not a number, where a side has no end.
+    Scalar up = std::max(slowest, std::min(fastest, upper_.furthest(i, q, w, tick_)));
+    Scalar down = std::min(fastest, std::max(slowest, -lower_.furthest(i, -q, -w, tick_)));
+    if (down > up) down = up = (down + up) / Scalar(2);
+    if constexpr (kLevel == Level::kAcceleration) {
+      up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
+      down = std::clamp((down - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
+    }
+    return {down, up};
   }
 
   [[nodiscard]] static JointVector at_rest(const State<N, Scalar>& state) noexcept {

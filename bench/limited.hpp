@@ -1,0 +1,209 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "jobs.hpp"
+
+// Rows of bench_limited: unlimited/arm/task/bounds/library, kinematics and scheme alone, and limited/…, the same within
+// the joint limits. A solver is a library that does so for one case: move() finds tip, J, Jd and what the scheme asks
+// for, limit() what the joints do of it. Each file of a library adds its own.
+namespace bench {
+
+enum class Bounds { kAcceleration, kJerk };
+
+template <Bounds bounds>
+using BoundsConstant = std::integral_constant<Bounds, bounds>;
+
+constexpr double kTick = 1e-3;
+
+/// Limits of a case's arm: on position, velocity and acceleration, and on jerk where asked for.
+template <typename Case>
+fpbm::Limits<fpbm::Level::kAcceleration, Case::kDof> limits(Bounds bounds) {
+  auto joints = Case::Robot::arm().limits();
+  if (bounds == Bounds::kAcceleration) joints.jerk.setConstant(fpbm::JointBounds<>::kNone);
+  return {joints, kTick};
+}
+
+template <typename Case>
+struct Asked : Input<typename Case::Space, Case::kDof> {
+  fpbm::Vector<Case::kDof> last;  ///< Acceleration of the last tick.
+};
+
+template <typename Case>
+struct Answer {
+  fpbm::Vector<Case::kDof> u;
+  double scale;  ///< Share of the task that is left.
+};
+
+/// Where the task's line starts, within the box: a motion that slows the arm down or, from the last tick's
+/// acceleration, one that its jerk may reach.
+template <typename Case, int N = Case::kDof>
+fpbm::Vector<N> rest(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, const Asked<Case>& asked,
+                     const fpbm::Box<N>& box) {
+  if (limits.bounds_jerk()) return box.nearest(asked.last);
+  return fpbm::brake_in_proportion(limits, asked.state, box);
+}
+
+/// This library's limited step.
+template <typename Case_, Bounds bounds>
+class OursLimited {
+ public:
+  using Case = Case_;
+  static constexpr const char* kLibrary = "fpbm_cpp";
+
+  void move(const Asked<Case>& asked) {
+    arm_.kinematics(asked.state.q, asked.state.qd, kinematics_);
+    status_ = scheme_.resolve(kinematics_, asked.reference, asked.state, desired_);
+  }
+  bool limit(const Asked<Case>& asked, Answer<Case>& answer) const {
+    const auto found = limiter_.motion(kinematics_.J, asked.state, asked.last, desired_);
+    answer = {found.u, found.scale};
+    return true;
+  }
+
+  [[nodiscard]] const auto& J() const { return kinematics_.J; }
+  [[nodiscard]] const fpbm::Vector<Case::kDof>& desired() const { return desired_; }
+  [[nodiscard]] const auto& limiter() const { return limiter_; }
+
+ private:
+  static constexpr int N = Case::kDof;
+  typename Case::Robot::Arm arm_ = Case::Robot::arm();
+  decltype(scheme<Law::kFPBM, N>()) scheme_ = scheme<Law::kFPBM, N>();
+  fpbm::Limiter<fpbm::Level::kAcceleration, N> limiter_{limits<Case>(bounds)};
+  fpbm::Kinematics<typename Case::Space, N> kinematics_;
+  fpbm::Vector<N> desired_;
+  fpbm::Status status_;
+};
+
+/// Random states, each one from which every joint can still stop, with references that ask for more than the limits
+/// allow. The same on every run.
+template <typename Case, Bounds bounds>
+std::vector<Asked<Case>> asked(std::size_t count) {
+  constexpr int N = Case::kDof;
+  const auto limits = bench::limits<Case>(bounds);
+  const fpbm::JointLimits<N>& joints = limits.bounds();
+  OursLimited<Case, bounds> ours;
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto fill = [&](auto vector, double reach) {
+    for (double& value : vector) value = reach * uniform(generator);
+    return vector;
+  };
+  const fpbm::Vector<Case::kRows> way = fpbm::Vector<Case::kRows>::Zero();
+  std::vector<Asked<Case>> result;
+  while (result.size() < count) {
+    Asked<Case> one;
+    const fpbm::Vector<N> part = fill(joints.lower, 1.0);
+    one.state.q = (joints.upper + joints.lower + part.cwiseProduct(joints.upper - joints.lower)) / 2.0;
+    one.state.qd = joints.velocity.cwiseProduct(fill(joints.lower, 0.3));
+    one.last.setZero();
+    if (bounds == Bounds::kJerk) one.last = joints.acceleration.cwiseProduct(fill(joints.lower, 0.3));
+    try {
+      limits.require_viable(one.state, one.last);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    fpbm::Kinematics<typename Case::Space, N> kinematics;
+    Case::Robot::arm().kinematics(one.state.q, kinematics);
+    one.reference.x = Case::Space::template displace<double>(kinematics.tip, fill(way, 0.1));
+    one.reference.xd = fill(way, 0.5);
+    one.reference.xdd = fill(way, 0.5);
+    ours.move(one);
+    if (!limits.box(one.state, one.last).contains(ours.desired())) result.push_back(one);
+  }
+  return result;
+}
+
+/// What a library makes of 10,000 problems beside this one.
+struct Score {
+  int unsolved = 0;  ///< It gives no answer.
+  int off_line = 0;  ///< The tip leaves the task's line by more than 1e-3 of a radian.
+  int outside = 0;   ///< A joint is beyond its box by more than 1e-6 of its bound.
+  int smaller = 0;   ///< It keeps less of the task, by more than 1 %.
+  int larger = 0;    ///< It keeps more of the task, by more than 1 %.
+};
+
+template <typename Solver, Bounds bounds>
+Score score() {
+  using Case = typename Solver::Case;
+  Score score;
+  Solver solver;
+  OursLimited<Case, bounds> ours;
+  for (const Asked<Case>& one : asked<Case, bounds>(10000)) {
+    Answer<Case> expected;
+    Answer<Case> found;
+    ours.move(one);
+    ours.limit(one, expected);
+    solver.move(one);
+    if (!solver.limit(one, found)) {
+      ++score.unsolved;
+      continue;
+    }
+    const auto& limits = ours.limiter().limits();
+    const auto box = limits.box(one.state, one.last);
+    const auto rest = bench::rest(limits, one, box);
+    const fpbm::Vector<Case::kRows> line = ours.J() * (ours.desired() - rest);
+    const fpbm::Vector<Case::kRows> done = ours.J() * (found.u - rest);
+    const double along = done.dot(line) / line.squaredNorm();
+    score.off_line += (done - along * line).norm() > 1e-3 * done.norm() && done.norm() > 1e-6 * line.norm() ? 1 : 0;
+    const fpbm::Vector<Case::kDof> beyond =
+        (found.u - box.nearest(found.u)).cwiseQuotient(limits.bounds().acceleration);
+    score.outside += beyond.cwiseAbs().maxCoeff() > 1e-6 ? 1 : 0;
+    score.smaller += along < 0.99 * expected.scale ? 1 : 0;
+    score.larger += along > 1.01 * expected.scale ? 1 : 0;
+  }
+  return score;
+}
+
+/// Steps of a solver, with its limits or without.
+template <typename Solver, Bounds bounds, bool kLimits>
+void limited_steps(benchmark::State& bench) {
+  using Case = typename Solver::Case;
+  const auto ring = asked<Case, bounds>(1000);
+  Solver solver;
+  Answer<Case> answer;
+  std::size_t turn = 0;
+  for (auto _ : bench) {
+    const auto& one = ring[++turn % ring.size()];
+    solver.move(one);
+    if constexpr (kLimits) benchmark::DoNotOptimize(solver.limit(one, answer));
+    escape(solver);
+    escape(answer);
+  }
+}
+
+template <typename Solver, Bounds bounds>
+void add_limited() {
+  const std::string row =
+      Solver::Case::name() + (bounds == Bounds::kJerk ? "/jerk/" : "/acceleration/") + Solver::kLibrary;
+  benchmark::RegisterBenchmark(("unlimited/" + row).c_str(), limited_steps<Solver, bounds, false>);
+  benchmark::RegisterBenchmark(("limited/" + row).c_str(), [](benchmark::State& bench) {
+    limited_steps<Solver, bounds, true>(bench);
+    static const Score kScore = score<Solver, bounds>();
+    bench.counters["unsolved"] = kScore.unsolved;
+    bench.counters["off_line"] = kScore.off_line;
+    bench.counters["outside"] = kScore.outside;
+    bench.counters["smaller"] = kScore.smaller;
+    bench.counters["larger"] = kScore.larger;
+  });
+}
+
+/// Every case with either kind of bounds.
+template <template <typename, Bounds> class Solver>
+bool add_limited_library() {
+  const auto add = [](auto arm_and_task, auto bounds) {
+    add_limited<Solver<decltype(arm_and_task), bounds()>, bounds()>();
+  };
+  add(PandaPose{}, BoundsConstant<Bounds::kAcceleration>{});
+  add(PandaPose{}, BoundsConstant<Bounds::kJerk>{});
+  add(Case<Panda, fpbm::Position<3>>{}, BoundsConstant<Bounds::kAcceleration>{});
+  add(Case<Panda, fpbm::Position<3>>{}, BoundsConstant<Bounds::kJerk>{});
+  return true;
+}
+
+}  // namespace bench

@@ -1,0 +1,113 @@
+#include <eiquadprog/eiquadprog-fast.hpp>
+#include <eiquadprog/eiquadprog-rt.hpp>
+
+#include "limited.hpp"
+#include "pinocchio_kinematics.hpp"
+#include "textbook.hpp"
+
+// The joint limits as a quadratic program, on Pinocchio's kinematics and the scheme in Eigen. In each joint's unit, its
+// bound on acceleration, z = (u − rest)/unit and g = (desired − rest)/unit:
+//
+//   min ½ ‖z − g‖² + ½ w (1 − s)²,  J z = s J g,  lower ≤ z ≤ upper,  0 ≤ s ≤ 1.
+//
+// The box is this library's, as a QP library brings none, and so is the rest motion within it.
+namespace bench {
+namespace {
+
+/// Sizes fixed at compile time.
+template <int n, int m, int c>
+class Rt {
+ public:
+  static constexpr const char* kName = "eiquadprog_rt";
+
+  Eigen::Matrix<double, n, n> H = Eigen::Matrix<double, n, n>::Identity();
+  Eigen::Matrix<double, n, 1> g;
+  Eigen::Matrix<double, m, n> CE;
+  Eigen::Matrix<double, m, 1> ce = Eigen::Matrix<double, m, 1>::Zero();
+  Eigen::Matrix<double, c, n> CI = Eigen::Matrix<double, c, n>::Zero();
+  Eigen::Matrix<double, c, 1> ci;
+  Eigen::Matrix<double, n, 1> x;
+
+  bool solve() { return solver_.solve_quadprog(H, g, CE, ce, CI, ci, x) == eiquadprog::solvers::RT_EIQUADPROG_OPTIMAL; }
+
+ private:
+  eiquadprog::solvers::RtEiquadprog<n, m, c> solver_;
+};
+
+/// Sizes given at run time, its library compiled.
+template <int n, int m, int c>
+class Fast {
+ public:
+  static constexpr const char* kName = "eiquadprog_fast";
+  Fast() { solver_.reset(n, m, c); }
+
+  Eigen::MatrixXd H = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd g{n};
+  Eigen::MatrixXd CE{m, n};
+  Eigen::VectorXd ce = Eigen::VectorXd::Zero(m);
+  Eigen::MatrixXd CI = Eigen::MatrixXd::Zero(c, n);
+  Eigen::VectorXd ci{c};
+  Eigen::VectorXd x{n};
+
+  bool solve() {
+    return solver_.solve_quadprog(H, g, CE, ce, CI, ci, x) == eiquadprog::solvers::EIQUADPROG_FAST_OPTIMAL;
+  }
+
+ private:
+  eiquadprog::solvers::EiquadprogFast solver_;
+};
+
+template <template <int, int, int> class Program, typename Case_, Bounds bounds>
+class Eiquadprog {
+ public:
+  using Case = Case_;
+  static constexpr const char* kLibrary = Program<1, 1, 1>::kName;
+
+  Eiquadprog() {
+    qp_.H(N, N) = kWeight;
+    qp_.g(N) = -kWeight;
+    qp_.CI.template topRows<N + 1>().setIdentity();
+    qp_.CI.template bottomRows<N + 1>() = -qp_.CI.template topRows<N + 1>();
+    qp_.ci(N) = 0.0;
+    qp_.ci(2 * N + 1) = 1.0;
+  }
+
+  void move(const Asked<Case>& asked) {
+    textbook_.move(asked);
+    textbook_.resolve(asked, desired_);
+  }
+
+  bool limit(const Asked<Case>& asked, Answer<Case>& answer) {
+    const auto box = limits_.box(asked.state, asked.last);
+    const fpbm::Vector<N> rest = bench::rest(limits_, asked, box);
+    const fpbm::Vector<N> goal = (desired_ - rest).cwiseQuotient(unit_);
+    qp_.g.template head<N>() = -goal;
+    qp_.CE.template leftCols<N>() = textbook_.J() * unit_.asDiagonal();
+    qp_.CE.col(N).noalias() = -qp_.CE.template leftCols<N>() * goal;
+    qp_.ci.template head<N>() = (rest - box.lower).cwiseQuotient(unit_);
+    qp_.ci.template segment<N>(N + 1) = (box.upper - rest).cwiseQuotient(unit_);
+    const bool solved = qp_.solve();
+    answer = {rest + unit_.cwiseProduct(qp_.x.template head<N>()), qp_.x(N)};
+    return solved;
+  }
+
+ private:
+  static constexpr int N = Case::kDof;
+  static constexpr double kWeight = 1e4;
+
+  Textbook<PinocchioKinematics, Case, Law::kFPBM> textbook_;
+  fpbm::Limits<fpbm::Level::kAcceleration, N> limits_ = bench::limits<Case>(bounds);
+  fpbm::Vector<N> unit_ = limits_.bounds().acceleration;
+  fpbm::Vector<N> desired_;
+  Program<N + 1, Case::kRows, 2 * (N + 1)> qp_;
+};
+
+template <typename Case, Bounds bounds>
+using EiquadprogRt = Eiquadprog<Rt, Case, bounds>;
+template <typename Case, Bounds bounds>
+using EiquadprogFast = Eiquadprog<Fast, Case, bounds>;
+
+[[maybe_unused]] const bool kAdded = add_limited_library<EiquadprogRt>() && add_limited_library<EiquadprogFast>();
+
+}  // namespace
+}  // namespace bench
