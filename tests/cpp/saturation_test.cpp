@@ -22,15 +22,16 @@ struct Problem {
   Eigen::VectorXd upper;
   Eigen::VectorXd rest;
   Eigen::VectorXd desired;
+  Eigen::VectorXd unit;
 };
 
 template <int M, int N, typename Scalar>
 [[nodiscard]] Saturated<Eigen::Dynamic> saturate_as(const Problem& problem) {
   const auto cast = [](const Eigen::VectorXd& v) { return Vector<N, Scalar>(v.cast<Scalar>()); };
   const Box<N, Scalar> box{cast(problem.lower), cast(problem.upper)};
-  const Vector<N, Scalar> unit = (box.upper - box.lower).cwiseMax(Scalar(1e-3));
   const Matrix<M, N, Scalar> J = problem.J.cast<Scalar>();
-  const auto found = NullSpaceSaturation<M, N, Scalar>(J, unit)(box, cast(problem.rest), cast(problem.desired));
+  const auto found =
+      NullSpaceSaturation<M, N, Scalar>(J, cast(problem.unit))(box, cast(problem.rest), cast(problem.desired));
   return {found.u.template cast<double>(), static_cast<double>(found.scale), found.joints, found.passes};
 }
 
@@ -58,6 +59,7 @@ void fill(Random& random, Problem& problem) {
     if (draw < 0.1) problem.rest(i) = problem.lower(i);
     if (draw > 0.9) problem.rest(i) = problem.upper(i);
   }
+  problem.unit = (problem.upper - problem.lower).cwiseMax(1e-3);
 }
 
 struct Tally {
@@ -107,7 +109,7 @@ void check_arm(const char* name, const Arm& arm, int count) {
   for (int k = 0; k < trials(count); ++k) {
     Kinematics<Space, N> kinematics;
     arm.kinematics(Vector<N>(random.uniform(arm.dof(), -2.8, 2.8)), kinematics);
-    Problem problem{kinematics.J, {}, {}, {}, {}};
+    Problem problem{kinematics.J, {}, {}, {}, {}, {}};
     fill(random, problem);
     SCOPED_TRACE(name + std::string(", problem ") + std::to_string(k));
     ASSERT_NO_FATAL_FAILURE(tally.check(problem));
@@ -128,6 +130,44 @@ TEST(Saturation, is_optimal_on_arms) {
   }
 }
 
+/// From the last tick's acceleration, in the boxes of Limits, of all widths down to none.
+template <typename Space, typename Arm>
+void check_jerk(const char* name, const Arm& arm, int count) {
+  constexpr int N = Eigen::Dynamic;
+  Random random(7);
+  Tally tally{name};
+  JointLimits<N> bounds = arm.limits();
+  bounds.jerk = 200.0 * bounds.acceleration;
+  const Limits<Level::kAcceleration, N> limits(bounds, 1e-3);
+  const Vector<N> upper = bounds.upper.cwiseMin(3.0);
+  const Vector<N> lower = bounds.lower.cwiseMax(-3.0);
+  const Vector<N> middle = (upper + lower) / 2.0;
+  const Vector<N> reach = (upper - lower) / 2.0;
+  for (int k = 0; k < trials(count);) {
+    const auto within = [&](const Vector<N>& most) {
+      return Vector<N>(most.cwiseProduct(random.uniform(arm.dof(), -1.0, 1.0)));
+    };
+    const State<N> state{middle + within(reach), within(0.5 * bounds.velocity)};
+    const Vector<N> last = within(bounds.acceleration);
+    if (!complaint([&] { limits.require_viable(state, last); }).empty()) continue;
+    ++k;
+    Kinematics<Space, N> kinematics;
+    arm.kinematics(state.q, kinematics);
+    const Box<N> box = limits.box(state, last);
+    const Problem problem{
+        kinematics.J, box.lower, box.upper, box.nearest(last), within(3.0 * bounds.acceleration), bounds.acceleration};
+    SCOPED_TRACE(name + std::string(", problem ") + std::to_string(k));
+    ASSERT_NO_FATAL_FAILURE(tally.check(problem));
+  }
+}
+
+TEST(Saturation, is_optimal_with_bounds_on_jerk) {
+  for (const presets::Preset& preset : presets::kAll) {
+    check_jerk<Pose>((std::string(preset.name) + " pose").c_str(), any_arm(preset.chain()), 2000);
+    check_jerk<Position<3>>((std::string(preset.name) + " position").c_str(), any_arm(preset.chain()), 2000);
+  }
+}
+
 TEST(Saturation, is_optimal_at_every_rank) {
   for (const char* kind : {"full rank", "zero column", "column of round-off", "small column", "repeated columns",
                            "opposite columns", "deficient rank", "zero"}) {
@@ -136,7 +176,7 @@ TEST(Saturation, is_optimal_at_every_rank) {
     for (int k = 0; k < trials(8000); ++k) {
       const Eigen::Index m = 1 + k % 6;
       const Eigen::Index n = m + (k / 6) % 5;
-      Problem problem{random.uniform(m, n, -3.0, 3.0), {}, {}, {}, {}};
+      Problem problem{random.uniform(m, n, -3.0, 3.0), {}, {}, {}, {}, {}};
       Eigen::MatrixXd& J = problem.J;
       const Eigen::Index j = k % n;
       const std::string name = kind;
@@ -173,7 +213,9 @@ void check_sns(const SnsBounds& like) {
                     random.uniform(n, -like.most, -like.least),
                     random.uniform(n, like.least, like.most),
                     Eigen::VectorXd::Zero(n),
+                    {},
                     {}};
+    problem.unit = problem.upper - problem.lower;
     Eigen::VectorXd u(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double draw = random.uniform(0.0, 1.0);
