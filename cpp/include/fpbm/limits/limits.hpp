@@ -83,7 +83,10 @@ class Limits {
       const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
       const Scalar slack = round_off(i, q);
       if (!(std::abs(state.q(i) - q) <= slack)) {
-        validation::fail(validation::element("q0", i), static_cast<double>(state.q(i)), "within the joint's range");
+        validation::fail(validation::element("q0", i), static_cast<double>(state.q(i)),
+                         std::isfinite(bounds_.deceleration(i))
+                             ? "where the bound on the joint's velocity is above zero"
+                             : "within the joint's range");
       }
       const Scalar qd = state.qd(i);
       const Scalar margin = slack / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::abs(qd);
