@@ -54,18 +54,6 @@ class Limits {
     }
   }
 
-  /// Narrows joint i's velocity toward its upper or lower end. Throws std::invalid_argument where the joint could not
-  /// follow the envelope, or could leave its range within it.
-  void set_upper_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
-    const Scalar rest = rest_within(i, envelope, bounds_.upper(i));
-    upper_.set(i, rest, envelope.offset / envelope.deceleration, envelope.deceleration);
-  }
-  void set_lower_envelope(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope) {
-    const VelocityEnvelope<Scalar> mirrored{-envelope.end, envelope.offset, envelope.deceleration};
-    const Scalar rest = rest_within(i, mirrored, -bounds_.lower(i));
-    lower_.set(i, rest, envelope.offset / envelope.deceleration, envelope.deceleration);
-  }
-
   /// The bounds, with accelerations filled in.
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
@@ -193,27 +181,6 @@ class Limits {
       if (std::isfinite(end)) size += std::abs(end);
     }
     return Scalar(16) * std::numeric_limits<Scalar>::epsilon() * size;
-  }
-
-  /// Position where an envelope stops the joint. Throws unless it lies within the bound.
-  [[nodiscard]] Scalar rest_within(Eigen::Index i, const VelocityEnvelope<Scalar>& envelope, Scalar bound) const {
-    const auto name = [i](const char* field) { return validation::element("envelope", i) + "." + field; };
-    validation::require_positive(name("deceleration"), static_cast<double>(envelope.deceleration));
-    if (envelope.deceleration > bounds_.acceleration(i)) {
-      validation::fail(name("deceleration"), static_cast<double>(envelope.deceleration),
-                       "at most the joint's bound on acceleration");
-    }
-    if (!(envelope.offset >= envelope.deceleration * tick_ / Scalar(2))) {
-      validation::fail(name("offset"), static_cast<double>(envelope.offset), "at least deceleration dt / 2");
-    }
-    if (!(envelope.offset * bounds_.jerk(i) >= envelope.deceleration * envelope.deceleration)) {
-      validation::fail(name("offset"), static_cast<double>(envelope.offset), "at least deceleration squared / jerk");
-    }
-    const Scalar rest = envelope.end - envelope.offset * envelope.offset / (Scalar(2) * envelope.deceleration);
-    if (!(rest <= bound)) {
-      validation::fail(name("end"), static_cast<double>(envelope.end), "such that the joint stops within its range");
-    }
-    return rest;
   }
 
   Scalar tick_;

@@ -8,18 +8,11 @@
 
 namespace fpbm {
 
-/// Bound on a joint's velocity toward one end of its range: −offset + √(2 deceleration |end − q|).
+/// Bound on a joint's velocity toward one end of its range, −c + √(2d (end − q)) with an offset c and a deceleration d,
+/// in coordinates that grow toward that end.
 ///
 /// With a small offset it is the speed from which the joint can still stop before the end. With a maker's numbers it is
-/// a bound on velocity that depends on position (for Franka's "−0.30 + √(12 (2.75010 − q))": {2.75010, 0.30, 6}).
-template <typename Scalar = double>
-struct VelocityEnvelope {
-  Scalar end;           ///< [rad] or [m]
-  Scalar offset;        ///< [rad/s] or [m/s]
-  Scalar deceleration;  ///< [rad/s²] or [m/s²]
-};
-
-/// What an envelope of offset c and deceleration d says, in coordinates that grow toward the joint's end.
+/// a bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
 template <Level kLevel, typename Scalar>
 struct Side {
   Scalar rest;      ///< r: beyond which the joint does not go; infinite where there is no end.
