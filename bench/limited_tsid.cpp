@@ -77,8 +77,34 @@ class Tsid {
   Eigen::VectorXd second_ = Eigen::VectorXd::Zero(6);
 };
 
+/// Stops where a small motion, which no limit is in the way of, does not do the task as this library's does.
+template <typename Case>
+void require_agreement() {
+  Tsid<Case, Bounds::kAcceleration> tsid;
+  OursLimited<Case, Bounds::kAcceleration> ours;
+  for (const auto& [state, reference] : inputs(Case{})) {
+    Asked<Case> asked{{{state.q, 0.01 * state.qd}, reference}, {}};
+    fpbm::Kinematics<typename Case::Space, Case::kDof> kinematics;
+    Case::Robot::arm().kinematics(state.q, kinematics);
+    asked.reference.x = Case::Space::template displace<double>(kinematics.tip, 0.01 * reference.xd);
+    asked.reference.xd *= 0.01;
+    asked.reference.xdd *= 0.01;
+    ours.move(asked);
+    tsid.move(asked);
+    Answer<Case> answer{fpbm::Vector<Case::kDof>::Zero(), 0.0};
+    const bool solved = tsid.limit(asked, answer);
+    const fpbm::Vector<Case::kRows> expected = ours.J() * ours.desired();
+    const double difference = (ours.J() * answer.u - expected).norm() / expected.norm();
+    if (!solved || !(difference <= 1e-3)) {
+      std::fprintf(stderr, "TSID answers otherwise, by %g\n", difference);
+      std::exit(EXIT_FAILURE);
+    }
+  }
+}
+
 template <typename Arm>
 void add() {
+  require_agreement<Arm>();
   add_limited<Tsid<Arm, Bounds::kAcceleration>, Bounds::kAcceleration>();
 }
 [[maybe_unused]] const bool kAdded = (add<PandaPose>(), add<Case<Panda, fpbm::Position<3>>>(), true);
