@@ -136,6 +136,10 @@ def summary(results: Results) -> list[str]:
     """The rows that the project's README shows, with what they were measured on."""
     steps = ["planar4/position/fpbm", "panda/position/fpbm", "panda/pose/fpbm", "panda/pose/wmvn", "panda/pose/mvn"]
     lines = ["A step in C++: kinematics and scheme.", "", *comparison(results, "step", CPLUSPLUS, steps)]
+    if results.values.get("limited"):
+        rows = ["panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration"]
+        lines += ["The same within joint limits, in states where they are met.", ""]
+        lines += comparison(results, "limited", LIMITED, rows, kind="bounds")
     if results.values.get("python"):
         calls = ["panda/pose/fpbm", "panda/pose/mvn"]
         lines += ["The same from Python, one call a step.", "", *comparison(results, "python", PYTHON, calls)]
