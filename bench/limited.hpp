@@ -121,6 +121,7 @@ std::vector<Asked<Case>> asked(std::size_t count) {
 
 /// What a library makes of 10,000 problems beside this one.
 struct Score {
+  int slowed = 0;    ///< This library cannot do the whole task: as an equality it has no solution.
   int unsolved = 0;  ///< It gives no answer.
   int off_line = 0;  ///< The tip leaves the task's line by more than 1e-3 of a radian.
   int outside = 0;   ///< A joint is beyond its box by more than 1e-6 of its bound.
@@ -139,6 +140,7 @@ Score score() {
     Answer<Case> found;
     ours.move(one);
     ours.limit(one, expected);
+    score.slowed += expected.scale < 1.0 ? 1 : 0;
     solver.move(one);
     if (!solver.limit(one, found)) {
       ++score.unsolved;
@@ -185,6 +187,7 @@ void add_limited() {
   benchmark::RegisterBenchmark(("limited/" + row).c_str(), [](benchmark::State& bench) {
     limited_steps<Solver, bounds, true>(bench);
     static const Score kScore = score<Solver, bounds>();
+    bench.counters["slowed"] = kScore.slowed;
     bench.counters["unsolved"] = kScore.unsolved;
     bench.counters["off_line"] = kScore.off_line;
     bench.counters["outside"] = kScore.outside;

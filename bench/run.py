@@ -29,7 +29,7 @@ RESULTS = HERE / "results"
 PROGRAMS = ("step", "limited", "parts", "loop", "growth")
 SECONDS = 0.02
 # What bench_limited says of 10,000 answers.
-SCORES = ("unsolved", "outside", "off_line", "smaller", "larger")
+SCORES = ("slowed", "unsolved", "outside", "off_line", "smaller", "larger")
 LATEST = "out.json"
 
 
