@@ -147,13 +147,15 @@ TEST(NoAllocation, in_a_gaze) {
 }
 
 /// Every call of a control loop, with targets within reach and beyond every limit, and nonsense.
-template <typename Space, typename Arm, typename Scheme>
-void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme) {
+template <typename Space, typename Arm, typename Scheme, typename Guard = Unguarded>
+void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme, const Guard& guard = {}) {
   constexpr int N = Arm::kDof;
   const Vector<N> q0 = panda_ready();
   TrackerOptions<> options;
   options.integral_gain = 1.0;
-  Tracker tracker(arm, Space{}, scheme, q0, options);
+  Tracker<Arm, Space, Scheme, Guard> tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(7)}, options,
+                                             Limits<Scheme::kLevel, N>(arm.limits(), options.dt), Vector<N>::Zero(7),
+                                             guard);
   const auto home = Reference<Space>::hold(tracker.tip());
   const InPlane circle(Path(Circle(0.05), 0.5), Vector<3>::UnitY(), Vector<3>::UnitZ());
   const WithRotation turning(circle, Vector<3>(0.1, 0.2, 0.3));
@@ -193,6 +195,13 @@ TEST(NoAllocation, in_a_control_loop) {
   expect_none_in_a_loop<Pose>(fixed, ManipulabilityAscent(fpbm, fixed, 0.1));
   expect_none_in_a_loop<Pose>(open, AnyScheme<Level::kAcceleration, Pose>(fpbm));
   expect_none_in_a_loop<Position<3>>(open, AnyScheme<Level::kVelocity, Position<3>>(MVN<kOpen>(5.0)));
+
+  const std::vector<Obstacle<>> obstacles = {
+      {"wall", HalfSpace<>{-Vector<3>::UnitX(), -0.75}},
+      {"post", Capsule<>{{0.4, 0.3, 0.0}, {0.4, 0.3, 1.0}, 0.03}, Vector<3>(0.0, -0.1, 0.0)},
+      {"box", Cuboid<>{{Vector<3>(0.4, -0.4, 0.4), Matrix<3, 3>::Identity()}, Vector<3>::Constant(0.1)}}};
+  const Clearance<7> clearance(presets::panda(), presets::capsules::panda(), obstacles, 0.005);
+  expect_none_in_a_loop<Pose>(fixed, fpbm, Guard<Level::kAcceleration, 7>(clearance));
 }
 
 /// A motion that has to stop does so without an allocation as well.

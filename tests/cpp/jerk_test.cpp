@@ -10,6 +10,8 @@
 #include "support/arms.hpp"
 
 /// Bounds on position, velocity, acceleration and jerk hold together, at every tick and between ticks.
+#include "support/wild_reference.hpp"
+
 namespace fpbm::test {
 namespace {
 
@@ -202,15 +204,6 @@ TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
     }
     ASSERT_LE(ticks, std::ceil(least / kTick) + 1.0) << "seed " << seed;
   }
-}
-
-/// A reference that no joint can follow: it jumps, and its velocities and accelerations are too large.
-template <typename Space>
-[[nodiscard]] Reference<Space> wild_reference(Random& random, const typename Space::template Point<double>& tip) {
-  constexpr int M = Space::kRows;
-  const double size = std::pow(10.0, random.uniform(-2.0, 1.5));
-  const Vector<M> way = random.uniform(M, -size, size);
-  return {Space::template displace<double>(tip, way), random.uniform(M, -size, size), random.uniform(M, -size, size)};
 }
 
 /// Largest excess of x over a bound, relative to it; less what a finite difference of positions has of round-off.

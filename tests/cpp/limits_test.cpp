@@ -12,6 +12,8 @@
 #include "support/arms.hpp"
 
 /// Bounds on positions, velocities and accelerations hold at every tick, and there is always a motion that keeps them.
+#include "support/wild_reference.hpp"
+
 namespace fpbm::test {
 namespace {
 
@@ -55,15 +57,6 @@ template <int N, typename Result>
                    (tick.qd.cwiseAbs() - bounds.velocity).maxCoeff(),
                    (tick.qdd.cwiseAbs() - bounds.acceleration).maxCoeff(),
                    (change.cwiseAbs() - bounds.acceleration).maxCoeff()});
-}
-
-/// A reference that no joint can follow: it jumps, and its velocities and accelerations are too large.
-template <typename Space>
-[[nodiscard]] Reference<Space> wild_reference(Random& random, const typename Space::template Point<double>& tip) {
-  constexpr int M = Space::kRows;
-  const double size = std::pow(10.0, random.uniform(-2.0, 1.5));
-  const Vector<M> way = random.uniform(M, -size, size);
-  return {Space::template displace<double>(tip, way), random.uniform(M, -size, size), random.uniform(M, -size, size)};
 }
 
 struct Tally {

@@ -15,6 +15,8 @@
 namespace fpbm::test {
 namespace {
 
+constexpr int kRows = 6;
+
 /// A box, a motion to rest inside it, and a desired motion.
 struct Problem {
   Eigen::MatrixXd J;
@@ -23,6 +25,8 @@ struct Problem {
   Eigen::VectorXd rest;
   Eigen::VectorXd desired;
   Eigen::VectorXd unit;
+  Eigen::MatrixXd G = {};
+  Eigen::VectorXd most = {};
 };
 
 template <int M, int N, typename Scalar>
@@ -30,9 +34,21 @@ template <int M, int N, typename Scalar>
   const auto cast = [](const Eigen::VectorXd& v) { return Vector<N, Scalar>(v.cast<Scalar>()); };
   const Box<N, Scalar> box{cast(problem.lower), cast(problem.upper)};
   const Matrix<M, N, Scalar> J = problem.J.cast<Scalar>();
-  const auto found =
-      NullSpaceSaturation<M, N, Scalar>(J, cast(problem.unit))(box, cast(problem.rest), cast(problem.desired));
-  return {found.u.template cast<double>(), static_cast<double>(found.scale), found.joints, found.passes};
+  const auto in_double = [](const Saturated<N, Scalar>& found) -> Saturated<Eigen::Dynamic> {
+    return {found.u.template cast<double>(), static_cast<double>(found.scale), found.joints, found.passes, found.rows};
+  };
+  const Eigen::Index count = problem.most.size();
+  if (count == 0) {
+    NullSpaceSaturation<M, N, Scalar> saturation(J, cast(problem.unit));
+    return in_double(saturation(box, cast(problem.rest), cast(problem.desired)));
+  }
+  Rows<N, kRows, Scalar> rows;
+  rows.g.resize(problem.J.cols(), kRows);
+  rows.g.leftCols(count) = problem.G.transpose().cast<Scalar>();
+  rows.b.head(count) = problem.most.cast<Scalar>();
+  rows.count = count;
+  NullSpaceSaturation<M, N, Scalar, kRows> saturation(J, cast(problem.unit), rows);
+  return in_double(saturation(box, cast(problem.rest), cast(problem.desired)));
 }
 
 [[nodiscard]] Saturated<Eigen::Dynamic> saturate(const Problem& problem) {
@@ -70,12 +86,19 @@ struct Tally {
   int passes = 0;
   double least = 1.0;  ///< s as a share of the linear program's.
   double off = 0.0;    ///< Of the task's line [rad].
+  double beyond_rows = 0.0;
 
   void check(const Problem& problem) {
     const auto found = saturate(problem);
     ASSERT_TRUE((problem.lower.array() <= found.u.array()).all() && (found.u.array() <= problem.upper.array()).all());
+    if (problem.most.size() > 0) {
+      const Eigen::VectorXd beyond = problem.G * found.u - problem.most;
+      beyond_rows = std::max(beyond_rows, beyond.maxCoeff());
+      ASSERT_LE(beyond.maxCoeff(), 1e-12 * (1.0 + problem.G.cwiseAbs().maxCoeff()) * found.u.norm());
+    }
     ASSERT_TRUE(found.scale >= 0.0 && found.scale <= 1.0);
-    const double most = largest_scale(problem.J, problem.lower, problem.upper, problem.rest, problem.desired);
+    const double most =
+        largest_scale(problem.J, problem.lower, problem.upper, problem.rest, problem.desired, problem.G, problem.most);
     const Eigen::VectorXd task = problem.J * (problem.desired - problem.rest);
     const Eigen::VectorXd done = problem.J * (found.u - problem.rest);
     // Round-off of the sums in J u stands beside the angle where little of the task is left.
@@ -166,6 +189,36 @@ TEST(Saturation, is_optimal_with_bounds_on_jerk) {
     check_jerk<Pose>((std::string(preset.name) + " pose").c_str(), any_arm(preset.chain()), 2000);
     check_jerk<Position<3>>((std::string(preset.name) + " position").c_str(), any_arm(preset.chain()), 2000);
   }
+}
+
+/// Random rows, a third of which rest is on; some are repeated, and some are a joint's own.
+template <typename Space, typename Arm>
+void check_rows(const char* name, const Arm& arm, int count) {
+  Random random(11);
+  Tally tally{name};
+  for (int k = 0; k < trials(count); ++k) {
+    Kinematics<Space, Arm::kDof> kinematics;
+    arm.kinematics(Vector<Arm::kDof>(random.uniform(arm.dof(), -2.8, 2.8)), kinematics);
+    Problem problem{kinematics.J, {}, {}, {}, {}, {}};
+    fill(random, problem);
+    const auto rows = static_cast<Eigen::Index>(random.uniform(1.0, kRows + 0.999));
+    problem.G = random.uniform(rows, arm.dof(), -1.0, 1.0);
+    if (rows > 1 && k % 3 == 0) problem.G.row(0) = problem.G.row(1);
+    if (k % 5 == 0) problem.G.row(0) = Eigen::VectorXd::Unit(arm.dof(), k % arm.dof()).transpose();
+    if (k % 7 == 0) problem.G.row(0) = problem.J.row(0);
+    problem.most = problem.G * problem.rest + random.uniform(rows, -0.5, 1.0).cwiseMax(0.0);
+    SCOPED_TRACE(name + std::string(", problem ") + std::to_string(k));
+    ASSERT_NO_FATAL_FAILURE(tally.check(problem));
+  }
+  std::printf("%s: beyond a row by %.1e at most\n", name, tally.beyond_rows);
+}
+
+TEST(Saturation, is_optimal_with_rows_beside_the_box) {
+  for (const presets::Preset& preset : presets::kAll) {
+    check_rows<Pose>((std::string(preset.name) + " pose").c_str(), any_arm(preset.chain()), 4000);
+    check_rows<Position<3>>((std::string(preset.name) + " position").c_str(), any_arm(preset.chain()), 4000);
+  }
+  check_rows<Position<2>>("planar 4", any_planar_arm(Vector<Eigen::Dynamic>::Ones(4)), 4000);
 }
 
 TEST(Saturation, is_optimal_at_every_rank) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
+#include <vector>
 
 #include <fpbm/any/make_arm.hpp>
 #include <fpbm/fpbm.hpp>
@@ -144,8 +145,33 @@ fpbm::SingularDamping<> any_damping(Bytes& bytes, bool& wild) {
   return fpbm::SingularDamping<>(radius, any_gain(bytes, 1e3, wild));
 }
 
-template <typename Tracker_, typename Arm, typename Space, typename Scheme>
-void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild) {
+/// What a Panda is to keep clear of: itself, and up to three shapes.
+fpbm::Clearance<7> any_clearance(Bytes& bytes) {
+  static const auto chain = fpbm::presets::panda();
+  static const auto capsules = fpbm::presets::capsules::panda();
+  static const auto never_meet = fpbm::presets::never_meet::panda();
+  std::vector<fpbm::Obstacle<>> obstacles;
+  const std::uint8_t which = bytes.byte();
+  fpbm::Vector<3> place, way;
+  for (int kind = 0; kind < 3; ++kind) {
+    if ((which >> kind & 1) == 0) continue;
+    bytes.fill(place, -1.0, 1.0);
+    bytes.fill(way, -1.0, 1.0);
+    const double size = bytes.spread(1e-3, 0.5);
+    if (kind == 0) {
+      obstacles.push_back({"wall", fpbm::HalfSpace<>{way.normalized(), -size}});
+    } else if (kind == 1) {
+      obstacles.push_back({"box", fpbm::Cuboid<>{{place, fpbm::rotation(way)}, fpbm::Vector<3>::Constant(size)}});
+    } else {
+      obstacles.push_back({"post", fpbm::Capsule<>{place, place + way, 0.1 * size}});
+    }
+  }
+  return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_meet};
+}
+
+/// guard: none, or what the arm keeps clear of.
+template <typename Tracker_, typename Arm, typename Space, typename Scheme, typename... Guards>
+void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild, const Guards&... guard) {
   constexpr int N = Arm::kDof;
   fpbm::TrackerOptions<> options;
   options.dt = bytes.spread(1e-4, 2e-2);
@@ -160,8 +186,8 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
   const auto bounds = bytes.chance(64) ? arm.limits() : any_limits<N>(bytes, arm.dof(), wild);
   const auto start = any_start<N>(bytes, bounds, wild);
   const fpbm::Limits<Scheme::kLevel, N> limits(bounds, options.dt);
-  Tracker_ tracker(arm, space, scheme, start, options, limits);
-  Tracker_ twin(arm, space, scheme, start, options, limits);
+  Tracker_ tracker(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), guard...);
+  Tracker_ twin(arm, space, scheme, start, options, limits, fpbm::Vector<N>::Zero(arm.dof()), guard...);
   // From a huge tick or start, the arm cannot brake without overflow.
   if (!(options.dt > 1e-9 && options.dt < 1e9 && start.q.norm() < 1e100 && start.qd.norm() < 1e100)) return;
   const Keeper<N> keeper{limits.bounds(), options.dt};
@@ -176,6 +202,11 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
             "the state is the command");
     if (!wild) keeper.require_kept(before, last, result.q, result.qd, result.qdd, kEvenly);
     last = result.qdd;
+    if constexpr (Tracker_::kGuarded) {
+      auto clearance = tracker.guard().clearance();
+      clearance.place(result.q);
+      require(wild || clearance.nearest_pair().second >= clearance.margin() - keeper.kSlack, "pairs keep their margin");
+    }
   };
 
   for (int tick = 0; tick < 100 && !bytes.empty(); ++tick) {
@@ -252,9 +283,17 @@ template <typename Arm, typename Space, typename Scheme>
 void run(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme, bool wild) {
   if (bytes.chance(48)) {
     run_scheme(bytes, arm, space, scheme);
-  } else {
-    run_tracker<fpbm::Tracker<Arm, Space, Scheme>>(bytes, arm, space, scheme, wild);
+    return;
   }
+  if constexpr (std::is_same_v<Arm, fpbm::SerialArm<7>>) {
+    using Guard = fpbm::Guard<Scheme::kLevel, 7>;
+    if (bytes.chance(128)) {
+      run_tracker<fpbm::Tracker<Arm, Space, Scheme, Guard>>(bytes, arm, space, scheme, wild,
+                                                            Guard(any_clearance(bytes)));
+      return;
+    }
+  }
+  run_tracker<fpbm::Tracker<Arm, Space, Scheme>>(bytes, arm, space, scheme, wild);
 }
 
 template <int N>

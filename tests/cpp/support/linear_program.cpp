@@ -49,7 +49,8 @@ double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::
 }
 
 double largest_scale(const Eigen::MatrixXd& J, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-                     const Eigen::VectorXd& rest, const Eigen::VectorXd& desired) {
+                     const Eigen::VectorXd& rest, const Eigen::VectorXd& desired, const Eigen::MatrixXd& G,
+                     const Eigen::VectorXd& most) {
   const Eigen::Index n = J.cols();
   Eigen::FullPivLU<Eigen::MatrixXd> lu(J);
   lu.setThreshold(1e-12);
@@ -57,12 +58,15 @@ double largest_scale(const Eigen::MatrixXd& J, const Eigen::VectorXd& lower, con
   Eigen::MatrixXd motion(n, free + 1);
   motion.col(0) = desired - rest;
   if (free > 0) motion.rightCols(free) = lu.kernel();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n + 1, free + 1);
-  Eigen::VectorXd b(2 * n + 1);
+  const Eigen::Index rows = most.size();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n + 1 + rows, free + 1);
+  Eigen::VectorXd b(2 * n + 1 + rows);
   A.topRows(n) = motion;
   A.middleRows(n, n) = -motion;
   A(2 * n, 0) = 1.0;
-  b << upper - rest, rest - lower, 1.0;
+  if (rows > 0) A.bottomRows(rows) = G * motion;
+  b.head(2 * n + 1) << upper - rest, rest - lower, 1.0;
+  if (rows > 0) b.tail(rows) = most - G * rest;
   return largest(Eigen::VectorXd::Unit(free + 1, 0), A, b);
 }
 

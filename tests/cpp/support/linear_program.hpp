@@ -8,8 +8,10 @@ namespace fpbm::test {
 /// Bland's rule, in long double. Slow, plain and certain.
 [[nodiscard]] double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// Largest s ≤ 1 for which some u in [lower, upper] has J u = J rest + s J (desired − rest); rest lies in the box.
+/// Largest s ≤ 1 for which some u in [lower, upper] with G u ≤ most has J u = J rest + s J (desired − rest); rest is
+/// such a u.
 [[nodiscard]] double largest_scale(const Eigen::MatrixXd& J, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-                                   const Eigen::VectorXd& rest, const Eigen::VectorXd& desired);
+                                   const Eigen::VectorXd& rest, const Eigen::VectorXd& desired,
+                                   const Eigen::MatrixXd& G = {}, const Eigen::VectorXd& most = {});
 
 }  // namespace fpbm::test

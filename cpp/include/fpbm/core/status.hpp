@@ -9,7 +9,8 @@ enum class Status : unsigned char {
   kCoarse,     ///< The steps are too long: they, and not the scheme, made a tip error that counts.
   kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
   kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
-  kStalled,    ///< The arm comes no nearer to its target: it rests until this moves, or until it is told to resume.
+  kBlocked,    ///< Shapes that the arm keeps clear of leave no room for the whole task: it is scaled down.
+  kStalled,    ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
   kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
   kTaskLost,   ///< The tip left the motion that the scheme prescribes within one step.
   kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
@@ -32,6 +33,7 @@ enum class Status : unsigned char {
     case Status::kCoarse: return "the steps are too long: they give the tip an error that the scheme does not";
     case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
     case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
+    case Status::kBlocked: return "shapes that the arm keeps clear of leave no room for the whole task: it is slowed";
     case Status::kStalled: return "the arm comes no nearer to its target, which may be out of reach: it rests";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
     case Status::kTaskLost:
@@ -48,6 +50,8 @@ enum class Status : unsigned char {
     case Status::kCoarse: return "Shorten dt.";
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
     case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
+    case Status::kBlocked:
+      return "Lead the target around the nearest shape, or expect a tip error while it is in the way.";
     case Status::kStalled: return "Move the target into reach, or call resume() to try again.";
     case Status::kSingular:
       return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";

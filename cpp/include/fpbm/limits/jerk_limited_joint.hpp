@@ -34,10 +34,10 @@ struct Interval {
 template <Level kLevel, typename Scalar>
 struct JerkLimitedJoint {
   QuickestStop<Scalar> stop;
-  Scalar velocity;             ///< Bound on q̇ either way.
-  Side<kLevel, Scalar> upper;  ///< Bounds on q, and on q̇ near them.
-  Side<kLevel, Scalar> lower;  ///< For −q.
-  Scalar tick;                 ///< h [s]
+  Scalar velocity;                         ///< Bound on q̇ either way.
+  VelocityEnvelope<kLevel, Scalar> upper;  ///< Bounds q, and q̇ near its end.
+  VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
+  Scalar tick;                             ///< h [s]
 
   /// Up to a slack, in the unit of q.
   [[nodiscard]] bool viable(Scalar q, Scalar qd, Scalar u, Scalar slack = Scalar(0)) const noexcept {
@@ -82,38 +82,40 @@ struct JerkLimitedJoint {
   }
 
  private:
-  [[nodiscard]] bool viable(const Side<kLevel, Scalar>& side, Scalar q, Scalar qd, Scalar u,
+  [[nodiscard]] bool viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd, Scalar u,
                             Scalar slack) const noexcept {
     const Scalar rises = std::max(u, Scalar(0));
     return qd + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack / tick &&
-           !(side.excess(stop.jerk, {q - side.rest, qd, u}) > slack);
+           !(envelope.excess(stop.jerk, {q - envelope.rest, qd, u}) > slack);
   }
 
   /// Largest of some accelerations that keep the bounds of one side; the smallest where none does.
-  [[nodiscard]] Scalar most(const Side<kLevel, Scalar>& side, Scalar q, Scalar qd,
+  [[nodiscard]] Scalar most(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
                             Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar room = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar gain = greatest * (tick + greatest / (Scalar(2) * stop.jerk));
-    // Most joints, most of the time, are far from all bounds.
+    // Most joints are far from all bounds. No velocity of a stop exceeds top, and its excess is greatest within
+    // longest.
     const Scalar top = std::max(qd + gain, Scalar(0));
-    const Scalar late = tick + (stop.acceleration + greatest) / stop.jerk + side.delay;
-    if (gain <= room && q - side.rest + top * (late + top * side.softness / Scalar(2)) <= Scalar(0)) return some.high;
+    const Scalar longest = tick + (stop.acceleration + greatest) / stop.jerk;
+    const Scalar excess = q - envelope.rest + top * (longest + envelope.delay + top * envelope.softness / Scalar(2));
+    if (gain <= room && excess <= Scalar(0)) return some.high;
     // Root of u h + u²/2J = room, or of u h = room where u falls; infinite where the velocity is not bounded.
     const Scalar share = tick / room;
     const Scalar fastest =
         room > Scalar(0) ? Scalar(2) / (share + sqrt(share * share + Scalar(2) / (room * stop.jerk))) : room / tick;
     const Scalar high = std::clamp(fastest, some.low, some.high);
-    if (!(side.rest < std::numeric_limits<Scalar>::infinity())) return high;
-    const Scalar from = q - side.rest;
+    if (!(envelope.rest < std::numeric_limits<Scalar>::infinity())) return high;
+    const Scalar from = q - envelope.rest;
     // Enough where the acceleration falls already: a little too much elsewhere.
-    const Scalar falling = (side.furthest(q, qd, tick) - qd) / tick;
+    const Scalar falling = (envelope.furthest(q, qd, tick) - qd) / tick;
     const auto beyond = [&](Scalar u) noexcept {
       const Scalar next = qd + tick * u;
       const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
       if (from > Scalar(0)) return stop.rest({from + way, next, u});
-      const Scalar most = side.excess(stop.jerk, {from + way, next, u});
+      const Scalar most = envelope.excess(stop.jerk, {from + way, next, u});
       // Where the joint turns back within the tick.
       return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
     };

@@ -3,7 +3,9 @@
 #include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/limits.hpp"
+#include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/saturation.hpp"
+#include "fpbm/limits/task_given_up.hpp"
 
 namespace fpbm {
 
@@ -32,52 +34,93 @@ class Limiter {
 
   /// The motion within the limits for a desired qdd, or qd at velocity level, where the state's qd is the last command.
   /// last: acceleration of the last tick, which bounds on jerk start from.
-  template <int M>
+  ///
+  /// rows: further bounds on the motion (RowProjection), kept as far as the limits admit.
+  template <int M, int P = 0>
   [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const JointVector& last, const JointVector& desired) const noexcept {
-    const Box<N, Scalar> box = limits_.box(state, last);
-    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
-    NullSpaceSaturation<M, N, Scalar> saturation(J, unit_);
-    if (!limits_.bounds_jerk()) return within(saturation, J, state, box, desired);
-    const Saturated<N, Scalar> found = within(saturation, J, state, limits_.box_in_time(state), desired);
-    return toward(saturation, box, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+                                            const JointVector& desired, const JointVector& last,
+                                            const Rows<N, P, Scalar>& rows = {}) const noexcept {
+    if constexpr (P > 0) {
+      if (!rows.admit(desired)) return beside(rows, J, state, desired, last);
+    }
+    return bounded(J, state, desired, last, rows);
   }
 
   /// The motion for an arm whose last acceleration does not matter: without bounds on jerk, or at rest.
   template <int M>
   [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
                                             const JointVector& desired) const noexcept {
-    return motion(J, state, JointVector::Zero(state.q.size()), desired);
+    return motion(J, state, desired, JointVector::Zero(state.q.size()));
   }
 
-  /// The motion that brings the arm to rest.
-  [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
-    return {fpbm::brake(limits_, state, last), Scalar(0), 0, 0};
+  /// The motion that brings the arm to rest, or one near to it that rows admit.
+  template <int P = 0>
+  [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last,
+                                           const Rows<N, P, Scalar>& rows = {}) const noexcept {
+    return {rows.near(fpbm::brake(limits_, state, last), limits_.box(state, last)), Scalar(0), 0, 0};
   }
 
  private:
-  /// The motion within a box that does as much as possible of a desired one.
-  template <int M>
-  [[nodiscard]] Saturated<N, Scalar> within(NullSpaceSaturation<M, N, Scalar>& saturation,
-                                            const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const Box<N, Scalar>& box, const JointVector& desired) const noexcept {
-    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
-    const JointVector rest = brake_in_proportion(limits_, state, box);
-    auto found = saturation(box, rest, desired);
-    if (found.scale < Scalar(1)) yield(J, state, box, desired, found);
-    if (!found.u.allFinite()) found = {rest, Scalar(0), found.joints, found.passes};
+  /// motion() for one that rows do not admit: the nearest that they do comes in its place. Self-motion costs little, so
+  /// that joints go around a row where they can and the tip slides along it where they cannot. But where self-motion
+  /// can do next to nothing, what the tip has to give up costs less still, else joints would rush for that little.
+  template <int M, int P>
+  [[nodiscard]] Saturated<N, Scalar> beside(const Rows<N, P, Scalar>& rows, const Matrix<M, N, Scalar>& J,
+                                            const JointState& state, const JointVector& desired,
+                                            const JointVector& last) const noexcept {
+    const Scalar mu = kSelfMotion * J.squaredNorm();
+    const auto [given_up, self_motion] = task_given_up(J, mu, rows, desired);
+    const Scalar square = given_up.squaredNorm();
+    const Scalar hopeless = std::max(Scalar(1) - self_motion / kServes, Scalar(0));
+    Matrix<M, M, Scalar> B = mu * Matrix<M, M, Scalar>::Identity(J.rows(), J.rows());
+    if (square > Scalar(0)) B += hopeless * hopeless * mu / kGivenUp / square * given_up * given_up.transpose();
+    RowProjection<M, N, P, Scalar> projection(J, B, rows);
+    const JointVector wanted = projection(desired);
+    Saturated<N, Scalar> found = bounded(J, state, wanted, last, rows);
+    found.rows |= projection.active();
+    const Scalar lost = J.lazyProduct(wanted - desired).norm();
+    const Scalar task = J.lazyProduct(desired).norm();
+    if (lost > kUnseen * task) found.scale *= lost < task ? Scalar(1) - lost / task : Scalar(0);
     return found;
   }
 
-  /// From the motion of a tick without jerk as far toward a goal as a box allows. found: what the goal does of the
+  /// motion() for one that rows admit, or nearly.
+  template <int M, int P>
+  [[nodiscard]] Saturated<N, Scalar> bounded(const Matrix<M, N, Scalar>& J, const JointState& state,
+                                             const JointVector& desired, const JointVector& last,
+                                             const Rows<N, P, Scalar>& rows) const noexcept {
+    const Box<N, Scalar> box = limits_.box(state, last);
+    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
+    NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit_, rows);
+    if (!limits_.bounds_jerk()) return within(saturation, J, state, box, rows, desired);
+    const Saturated<N, Scalar> found = within(saturation, J, state, limits_.box_in_time(state), rows, desired);
+    return toward(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+  }
+
+  /// The motion within bounds that does as much as possible of a desired one.
+  template <int M, int P>
+  [[nodiscard]] Saturated<N, Scalar> within(NullSpaceSaturation<M, N, Scalar, P>& saturation,
+                                            const Matrix<M, N, Scalar>& J, const JointState& state,
+                                            const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                                            const JointVector& desired) const noexcept {
+    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
+    const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
+    auto found = saturation(box, rest, desired);
+    if (found.scale < Scalar(1)) yield(J, state, box, rows, desired, found);
+    if (!found.u.allFinite()) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
+    return found;
+  }
+
+  /// From the motion of a tick without jerk as far toward a goal as bounds allow. found: what the goal does of the
   /// task.
-  template <int M>
-  [[nodiscard]] Saturated<N, Scalar> toward(NullSpaceSaturation<M, N, Scalar>& saturation, const Box<N, Scalar>& box,
-                                            const JointVector& steady, const JointVector& goal,
-                                            const Saturated<N, Scalar>& found) const noexcept {
-    if (box.contains(goal)) return {goal, found.scale, found.joints, found.passes};
-    Saturated<N, Scalar> next = saturation(box, steady, goal);
-    if (!next.u.allFinite()) return {steady, Scalar(0), next.joints, next.passes};
+  template <int M, int P>
+  [[nodiscard]] Saturated<N, Scalar> toward(NullSpaceSaturation<M, N, Scalar, P>& saturation, const Box<N, Scalar>& box,
+                                            const Rows<N, P, Scalar>& rows, const JointVector& steady,
+                                            const JointVector& goal, const Saturated<N, Scalar>& found) const noexcept {
+    if (box.contains(goal) && rows.admit(goal)) return {goal, found.scale, found.joints, found.passes, found.rows};
+    const JointVector from = rows.near(steady, box);
+    Saturated<N, Scalar> next = saturation(box, from, goal);
+    if (!next.u.allFinite()) return {from, Scalar(0), next.joints, next.passes, next.rows};
     next.scale *= found.scale;
     return next;
   }
@@ -105,9 +148,9 @@ class Limiter {
   /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), where s is the scale and s₀ =
   /// kLittle the scale below which the arm yields. At velocity level s is the share of the task's velocity that is
   /// left.
-  template <int M>
+  template <int M, int P>
   void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box,
-             const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
+             const Rows<N, P, Scalar>& rows, const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
     const Vector<M, Scalar> task = J.lazyProduct(desired);
     Scalar scale = found.scale;
     if constexpr (kLevel == Level::kVelocity) scale = J.lazyProduct(found.u).dot(task) / task.squaredNorm();
@@ -118,12 +161,18 @@ class Limiter {
     JointVector rest = JointVector::Zero(state.q.size());
     if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
-    found.u = box.nearest(found.u + yields * yields * (yielded - found.u));  // Round-off may leave the box.
+    const JointVector to =
+        box.nearest(found.u + yields * yields * (yielded - found.u));  // Round-off may leave the box.
+    found.u += rows.share(found.u, to) * (to - found.u);
   }
 
-  static constexpr Scalar kLittle = Scalar(0.1);  ///< s₀, the scale below which the arm yields.
-  static constexpr Scalar kRadius = Scalar(0.1);  ///< Damping of the least squares, as a share of ‖J‖_F.
-  static constexpr Scalar kDamping = Scalar(10);  ///< Damping of what the least squares leave free [1/s].
+  static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.
+  static constexpr Scalar kGivenUp = Scalar(1e-3);     ///< Price of what the task gives up, as a share of the rest.
+  static constexpr Scalar kServes = Scalar(0.1);       ///< From here on self-motion serves: ‖Nv‖² / ‖v‖².
+  static constexpr Scalar kUnseen = Scalar(0.01);      ///< Share of the task that may be lost unreported.
+  static constexpr Scalar kLittle = Scalar(0.1);       ///< s₀, the scale below which the arm yields.
+  static constexpr Scalar kRadius = Scalar(0.1);       ///< Damping of the least squares, as a share of ‖J‖_F.
+  static constexpr Scalar kDamping = Scalar(10);       ///< Damping of what the least squares leave free [1/s].
 
   Limits<kLevel, N, Scalar> limits_;
   JointVector unit_;  ///< Unit of each joint's motion in the null space.

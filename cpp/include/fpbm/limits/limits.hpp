@@ -109,6 +109,11 @@ class Limits {
     return good;
   }
 
+  /// Whether joint i's envelopes allow all of a stop from a velocity at a constant deceleration.
+  [[nodiscard]] bool allows_stop(Eigen::Index i, Scalar q, Scalar qd, Scalar deceleration) const noexcept {
+    return upper_[i].allows_stop(q, qd, deceleration) && lower_[i].allows_stop(-q, -qd, deceleration);
+  }
+
   /// What each joint may do in the next tick. From a state that is not viable (a measured one may be so) the box leads
   /// back; it keeps the bound on acceleration first and the bound on velocity next. A joint beyond its range returns as
   /// fast as these allow, and can come to rest on the bound.
@@ -156,8 +161,8 @@ class Limits {
     const Scalar fastest = std::clamp(v, least, most);
     const Scalar slowest = std::clamp(-v, least, most);
     // In this order min and max pass over what is not a number, where a side has no end.
-    Scalar up = std::max(slowest, std::min(fastest, upper_.furthest(i, q, w, tick_)));
-    Scalar down = std::min(fastest, std::max(slowest, -lower_.furthest(i, -q, -w, tick_)));
+    Scalar up = std::max(slowest, std::min(fastest, upper_[i].furthest(q, w, tick_)));
+    Scalar down = std::min(fastest, std::max(slowest, -lower_[i].furthest(-q, -w, tick_)));
     if (down > up) down = up = (down + up) / Scalar(2);
     if constexpr (kLevel == Level::kAcceleration) {
       up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
@@ -171,7 +176,7 @@ class Limits {
   }
 
   [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
-    return std::abs(qd) <= bounds_.velocity(i) && upper_.allows(i, q, qd) && lower_.allows(i, -q, -qd);
+    return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
   /// Round-off of joint i's position and of its distance to the ends of its range [rad] or [m].

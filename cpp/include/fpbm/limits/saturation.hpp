@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fpbm/limits/box.hpp"
+#include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 
 namespace fpbm {
@@ -12,9 +13,10 @@ namespace fpbm {
 template <int N, typename Scalar = double>
 struct Saturated {
   Vector<N, Scalar> u;
-  Scalar scale;          ///< s: share of the task that is left, 1 for all of it.
-  std::uint32_t joints;  ///< Bit i is set where joint i is on its bound.
-  int passes;            ///< Number of passes; 0 where the desired motion lies in the box.
+  Scalar scale;            ///< s: share of the task that is left, 1 for all of it.
+  std::uint32_t joints;    ///< Bit i is set where joint i is on its bound.
+  int passes;              ///< Number of passes; 0 where the desired motion lies in the box.
+  std::uint32_t rows = 0;  ///< Bit k is set where row k is on its bound.
 };
 
 /// Saturation in the null space (after Flacco, De Luca and Khatib 2012, 2015): the joint motion u within a box that
@@ -27,32 +29,61 @@ struct Saturated {
 /// unit. Where they cannot, a joint that blocks the task is released again (a step of the simplex method); where none
 /// does, s is the largest possible, as a linear program finds it. One pass per bound met, 3n at most (random problems
 /// take up to 1.7n). u lies in the box and on the task's line after any number of passes.
-template <int M, int N, typename Scalar>
+///
+/// Further rows g·u ≤ b, up to P, are as many joints more: each moves by g·u where the others move by u, and has its
+/// row gᵀZ of the basis. A row that rest exceeds is widened as far as that.
+template <int M, int N, typename Scalar, int P = 0>
 class NullSpaceSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
 
   /// unit: one unit of each joint's motion, such as its bound on acceleration.
-  NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& unit) noexcept : unit_(unit) {
-    const RowSpace<M, N, Scalar> rows(J * unit.asDiagonal());
-    Z_.resize(J.cols(), J.cols() - rows.rank());
-    for (Eigen::Index j = 0; j < Z_.cols(); ++j) rows.column(rows.rank() + j, Z_.col(j));
+  NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& unit,
+                      const Rows<N, P, Scalar>& rows = {}) noexcept
+      : unit_(unit), rows_(rows) {
+    const Eigen::Index n = J.cols();
+    const RowSpace<M, N, Scalar> space(J * unit.asDiagonal());
+    Eigen::Index all = n;
+    if constexpr (P > 0) all += rows.count;
+    Z_.resize(all, n - space.rank());
+    for (Eigen::Index j = 0; j < Z_.cols(); ++j) space.column(space.rank() + j, Z_.col(j).head(n));
+    if constexpr (P > 0) {
+      // Each row in a unit of its own, so that its length is 1.
+      for (Eigen::Index k = 0; k < rows.count; ++k) {
+        const Scalar length = rows_.g.col(k).cwiseProduct(unit).norm();
+        const Scalar scale = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
+        rows_.g.col(k) *= scale;
+        rows_.b(k) *= scale;
+        Z_.row(n + k) = rows_.g.col(k).cwiseProduct(unit).transpose().lazyProduct(Z_.topRows(n));
+      }
+    }
   }
 
   [[nodiscard]] Saturated<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                                 const JointVector& desired) noexcept {
     using std::abs;
-    const Eigen::Index n = desired.size();
-    const JointVector goal = (desired - rest).cwiseQuotient(unit_);
-    const JointVector upper = (box.upper - rest).cwiseQuotient(unit_);
-    const JointVector lower = (box.lower - rest).cwiseQuotient(unit_);
-    Saturated<N, Scalar> result{JointVector::Zero(n), Scalar(0), 0, 0};
-    JointVector& u = result.u;
+    const Eigen::Index joints = desired.size();
+    const Eigen::Index n = Z_.rows();
+    All goal(n);
+    All upper(n);
+    All lower(n);
+    goal.head(joints) = (desired - rest).cwiseQuotient(unit_);
+    upper.head(joints) = (box.upper - rest).cwiseQuotient(unit_);
+    lower.head(joints) = (box.lower - rest).cwiseQuotient(unit_);
+    if constexpr (P > 0) {
+      const Eigen::Index count = n - joints;
+      const auto g = rows_.g.leftCols(count).transpose();
+      goal.tail(count) = g.lazyProduct(desired - rest);
+      upper.tail(count) = (rows_.b.head(count) - g.lazyProduct(rest)).cwiseMax(Scalar(0));
+      lower.tail(count).setConstant(-std::numeric_limits<Scalar>::infinity());
+    }
+    All u = All::Zero(n);
+    Saturated<N, Scalar> result{rest, Scalar(0), 0, 0};
     count_ = 0;
     const Eigen::Index most = kPasses * n;
     while (result.passes < most) {
       ++result.passes;
-      const JointVector rate = direction(goal);
+      const All rate = direction(goal);
       const Scalar fastest = rate.cwiseAbs().maxCoeff();
       if (fastest > kSteepest) break;
       const Scalar still = kStill * fastest;
@@ -72,19 +103,23 @@ class NullSpaceSaturation {
       const bool above = rate(hit) > Scalar(0);
       u(hit) = above ? upper(hit) : lower(hit);
       if (!hold(hit, above)) {
-        result.joints |= bit(hit);
+        count(result, hit, joints);
         break;
       }
     }
-    for (int i = 0; i < count_; ++i) result.joints |= bit(held_[i]);
-    u = box.nearest(rest + unit_.cwiseProduct(u));
-    for (int i = 0; i < count_; ++i) u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
+    for (int i = 0; i < count_; ++i) count(result, held_[i], joints);
+    result.u = box.nearest(rest + unit_.cwiseProduct(u.head(joints)));
+    for (int i = 0; i < count_; ++i) {
+      if (held_[i] < joints) result.u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
+    }
     return result;
   }
 
  private:
+  static constexpr int kAll = P == 0 ? N : Eigen::Dynamic;
   static constexpr int kMost = kCapacity<N>;
-  using Basis = Eigen::Matrix<Scalar, N, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost, kMost>;
+  using All = Eigen::Matrix<Scalar, kAll, 1, Eigen::ColMajor | Eigen::DontAlign, kMost + P, 1>;  ///< Joints, then rows.
+  using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
   using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
 
   static constexpr int kPasses = 3;  ///< At most, for each joint.
@@ -96,7 +131,9 @@ class NullSpaceSaturation {
   /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
   static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
 
-  [[nodiscard]] static std::uint32_t bit(Eigen::Index joint) noexcept { return std::uint32_t(1) << joint; }
+  static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
+    (held < joints ? result.joints : result.rows) |= std::uint32_t(1) << (held < joints ? held : held - joints);
+  }
 
   [[nodiscard]] bool active(Eigen::Index joint) const noexcept {
     for (int i = 0; i < count_; ++i) {
@@ -106,8 +143,8 @@ class NullSpaceSaturation {
   }
 
   /// du/ds: the goal plus the least null-space motion that keeps the held joints at rest.
-  [[nodiscard]] JointVector direction(const JointVector& goal) const noexcept {
-    JointVector rate = goal;
+  [[nodiscard]] All direction(const All& goal) const noexcept {
+    All rate = goal;
     if (count_ == 0) return rate;
     Free change = Free::Zero(Z_.cols());
     Free y(count_);
@@ -172,6 +209,7 @@ class NullSpaceSaturation {
 
   Basis Z_;  ///< Basis of the null space, in each joint's unit.
   JointVector unit_;
+  Rows<N, P, Scalar> rows_;  ///< Each in a unit of its own.
   int count_ = 0;
   Eigen::Index held_[kMost];
   bool above_[kMost];

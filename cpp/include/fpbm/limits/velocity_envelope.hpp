@@ -9,15 +9,33 @@
 namespace fpbm {
 
 /// Bound on a joint's velocity toward one end of its range, −c + √(2d (end − q)) with an offset c and a deceleration d,
-/// in coordinates that grow toward that end.
+/// in coordinates that grow toward that end. It is zero at r = end − c²/2d.
 ///
-/// With a small offset it is the speed from which the joint can still stop before the end. With a maker's numbers it is
-/// a bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
+/// With a small offset it is the speed from which the joint can still stop before r. With a maker's numbers it is a
+/// bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
+///
+/// In this form, (w + c)² ≤ 2d (end − q) is w (w/d + 2c/d) ≤ 2 (r − q): r − q keeps its digits near r, and no number
+/// overflows where d is huge.
 template <Level kLevel, typename Scalar>
-struct Side {
-  Scalar rest;      ///< r: beyond which the joint does not go; infinite where there is no end.
+struct VelocityEnvelope {
+  Scalar rest;      ///< r, beyond which the joint does not go [rad] or [m]; infinite where there is no end.
   Scalar delay;     ///< c/d [s]
-  Scalar softness;  ///< 1/d
+  Scalar softness;  ///< 1/d [s²/rad] or [s²/m]
+
+  [[nodiscard]] bool allows(Scalar q, Scalar qd) const noexcept {
+    return q <= rest && (qd <= Scalar(0) || qd * (qd * softness + Scalar(2) * delay) <= Scalar(2) * (rest - q));
+  }
+
+  /// Whether it allows all of a stop from a velocity v ≥ 0 at a constant deceleration b.
+  ///
+  /// With e = 2 (r − q) at the stop's end, v (v/d + 2c/d) ≤ 2 (r − q) is v² (1/b − 1/d) − 2 v c/d + e ≥ 0 all the way:
+  /// at its start, and where the left side is least, at v = (c/d) / (1/b − 1/d), if the stop comes by there.
+  [[nodiscard]] bool allows_stop(Scalar q, Scalar v, Scalar b) const noexcept {
+    if (!(v > Scalar(0))) return q <= rest;
+    const Scalar left = Scalar(2) * (rest - q) - v * v / b;  // e
+    const Scalar bend = Scalar(1) / b - softness;
+    return left >= Scalar(0) && allows(q, v) && (!(v * bend > delay) || left * bend >= delay * delay);
+  }
 
   /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
   /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
@@ -57,9 +75,6 @@ struct Side {
 };
 
 /// Envelopes of all joints toward one end of their ranges, in coordinates that grow toward it.
-///
-/// With the position r = end − c²/(2d) where an envelope of offset c and deceleration d is zero, (w + c)² ≤ 2d (end −
-/// q) is w (w/d + 2c/d) ≤ 2 (r − q): r − q keeps its digits near r, and no number overflows where d is huge.
 template <Level kLevel, int N, typename Scalar>
 class VelocityEnvelopes {
  public:
@@ -67,34 +82,24 @@ class VelocityEnvelopes {
     for (JointVector* row : {&rest_, &delay_, &softness_}) row->resize(n);
   }
 
-  [[nodiscard]] Side<kLevel, Scalar> operator[](Eigen::Index i) const noexcept {
+  [[nodiscard]] VelocityEnvelope<kLevel, Scalar> operator[](Eigen::Index i) const noexcept {
     return {rest_(i), delay_(i), softness_(i)};
   }
 
-  /// rest: r, beyond which the joint does not go; infinite where there is no end. delay: c/d [s]. Infinite d: as hard
-  /// as need be.
+  /// delay: c/d [s]. Infinite d: as hard as need be.
   void set(Eigen::Index i, Scalar rest, Scalar delay, Scalar deceleration) noexcept {
     rest_(i) = rest;
     delay_(i) = delay;
     softness_(i) = Scalar(1) / deceleration;
   }
 
-  [[nodiscard]] bool allows(Eigen::Index i, Scalar q, Scalar qd) const noexcept {
-    return q <= rest_(i) &&
-           (qd <= Scalar(0) || qd * (qd * softness_(i) + Scalar(2) * delay_(i)) <= Scalar(2) * (rest_(i) - q));
-  }
-
-  /// Side::furthest() of joint i.
-  [[nodiscard]] Scalar furthest(Eigen::Index i, Scalar q, Scalar w, Scalar h) const noexcept {
-    return (*this)[i].furthest(q, w, h);
-  }
-
  private:
   using JointVector = Vector<N, Scalar>;
 
+  // A row for each number, so that vector code computes several joints at once.
   JointVector rest_;
-  JointVector delay_;     ///< c/d [s]
-  JointVector softness_;  ///< 1/d
+  JointVector delay_;
+  JointVector softness_;
 };
 
 }  // namespace fpbm

@@ -28,16 +28,23 @@ validation::Argument name_of(const Chain<Scalar>& chain, Eigen::Index i) {
   return name.empty() ? validation::element("joints", i) : validation::Argument("joint '" + name + "'");
 }
 
+/// Whether a matrix is a rotation, to half of the digits.
+template <typename Scalar>
+[[nodiscard]] bool is_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
+  const Matrix<3, 3, Scalar> gram = R.transpose() * R;
+  const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+  const Vector<3, Scalar> x = R.col(0);
+  const Vector<3, Scalar> y = R.col(1);
+  const Vector<3, Scalar> z = R.col(2);
+  return (gram - Matrix<3, 3, Scalar>::Identity()).cwiseAbs().maxCoeff() <= tolerance &&
+         cross(x, y).dot(z) >= Scalar(0);
+}
+
 template <typename Scalar>
 void require_transform(const validation::Argument& name, const Transform<Scalar>& transform) {
   validation::require_finite((name + ".p").text.c_str(), transform.p);
   validation::require_finite((name + ".R").text.c_str(), transform.R.reshaped());
-  const Matrix<3, 3, Scalar> gram = transform.R.transpose() * transform.R;
-  const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
-  const Vector<3, Scalar> x = transform.R.col(0);
-  const Vector<3, Scalar> y = transform.R.col(1);
-  if ((gram - Matrix<3, 3, Scalar>::Identity()).cwiseAbs().maxCoeff() > tolerance ||
-      cross(x, y).dot(transform.R.col(2)) < Scalar(0)) {
+  if (!is_rotation(transform.R)) {
     validation::reject(name + ".R", ": must be a rotation matrix");
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "fpbm/core/types.hpp"
@@ -10,7 +11,8 @@ namespace fpbm {
 /// Notices an arm that comes no nearer to its target, which may be out of reach.
 ///
 /// Progress is an error that is smaller than any before by 0.002, or a target that has moved by 0.002, in the arm's
-/// characteristic lengths and in radians. The arm has stalled where there is none for stall_time.
+/// characteristic lengths and in radians. The arm has stalled where there is none for stall_time. It goes on once its
+/// target has moved, or shapes beside it.
 template <typename Space, typename Scalar = double>
 class StallDetector {
  public:
@@ -39,8 +41,17 @@ class StallDetector {
     }
   }
 
+  /// One more tick of an arm that has stalled: once it has come to rest, it is to try again where shapes near it have
+  /// moved. room: a measure of how far they are from it.
+  void wait(bool at_rest, Scalar room, Scalar length) noexcept {
+    using std::abs;
+    if (at_rest && std::isnan(room_)) room_ = room;
+    if (abs(room - room_) > kStep * length) reset();
+  }
+
   /// The arm is to try again.
   void reset() noexcept {
+    room_ = std::numeric_limits<Scalar>::quiet_NaN();
     least_ = std::numeric_limits<Scalar>::infinity();
     waited_ = Scalar(0);
   }
@@ -57,6 +68,7 @@ class StallDetector {
   Scalar dt_;
   Scalar waited_ = Scalar(0);  ///< Without progress [s].
   Scalar least_ = std::numeric_limits<Scalar>::infinity();
+  Scalar room_ = std::numeric_limits<Scalar>::quiet_NaN();  ///< When it came to rest.
   Point target_ = Space::template origin<Scalar>();
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/clearance/guard.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/path_follower.hpp"
@@ -24,12 +25,15 @@ namespace fpbm {
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
 /// A step of RK4 that keeps every bound is taken as it is; otherwise the tick's mean motion is limited (Limiter).
-template <typename Arm, typename Space, typename Scheme>
+///
+/// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
+template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
 class Tracker {
  public:
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
   static constexpr Level kLevel = Scheme::kLevel;
+  static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
   using Target = Reference<Space, Scalar>;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
@@ -43,15 +47,16 @@ class Tracker {
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, JointVector::Zero(start.q.size())) {}
 
-  /// qdd0: acceleration of the tick before, for bounds on jerk.
+  /// qdd0: acceleration of the tick before, for bounds on jerk. guard: what the arm keeps clear of.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
-          const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0)
+          const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
       : arm_(arm),
         scheme_(scheme),
         dt_(options.dt),
         correction_(options),
         stall_(options.stall_time, options.dt),
         limiter_(limits),
+        guard_(guard),
         state_(start),
         last_(qdd0),
         answer_(qdd0) {
@@ -65,6 +70,7 @@ class Tracker {
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
     limits.require_viable(start, qdd0);
     set_damping(scheme_, options.singular);
+    if constexpr (kGuarded) guard_.require_clear(limits, start, qdd0);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -109,8 +115,10 @@ class Tracker {
     X dx = packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);
+    auto rows = guard_.rows(limiter_.limits(), measured);
     result.status = loop.resolve(correction_(reference), dx);
-    result.qdd = answer_ = limited(loop.kinematics, measured, answer_, loop.qdd, result);
+    if constexpr (kGuarded) guard_.bound_tip_speed(limiter_.limits(), measured, loop.qdd, rows);
+    result.qdd = answer_ = limited(loop.kinematics, measured, answer_, loop.qdd, rows, result);
     if (result.status == Status::kOk) correction_.integrate();
     return result;
   }
@@ -126,6 +134,10 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return last_; }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+
+  /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
+  [[nodiscard]] Guard_& guard() noexcept { return guard_; }
+  [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
 
   /// Tip f(q) of the tracker's own state, where a PathFollower usually starts.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
@@ -166,6 +178,10 @@ class Tracker {
     loop.update(x);
     const Target now = reference(Scalar(0));
     watch(loop.kinematics, now, result);
+    auto rows = guard_.rows(limiter_.limits(), state_);
+    if constexpr (kGuarded) {
+      if (stall_.stalled()) stall_.wait(state_.qd.isZero(Scalar(0)), guard_.room(), loop.kinematics.length);
+    }
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(correction_(reference(seconds)), stage_x, stage_dx);
     };
@@ -180,9 +196,14 @@ class Tracker {
     } else {
       next.qd = (next.q - state_.q) / dt_;
     }
+    if constexpr (kGuarded) {
+      if (guard_.draws_away() && !failed(result.status)) next = after(motion_to(next) + self_motion_away(next.q));
+      guard_.bound_tip_speed(limiter_.limits(), state_, motion_to(next), rows);
+    }
     if (!moderate(next)) result.status = Status::kNotFinite;
     if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
-    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next, last_)) {
+    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next, last_) ||
+        !rows.admit(motion_to(next))) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
@@ -194,17 +215,20 @@ class Tracker {
       // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
       const JointVector middle = (state_.q + next.q) / Scalar(2);
       arm_.kinematics(middle, loop.kinematics);
-      const JointVector u = limited(loop.kinematics, state_, last_, desired, result);
+      const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
       if (share < Scalar(1)) {
         result.scale *= share;
         result.status = worse(result.status, Status::kSlowed);
       }
-      if constexpr (kSecondOrder) {
-        next.q = moved(u);
-        next.qd = state_.qd + dt_ * u;
-      } else {
-        next.q = state_.q + dt_ * u;
-        next.qd = u;
+      next = after(u);
+    }
+    if constexpr (kGuarded) {
+      const bool braking = stopping_ || failed(result.status);
+      if (!guard_.empty() && (braking || !guard_.accepts(limiter_.limits(), state_, next))) {
+        const JointVector qdd = guard_.stop(limiter_.limits(), state_, last_);
+        next = after(kSecondOrder ? qdd : JointVector(state_.qd + dt_ * qdd));
+        result.scale = Scalar(0);
+        if (!braking) result.status = Status::kBlocked;
       }
     }
     result.q = next.q;
@@ -217,6 +241,26 @@ class Tracker {
     return result;
   }
 
+  /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
+  [[nodiscard]] JointVector self_motion_away(const JointVector& end) noexcept {
+    const JointVector middle = (state_.q + end) / Scalar(2);
+    Kinematics<Space, N, Scalar> kinematics;
+    arm_.kinematics(middle, kinematics);
+    const auto Z = null_basis<Space::kRows, N, Scalar>(jacobian_in_metres(kinematics));
+    return Z.lazyProduct(Z.transpose().lazyProduct(guard_.away(state_.q)).eval());
+  }
+
+  /// The motion of a tick: its mean acceleration, or its velocity at velocity level.
+  [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept {
+    return kSecondOrder ? JointVector((next.qd - state_.qd) / dt_) : next.qd;
+  }
+
+  /// The state after a tick of some motion.
+  [[nodiscard]] JointState after(const JointVector& u) const noexcept {
+    if constexpr (kSecondOrder) return {moved(u), state_.qd + dt_ * u};
+    return {state_.q + dt_ * u, u};
+  }
+
   /// The position after a tick of constant acceleration.
   [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
     return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
@@ -224,15 +268,20 @@ class Tracker {
 
   /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
   /// failed or stop() was called.
+  template <int P>
   [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
                                                    const JointState& state, const JointVector& last,
-                                                   const JointVector& desired, Result& result) const noexcept {
+                                                   const JointVector& desired, const Rows<N, P, Scalar>& rows,
+                                                   Result& result) const noexcept {
     const bool braking = stopping_ || result.status >= Status::kStalled;
-    const auto found =
-        braking ? limiter_.brake(state, last) : limiter_.motion(jacobian_in_metres(kinematics), state, last, desired);
+    const bool gives_way = result.status == Status::kStalled;
+    const auto found = braking ? limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{})
+                               : limiter_.motion(jacobian_in_metres(kinematics), state, desired, last, rows);
     result.scale = found.scale;
     result.saturated = found.joints;
-    if (found.scale < Scalar(1) && !braking) result.status = Status::kSlowed;
+    if (found.scale < Scalar(1) && !braking) {
+      result.status = guard_.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
+    }
     return found.u;
   }
 
@@ -248,6 +297,7 @@ class Tracker {
   Correction<kLevel, Space, Scalar> correction_;
   StallDetector<Space, Scalar> stall_;
   JointLimiter limiter_;
+  Guard_ guard_;
   JointState state_;
   JointVector last_;    ///< Acceleration of the last tick.
   JointVector answer_;  ///< The last one for a measured state.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "fpbm/core/validation.hpp"
@@ -96,7 +95,8 @@ class TargetFilter {
     for (int i = 0; i < Space::kRows; ++i) {
       const Scalar v = velocity(i);
       const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
-      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance(axis(i), state));
+      const Scalar tolerance = axis(i).tolerance(state, extent(reference_.x), dt_);
+      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance);
       there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
       way(i) = to.q + seconds * v;
       next.xd(i) = to.v + v;
@@ -176,13 +176,6 @@ class TargetFilter {
     }
     target_.rest_at(Space::template displace<Scalar>(x, way));
     free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
-  }
-
-  /// How far from its target an axis may end its stop: round-off, and a millionth of a tick's way at the bound on jerk.
-  [[nodiscard]] Scalar tolerance(const Axis& axis, const AxisState<Scalar>& state) const noexcept {
-    const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
-    return std::max(Scalar(1e-6) * axis.stop.jerk * dt_ * dt_ * dt_,
-                    round_off * (extent(reference_.x) + std::abs(axis.stop.rest(state))));
   }
 
   [[nodiscard]] Point displaced(const Twist& way) const noexcept {

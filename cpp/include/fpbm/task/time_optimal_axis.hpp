@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/quickest_stop.hpp"
 
@@ -42,6 +44,13 @@ struct TimeOptimalAxis {
     AxisState<Scalar> next = stop.ahead(from, seconds - gone);
     if (next.v == Scalar(0) && next.a == Scalar(0) && std::abs(next.q - target) <= tolerance) next.q = target;
     return next;
+  }
+
+  /// A tolerance for ticks of length h: round-off, and a millionth of a tick's way at the bound on jerk.
+  /// size: of the numbers that the target comes from.
+  [[nodiscard]] Scalar tolerance(const AxisState<Scalar>& state, Scalar size, Scalar h) const noexcept {
+    const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
+    return std::max(Scalar(1e-6) * stop.jerk * h * h * h, round_off * (size + std::abs(stop.rest(state))));
   }
 
  private:

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fpbm/clearance/separation.hpp"
+#include "fpbm/limits/stop_plan.hpp"
+
+namespace fpbm {
+
+/// A sweep of an arm's joints, as joints of its chain.
+template <int N, typename Scalar>
+struct ChainSweep {
+  using ChainVector = typename Links<N, Scalar>::ChainVector;
+
+  ChainVector way;
+  ChainVector tick;
+  ChainVector low;
+  ChainVector high;
+  ChainVector rest;  ///< Most that all but `way` displaces a joint, either way.
+
+  ChainSweep(const Links<N, Scalar>& links, const Sweep<N, Scalar>& sweep) noexcept
+      : way(links.motion(sweep.way)),
+        tick(links.motion(sweep.tick)),
+        low(links.least(sweep.low, sweep.high)),
+        high(-links.least(-sweep.high, -sweep.low)),
+        rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
+};
+
+/// What a sweep may take from a gap between shapes, t of its way done: at most linear·t + c₀ + c₁ t + c₂ t².
+///
+/// c bounds the gap's second derivative along the sweep: a turn of joint j by a and of a joint k beyond it by b bends
+/// the way of a point at lever r of joint k by no more than r a b.
+template <int N, typename Scalar>
+struct Bend {
+  Scalar c0 = Scalar(0);
+  Scalar c1 = Scalar(0);
+  Scalar c2 = Scalar(0);
+
+  Bend(const Clearance<N, Scalar>& clearance, const ShapePair& pair, const ChainSweep<N, Scalar>& sweep) noexcept {
+    const auto& body = clearance.bodies()[pair.first];
+    Scalar way(0);  // Turned by joints so far.
+    Scalar rest(0);
+    for (Eigen::Index k = pair.world ? 0 : clearance.bodies()[pair.second].link; k < body.link; ++k) {
+      const Scalar lever = body.levers(k);
+      const Scalar v = std::abs(sweep.way(k));
+      const Scalar e = sweep.rest(k);
+      const Scalar half = clearance.links().turns(k) ? Scalar(0.5) : Scalar(0);
+      c0 += lever * e * (half * e + rest);
+      c1 += lever * (v * (Scalar(2) * half * e + rest) + e * way);
+      c2 += lever * v * (half * v + way);
+      way += Scalar(2) * half * v;
+      rest += Scalar(2) * half * e;
+    }
+  }
+};
+
+/// Most that a sweep's way, t of it, and its rest can bring a pair nearer, by the levers of its joints.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar reach(const Clearance<N, Scalar>& clearance, const ShapePair& pair,
+                           const ChainSweep<N, Scalar>& sweep, Scalar t) noexcept {
+  const auto& body = clearance.bodies()[pair.first];
+  Scalar sum(0);
+  for (Eigen::Index k = pair.world ? 0 : clearance.bodies()[pair.second].link; k < body.link; ++k) {
+    sum += body.levers(k) * (t * std::abs(sweep.way(k)) + sweep.rest(k));
+  }
+  return sum;
+}
+
+/// What joints that take their own quickest stop may take from a gap, beyond its slope at their speed for some time.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar beyond_slope(const ChainSweep<N, Scalar>& sweep,
+                                  const typename ChainSweep<N, Scalar>::ChainVector& speed,
+                                  const typename ChainSweep<N, Scalar>::ChainVector& gradient, Scalar time) noexcept {
+  Scalar beyond(0);
+  for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+    const Scalar least = std::min(gradient(k) * sweep.low(k), gradient(k) * sweep.high(k));
+    const Scalar slope = std::min(gradient(k) * speed(k) * time, Scalar(0));
+    beyond += std::max(slope - least, Scalar(0));
+  }
+  return beyond;
+}
+
+/// Most of a gap's rest of the way, up to `whole`, that surely leaves a gap above zero; below zero where there is none.
+template <typename Scalar>
+[[nodiscard]] Scalar furthest(Scalar gap, Scalar slope, Scalar bend, Scalar whole) noexcept {
+  using std::sqrt;
+  if (!(gap >= Scalar(0))) return Scalar(-1);
+  if (gap >= whole * (slope + whole * bend)) return whole;
+  return Scalar(2) * gap / (slope + sqrt(slope * slope + Scalar(4) * bend * gap));
+}
+
+/// Pairs that keeps_apart() is asked about.
+enum class Pairs : unsigned char {
+  kAll,
+  kAtRest,  ///< All but those with a shape that moves by itself.
+};
+
+/// Whether all pairs surely keep their margin along a sweep from the posture q, where the clearance is placed: by
+/// conservative advancement, in kAdvances steps at most. Each goes as far as the nearest pair's gap, its slope there
+/// and a bound on its bend allow for sure. Pairs that are sure to the sweep's end are not looked at again. Of a pair
+/// that is nearer than its margin from the start, because a shape has moved, it is enough that it comes no nearer.
+/// time: that of the sweep, in which moving shapes go on [s].
+template <int N, typename Scalar>
+[[nodiscard]] bool keeps_apart(Clearance<N, Scalar>& clearance, const Vector<N, Scalar>& q,
+                               const Sweep<N, Scalar>& drives, Scalar time, Pairs pairs = Pairs::kAll) noexcept {
+  constexpr int kAdvances = 16;
+  constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
+  if (!is_finite(drives.way + drives.tick + drives.low + drives.high)) return false;
+  const ChainSweep<N, Scalar> sweep(clearance.links(), drives);
+  clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
+  clearance.open_all();
+  Scalar done(0);
+  for (int advance = 0; advance < kAdvances; ++advance) {
+    const Scalar whole = Scalar(1) - done;
+    Scalar step = whole;
+    clearance.close_if([&](const ShapePair& pair) noexcept {
+      const Scalar moves = pair.world ? time * clearance.obstacles()[pair.second].velocity.norm() : Scalar(0);
+      if (moves > Scalar(0) && pairs == Pairs::kAtRest) return true;
+      const Scalar most = clearance.margin() + moves;
+      if (clearance.roughly(pair) >= most + clearance.bodies()[pair.first].reach) return true;
+      const Scalar needs = most + reach(clearance, pair, sweep, whole);
+      const Nearest<Scalar> nearest = clearance.nearest_of(pair);
+      if (nearest.distance >= needs) return true;
+      const Separation<N, Scalar> plane(clearance, pair, nearest);
+      if (nearest.distance < clearance.margin() - kIntrusion && done == Scalar(0)) {
+        const auto gradient = plane.gradient[0] + plane.at * (plane.gradient[1] - plane.gradient[0]);
+        const bool opens = gradient.dot(sweep.way) >= Scalar(0);
+        if (!opens) step = Scalar(0);
+        return opens;
+      }
+      const Bend<N, Scalar> bend(clearance, pair, sweep);
+      Scalar sure = whole;
+      for (int e = 0; e < 2; ++e) {
+        const auto& g = plane.gradient[e];
+        const Scalar rest = g.cwiseProduct(sweep.low).cwiseMin(g.cwiseProduct(sweep.high)).sum() +
+                            std::min(g.dot(sweep.tick), Scalar(0)) - bend.c0;
+        const Scalar gap = plane.gap[e] - clearance.margin() + rest - time * std::max(plane.closing, Scalar(0));
+        const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
+        sure = std::min(furthest(gap, slope, bend.c2, whole), sure);  // In this order NaN stays.
+      }
+      step = std::min(sure, step);
+      return sure == whole;
+    });
+    if (!(step > Scalar(0))) return false;
+    if (step == whole) return true;
+    done += step;
+    clearance.place(q + done * drives.way);
+  }
+  return false;
+}
+
+}  // namespace fpbm

@@ -1,0 +1,231 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fpbm/clearance/link_capsule.hpp"
+#include "fpbm/clearance/obstacle.hpp"
+#include "fpbm/model/links.hpp"
+#include "fpbm/model/spread_posture.hpp"
+
+namespace fpbm {
+
+/// Keeps an arm at a distance from shapes where its task leaves it free to: off where the gain is 0.
+template <typename Scalar = double>
+struct Away {
+  Scalar gain = Scalar(0);  ///< [rad/(m s²)], or [rad/(m s)] at velocity level; a joint that slides: [1/s²], [1/s].
+  Scalar range = Scalar(0.1);  ///< From the margin on [m].
+};
+
+/// What an arm must keep clear of: itself and its surroundings, by a margin. Shapes of the world may move; all else is
+/// settled at construction.
+template <int N, typename Scalar = double>
+class Clearance {
+ public:
+  using JointVector = Vector<N, Scalar>;
+  using Vector3 = Vector<3, Scalar>;
+  using ChainVector = typename Links<N, Scalar>::ChainVector;
+  using Names = std::pair<std::string, std::string>;
+
+  /// One of the arm's capsules, and where it is.
+  struct Body {
+    Eigen::Index link;
+    Capsule<Scalar> in_link;
+    std::string name;
+    ChainVector levers;  ///< Of both ends, the longer.
+    Capsule<Scalar> now;
+    Vector3 centre;
+    Scalar size;               ///< Radius of the ball around it.
+    Scalar reach = Scalar(0);  ///< Most that a motion in question can move its axis.
+  };
+
+  /// margin: least distance of a pair [m]. allowed: names of pairs that need not be kept apart. Links next to one
+  /// another need not either. Throws std::invalid_argument where a number is out of range, a link does not exist, or
+  /// the arm reaches beyond a prismatic joint without ends.
+  Clearance(const Chain<Scalar>& chain, const std::vector<LinkCapsule<Scalar>>& capsules,
+            const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
+      : links_(chain), tip_(links_.in_frame(links_.count(), chain.tip.p)), obstacles_(obstacles), margin_(margin) {
+    validation::require_non_negative("margin", static_cast<double>(margin));
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+      const auto& [link, capsule, name] = capsules[i];
+      const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
+      capsules[i].require_sound(argument, links_.count());
+      const Capsule<Scalar> placed{links_.in_frame(link, capsule.a), links_.in_frame(link, capsule.b), capsule.radius};
+      const ChainVector levers = links_.levers(link, placed.a).cwiseMax(links_.levers(link, placed.b));
+      if (!levers.allFinite()) validation::reject(argument, " moves with a prismatic joint that has no ends");
+      bodies_.push_back({link, placed, name, levers, placed, placed.a, Scalar(0)});
+    }
+    for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+      obstacles_[i].require_sound(validation::element("obstacles", static_cast<Eigen::Index>(i)));
+    }
+    const auto is_allowed = [&allowed](const std::string& a, const std::string& b) {
+      return std::any_of(allowed.begin(), allowed.end(),
+                         [&](const Names& names) { return names == Names(a, b) || names == Names(b, a); });
+    };
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      for (std::size_t j = 0; j < bodies_.size(); ++j) {
+        if (bodies_[i].link <= bodies_[j].link + 1 || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
+        pairs_.push_back({i, j, false});
+      }
+      for (std::size_t j = 0; j < obstacles_.size(); ++j) {
+        if (bodies_[i].link == 0 || is_allowed(bodies_[i].name, obstacles_[j].name)) continue;
+        pairs_.push_back({i, j, true});
+      }
+    }
+    leave_out_overlaps(chain);
+    open_.resize(pairs_.size());
+  }
+
+  [[nodiscard]] const Links<N, Scalar>& links() const noexcept { return links_; }
+  [[nodiscard]] const std::vector<Body>& bodies() const noexcept { return bodies_; }
+  [[nodiscard]] const std::vector<ShapePair>& pairs() const noexcept { return pairs_; }
+  [[nodiscard]] const std::vector<Obstacle<Scalar>>& obstacles() const noexcept { return obstacles_; }
+  [[nodiscard]] Scalar margin() const noexcept { return margin_; }
+  [[nodiscard]] const typename Links<N, Scalar>::Frames& frames() const noexcept { return frames_; }
+
+  [[nodiscard]] Names names(const ShapePair& pair) const {
+    return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
+  }
+
+  /// Pairs that overlap in all of many postures, which no motion could keep apart: left out.
+  [[nodiscard]] const std::vector<ShapePair>& left_out() const noexcept { return left_out_; }
+
+  /// Moves obstacle i, whose velocity is then expected to last. Does nothing, and says so, where there is no such
+  /// obstacle, or it is a shape of another kind.
+  bool move(std::size_t i, const WorldShape<Scalar>& shape, const Vector3& velocity) noexcept {
+    if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
+    obstacles_[i].shape = shape;
+    obstacles_[i].velocity = velocity;
+    return true;
+  }
+
+  /// Keeps a distance in time, by self-motion. Throws std::invalid_argument where a number is out of range.
+  void keep_away(const Away<Scalar>& away) {
+    validation::require_non_negative("away.gain", static_cast<double>(away.gain));
+    validation::require_positive("away.range", static_cast<double>(away.range));
+    away_ = away;
+  }
+  [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
+
+  /// Keeps the tip's speed below one [m/s]. Throws std::invalid_argument unless it is positive; infinite for none.
+  void bound_tip_speed(Scalar most) {
+    if (!(most > Scalar(0))) validation::fail("tip_speed", static_cast<double>(most), "positive, or infinite");
+    tip_speed_ = most;
+  }
+  [[nodiscard]] Scalar tip_speed() const noexcept { return tip_speed_; }
+
+  /// Where the tip is in the last link's frame.
+  [[nodiscard]] const Vector3& tip() const noexcept { return tip_; }
+
+  /// Keeps the tip within a box in the base frame, from lower to upper [m]: six walls that nothing else heeds.
+  void keep_tip_within(const Vector3& lower, const Vector3& upper) {
+    const Eigen::Index last = links_.count();
+    const Capsule<Scalar> point{tip_, tip_, Scalar(0)};
+    bodies_.push_back({last, point, "tip", links_.levers(last, tip_), point, tip_, Scalar(0)});
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(lower(axis) < upper(axis))) {
+        validation::fail(validation::element("lower", axis), static_cast<double>(lower(axis)), "below upper");
+      }
+      for (const Scalar side : {Scalar(-1), Scalar(1)}) {
+        const Vector3 inward = -side * Vector3::Unit(axis);
+        const std::string name = std::string(side < Scalar(0) ? "lower " : "upper ") + "xyz"[axis];
+        pairs_.push_back({bodies_.size() - 1, obstacles_.size(), true});
+        obstacles_.push_back({name, HalfSpace<Scalar>{inward, -side * (side < Scalar(0) ? lower : upper)(axis)}});
+        open_.push_back(0);
+      }
+    }
+  }
+
+  /// Whether any obstacle moves by itself.
+  [[nodiscard]] bool moves() const noexcept {
+    return std::any_of(obstacles_.begin(), obstacles_.end(),
+                       [](const auto& each) { return !each.velocity.isZero(Scalar(0)); });
+  }
+
+  /// Places the arm's capsules at a posture.
+  void place(const JointVector& q) noexcept {
+    links_.place(q, frames_);
+    for (Body& body : bodies_) {
+      body.now = placed(body.in_link, frames_[static_cast<std::size_t>(body.link)]);
+      body.centre = (body.now.a + body.now.b) / Scalar(2);
+      body.size = (body.now.b - body.now.a).norm() / Scalar(2) + body.now.radius;
+    }
+  }
+
+  /// A lower bound on the distance of a pair where the arm is placed, found faster than nearest_of().
+  [[nodiscard]] Scalar roughly(const ShapePair& pair) const noexcept {
+    const Body& body = bodies_[pair.first];
+    if (pair.world) return obstacles_[pair.second].at_least(body.centre, body.size);
+    const Body& other = bodies_[pair.second];
+    return (body.centre - other.centre).norm() - body.size - other.size;
+  }
+
+  [[nodiscard]] Nearest<Scalar> nearest_of(const ShapePair& pair) const noexcept {
+    const Capsule<Scalar>& first = bodies_[pair.first].now;
+    return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, bodies_[pair.second].now);
+  }
+
+  /// Sets how far each capsule's axis may be moved by joints of the chain that move by no more than so much.
+  void set_reach(const ChainVector& most) noexcept {
+    for (Body& body : bodies_) body.reach = body.levers.dot(most);
+  }
+
+  /// Pairs that a question is still open about: first all, then but those that close(pair) says are settled.
+  void open_all() noexcept {
+    for (std::size_t i = 0; i < pairs_.size(); ++i) open_[i] = i;
+    open_count_ = pairs_.size();
+  }
+  template <typename Close>
+  void close_if(Close&& close) noexcept {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < open_count_; ++k) {
+      if (!close(pairs_[open_[k]])) open_[left++] = open_[k];
+    }
+    open_count_ = left;
+  }
+
+  /// The pair that is nearest to one another where the arm is placed, and its distance; infinite without pairs.
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept {
+    std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (roughly(pairs_[i]) >= found.second) continue;
+      const Scalar distance = nearest_of(pairs_[i]).distance;
+      if (distance < found.second) found = {i, distance};
+    }
+    return found;
+  }
+
+ private:
+  void leave_out_overlaps(const Chain<Scalar>& chain) {
+    if (pairs_.empty()) return;
+    constexpr int kPostures = 256;
+    std::vector<bool> apart(pairs_.size(), false);
+    for (int k = 0; k < kPostures; ++k) {
+      place(spread_posture(chain, k));
+      for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        if (!apart[p]) apart[p] = roughly(pairs_[p]) >= margin_ || nearest_of(pairs_[p]).distance >= margin_;
+      }
+    }
+    std::vector<ShapePair> kept;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) (apart[p] ? kept : left_out_).push_back(pairs_[p]);
+    pairs_ = kept;
+  }
+
+  Links<N, Scalar> links_;
+  Vector3 tip_;  ///< In the last link's frame.
+  std::vector<Body> bodies_;
+  std::vector<Obstacle<Scalar>> obstacles_;
+  std::vector<ShapePair> pairs_;
+  std::vector<ShapePair> left_out_;
+  std::vector<std::size_t> open_;
+  std::size_t open_count_ = 0;
+  Scalar margin_;
+  Away<Scalar> away_;
+  Scalar tip_speed_ = std::numeric_limits<Scalar>::infinity();
+  typename Links<N, Scalar>::Frames frames_;
+};
+
+}  // namespace fpbm

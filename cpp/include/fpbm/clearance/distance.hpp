@@ -1,0 +1,55 @@
+#pragma once
+
+#include "fpbm/clearance/segment_cuboid.hpp"
+#include "fpbm/clearance/segment_segment.hpp"
+#include "fpbm/clearance/shape.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Where two shapes come nearest to one another; where they do so in several places, or may be parted in several
+/// directions as well, one of these. Never NaN for shapes whose lengths have finite squares.
+template <typename Scalar = double>
+struct Nearest {
+  Scalar distance;              ///< Signed [m]: below zero, the least way that either must move to part them.
+  Vector<3, Scalar> normal;     ///< Unit vector from second to first: moving first along it by x adds x to distance.
+  Vector<3, Scalar> on_first;   ///< On the surface of first; on_first = on_second + distance · normal.
+  Vector<3, Scalar> on_second;  ///< On the surface of second.
+
+  /// For a capsule whose core is so far from second, at a point of the core.
+  [[nodiscard]] static Nearest of_core(Scalar distance, const Vector<3, Scalar>& normal, const Vector<3, Scalar>& point,
+                                       Scalar radius) noexcept {
+    return {distance - radius, normal, point - radius * normal, point - distance * normal};
+  }
+};
+
+/// Of two capsules.
+template <typename Scalar>
+[[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Capsule<Scalar>& second) noexcept {
+  const Segment<Scalar> core = first.core();
+  const NearestOfSegments<Scalar> cores(core, second.core());
+  return Nearest<Scalar>::of_core(cores.gap - second.radius, cores.normal, core.at(cores.s), first.radius);
+}
+
+/// Of a capsule and a half-space: at that end of the capsule which is deeper.
+template <typename Scalar>
+[[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const HalfSpace<Scalar>& second) noexcept {
+  const Scalar at_a = second.normal.dot(first.a);
+  const Scalar at_b = second.normal.dot(first.b);
+  const bool b_deeper = at_b < at_a;
+  const Scalar distance = (b_deeper ? at_b : at_a) - second.offset;
+  return Nearest<Scalar>::of_core(distance, second.normal, b_deeper ? first.b : first.a, first.radius);
+}
+
+/// Of a capsule and a box.
+template <typename Scalar>
+[[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Cuboid<Scalar>& second) noexcept {
+  const Segment<Scalar> core = first.core();
+  const auto to_box = second.pose.R.transpose();
+  const NearestToBox<Scalar> cores({to_box.lazyProduct(core.start - second.pose.p), to_box.lazyProduct(core.way)},
+                                   second.half);
+  const Vector<3, Scalar> normal = second.pose.R.lazyProduct(cores.normal);
+  return Nearest<Scalar>::of_core(cores.gap, normal, core.at(cores.t), first.radius);
+}
+
+}  // namespace fpbm

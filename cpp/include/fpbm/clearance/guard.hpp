@@ -1,0 +1,217 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "fpbm/clearance/advance.hpp"
+#include "fpbm/clearance/away.hpp"
+#include "fpbm/clearance/tip_speed.hpp"
+#include "fpbm/limits/rows.hpp"
+
+namespace fpbm {
+
+/// Keeps clear of nothing.
+struct Unguarded {
+  [[nodiscard]] static constexpr bool empty() noexcept { return true; }
+  [[nodiscard]] static constexpr bool is_near(std::uint32_t) noexcept { return false; }
+  template <Level kLevel, int N, typename Scalar>
+  [[nodiscard]] static Rows<N, 0, Scalar> rows(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&) noexcept {
+    return {};
+  }
+};
+
+/// Keeps an arm clear of itself and its surroundings, tick by tick.
+///
+/// A tick is taken only if from its end the arm can stop with all pairs keeping their margin all the way
+/// (keeps_apart()); else the arm goes on with the stop that was found for the tick before. So no pair that does not
+/// move by itself ever comes nearer than its margin, by induction from the start. rows() are bounds on the next motion
+/// that leave room for that: they make the arm slide along a surface rather than stop before it.
+template <Level kLevel, int N, typename Scalar = double>
+class Guard {
+ public:
+  static constexpr int kPairs = 16;         ///< Rows for pairs, at most: of more, those with least to spare.
+  static constexpr int kRows = kPairs + 1;  ///< One for the tip's speed.
+  using JointVector = Vector<N, Scalar>;
+  using JointState = State<N, Scalar>;
+  using JointLimits = Limits<kLevel, N, Scalar>;
+
+  explicit Guard(const Clearance<N, Scalar>& clearance)
+      : clearance_(clearance), plan_(clearance.links().dof()), sweep_(plan_.sweep()) {}
+
+  /// Starts from a state after a tick of acceleration last. Throws std::invalid_argument, with the pair's names, where
+  /// the arm is not clear of all, or cannot stop clear of it.
+  void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
+    validation::require_size("clearance's joints", clearance_.links().dof(), start.q.size());
+    if (empty()) return;
+    clearance_.place(start.q);
+    const auto [pair, distance] = clearance_.nearest_pair();
+    if (!(distance >= clearance_.margin())) {
+      const auto [a, b] = clearance_.names(clearance_.pairs()[pair]);
+      const validation::Argument argument("q0", -1, "q0: the distance of '" + a + "' and '" + b + "'");
+      validation::fail(argument, static_cast<double>(distance), "at least the margin");
+    }
+    plan_ = {limits, start, last};
+    sweep_ = plan_.sweep(limits, start, start);
+    if (!keeps_apart(clearance_, start.q, sweep_, time(limits), Pairs::kAtRest)) {
+      validation::reject("qd0", ": too fast for the arm to stop clear of all shapes");
+    }
+  }
+
+  /// Whether there is nothing to keep clear of.
+  [[nodiscard]] bool empty() const noexcept { return clearance_.pairs().empty(); }
+  [[nodiscard]] Clearance<N, Scalar>& clearance() noexcept { return clearance_; }
+  [[nodiscard]] const Clearance<N, Scalar>& clearance() const noexcept { return clearance_; }
+
+  /// Bounds on the next tick's motion from a state, for the pairs that are near enough to need them.
+  ///
+  /// A gap s that closes at w must not close faster than w T ≤ κ (s − c), where T is the time that the plan's stop
+  /// takes on average, with an offset, and c is what the plan's way takes beyond its slope. So the arm comes to rest at
+  /// the margin without a jolt, and slides along a surface. κ < 1 leaves room for keeps_apart().
+  [[nodiscard]] Rows<N, kRows, Scalar> rows(const JointLimits& limits, const JointState& state) noexcept {
+    Rows<N, kRows, Scalar> rows;
+    rows.g.resize(state.q.size(), kRows);
+    room_ = Scalar(0);
+    near_ = 0;
+    if (empty()) return rows;
+    const Scalar h = limits.tick();
+    const JointVector middle = state.q + h / Scalar(2) * state.qd;  // Of the tick, where the task's J is taken as well.
+    clearance_.place(middle);
+    // Without the steps that whole ticks make, which would be felt as jerks.
+    const Scalar ticks = Scalar(1) + plan_.smooth_average(limits);
+    const Scalar average = h * ticks;
+    const Scalar time = average + kSoft;
+    // Velocity at the tick's end, after letting go of the acceleration: qd + late h u.
+    const Scalar late = plan_.latency(limits);
+    ChainSweep<N, Scalar> sweep(clearance_.links(), sweep_);
+    const JointVector way = ticks / (Scalar(1) + plan_.average()) * sweep_.way;
+    sweep.way = clearance_.links().motion(way);
+    ChainSweep<N, Scalar> fastest = sweep;
+    fastest.way = (time / kShare) * clearance_.links().motion(fastest_of(limits, state, late));
+    // No pair whose distance exceeds a reach of fastest needs a row; bend takes no more than its reach times all turns.
+    const auto most = (sweep.way.cwiseAbs() + sweep.rest).eval();
+    const Scalar turned = most.sum();
+    clearance_.set_reach(fastest.way + sweep.rest + turned * most);
+    const auto speed = clearance_.links().motion(state.qd);
+    const ShapePair* pairs[kPairs];
+    Scalar slack[kPairs];
+    Scalar closing[kPairs];
+    Scalar spares[kPairs];  // By how much gaps close slower than they may.
+    for (const ShapePair& pair : clearance_.pairs()) {
+      const Scalar moves = pair.world ? time * clearance_.obstacles()[pair.second].velocity.norm() : Scalar(0);
+      if (clearance_.roughly(pair) >= clearance_.margin() + clearance_.bodies()[pair.first].reach + moves) continue;
+      const Bend<N, Scalar> bend(clearance_, pair, sweep);
+      const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
+      const Scalar far =
+          clearance_.margin() + bend.c0 + bend.c1 + bend.c2 + moves + reach(clearance_, pair, fastest, Scalar(1));
+      const Nearest<Scalar> found = clearance_.nearest_of(pair);
+      if (found.distance >= far) continue;
+      room_ += found.distance;
+      const Separation<N, Scalar> plane(clearance_, pair, found);
+      const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
+      const auto nearest = plane.gradient[0] + plane.at * (plane.gradient[1] - plane.gradient[0]);
+      for (int e = 0; e < (between ? 1 : 2); ++e) {
+        const Scalar gap = between ? plane.distance : plane.gap[e];
+        const auto& gradient = between ? nearest : plane.gradient[e];
+        const JointVector g = clearance_.links().by_drive(gradient);
+        const Scalar left = gap - taken - beyond_slope(sweep, speed, gradient, average);
+        const Scalar spare = kShare * left / time - plane.closing + g.dot(state.qd);
+        const Eigen::Index k = row_for(spare, spares, rows.count);
+        if (k == kPairs) continue;
+        spares[k] = spare;
+        pairs[k] = &pair;
+        slack[k] = plane.distance + nearest.dot(sweep.way);  // At the way's end, without what bends it.
+        closing[k] = plane.closing;
+        rows.b(k) = left;
+        rows.g.col(k) = g;
+      }
+    }
+    near_ = rows.count;
+    if (near_ == 0) return rows;
+    clearance_.place(middle + way);
+    for (Eigen::Index k = 0; k < rows.count; ++k) {
+      const Scalar bent = slack[k] - clearance_.nearest_of(*pairs[k]).distance;
+      const Scalar left = rows.b(k) - std::max(bent, Scalar(0));
+      const Scalar now = rows.g.col(k).dot(state.qd);
+      rows.b(k) = (left > Scalar(0) ? kShare * left / time : left / (kShare * average)) - closing[k];  // −g·q̇
+      rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - late) * now;
+      rows.g.col(k) *= kLevel == Level::kAcceleration ? -late * h : -late;
+    }
+    return rows;
+  }
+
+  /// Adds a row for the tip's speed, which a tick's motion may exceed.
+  void bound_tip_speed(const JointLimits& limits, const JointState& state, const JointVector& u,
+                       Rows<N, kRows, Scalar>& rows) noexcept {
+    fpbm::bound_tip_speed(clearance_, limits, state, plan_.latency(limits), u, rows);
+  }
+
+  /// Whether some of the rows that bound a motion are those of pairs; bit k is for row k.
+  [[nodiscard]] bool is_near(std::uint32_t rows) const noexcept {
+    return (rows & ((std::uint32_t(1) << near_) - std::uint32_t(1))) != 0;
+  }
+
+  /// Sum of the distances of pairs that rows() found near. While the arm rests, it changes only where shapes move.
+  [[nodiscard]] Scalar room() const noexcept { return room_; }
+
+  /// Motion away from shapes, for the null space, where it was asked for.
+  [[nodiscard]] bool draws_away() const noexcept { return clearance_.away().gain > Scalar(0) && !empty(); }
+  [[nodiscard]] JointVector away(const JointVector& q) noexcept {
+    clearance_.place(q);
+    return motion_away(clearance_);
+  }
+
+  /// Whether the arm may go from one state to another in a tick; if so, a stop from there is the plan. Where no stop is
+  /// sure to be clear of shapes that move, the arm gives way to them as its rows say.
+  [[nodiscard]] bool accepts(const JointLimits& limits, const JointState& from, const JointState& to) noexcept {
+    const StopPlan<kLevel, N, Scalar> plan(limits, to, (to.qd - from.qd) / limits.tick());
+    const Sweep<N, Scalar> sweep = plan.sweep(limits, from, to);
+    const Scalar time = limits.tick() * (Scalar(1) + plan.ticks_left());
+    clearance_.place(from.q);
+    if (!keeps_apart(clearance_, from.q, sweep, time)) {
+      if (!clearance_.moves()) return false;
+      clearance_.place(from.q);
+      if (!keeps_apart(clearance_, from.q, sweep, time, Pairs::kAtRest)) return false;
+    }
+    plan_ = plan;
+    sweep_ = sweep;
+    return true;
+  }
+
+  /// Accelerations of the next tick of the plan.
+  [[nodiscard]] JointVector stop(const JointLimits& limits, const JointState& state, const JointVector& last) noexcept {
+    return plan_.next(limits, state, last);
+  }
+
+ private:
+  /// No joint can be faster at a tick's end, once its acceleration has been let go.
+  [[nodiscard]] static JointVector fastest_of(const JointLimits& limits, const JointState& state,
+                                              Scalar late) noexcept {
+    JointVector speed = state.qd.cwiseAbs() + late * limits.tick() * limits.bounds().acceleration;
+    return speed.cwiseMin(limits.bounds().velocity);
+  }
+
+  /// Where a row with so much to spare goes: behind those that are there, in place of the one with most of all, or
+  /// nowhere, at kPairs.
+  [[nodiscard]] static Eigen::Index row_for(Scalar spare, const Scalar* spares, Eigen::Index& count) noexcept {
+    if (count < kPairs) return count++;
+    const Scalar* most = std::max_element(spares, spares + kPairs);
+    return spare < *most ? most - spares : kPairs;
+  }
+
+  [[nodiscard]] Scalar time(const JointLimits& limits) const noexcept {
+    return limits.tick() * (Scalar(1) + plan_.ticks_left());
+  }
+
+  static constexpr Scalar kSoft = Scalar(0.05);  ///< Offset of the envelope over its deceleration [s].
+  static constexpr Scalar kShare = Scalar(0.8);  ///< κ
+  static constexpr Scalar kSteps = Scalar(4);    ///< Advances that a stop along a surface may take.
+
+  Clearance<N, Scalar> clearance_;
+  StopPlan<kLevel, N, Scalar> plan_;
+  Sweep<N, Scalar> sweep_;  ///< Of the plan and the tick before it.
+  Scalar room_ = Scalar(0);
+  Eigen::Index near_ = 0;  ///< Rows of pairs.
+};
+
+}  // namespace fpbm

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/clearance/shape.hpp"
+#include "fpbm/clearance/widest_gap.hpp"
+#include "fpbm/core/rotation.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// part / whole, kept within [0, 1], for whole ≥ 0; never NaN.
+template <typename Scalar>
+[[nodiscard]] Scalar fraction(Scalar part, Scalar whole) noexcept {
+  if (!(part > Scalar(0))) return Scalar(0);
+  return part < whole ? part / whole : Scalar(1);
+}
+
+/// Where two segments a + s u and b + t v come nearest to one another (C. Ericson, Real-Time Collision Detection, 2005,
+/// 5.1.9), and the unit vector from the second to the first there.
+template <typename Scalar>
+struct NearestOfSegments {
+  using Vector3 = Vector<3, Scalar>;
+
+  Scalar s;
+  Scalar t;
+  Scalar gap;  ///< Distance.
+  Vector3 normal;
+
+  NearestOfSegments(const Segment<Scalar>& first, const Segment<Scalar>& second) noexcept {
+    using std::sqrt;
+    const Vector3& u = first.way;
+    const Vector3& v = second.way;
+    const Vector3 w = first.start - second.start;
+    const Vector3 c = cross(u, v);
+    const Scalar uu = u.squaredNorm();
+    const Scalar vv = v.squaredNorm();
+    // Where the lines come nearest. With |c|² = (u·u)(v·v) − (u·v)², half the digits would be lost near parallel.
+    s = fraction(c.dot(cross(v, w)), c.squaredNorm());
+    t = fraction(v.dot(w + s * u), vv);
+    if (t == Scalar(0) || t == Scalar(1)) s = fraction(u.dot(t * v - w), uu);
+    const Vector3 between = w + s * u - t * v;
+    const Scalar squared = between.squaredNorm();
+    gap = sqrt(squared);
+    if (tells_direction(squared, uu + vv)) {
+      normal = between / gap;
+    } else {
+      normal = touching(u, v, w, c, between);
+    }
+  }
+
+ private:
+  static bool inside(Scalar fraction) noexcept { return Scalar(0) < fraction && fraction < Scalar(1); }
+
+  /// The normal where the difference of the nearest points is too short to tell. Rare, and kept apart from what is not.
+  [[gnu::noinline, gnu::cold]] Vector3 touching(const Vector3& u, const Vector3& v, const Vector3& w, const Vector3& c,
+                                                Vector3 between) const noexcept {
+    using std::abs;
+    const auto reach = [&u, &v](const Vector3& n) { return (abs(n.dot(u)) + abs(n.dot(v))) / Scalar(2); };
+    const Scalar size = u.cwiseAbs().sum() + v.cwiseAbs().sum();
+    WidestGap<Scalar, decltype(reach)> widest(w + (u - v) / Scalar(2), reach, size);
+    // At right angles to a segment, but for an end's.
+    if (inside(s)) between = across(between, u);
+    if (inside(t)) between = across(between, v);
+    widest.offer(between);
+    // Near parallel, c is as inaccurate as it is short; what that leaves of u in it counts.
+    widest.offer(across(c, u));
+    widest.offer(perpendicular(u.squaredNorm() > v.squaredNorm() ? u : v));
+    return widest.normal();
+  }
+};
+
+}  // namespace fpbm

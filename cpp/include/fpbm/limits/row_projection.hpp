@@ -1,0 +1,160 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "fpbm/limits/rows.hpp"
+#include "fpbm/linalg/cholesky.hpp"
+
+namespace fpbm {
+
+/// The motion within rows g·u ≤ b that changes a desired one's task least:
+///
+///   min (u − desired)ᵀ (Jᵀ B⁻¹ J + I) (u − desired),
+///
+/// with B = μI, say, where self-motion costs μ of what the task does, or with larger entries for what the task may lose
+/// easily.
+/// By the dual active-set method (D. Goldfarb, A. Idnani 1983): rows are met one by one, and one whose multiplier comes
+/// to zero is let go. A continuous function of all inputs.
+template <int M, int N, int P, typename Scalar>
+class RowProjection {
+ public:
+  using JointVector = Vector<N, Scalar>;
+
+  RowProjection(const Matrix<M, N, Scalar>& J, const Matrix<M, M, Scalar>& B, const Rows<N, P, Scalar>& rows) noexcept
+      : rows_(rows) {
+    Matrix<M, M, Scalar> gram = B;
+    gram += J.lazyProduct(J.transpose());
+    Cholesky<M, Scalar> cholesky;
+    const bool regular = cholesky.factor(gram) == Status::kOk;
+    ways_.resize(J.cols(), P);
+    for (Eigen::Index k = 0; k < rows.count; ++k) {
+      ways_.col(k) = rows.g.col(k);  // (JᵀB⁻¹J + I)⁻¹ g
+      if (!regular) continue;
+      const Vector<M, Scalar> along = cholesky.solve(Vector<M, Scalar>(J.lazyProduct(rows.g.col(k))));
+      ways_.col(k) -= J.transpose().lazyProduct(along);
+    }
+  }
+
+  /// The motion for a desired one, exact to round-off where `solved` is set; otherwise the rows leave no motion, or as
+  /// good as none.
+  [[nodiscard]] JointVector operator()(const JointVector& desired) noexcept {
+    u_ = desired;
+    count_ = 0;
+    solved = false;
+    bool meets = false;
+    for (int change = 0; change < kChanges * P; ++change) {
+      if (!meets && !find()) {
+        solved = true;
+        break;
+      }
+      if (!step(meets)) break;
+    }
+    return u_;
+  }
+
+  /// Bit k is set where row k bounds the motion.
+  [[nodiscard]] std::uint32_t active() const noexcept {
+    std::uint32_t bits = 0;
+    for (Eigen::Index j = 0; j < count_; ++j) bits |= std::uint32_t(1) << active_[j];
+    return bits;
+  }
+
+  bool solved = false;
+
+ private:
+  static constexpr int kChanges = 3;  ///< At most, for each row.
+  static constexpr int kMost = P < kCapacity<N> ? P : kCapacity<N>;
+  static constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  /// A row counts as one of those that are active where less than this is left of it without them.
+  static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
+  using Share = Vector<Eigen::Dynamic, Scalar>;
+
+  /// The row that is exceeded most, in the measure of the problem. False where none is.
+  [[nodiscard]] bool find() noexcept {
+    Scalar worst(0);
+    for (Eigen::Index k = 0; k < rows_.count; ++k) {
+      const Scalar beyond = rows_.excess(k, u_);
+      const Scalar size = gain(k, k);
+      const Scalar round_off = kRoundOff * (std::abs(rows_.b(k)) + rows_.g.col(k).cwiseAbs().dot(u_.cwiseAbs()));
+      if (!(size > Scalar(0)) || !(beyond > round_off) || !(beyond * beyond > worst * size) || is_active(k)) continue;
+      worst = beyond * beyond / size;
+      met_ = k;
+    }
+    multiplier_ = Scalar(0);
+    return worst > Scalar(0);
+  }
+
+  /// Brings u toward the row that is met, until it is there or an active one's multiplier is zero: then that is let go,
+  /// and the row is still to be met. False where there is no way.
+  [[nodiscard]] bool step(bool& meets) noexcept {
+    Share share(count_);  // What each active row's multiplier loses, for one that the met row's gains.
+    if (!find_shares(share)) return false;
+    JointVector way = ways_.col(met_);
+    for (Eigen::Index j = 0; j < count_; ++j) way -= share(j) * ways_.col(active_[j]);
+    Scalar length = std::numeric_limits<Scalar>::infinity();
+    Eigen::Index leaving = -1;
+    for (Eigen::Index j = 0; j < count_; ++j) {
+      if (!(share(j) > Scalar(0)) || !(multipliers_[j] < length * share(j))) continue;
+      length = multipliers_[j] / share(j);
+      leaving = j;
+    }
+    const Scalar slope = rows_.g.col(met_).dot(way);
+    const bool independent = slope > kIndependent * gain(met_, met_) && count_ < kMost;
+    const Scalar beyond = rows_.excess(met_, u_);
+    if (independent && beyond <= length * slope) {
+      length = beyond / slope;
+      leaving = -1;
+    } else if (leaving < 0) {
+      return false;
+    }
+    if (independent) u_ -= length * way;
+    multiplier_ += length;
+    for (Eigen::Index j = 0; j < count_; ++j) multipliers_[j] -= length * share(j);
+    meets = leaving >= 0;
+    if (!meets) {
+      active_[count_] = met_;
+      multipliers_[count_++] = multiplier_;
+      return true;
+    }
+    --count_;
+    for (Eigen::Index j = leaving; j < count_; ++j) {
+      active_[j] = active_[j + 1];
+      multipliers_[j] = multipliers_[j + 1];
+    }
+    return true;
+  }
+
+  /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, with G the active rows and g that which is met.
+  [[nodiscard]] bool find_shares(Share& share) const noexcept {
+    if (count_ == 0) return true;
+    Matrix<Eigen::Dynamic, Eigen::Dynamic, Scalar> gram(count_, count_);
+    for (Eigen::Index j = 0; j < count_; ++j) {
+      share(j) = gain(active_[j], met_);
+      for (Eigen::Index i = j; i < count_; ++i) gram(i, j) = gain(active_[i], active_[j]);
+    }
+    Cholesky<Eigen::Dynamic, Scalar> cholesky;
+    if (cholesky.factor(gram) != Status::kOk) return false;
+    share = cholesky.solve(share);
+    return true;
+  }
+
+  /// gᵢᵀ H⁻¹ gⱼ
+  [[nodiscard]] Scalar gain(Eigen::Index i, Eigen::Index j) const noexcept { return rows_.g.col(i).dot(ways_.col(j)); }
+
+  [[nodiscard]] bool is_active(Eigen::Index k) const noexcept {
+    return std::find(active_, active_ + count_, k) != active_ + count_;
+  }
+
+  Rows<N, P, Scalar> rows_;
+  Matrix<N, P, Scalar> ways_;
+  JointVector u_;
+  Eigen::Index met_ = 0;
+  Scalar multiplier_ = Scalar(0);  ///< Of the row that is met.
+  Eigen::Index count_ = 0;
+  Eigen::Index active_[kMost];
+  Scalar multipliers_[kMost];
+};
+
+}  // namespace fpbm

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fpbm/limits/box.hpp"
+
+namespace fpbm {
+
+/// Bounds g_k · u ≤ b_k on joint motions, beside those of a box: count of them, P at most.
+template <int N, int P, typename Scalar = double>
+struct Rows {
+  Matrix<N, P, Scalar> g;  ///< Column k is g_k.
+  Vector<P, Scalar> b;
+  Eigen::Index count = 0;
+
+  /// How far a motion exceeds row k, below zero where it keeps it.
+  [[nodiscard]] Scalar excess(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
+    return g.col(k).dot(u) - b(k);
+  }
+
+  /// Whether a motion keeps all rows.
+  [[nodiscard]] bool admit(const Vector<N, Scalar>& u) const noexcept {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!(excess(k, u) <= Scalar(0))) return false;
+    }
+    return true;
+  }
+
+  /// How far from a motion that keeps them, to round-off, one may go toward another, 1 for all the way.
+  [[nodiscard]] Scalar share(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
+    constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+    Scalar share(1);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Scalar slack = kRoundOff * (std::abs(b(k)) + g.col(k).cwiseAbs().dot(from.cwiseAbs() + to.cwiseAbs()));
+      const Scalar room = slack - excess(k, from);
+      const Scalar change = g.col(k).dot(to - from);
+      if (change * share > room) share = room > Scalar(0) ? room / change : Scalar(0);
+    }
+    return share;
+  }
+
+  /// A motion in a box that keeps the rows, or nearly, near to a given one: the same where that keeps them.
+  [[nodiscard]] Vector<N, Scalar> near(Vector<N, Scalar> u, const Box<N, Scalar>& box) const noexcept {
+    constexpr int kRounds = 8;
+    for (int round = 0; round < kRounds && !admit(u); ++round) {
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const Scalar beyond = excess(k, u);
+        const Scalar square = g.col(k).squaredNorm();
+        if (beyond > Scalar(0) && square > Scalar(0)) u -= beyond / square * g.col(k);
+      }
+      u = box.nearest(u);
+    }
+    return u;
+  }
+
+  /// The rows, widened as far as a motion needs.
+  [[nodiscard]] Rows widened(const Vector<N, Scalar>& u) const noexcept {
+    Rows wider = *this;
+    for (Eigen::Index k = 0; k < count; ++k) wider.b(k) += std::max(excess(k, u), Scalar(0));
+    return wider;
+  }
+};
+
+/// None.
+template <int N, typename Scalar>
+struct Rows<N, 0, Scalar> {
+  [[nodiscard]] static bool admit(const Vector<N, Scalar>&) noexcept { return true; }
+  [[nodiscard]] static const Vector<N, Scalar>& near(const Vector<N, Scalar>& u, const Box<N, Scalar>&) noexcept {
+    return u;
+  }
+  [[nodiscard]] static Scalar share(const Vector<N, Scalar>&, const Vector<N, Scalar>&) noexcept { return Scalar(1); }
+};
+
+}  // namespace fpbm

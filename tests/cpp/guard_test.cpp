@@ -1,0 +1,473 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "fpbm/realtime/tracker.hpp"
+#include "support/arms.hpp"
+#include "support/bodies.hpp"
+#include "support/wild_reference.hpp"
+
+/// An arm that keeps clear of shapes: no pair comes nearer than its margin, whatever is asked for.
+namespace fpbm::test {
+namespace {
+
+constexpr int kOpen = Eigen::Dynamic;
+constexpr double kTick = 1e-3;
+constexpr double kSlack = 1e-9;
+
+template <Level kLevel>
+[[nodiscard]] auto scheme() {
+  if constexpr (kLevel == Level::kVelocity) {
+    return MVN<kOpen>(5.0);
+  } else {
+    return FPBM<kOpen>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(2.0));
+  }
+}
+
+template <Level kLevel>
+using GuardedTracker = Tracker<AnyArm<Position<3>>, Position<3>, decltype(scheme<kLevel>()), Guard<kLevel, kOpen>>;
+
+struct Run {
+  double nearest = 1e9;  ///< Least distance beyond the margin.
+  double joints = 0.0;   ///< Largest excess over a bound of a joint, relative to it.
+  int blocked = 0;
+  int ticks = 0;
+};
+
+/// A random start clear of all shapes, and as many obstacles as leave one.
+struct Scene {
+  Clearance<kOpen> clearance;
+  Vector<kOpen> q;
+};
+
+[[nodiscard]] Scene random_scene(const Chain<>& chain, Random& random, double margin) {
+  const auto arm = any_arm(chain);
+  Kinematics<Position<3>, kOpen> kinematics;
+  for (;;) {
+    Vector<kOpen> q(arm.dof());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double low = std::max(arm.limits().lower(i), -2.5);
+      const double high = std::min(arm.limits().upper(i), 2.5);
+      q(i) = low + random.uniform(0.1, 0.9) * (high - low);
+    }
+    arm.kinematics(q, kinematics);
+    std::vector<Obstacle<>> obstacles;
+    for (int k = 0; k < 3; ++k) obstacles.push_back(random_obstacle(random, kinematics.length, k));
+    Clearance<kOpen> clearance(chain, sticks(chain, 0.04 * kinematics.length), obstacles, margin);
+    clearance.place(q);
+    if (clearance.nearest_pair().second > margin) return {clearance, q};
+  }
+}
+
+/// Pulls an arm about with wild references and with ones that go straight through the shapes.
+template <Level kLevel>
+void pull(const Chain<>& chain, std::uint32_t seed, int ticks, Run& run) {
+  Random random(seed);
+  const double margin = seed % 2 == 0 ? 0.01 : 0.0;
+  Scene scene = random_scene(chain, random, margin);
+  const auto arm = any_arm(chain);
+  const Limits<kLevel, kOpen> limits(arm.limits(), kTick);
+  GuardedTracker<kLevel> tracker(arm, Position<3>{}, scheme<kLevel>(),
+                                 State<kOpen>{scene.q, Vector<kOpen>::Zero(arm.dof())}, TrackerOptions<>{kTick}, limits,
+                                 Vector<kOpen>::Zero(arm.dof()), Guard<kLevel, kOpen>(scene.clearance));
+  const auto& bounds = limits.bounds();
+  auto target = Reference<Position<3>>::hold(tracker.tip());
+  Vector<kOpen> q = scene.q;
+  Vector<kOpen> qd = Vector<kOpen>::Zero(q.size());
+  Vector<kOpen> last = qd;
+  for (int k = 0; k < ticks; ++k) {
+    if (k % 500 == 0) {
+      const Vector<3> way = random.uniform(3, -1.0, 1.0);
+      target = Reference<Position<3>>::hold(Vector<3>(tracker.tip() + way));
+      if (k % 1500 == 1000) target = wild_reference<Position<3>>(random, tracker.tip());
+    }
+    if (k % 3000 == 2500) tracker.stop();
+    if (k % 3000 == 2700) tracker.resume();
+    const auto tick = tracker.tick(target);
+    for (int part = 1; part <= 4; ++part) {
+      const double t = part * kTick / 4.0;
+      Vector<kOpen> between = q + (part / 4.0) * (tick.q - q);
+      if (kLevel == Level::kAcceleration) between = q + t * qd + t * t / 2.0 * tick.qdd;
+      scene.clearance.place(between);
+      run.nearest = std::min(run.nearest, scene.clearance.nearest_pair().second - margin);
+    }
+    ++run.ticks;
+    if (tick.status == Status::kBlocked) ++run.blocked;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double range = std::isfinite(bounds.upper(i)) ? bounds.upper(i) - bounds.lower(i) : 1.0;
+      run.joints = std::max({run.joints, (tick.q(i) - bounds.upper(i)) / range, (bounds.lower(i) - tick.q(i)) / range,
+                             std::abs(tick.qd(i)) / bounds.velocity(i) - 1.0});
+      if (std::isfinite(bounds.acceleration(i))) {
+        run.joints = std::max(run.joints, std::abs(tick.qdd(i)) / bounds.acceleration(i) - 1.0);
+      }
+      if (std::isfinite(bounds.jerk(i))) {
+        run.joints = std::max(run.joints, std::abs(tick.qdd(i) - last(i)) / (bounds.jerk(i) * kTick) - 1.0);
+      }
+    }
+    q = tick.q;
+    qd = tick.qd;
+    last = tick.qdd;
+  }
+}
+
+[[nodiscard]] Chain<> with_jerk(Chain<> chain, double rate) {
+  for (auto& joint : chain.joints) joint.bounds.jerk = rate * joint.bounds.acceleration;
+  return chain;
+}
+
+template <Level kLevel>
+void expect_to_keep_clear() {
+  const std::vector<std::pair<std::string, Chain<>>> chains = {{"panda", presets::panda()},
+                                                               {"panda without jerk", panda_without_jerk()},
+                                                               {"soft panda", with_jerk(presets::panda(), 20.0)},
+                                                               {"fr3", presets::fr3()},
+                                                               {"ur5e", presets::ur5e()},
+                                                               {"rail", panda_on_rail()},
+                                                               {"coupled", coupled_panda()}};
+  for (const auto& [name, chain] : chains) {
+    Run run;
+    for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
+      pull<kLevel>(chain, seed, 4000, run);
+      ASSERT_GE(run.nearest, -kSlack) << name << ", seed " << seed;
+    }
+    EXPECT_LE(run.joints, 1e-9) << name;
+    EXPECT_GE(run.blocked, run.ticks / 50) << name;
+    std::printf("%s: nearest %.1e beyond the margin, joints' bounds %.1e, blocked %d of %d ticks\n", name.c_str(),
+                run.nearest, run.joints, run.blocked, run.ticks);
+  }
+}
+
+TEST(Guard, no_pair_comes_nearer_than_its_margin) {
+  expect_to_keep_clear<Level::kAcceleration>();
+  expect_to_keep_clear<Level::kVelocity>();
+}
+
+using Panda = SerialArm<7>;
+using PandaGuard = Guard<Level::kAcceleration, 7>;
+
+[[nodiscard]] Vector<7> ready() {
+  return (Vector<7>() << 0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785).finished();
+}
+
+/// A Panda's tracker of positions, at rest in the ready posture, with a hand of 10 cm.
+[[nodiscard]] auto panda_tracker(const std::vector<Obstacle<>>& obstacles) {
+  const Chain<> chain = presets::panda();
+  const Panda arm(chain);
+  const std::vector<LinkCapsule<>> hand = {{7, {Vector<3>::Zero(), chain.tip.p, 0.05}, "hand"}};
+  const Clearance<7> clearance(chain, hand, obstacles, 0.01);
+  const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+  return Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard>(
+      arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
+      Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(clearance));
+}
+
+struct Slide {
+  double along = 0.0;  ///< Largest error along the wall [m].
+  double jerk = 0.0;   ///< Of the joints, rms [rad/s³].
+  double nearest = 1e9;
+  int held = 0;
+};
+
+/// Swings along y at x, from the second second on.
+template <typename Tracker_>
+[[nodiscard]] Slide swing(Tracker_&& tracker, double x) {
+  const Vector<3> home = tracker.tip();
+  Slide slide;
+  Vector<7> last = Vector<7>::Zero();
+  double sum = 0.0;
+  int count = 0;
+  for (int k = 0; k < 8000; ++k) {
+    const double s = k * kTick;
+    auto target = Reference<Position<3>>::hold(home);
+    const double blend = std::min(s, 1.0);
+    const double w = 2.0;
+    target.x += Vector<3>(blend * (x - home(0)), 0.25 * std::sin(w * s), 0.0);
+    target.xd = {s < 1.0 ? x - home(0) : 0.0, 0.25 * w * std::cos(w * s), 0.0};
+    target.xdd(1) = -0.25 * w * w * std::sin(w * s);
+    const auto tick = tracker.tick(target);
+    auto clearance = tracker.guard().clearance();
+    clearance.place(tick.q);
+    slide.nearest = std::min(slide.nearest, clearance.nearest_pair().second);
+    const Vector<7> jerk = (tick.qdd - last) / kTick;
+    last = tick.qdd;
+    if (s < 2.0) continue;
+    slide.along = std::max(slide.along, std::hypot(tick.error(1), tick.error(2)));
+    sum += jerk.squaredNorm();
+    ++count;
+    slide.held += tick.scale == 0.0;
+  }
+  slide.jerk = std::sqrt(sum / count);
+  return slide;
+}
+
+/// With a target beyond a wall the tip slides along it: its error is in the wall's normal, and no joint chatters, where
+/// self-motion could gain a little as well as where it cannot.
+TEST(Guard, slides_along_a_wall) {
+  const auto wall_at = [](double x) { return Obstacle<>{"wall", HalfSpace<>{-Vector<3>::UnitX(), -x}}; };
+  for (const double x : {0.36, 0.48}) {
+    const Slide free = swing(panda_tracker({wall_at(2.0)}), x);
+    for (const double beyond : {0.005, 0.05, 0.1}) {
+      const Slide slide = swing(panda_tracker({wall_at(x + 0.06)}), x + beyond);
+      EXPECT_LE(slide.along, 1e-3) << x << ", " << beyond;
+      EXPECT_LE(slide.jerk, 1.2 * free.jerk) << x << ", " << beyond;
+      EXPECT_GE(slide.nearest, 0.01 - kSlack);
+      EXPECT_EQ(slide.held, 0) << x << ", " << beyond;
+      std::printf(
+          "tip held at %g m, %g m behind: %.1e m along the wall, jerk %.1f against %.1f rad/s^3, nearest %.1e m\n", x,
+          beyond, slide.along, slide.jerk, free.jerk, slide.nearest - 0.01);
+    }
+  }
+}
+
+/// A post that comes at the hand is given way to, and the tip returns once it is gone.
+TEST(Guard, gives_way_to_a_post) {
+  for (const double speed : {0.1, 0.25, 0.5}) {
+    const auto post_at = [](double y) { return Capsule<>{{0.35, y, 0.3}, {0.35, y, 1.0}, 0.03}; };
+    auto tracker = panda_tracker({{"post", post_at(-0.6)}});
+    const auto home = Reference<Position<3>>::hold(tracker.tip());
+    double nearest = 1e9;
+    double away = 0.0;
+    double y = -0.6;
+    for (int k = 0; k < 16000; ++k) {
+      y += kTick * speed;
+      ASSERT_TRUE(tracker.guard().clearance().move(0, post_at(y), Vector<3>(0.0, speed, 0.0)));
+      const auto tick = tracker.tick(home);
+      auto clearance = tracker.guard().clearance();
+      clearance.place(tick.q);
+      nearest = std::min(nearest, clearance.nearest_pair().second);
+      away = std::max(away, tick.error.norm());
+    }
+    EXPECT_GE(nearest, 0.0) << speed;
+    EXPECT_GE(away, 0.02) << speed;
+    EXPECT_LE((tracker.tip() - home.x).norm(), 1e-3) << speed;
+    std::printf("%g m/s: nearest %.4f m, tip away by %.3f m\n", speed, nearest, away);
+  }
+}
+
+/// Posts that cross the work space anywhere but at the first axis do not touch an arm with a hand of many capsules,
+/// which has more rows then than there is room for.
+TEST(Guard, gives_way_to_posts_from_all_sides) {
+  const Chain<> chain = presets::panda();
+  auto capsules = presets::capsules::panda();
+  for (const double side : {-1.0, 1.0}) {
+    const auto across = [side](double x, double z) { return Vector<3>(side * x, side * x, z); };
+    capsules.push_back({7, {across(-0.01, 0.115), across(0.056, 0.124), 0.036}, "hand"});
+    capsules.push_back({7, {across(0.0, 0.153), across(0.059, 0.153), 0.026}, "hand"});
+    capsules.push_back({7, {across(0.007, 0.213), across(0.013, 0.173), 0.015}, "finger"});
+  }
+  std::vector<std::pair<std::string, std::string>> allowed = presets::never_meet::panda();
+  for (const char* part : {"hand", "finger"}) {
+    for (const char* link : {"panda_link4", "panda_link5"}) allowed.emplace_back(part, link);
+  }
+  const Panda arm(chain);
+  const auto law = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+  TrackerOptions<> options{kTick};
+  options.stall_time = std::numeric_limits<double>::infinity();
+  const Vector<3> elbow(0.0, 0.0, 0.6);
+  const Vector<3> wrist = Tracker(arm, Position<3>{}, law, ready(), options).tip();
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
+    Random random(seed);
+    Vector<3> nearest_to_axis;
+    Vector<3> way;
+    do {
+      const double angle = random.uniform(-3.14, 3.14);
+      way = {std::cos(angle), std::sin(angle), 0.0};
+      nearest_to_axis = elbow + random.uniform(0.4, 1.1) * (wrist - elbow) + random.uniform(3, -0.05, 0.05);
+      nearest_to_axis(2) = 0.0;
+      nearest_to_axis -= nearest_to_axis.dot(way) * way;
+    } while (nearest_to_axis.norm() < 0.25);
+    for (const double speed : {0.1, 0.25, 0.5}) {
+      const auto post_at = [&](int k) {
+        const Vector<3> foot = nearest_to_axis + (k * kTick * speed - 0.95) * way;
+        return Capsule<>{foot, foot + 1.1 * Vector<3>::UnitZ(), 0.04};
+      };
+      Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
+          arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, options,
+          Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(),
+          PandaGuard(Clearance<7>(chain, capsules, {{"post", post_at(0)}}, 0.02, allowed)));
+      const auto home = Reference<Position<3>>::hold(tracker.tip());
+      double nearest = 1e9;
+      for (int k = 0; k * kTick * speed < 1.9; ++k) {
+        (void)tracker.guard().clearance().move(0, post_at(k), Vector<3>(speed * way));
+        const auto tick = tracker.tick(home);
+        auto clearance = tracker.guard().clearance();
+        clearance.place(tick.q);
+        nearest = std::min(nearest, clearance.nearest_pair().second);
+      }
+      EXPECT_GE(nearest, 0.0) << "seed " << seed << ", " << speed << " m/s";
+    }
+  }
+}
+
+/// An arm that a shape has driven off its target stalls and rests; gives way as the shape comes on, without haste; and
+/// goes back once it has left, not before.
+TEST(Guard, goes_back_when_a_shape_leaves) {
+  const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
+  auto tracker = panda_tracker({{"post", post_at(-0.7)}});
+  const auto home = Reference<Position<3>>::hold(tracker.tip());
+  double y = -0.7;
+  for (int k = 0; k < 24000; ++k) {
+    const double speed = k < 3500 ? 0.2 : k >= 10000 && k < 11000 ? 0.1 : k >= 15000 && k < 19000 ? -0.2 : 0.0;
+    y += kTick * speed;
+    ASSERT_TRUE(tracker.guard().clearance().move(0, post_at(y), Vector<3>(0.0, speed, 0.0)));
+    const auto tick = tracker.tick(home);
+    if ((k >= 8000 && k < 10000) || (k >= 14500 && k < 15000)) {
+      ASSERT_EQ(tick.status, Status::kStalled) << k;
+      ASSERT_EQ(tick.qd.norm(), 0.0) << k;
+      ASSERT_GE(tick.error.norm(), 0.05) << k;
+    }
+    if (k >= 10000 && k < 15000) {
+      auto clearance = tracker.guard().clearance();
+      clearance.place(tick.q);
+      ASSERT_GE(clearance.nearest_pair().second, 0.005) << k;
+      ASSERT_LE(tick.qd.cwiseAbs().maxCoeff(), 0.5) << k;
+    }
+  }
+  EXPECT_LE((tracker.tip() - home.x).norm(), 1e-3);
+}
+
+/// An arm to which a shape has jumped nearer than its margin, or into it, goes out again, and only out.
+TEST(Guard, goes_out_of_a_shape_that_jumped) {
+  for (const double nearer : {1e-6, 1e-3, 8e-3, 0.03}) {
+    const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
+    auto tracker = panda_tracker({{"post", post_at(-0.7)}});
+    const auto home = Reference<Position<3>>::hold(tracker.tip());
+    auto& clearance = tracker.guard().clearance();
+    const double room = clearance.nearest_pair().second - clearance.margin();
+    (void)clearance.move(0, post_at(-0.7 + room + nearer), Vector<3>::Zero());
+    double before = -1.0;
+    for (int k = 0; k < 2000; ++k) {
+      const auto tick = tracker.tick(home);
+      auto placed = tracker.guard().clearance();
+      placed.place(tick.q);
+      const double now = placed.nearest_pair().second - clearance.margin();
+      if (before < 0.0) {
+        ASSERT_GE(now, before - 1e-9) << nearer << " m, tick " << k;
+      } else {
+        ASSERT_GE(now, -kSlack) << nearer << " m, tick " << k;
+      }
+      before = now;
+    }
+    EXPECT_GE(before, -1e-5) << nearer;
+    std::printf("%g m nearer than the margin: %.1e m beyond it after 2 s\n", nearer, before);
+  }
+}
+
+/// Self-motion that keeps a distance leaves the tip where it is.
+TEST(Guard, self_motion_keeps_away_in_time) {
+  const Chain<> chain = presets::panda();
+  const std::vector<Obstacle<>> post = {{"post", Capsule<>{{0.2, 0.3, 0.0}, {0.2, 0.3, 1.0}, 0.05}}};
+  const std::vector<LinkCapsule<>> elbow = {{3, {{0.0825, 0.0, 0.0}, {0.0825, 0.0, 0.0}, 0.1}, "elbow"}};
+  const auto settle = [&](double gain) {
+    const Panda arm(chain);
+    const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(4.0));
+    Vector<7> q = ready();
+    q(0) = 0.6;
+    q(2) = -0.6;
+    Clearance<7> apart(chain, elbow, post, 0.0);
+    apart.keep_away({gain, 0.6});
+    Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
+        arm, Position<3>{}, law, State<7>{q, Vector<7>::Zero()}, TrackerOptions<>{kTick},
+        Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(apart));
+    const auto home = Reference<Position<3>>::hold(tracker.tip());
+    double error = 0.0;
+    for (int k = 0; k < 5000; ++k) error = std::max(error, tracker.tick(home).error.norm());
+    auto clearance = tracker.guard().clearance();
+    clearance.place(tracker.state().q);
+    return std::pair(clearance.nearest_pair().second, error);
+  };
+  const auto [without, still] = settle(0.0);
+  const auto [with, error] = settle(40.0);
+  std::printf("elbow %.3f m from the post, %.3f m without\n", with, without);
+  EXPECT_GE(with, without + 0.05);
+  EXPECT_LE(still, 1e-9);
+  EXPECT_LE(error, 1e-4);
+}
+
+/// Walls for the tip hold, and no other part of the arm heeds them.
+TEST(Guard, keeps_the_tip_within_its_box) {
+  const Chain<> chain = presets::panda();
+  const Panda arm(chain);
+  Clearance<7> clearance(chain, {}, {}, 0.0);
+  clearance.keep_tip_within({0.2, -0.2, 0.3}, {0.4, 0.2, 0.7});
+  EXPECT_EQ(clearance.pairs().size(), 6U);
+  const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+  Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
+      arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
+      Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(clearance));
+  Random random(1);
+  auto target = Reference<Position<3>>::hold(tracker.tip());
+  for (int k = 0; k < 20000; ++k) {
+    if (k % 500 == 0) target = Reference<Position<3>>::hold(random.uniform(3, -0.5, 1.0));
+    (void)tracker.tick(target);
+    const Vector<3> tip = tracker.tip();
+    ASSERT_TRUE((tip.array() >= Eigen::Array3d(0.2, -0.2, 0.3) - kSlack).all() &&
+                (tip.array() <= Eigen::Array3d(0.4, 0.2, 0.7) + kSlack).all())
+        << "tick " << k;
+  }
+}
+
+/// Where nothing but limits of the joints hinders it, the tip is as fast as it may be and no faster.
+template <Level kLevel>
+void expect_slow_tip() {
+  for (const auto& chain :
+       {presets::panda(), panda_without_jerk(), presets::ur5e(), panda_on_rail(), coupled_panda()}) {
+    Clearance<kOpen> clearance(chain, {}, {}, 0.0);
+    constexpr double kSpeed = 0.25;
+    clearance.bound_tip_speed(kSpeed);
+    const auto arm = any_arm(chain);
+    Random random(3);
+    const Vector<kOpen> q = spread_posture(chain, 3);
+    GuardedTracker<kLevel> tracker(arm, Position<3>{}, scheme<kLevel>(), State<kOpen>{q, 0.0 * q},
+                                   TrackerOptions<>{kTick}, Limits<kLevel, kOpen>(arm.limits(), kTick), 0.0 * q,
+                                   Guard<kLevel, kOpen>(clearance));
+    Vector<3> tip = tracker.tip();
+    auto target = Reference<Position<3>>::hold(tip);
+    double fastest = 0.0;
+    double hindered = 0.0;
+    for (int k = 0; k < trials(20000); ++k) {
+      if (k % 500 == 0) target = Reference<Position<3>>::hold(Vector<3>(tip + random.uniform(3, -0.5, 0.5)));
+      const bool free = tracker.tick(target).saturated == 0;
+      double& most = free ? fastest : hindered;
+      most = std::max(most, (tracker.tip() - tip).norm() / kTick);
+      tip = tracker.tip();
+    }
+    std::printf("tip at %.4f of %.2f m/s, %.4f where joints are at their bounds\n", fastest, kSpeed, hindered);
+    EXPECT_LE(fastest, 1.05 * kSpeed);  // The direction changes in a tick.
+    EXPECT_GE(fastest, 0.99 * kSpeed);
+  }
+}
+TEST(Guard, keeps_the_tip_s_speed) {
+  expect_slow_tip<Level::kAcceleration>();
+  expect_slow_tip<Level::kVelocity>();
+}
+
+TEST(Guard, names_what_is_wrong) {
+  const Chain<> chain = presets::panda();
+  EXPECT_EQ(complaint([&] { Clearance<7>(chain, {}, {}, 0.0).bound_tip_speed(0.0); }),
+            "tip_speed = 0: must be positive, or infinite");
+  const std::vector<LinkCapsule<>> hand = {{7, {Vector<3>::Zero(), chain.tip.p, 0.05}, "hand"}};
+  const auto with = [&](const Obstacle<>& obstacle) {
+    return [=] { (void)Clearance<7>(chain, hand, {obstacle}, 0.0); };
+  };
+  const Vector<3> zero = Vector<3>::Zero();
+  EXPECT_EQ(complaint(with({"wall", HalfSpace<>{Vector<3>(0.0, 0.0, 2.0), 0.0}})),
+            "obstacles[0].normal's length = 2: must be 1");
+  EXPECT_EQ(complaint(with({"post", Capsule<>{zero, zero, -1.0}})),
+            "obstacles[0].radius = -1: must be finite and not negative");
+  EXPECT_EQ(complaint([&] {
+              (void)Clearance<7>(chain, {{8, {zero, zero, 0.1}, "no link"}}, {}, 0.0);
+            }),
+            "capsules[0].link = 8: must be a link of the arm");
+  EXPECT_EQ(complaint([&] {
+              (void)panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.6}}});
+            }).substr(0, 44),
+            "q0: the distance of 'hand' and 'floor' = -0.");
+  auto tracker = panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.0}}});
+  EXPECT_FALSE(tracker.guard().clearance().move(0, Capsule<>{zero, zero, 0.1}, zero));
+  EXPECT_FALSE(tracker.guard().clearance().move(1, HalfSpace<>{Vector<3>::UnitZ(), 0.0}, zero));
+}
+
+}  // namespace
+}  // namespace fpbm::test

@@ -1,0 +1,119 @@
+#include "fpbm/clearance/preset_capsules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fpbm/model/presets.hpp"
+
+/// Capsules of presets.hpp's arms: on every link, apart where the arm is at home, and not too large. That they contain
+/// the links, tests/python/test_preset_capsules.py checks.
+namespace fpbm::test {
+namespace {
+
+constexpr int kOpen = Eigen::Dynamic;
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+struct Case {
+  std::string name;
+  Chain<> chain;
+  std::vector<LinkCapsule<>> capsules;
+  std::vector<presets::never_meet::LinkNames> never_meet;
+};
+
+std::vector<Case> every_preset() {
+  std::vector<Case> cases;
+  for (const presets::Preset& arm : presets::kAll) {
+    for (const presets::PresetCapsules& its : presets::kAllCapsules) {
+      if (std::string(arm.name) == its.name) cases.push_back({arm.name, arm.chain(), its.capsules(), its.never_meet()});
+    }
+  }
+  return cases;
+}
+
+/// Postures in degrees that makers and planners start from: Franka's ready one; KUKA's and Kinova's home, UR's home and
+/// the one that its manuals show.
+std::vector<Vector<kOpen>> homes(const std::string& name) {
+  const auto all = [](const std::vector<Vector<7>>& postures) {
+    return std::vector<Vector<kOpen>>(postures.begin(), postures.end());
+  };
+  if (name == "panda" || name == "fr3") return all({{0.0, -45.0, 0.0, -135.0, 0.0, 90.0, 45.0}});
+  if (name == "iiwa14") return all({Vector<7>::Zero(), {0.0, 45.0, 0.0, -90.0, 0.0, 45.0, 0.0}});
+  if (name == "gen3")
+    return all({{0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0}, {0.0, -20.0, 180.0, -145.0, 0.0, -60.0, 90.0}});
+  return {Vector<6>(0.0, -90.0, 0.0, -90.0, 0.0, 0.0), Vector<6>(0.0, -90.0, 90.0, -90.0, -90.0, 0.0)};
+}
+
+std::size_t links_named(const std::vector<LinkCapsule<>>& capsules, const std::string& name) {
+  return static_cast<std::size_t>(
+      std::count_if(capsules.begin(), capsules.end(), [&](const LinkCapsule<>& each) { return each.name == name; }));
+}
+
+TEST(PresetCapsules, every_preset_has_them_on_every_link) {
+  const std::vector<Case> cases = every_preset();
+  EXPECT_EQ(cases.size(), std::size(presets::kAll));
+  for (const auto& [name, chain, capsules, never_meet] : cases) {
+    std::multiset<int> links;
+    for (const LinkCapsule<>& each : capsules) {
+      links.insert(each.link);
+      EXPECT_FALSE(each.name.empty());
+      EXPECT_GT(each.capsule.radius, 0.02) << name << ' ' << each.name;
+      EXPECT_LT(each.capsule.radius, 0.14) << name << ' ' << each.name;
+    }
+    for (const auto& [first, second] : never_meet) {
+      EXPECT_EQ(Clearance<kOpen>(chain, capsules, {}, 0.0).pairs().size(),
+                Clearance<kOpen>(chain, capsules, {}, 0.0, {{first, second}}).pairs().size() +
+                    links_named(capsules, first) * links_named(capsules, second));
+    }
+    for (int link = 0; link <= static_cast<int>(chain.joints.size()); ++link) {
+      EXPECT_TRUE(links.count(link) == 1 || links.count(link) == 2) << name << ' ' << link;
+    }
+    EXPECT_EQ(std::set<int>(links.begin(), links.end()).size(), chain.joints.size() + 1) << name;
+  }
+}
+
+TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
+  for (const auto& [name, chain, capsules, never_meet] : every_preset()) {
+    Clearance<kOpen> clearance(chain, capsules, {}, 0.0, never_meet);
+    for (const ShapePair& pair : clearance.left_out()) {
+      const auto [first, second] = clearance.names(pair);
+      ADD_FAILURE() << name << ": " << first << " and " << second << " overlap in all postures";
+    }
+    for (const Vector<kOpen>& home : homes(name)) {
+      clearance.place(kDegree * home);
+      const auto [pair, distance] = clearance.nearest_pair();
+      const auto [first, second] = clearance.names(clearance.pairs()[pair]);
+      EXPECT_GT(distance, 1e-3) << name << " at " << home.transpose() << ": " << first << " and " << second;
+    }
+  }
+}
+
+/// Neighbours share the joint between them: a gap there would let something through.
+TEST(PresetCapsules, neighbours_touch) {
+  for (const Case& arm : every_preset()) {
+    const Links<kOpen> links(arm.chain);
+    Links<kOpen>::Frames frames;
+    links.place(Vector<kOpen>::Zero(links.dof()), frames);
+    const auto at_zero = [&](const LinkCapsule<>& each) {
+      const auto& [a, b, radius] = each.capsule;
+      return placed(Capsule<>{links.in_frame(each.link, a), links.in_frame(each.link, b), radius},
+                    frames[static_cast<std::size_t>(each.link)]);
+    };
+    std::vector<double> least(arm.chain.joints.size(), 1.0);
+    for (const LinkCapsule<>& one : arm.capsules) {
+      for (const LinkCapsule<>& two : arm.capsules) {
+        if (two.link != one.link + 1) continue;
+        double& gap = least[static_cast<std::size_t>(one.link)];
+        gap = std::min(gap, nearest(at_zero(one), at_zero(two)).distance);
+      }
+    }
+    EXPECT_LT(*std::max_element(least.begin(), least.end()), 0.0) << arm.name;
+  }
+}
+
+}  // namespace
+}  // namespace fpbm::test

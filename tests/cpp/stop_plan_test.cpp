@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "fpbm/limits/stop_plan.hpp"
+#include "support/arms.hpp"
+
+/// Stops that are known to their end.
+namespace fpbm::test {
+namespace {
+
+constexpr double kTick = 1e-3;
+
+/// Its shares add up to the whole velocity, its way is that of the ticks, and its steps keep deceleration and jerk.
+TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
+  Random random(1);
+  for (int trial = 0; trial < trials(3000); ++trial) {
+    const double acceleration = std::pow(10.0, random.uniform(-1.0, 1.5));
+    const double jerk = trial % 3 == 0 ? std::numeric_limits<double>::infinity()
+                                       : acceleration * std::pow(10.0, random.uniform(0.5, 3.5));
+    const double velocity = std::pow(10.0, random.uniform(-4.0, 0.5));
+    auto profile = StopProfile<double>::quickest(velocity, acceleration, jerk, kTick);
+    profile.wait = trial % 7;
+    const double other = std::pow(10.0, random.uniform(-4.0, 0.5));
+    if (trial % 2 == 0) profile = profile.together(StopProfile<double>::quickest(other, acceleration, jerk, kTick));
+    double v = velocity;
+    double way = 0.0;
+    double before = 0.0;
+    for (int k = 0; k < static_cast<int>(profile.ticks()) + 3; ++k) {
+      const double b = profile.share(k) * velocity / kTick;
+      ASSERT_LE(b, acceleration * (1.0 + 1e-12));
+      ASSERT_LE(std::abs(b - before), jerk * kTick * (1.0 + 1e-12)) << trial;
+      way += kTick * (v - kTick * b / 2.0);
+      v -= kTick * b;
+      before = b;
+    }
+    EXPECT_NEAR(v, 0.0, 1e-13 * velocity * profile.ticks());
+    EXPECT_NEAR(way, kTick * velocity * profile.way(Level::kAcceleration), 1e-12 * way);
+  }
+}
+
+struct Worst {
+  double bounds = 0.0;    ///< Excess over a joint's bounds, relative to them.
+  double envelope = 0.0;  ///< Of a velocity beyond a maker's envelope [rad/s].
+  double sweep = 0.0;     ///< Of a place beyond the sweep [rad].
+};
+
+/// Least s·way + t·tick + rest, over the sweep, less a place seen; along one direction of joint space.
+[[nodiscard]] double beyond(const Sweep<Eigen::Dynamic>& sweep, const Eigen::VectorXd& g,
+                            const Eigen::VectorXd& place) {
+  const double least = std::min(g.dot(sweep.way), 0.0) + std::min(g.dot(sweep.tick), 0.0) +
+                       g.cwiseProduct(sweep.low).cwiseMin(g.cwiseProduct(sweep.high)).sum();
+  return least - g.dot(place);
+}
+
+/// Moves an arm at random within its limits, and now and then follows the plan to rest.
+template <Level kLevel>
+void stop_at_random(const Chain<>& chain, std::uint32_t seed, Worst& worst) {
+  using Joints = Vector<Eigen::Dynamic>;
+  Random random(seed);
+  const auto arm = any_arm(chain);
+  const Limits<kLevel, Eigen::Dynamic> limits(arm.limits(), kTick);
+  const auto& bounds = limits.bounds();
+  const auto n = arm.dof();
+  State<Eigen::Dynamic> state{Joints::Zero(n), Joints::Zero(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    state.q(i) = bounds.lower(i) + random.uniform(0.02, 0.98) * (bounds.upper(i) - bounds.lower(i));
+  }
+  Joints last = Joints::Zero(n);
+  Joints aim = random.uniform(n, -1.0, 1.0);
+  const auto step = [&](const Joints& qdd) {
+    const Joints before = state.qd;
+    state.qd += kTick * qdd;
+    state.q += kTick * (kLevel == Level::kVelocity ? state.qd : Joints((before + state.qd) / 2.0));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double range = bounds.upper(i) - bounds.lower(i);
+      worst.bounds =
+          std::max({worst.bounds, (state.q(i) - bounds.upper(i)) / range, (bounds.lower(i) - state.q(i)) / range,
+                    std::abs(state.qd(i)) / bounds.velocity(i) - 1.0, std::abs(qdd(i)) / bounds.acceleration(i) - 1.0});
+      if (std::isfinite(bounds.deceleration(i))) {  // A maker's envelope, in velocities.
+        const double from_end = std::min(bounds.upper(i) - state.q(i), state.q(i) - bounds.lower(i));
+        const double c = bounds.velocity_offset(i);
+        const bool outward =
+            from_end == (state.qd(i) > 0.0 ? bounds.upper(i) - state.q(i) : state.q(i) - bounds.lower(i));
+        const double most = -c + std::sqrt(c * c + 2.0 * bounds.deceleration(i) * std::max(from_end, 0.0));
+        if (outward) worst.envelope = std::max(worst.envelope, std::abs(state.qd(i)) - most);
+      }
+      if (std::isfinite(bounds.jerk(i))) {
+        worst.bounds = std::max(worst.bounds, std::abs(qdd(i) - last(i)) / (kTick * bounds.jerk(i)) - 1.0);
+      }
+    }
+    last = qdd;
+  };
+  for (int tick = 0; tick < 1500; ++tick) {
+    if (tick % 150 == 0) aim = random.uniform(n, -1.0, 1.0);
+    const auto box = limits.box(state, last);
+    Joints u = aim.cwiseProduct(bounds.acceleration);
+    if (kLevel == Level::kVelocity) u = state.qd + kTick * u;
+    u = box.nearest(u);
+    const State<Eigen::Dynamic> from = state;
+    step(kLevel == Level::kVelocity ? Joints((u - state.qd) / kTick) : u);
+    if (tick % 37 != 0) continue;
+    const State<Eigen::Dynamic> moving = state;
+    const Joints moving_last = last;
+    StopPlan<kLevel, Eigen::Dynamic> plan(limits, state, last);
+    const auto sweep = plan.sweep(limits, from, state);
+    const Joints ways[3] = {random.uniform(n, -1.0, 1.0), random.uniform(n, -1.0, 1.0), Joints::Unit(n, tick % n)};
+    int ticks = 0;
+    for (; ticks < 20000 && !(state.qd.isZero(1e-12) && last.isZero(1e-8)); ++ticks) {
+      for (const Joints& g : ways) worst.sweep = std::max(worst.sweep, beyond(sweep, g, state.q - from.q));
+      step(plan.next(limits, state, last));
+    }
+    ASSERT_LT(ticks, 20000) << "seed " << seed;
+    state = moving;
+    last = moving_last;
+  }
+}
+
+template <Level kLevel>
+void expect_stops_to_keep_bounds() {
+  std::vector<Chain<>> chains = {presets::panda(), panda_without_jerk(), presets::fr3(), presets::ur5e(),
+                                 presets::panda()};
+  for (auto& joint : chains.back().joints) joint.bounds.jerk = 20.0 * joint.bounds.acceleration;
+  for (std::size_t k = 0; k < chains.size(); ++k) {
+    SCOPED_TRACE(k);
+    Worst worst;
+    for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(15)); ++seed) {
+      stop_at_random<kLevel>(chains[k], seed, worst);
+    }
+    EXPECT_LE(worst.bounds, 1e-9);
+    EXPECT_LE(worst.envelope, 1e-9);
+    EXPECT_LE(worst.sweep, 1e-12);
+  }
+}
+
+TEST(StopPlan, keeps_all_bounds_and_stays_within_its_sweep) {
+  expect_stops_to_keep_bounds<Level::kAcceleration>();
+  expect_stops_to_keep_bounds<Level::kVelocity>();
+}
+
+}  // namespace
+}  // namespace fpbm::test
