@@ -14,4 +14,17 @@ Arm::Arm(const Chain<>& chain) : any(make_arm(chain)), source(chain) {
   }
 }
 
+Chain<> Arm::chain() const {
+  if (const auto* chain = std::get_if<Chain<>>(&source)) return *chain;
+  Chain<> chain;
+  for (const double length : std::get<JointVector>(source)) {
+    Joint<> joint;
+    joint.placement = chain.tip;
+    joint.name = joint_names[chain.joints.size()];
+    chain.joints.push_back(joint);
+    chain.tip.p = {length, 0.0, 0.0};
+  }
+  return chain;
+}
+
 }  // namespace fpbm::bindings

@@ -47,6 +47,9 @@ struct Arm {
     return std::visit([](const auto& arm) -> const JointLimits<kDynamic>& { return arm.limits(); }, any);
   }
 
+  /// Its joints from base to tip; of an arm in the plane, about z at each link's start, with the links along x.
+  [[nodiscard]] Chain<> chain() const;
+
   /// Calls visitor(arm, Space) with the AnyArm and the task space of that name.
   /// Throws std::invalid_argument where there is none.
   template <typename Visitor>

@@ -15,6 +15,8 @@
 
 namespace fpbm::bindings {
 
+using Array = py::array_t<double>;
+
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 inline bool is_candidate(const PyObject* /*object*/) {
@@ -99,15 +101,18 @@ inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen
   return result;
 }
 
-/// A frame: a homogeneous 4 x 4 matrix.
-inline Transform<> transform(const ArrayLike& argument, const char* name) {
-  const Eigen::MatrixXd H = matrix(argument, name, 4, 4);
+/// A frame: a homogeneous 4 x 4 matrix of finite numbers, of an argument that name() tells.
+template <typename Name>
+Transform<> transform_of(const Eigen::Matrix4d& H, const Name& name) {
   const Transform<> result{H.topRightCorner<3, 1>(), H.topLeftCorner<3, 3>()};
   if (H.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    validation::reject(name, ": must be a homogeneous matrix, with (0, 0, 0, 1) as its last row");
+    validation::reject(name(), ": must be a homogeneous matrix, with (0, 0, 0, 1) as its last row");
   }
-  chain_check::require_transform(name, result);
+  if (!chain_check::is_rotation(result.R)) validation::reject(name() + ".R", ": must be a rotation matrix");
   return result;
+}
+inline Transform<> transform(const ArrayLike& argument, const char* name) {
+  return transform_of(matrix(argument, name, 4, 4), [name] { return validation::Argument(name); });
 }
 
 /// A point of a task space: shape (2,), (3,) or (4, 4).
@@ -140,15 +145,15 @@ inline JointLimits<Eigen::Dynamic> joint_limits(const py::object& limits) {
 
 /// A vector, a matrix or a point of a task space as Python has it.
 template <typename Derived>
-py::array_t<double> array_of(const Eigen::MatrixBase<Derived>& values) {
+Array array_of(const Eigen::MatrixBase<Derived>& values) {
   std::vector<py::ssize_t> shape{values.rows()};
   if (Derived::ColsAtCompileTime != 1) shape.push_back(values.cols());
-  py::array_t<double> result(shape);
+  Array result(shape);
   Eigen::Map<RowMajor>(result.mutable_data(), values.rows(), values.cols()) = values;
   return result;
 }
-inline py::array_t<double> array_of(const Transform<>& x) {
-  py::array_t<double> result({4, 4});
+inline Array array_of(const Transform<>& x) {
+  Array result({4, 4});
   Pose::store(x, result.mutable_data());
   return result;
 }

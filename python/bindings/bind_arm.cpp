@@ -13,8 +13,6 @@
 namespace fpbm::bindings {
 namespace {
 
-using Array = py::array_t<double>;
-
 constexpr std::array kTypes{"revolute", "continuous", "prismatic"};
 
 JointType joint_type(const std::string& type, const validation::Argument& name) {

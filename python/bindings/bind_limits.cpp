@@ -1,15 +1,17 @@
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "fpbm/limits/limiter.hpp"
+#include "fpbm/limits/rows.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
-using Array = py::array_t<double>;
 
 /// A motion within limits, as Python has it.
 struct PyMotion {
@@ -18,6 +20,29 @@ struct PyMotion {
   py::array_t<bool> saturated;
 };
 
+using OptionalRows = std::optional<std::pair<ArrayLike, ArrayLike>>;
+constexpr int kMostRows = 16;
+
+/// Bounds on motions of n joints, of G u <= b.
+Rows<kOpen, kMostRows> rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
+  const auto& [G, b] = given;
+  Rows<kOpen, kMostRows> rows;
+  rows.g.setZero(n, kMostRows);
+  rows.b.setZero();
+  rows.count = real_array(G, "rows[0]", 2).shape(0);
+  if (rows.count > kMostRows) {
+    validation::fail("rows[0]'s number of rows", static_cast<double>(rows.count), "at most 16");
+  }
+  const auto bounds = real_array(b, "rows[1]", 1);
+  if (bounds.size() != rows.count) {
+    validation::fail("rows[1]'s number of entries", static_cast<double>(bounds.size()), "one for each of rows[0]");
+  }
+  rows.g.leftCols(rows.count) = matrix(G, "rows[0]", rows.count, n).transpose();
+  rows.b.head(rows.count) = Eigen::Map<const Eigen::VectorXd>(bounds.data(), bounds.size());
+  validation::require_finite("rows[1]", rows.b);
+  return rows;
+}
+
 /// A limiter of either level.
 class PyLimiter {
  public:
@@ -25,7 +50,7 @@ class PyLimiter {
       : any_(make(joint_limits(limits), dt, level)) {}
 
   [[nodiscard]] PyMotion motion(const ArrayLike& J, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& desired,
-                                const OptionalArray& last) const {
+                                const OptionalArray& last, const OptionalRows& bounds) const {
     return std::visit(
         [&](const auto& limiter) {
           const auto n = static_cast<int>(limiter.limits().bounds().lower.size());
@@ -36,7 +61,9 @@ class PyLimiter {
           const State<kOpen> state{joint_vector(q, "q", n), joint_vector(qd, "qd", n)};
           const Vector<kOpen> before = last ? joint_vector(*last, "last", n) : Vector<kOpen>::Zero(n);
           const Matrix<kOpen, kOpen> jacobian = matrix(J, "J", rows, n);
-          return python(limiter.template motion<kOpen>(jacobian, state, before, joint_vector(desired, "desired", n)));
+          const Vector<kOpen> wanted = joint_vector(desired, "desired", n);
+          if (!bounds) return python(limiter.template motion<kOpen>(jacobian, state, wanted, before));
+          return python(limiter.template motion<kOpen>(jacobian, state, wanted, before, rows_of(*bounds, n)));
         },
         any_);
   }
@@ -99,12 +126,16 @@ ParameterError
     Where an argument is out of range or a bound is missing.)")
       .def(py::init<const py::object&, double, const std::string&>(), py::arg("limits"), py::arg("dt"), py::kw_only(),
            py::arg("level") = "acceleration")
-      .def("motion", &PyLimiter::motion, py::arg("J"), py::arg("q"), py::arg("qd"), py::arg("desired"), py::kw_only(),
-           py::arg("last") = none,
-           R"(The motion nearest to a desired one.
+      .def(
+          "motion", &PyLimiter::motion, py::arg("J"), py::arg("q"), py::arg("qd"), py::arg("desired"), py::kw_only(),
+          py::arg("last") = none, py::arg("rows") = none,
+          R"(The motion u of the next tick for a desired one: J u = J r + s J (desired - r), with a motion r that slows the arm
+down and s <= 1 as large as the limits allow; where s comes near zero, a motion that still brings the tip nearer.
 
-J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. qd is the last command's velocity, and
-last its acceleration [rad/s^2], from which bounds on jerk start: zero unless given.)")
+J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level qd is the last command.
+last is the acceleration of the tick before [rad/s^2], from which bounds on jerk start: zero unless given. rows is a pair
+(G, b), shapes (p, n) and (p,), of further bounds G u <= b, 16 at most, kept as far as the limits admit. Raises
+ParameterError where a shape is another, or a number is not finite.)")
       .def("brake", &PyLimiter::brake, py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("last") = none,
            "The motion that brings every joint to rest, as motion.");
 }

@@ -30,8 +30,6 @@ template AnyPath<Pose> Path::as() const;
 
 namespace {
 
-using Array = py::array_t<double>;
-
 /// One finite number.
 double number(const ArrayLike& argument, const char* name) {
   const double value = *real_array(argument, name, 0).data();

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "clearance.hpp"
 #include "path.hpp"
 #include "scheme.hpp"
 #include "target_filter.hpp"
@@ -9,8 +10,6 @@
 
 namespace fpbm::bindings {
 namespace {
-
-using Array = py::array_t<double>;
 
 /// What one tick did, as Python has it.
 struct PyTick {
@@ -22,19 +21,27 @@ struct PyTick {
   py::array_t<bool> saturated;
   double sigma;
   Array error;
+  std::optional<PyNearest> nearest;
 };
 
 template <typename Space>
-PyTick python_tick(const Tick<Space, kDynamic>& tick) {
+PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNearest>& nearest) {
   py::array_t<bool> saturated(tick.q.size());
   for (Eigen::Index i = 0; i < tick.q.size(); ++i) saturated.mutable_at(i) = ((tick.saturated >> i) & 1U) != 0;
-  return {array_of(tick.q), array_of(tick.qd), array_of(tick.qdd), tick.status,
-          tick.scale,       saturated,         tick.sigma,         array_of(tick.error)};
+  return {array_of(tick.q), array_of(tick.qd), array_of(tick.qdd),   tick.status, tick.scale,
+          saturated,        tick.sigma,        array_of(tick.error), nearest};
 }
 
-template <typename Arm, typename Space, typename Scheme>
-Space space_of(const Tracker<Arm, Space, Scheme>&) {
+template <typename Arm, typename Space, typename Scheme, typename Guard>
+Space space_of(const Tracker<Arm, Space, Scheme, Guard>&) {
   return {};
+}
+
+/// What take() gives for a tracker in a posture, with what is nearest there.
+template <typename Tracker, typename Take>
+PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
+  const std::optional<PyNearest> nearest = nearest_at(tracker.guard().clearance(), q);
+  return python_tick(take(), nearest);
 }
 
 struct PyFollower {
@@ -55,7 +62,7 @@ class PyTracker {
  public:
   PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& limits,
-            const TrackerOptions<>& options)
+            const TrackerOptions<>& options, const py::object& clearance)
       : dof_(arm.dof()), dt_(options.dt), any_(arm.visit(task, [&](const auto& any, auto space) {
           using Space = decltype(space);
           State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
@@ -63,19 +70,22 @@ class PyTracker {
           const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
           require_enough_joints<Space>(dof_);
           return Any(make_tracker<Space>(any, scheme, start, options,
-                                         limits.is_none() ? arm.limits() : joint_limits(limits), before));
+                                         limits.is_none() ? arm.limits() : joint_limits(limits), before,
+                                         clearance_of(arm, clearance)));
         })) {}
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit(
-        [&](auto& tracker, auto space) { return python_tick(tracker.tick(reference<decltype(space)>(x, xd, xdd))); });
+    return visit([&](auto& tracker, auto space) {
+      const auto target = reference<decltype(space)>(x, xd, xdd);
+      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(target); });
+    });
   }
 
   [[nodiscard]] PyTick tick(PyFollower& follower) {
     return visit([&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
       if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
-      return python_tick(tracker.tick(*same));
+      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
   }
 
@@ -84,7 +94,7 @@ class PyTracker {
       auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
       if (same == nullptr) validation::reject("filter", ": it is for another task");
       if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
-      return python_tick(tracker.tick(*same));
+      return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
   }
 
@@ -92,8 +102,9 @@ class PyTracker {
                                         const OptionalArray& xd, const OptionalArray& xdd) {
     return visit([&](auto& tracker, auto space) -> PyTick {
       if constexpr (std::decay_t<decltype(tracker)>::kLevel == Level::kAcceleration) {
-        return python_tick(tracker.resolve_measured(joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_),
-                                                    reference<decltype(space)>(x, xd, xdd)));
+        const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
+        const auto target = reference<decltype(space)>(x, xd, xdd);
+        return tick_at(tracker, measured.q, [&] { return tracker.resolve_measured(measured.q, measured.qd, target); });
       }
       throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
     });
@@ -104,6 +115,11 @@ class PyTracker {
       using Space = decltype(space);
       return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
     });
+  }
+
+  void move(const std::string& name, const Shape& shape, const ArrayLike& velocity) {
+    const Vector<3> v = fixed_vector<3>(velocity, "velocity");
+    visit([&](auto& tracker, auto) { move_obstacle(tracker.guard().clearance(), name, shape, v); });
   }
 
   void stop() {
@@ -149,7 +165,11 @@ void bind_tick(py::module_& m) {
       .def_readonly("saturated", &PyTick::saturated, "Which joints are on a bound, shape (n,).")
       .def_readonly("sigma", &PyTick::sigma,
                     "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
-      .def_readonly("error", &PyTick::error, "x - f(q) at the tick's start [m, rad], shape (m,).");
+      .def_readonly("error", &PyTick::error, "x - f(q) at the tick's start [m, rad], shape (m,).")
+      .def_readonly(
+          "nearest", &PyTick::nearest,
+          "The two shapes that are to be kept apart and were nearest to one another at the tick's start; None\n"
+          "without a clearance.");
 }
 
 void bind_follower(py::module_& m) {
@@ -203,24 +223,28 @@ stall_time : float
     until its target moves, or until resume(). math.inf: it never gives up.
 singular_radius, singular_brake : float
     Damping near singular postures, where the scheme has none; 0 switches it off.
+clearance : Clearance, optional
+    What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
+    obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
 
 Raises
 ------
 ParameterError
-    Where an argument is out of range, a limit is missing, or the start breaks one.)")
+    Where an argument is out of range, a limit is missing, or the start breaks one or is not clear.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
-                       double error_bound, double gain, double bound, double stall_time, double radius, double brake) {
+                       double error_bound, double gain, double bound, double stall_time, double radius, double brake,
+                       const py::object& clearance) {
              const SingularDamping<> singular(radius, brake);
              const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular};
-             return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options);
+             return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options, clearance);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("qdd0") = none, py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none,
            py::arg("error_bound") = 0.1, py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
            py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
-           py::arg("singular_brake") = SingularDamping<>().brake())
+           py::arg("singular_brake") = SingularDamping<>().brake(), py::arg("clearance") = none)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
@@ -236,6 +260,12 @@ where no motion can be found the arm brakes, and the tick's status says why.)")
            "The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.")
       .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5,
            "A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].")
+      .def(
+          "move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
+          R"(Moves an obstacle of the clearance: where it is now, and the velocity [m/s] at which it is expected to go on.
+
+shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
+where no obstacle has that name, or the shape is of another kind.)")
       .def("stop", &PyTracker::stop, "Brings every joint to rest as fast as the limits allow, until resume.")
       .def("resume", &PyTracker::resume, "Follows references again.")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")

@@ -3,8 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "arrays.hpp"
-#include "scheme.hpp"
+#include "resolve.hpp"
 
 namespace fpbm::bindings {
 namespace {
@@ -83,67 +82,6 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
   return scheme;
 }
 
-[[noreturn]] void raise(Status status) {
-  const py::object type = py::module_::import("fpbm_cpp.errors").attr("ResolutionError");
-  py::set_error(type, type(py::cast(status)));
-  throw py::error_already_set();
-}
-
-template <typename Space>
-Reference<Space> reference_of(const Scheme& scheme, const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd) {
-  auto reference = Reference<Space>::hold(point<Space>(x, "x"));
-  reference.xd = fixed_vector<Space::kRows>(xd, "xd");
-  if (xdd) {
-    reference.xdd = fixed_vector<Space::kRows>(*xdd, "xdd");
-  } else if (scheme.level == Level::kAcceleration) {
-    validation::reject("xdd", ": an acceleration-level scheme needs it");
-  }
-  return reference;
-}
-
-/// What made(Space), the scheme for these joints, asks for in a state.
-template <typename Space, typename Made>
-py::array_t<double> resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics,
-                            const State<kDynamic>& state, const ArrayLike& x, const ArrayLike& xd,
-                            const OptionalArray& xdd, const Made& made) {
-  require_enough_joints<Space>(state.q.size());
-  const Reference<Space> reference = reference_of<Space>(scheme, x, xd, xdd);
-  JointVector u = JointVector::Zero(state.q.size());
-  const EitherScheme<Space> either = made(Space{});
-  const Status status =
-      std::visit([&](const auto& any) { return any.resolve(kinematics, reference, state, u); }, either);
-  if (failed(status)) raise(status);
-  return array_of(u);
-}
-
-py::array_t<double> resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, const ArrayLike& qd,
-                                    const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
-                                    const std::string& task) {
-  const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
-  return arm.visit(task, [&](const auto& any, auto space) {
-    using Space = decltype(space);
-    Kinematics<Space, kDynamic> kinematics;
-    any.kinematics(state.q, state.qd, kinematics);
-    return resolve(scheme, kinematics, state, x, xd, xdd, [&](auto) { return scheme.make<Space>(any); });
-  });
-}
-
-py::array_t<double> resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinematics, const ArrayLike& q,
-                                           const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd,
-                                           const OptionalArray& xdd) {
-  if (!kinematics.has_rate && scheme.level == Level::kAcceleration) {
-    validation::reject("Jd", ": an acceleration-level scheme needs it");
-  }
-  return std::visit(
-      [&](const auto& known) {
-        const auto dof = static_cast<int>(known.J.cols());
-        const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
-        const auto made = [&](auto space) { return scheme.make_without_arm<decltype(space)>(dof); };
-        return resolve(scheme, known, state, x, xd, xdd, made);
-      },
-      kinematics.value);
-}
-
 }  // namespace
 
 void bind_scheme(py::module_& m) {
@@ -152,6 +90,7 @@ void bind_scheme(py::module_& m) {
       .value("COARSE", Status::kCoarse, "The motion is complete; its steps are too long for the tip error.")
       .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
       .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
+      .value("BLOCKED", Status::kBlocked, "The motion is slowed by shapes that the arm keeps clear of.")
       .value("STALLED", Status::kStalled, "The arm came no nearer to its target, and rested.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
@@ -165,14 +104,14 @@ void bind_scheme(py::module_& m) {
       .def(py::init(&make_scheme), py::arg("level"), py::arg("parameters"))
       .def("resolve", &resolve_for_arm, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
            py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position",
-           R"(Joint motion that the scheme asks for in one state.
+           R"(Joint motion that the scheme asks for in a state, or in each of k states.
 
 Parameters
 ----------
 arm : Arm
     The arm.
-q, qd : array_like, shape (n,)
-    Joint state [rad], [rad/s].
+q, qd : array_like, shape (n,) or (k, n)
+    Joint state [rad], [rad/s]. Where q has k rows, each of the others has k, along a leading axis, or is one for all.
 x : array_like, shape (2,), (3,) or (4, 4)
     Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
 xd, xdd : array_like, shape (m,)

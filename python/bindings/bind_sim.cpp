@@ -18,7 +18,7 @@ Outcomes rollout(const Arm& arm, const Path& path, const Scheme& scheme, const A
     using Space = decltype(space);
     require_enough_joints<Space>(arm.dof());
     const AnyPath<Space> same = path.as<Space>();
-    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited.has_value());
+    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited.has_value(), keeps_clear(options));
     const Output<Space> output = arrays.output();
     const Motion<Space> motion{any, same, scheme, start, grid};
     RolloutResult<kDynamic> result;

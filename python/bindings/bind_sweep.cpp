@@ -92,7 +92,8 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     for (std::size_t i = 0; i < which.size(); ++i) {
       jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
-        jobs.back().output = whole.emplace_back(grid.samples(), arm.dof(), limited.has_value()).output();
+        jobs.back().output =
+            whole.emplace_back(grid.samples(), arm.dof(), limited.has_value(), keeps_clear(options)).output();
       }
     }
     {

@@ -24,6 +24,7 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_arm(m);
   fpbm::bindings::bind_path(m);
   fpbm::bindings::bind_scheme(m);
+  fpbm::bindings::bind_clearance(m);
   fpbm::bindings::bind_sim(m);
   fpbm::bindings::bind_sweep(m);
   fpbm::bindings::bind_limits(m);

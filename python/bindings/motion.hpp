@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/any/any_path.hpp"
+#include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "recorder.hpp"
@@ -12,6 +13,7 @@ namespace fpbm::bindings {
 struct Limited {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
+  Clearance<kDynamic> clearance;
 };
 
 /// One motion of an arm along a path.
@@ -26,7 +28,8 @@ struct Motion {
   /// rollout() of it. Throws std::invalid_argument where scheme or start do not fit the arm.
   RolloutResult<kDynamic> simulate(const Output<Space>& output) const;
 
-  /// fpbm::track() of it. Throws std::invalid_argument where scheme, start, limits or options do not fit.
+  /// fpbm::track() of it. Throws std::invalid_argument where scheme, start, limits, options or clearance do
+  /// not fit.
   RolloutResult<kDynamic> track(const Limited& limited, const Output<Space>& output) const;
 
   /// Throws as simulate() does, or as track() where there are limits.

@@ -13,8 +13,9 @@ namespace fpbm::bindings {
 template <typename Space>
 struct Output {
   MotionBuffers<Space, kDynamic> buffers = {};
-  double* scale = nullptr;    ///< Of each tick, of a motion that keeps limits,
-  bool* saturated = nullptr;  ///< and a row of joints.
+  double* scale = nullptr;      ///< Of each tick, of a motion that keeps limits,
+  bool* saturated = nullptr;    ///< and a row of joints.
+  double* clearance = nullptr;  ///< Distance of the nearest pair, written by whoever knows it.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;
 };

@@ -11,7 +11,7 @@ AnyTracker<Space> tracker_of(const Motion<Space>& motion, const Limited& limited
   TrackerOptions<> options = limited.options;
   options.dt = motion.grid.dt();
   return make_tracker<Space>(motion.arm, motion.scheme, motion.start, options, limited.limits,
-                             JointVector::Zero(motion.start.q.size()));
+                             JointVector::Zero(motion.start.q.size()), limited.clearance);
 }
 
 }  // namespace
@@ -23,7 +23,15 @@ RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Outpu
   const auto result = std::visit(
       [&](auto& tracker) {
         AnyFollower<Space> follower(path, tracker.tip());
-        return fpbm::track(tracker, follower, grid, record);
+        auto& clearance = tracker.guard().clearance();
+        const auto with_clearance = [&](const auto& sample, const auto& tick) noexcept {
+          if (output.clearance != nullptr) {
+            clearance.place(sample.q);
+            output.clearance[sample.index] = clearance.nearest_pair().second;
+          }
+          return record(sample, tick);
+        };
+        return fpbm::track(tracker, follower, grid, with_clearance);
       },
       any);
   record.finish();

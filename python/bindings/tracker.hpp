@@ -9,24 +9,25 @@
 
 namespace fpbm::bindings {
 
-/// fpbm::Tracker of any arm for a task in Space, under any scheme of one level; and of either.
+/// fpbm::Tracker of any arm for a task in Space, under any scheme of one level, clear of shapes; and of either level.
+/// A clearance of nothing is all but free, and spares a second tracker.
 template <Level kLevel, typename Space>
-using TrackerAt = Tracker<AnyArmFor<Space>, Space, AnyScheme<kLevel, Space>>;
+using TrackerAt = Tracker<AnyArmFor<Space>, Space, AnyScheme<kLevel, Space>, Guard<kLevel, kDynamic>>;
 template <typename Space>
 using AnyTracker = std::variant<TrackerAt<Level::kVelocity, Space>, TrackerAt<Level::kAcceleration, Space>>;
 
 template <typename Space>
 using AnyFollower = PathFollower<AnyPath<Space>>;
 
-/// Throws std::invalid_argument where scheme, state, options or limits do not fit, as fpbm::Tracker does.
+/// Throws std::invalid_argument where scheme, state, options, limits or clearance do not fit, as fpbm::Tracker does.
 template <typename Space>
 AnyTracker<Space> make_tracker(const AnyArmFor<Space>& arm, const Scheme& scheme, const State<kDynamic>& start,
                                const TrackerOptions<>& options, const JointLimits<kDynamic>& limits,
-                               const JointVector& qdd0) {
+                               const JointVector& qdd0, const Clearance<kDynamic>& clearance) {
   const auto make = [&](const auto& any) -> AnyTracker<Space> {
     constexpr Level kLevel = std::decay_t<decltype(any)>::kLevel;
     return TrackerAt<kLevel, Space>(arm, Space{}, any, start, options, Limits<kLevel, kDynamic>(limits, options.dt),
-                                    qdd0);
+                                    qdd0, Guard<kLevel, kDynamic>(clearance));
   };
   return std::visit(make, scheme.with_default_damping(options.singular).make<Space>(arm));
 }

@@ -11,6 +11,7 @@ from ._core import (
     Kinematics,
     LimitedMotion,
     Limiter,
+    Nearest,
     PathFollower,
     Status,
     TargetFilter,
@@ -22,12 +23,15 @@ from ._core import (
     rotation_vector,
 )
 from .arms import *
+from .capsule import Capsule
+from .clearance import Clearance
 from .errors import ParameterError, ResolutionError, SweepInterrupted, TuneInterrupted
 from .io.run_file import load
 from .motion.lanes import LANES
 from .motion.run import Run, RunStatus
 from .motion.simulation import simulate, track
 from .motion.sweeping import Sweep, sweep
+from .obstacle import Cuboid, HalfSpace
 from .paths import *
 from .schemes import *
 from .tuning import Tuning, tune
@@ -35,6 +39,7 @@ from .viewer import servo, view
 
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
 __all__ += ["servo", "view"]
+__all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "TargetFilter", "Tick"]
 __all__ += ["Tracker", "failed"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]

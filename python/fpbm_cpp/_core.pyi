@@ -11,14 +11,17 @@ import typing
 
 __all__: list[str] = [
     "Arm",
+    "Clearance",
     "Kinematics",
     "LimitedMotion",
     "Limiter",
     "MAX_DOF",
+    "Nearest",
     "PRESETS",
     "Path",
     "PathFollower",
     "Scheme",
+    "Shape",
     "Status",
     "Stop",
     "TIME_LAWS",
@@ -36,6 +39,7 @@ __all__: list[str] = [
     "message",
     "not_run",
     "preset",
+    "preset_capsules",
     "processor_kinds",
     "rollout",
     "rotation",
@@ -161,6 +165,7 @@ class Status(enum.Enum):
     What became of an evaluation or a rollout.
     """
 
+    BLOCKED = ...
     COARSE = ...
     DAMPED = ...
     NOT_FINITE = ...
@@ -188,14 +193,14 @@ class Scheme:
         task: str = "position",
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint motion that the scheme asks for in one state.
+        Joint motion that the scheme asks for in a state, or in each of k states.
 
         Parameters
         ----------
         arm : Arm
             The arm.
-        q, qd : array_like, shape (n,)
-            Joint state [rad], [rad/s].
+        q, qd : array_like, shape (n,) or (k, n)
+            Joint state [rad], [rad/s]. Where q has k rows, each of the others has k, along a leading axis, or is one for all.
         x : array_like, shape (2,), (3,) or (4, 4)
             Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
         xd, xdd : array_like, shape (m,)
@@ -228,6 +233,51 @@ class Scheme:
         """
         The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.
         """
+
+class Shape:
+    """
+    The compiled part of a shape.
+    """
+    @typing.overload
+    def __init__(
+        self,
+        *,
+        a: numpy.typing.ArrayLike,
+        b: numpy.typing.ArrayLike,
+        radius: typing.SupportsFloat | typing.SupportsIndex,
+        link: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    @typing.overload
+    def __init__(
+        self, *, normal: numpy.typing.ArrayLike, offset: typing.SupportsFloat | typing.SupportsIndex
+    ) -> None: ...
+    @typing.overload
+    def __init__(self, *, pose: numpy.typing.ArrayLike, half: numpy.typing.ArrayLike) -> None: ...
+
+class Nearest:
+    """
+    The two shapes of an arm and its surroundings that are nearest to one another.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def distance(self) -> float:
+        """
+        How far they are apart [m]; below zero, how deep one is in the other.
+        """
+    @property
+    def pair(self) -> tuple[str, str]:
+        """
+        Their names: of a capsule of the arm, and of the other.
+        """
+
+class Clearance:
+    """
+    The compiled part of a clearance, for one arm.
+    """
+    def __init__(self, arm: Arm, clearance: typing.Any) -> None: ...
+    def left_out(self) -> list[tuple[str, str]]: ...
+    def nearest(self, q: numpy.typing.ArrayLike) -> Nearest | None: ...
+    def pairs(self) -> list[tuple[str, str]]: ...
 
 class Stop:
     """
@@ -297,12 +347,16 @@ class Limiter:
         desired: numpy.typing.ArrayLike,
         *,
         last: numpy.typing.ArrayLike | None = None,
+        rows: tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None,
     ) -> LimitedMotion:
         """
-        The motion nearest to a desired one.
+        The motion u of the next tick for a desired one: J u = J r + s J (desired - r), with a motion r that slows the arm
+        down and s <= 1 as large as the limits allow; where s comes near zero, a motion that still brings the tip nearer.
 
-        J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. qd is the last command's velocity, and
-        last its acceleration [rad/s^2], from which bounds on jerk start: zero unless given.
+        J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level qd is the last command.
+        last is the acceleration of the tick before [rad/s^2], from which bounds on jerk start: zero unless given. rows is a pair
+        (G, b), shapes (p, n) and (p,), of further bounds G u <= b, 16 at most, kept as far as the limits admit. Raises
+        ParameterError where a shape is another, or a number is not finite.
         """
 
 class TargetFilter:
@@ -401,6 +455,12 @@ class Tick:
         x - f(q) at the tick's start [m, rad], shape (m,).
         """
     @property
+    def nearest(self) -> Nearest | None:
+        """
+        The two shapes that are to be kept apart and were nearest to one another at the tick's start; None
+        without a clearance.
+        """
+    @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).
@@ -493,11 +553,14 @@ class Tracker:
         until its target moves, or until resume(). math.inf: it never gives up.
     singular_radius, singular_brake : float
         Damping near singular postures, where the scheme has none; 0 switches it off.
+    clearance : Clearance, optional
+        What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
+        obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
 
     Raises
     ------
     ParameterError
-        Where an argument is out of range, a limit is missing, or the start breaks one.
+        Where an argument is out of range, a limit is missing, or the start breaks one or is not clear.
     """
     def __init__(
         self,
@@ -516,10 +579,18 @@ class Tracker:
         stall_time: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
+        clearance: typing.Any = None,
     ) -> None: ...
     def follow(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
         """
         A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+        """
+    def move(self, name: str, shape: Shape, velocity: numpy.typing.ArrayLike = (0, 0, 0)) -> None:
+        """
+        Moves an obstacle of the clearance: where it is now, and the velocity [m/s] at which it is expected to go on.
+
+        shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
+        where no obstacle has that name, or the shape is of another kind.
         """
     def resolve_measured(
         self,
@@ -605,6 +676,7 @@ def check_sweep(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.Any,
     ]
     | None = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
@@ -639,6 +711,12 @@ def message(status: Status) -> str:
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...
 def preset(name: str) -> tuple[list[dict[str, typing.Any]], numpy.typing.NDArray[numpy.float64]]: ...
+def preset_capsules(
+    name: str,
+) -> tuple[
+    list[tuple[int, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float, str]],
+    list[tuple[str, str]],
+]: ...
 def processor_kinds() -> list[str]: ...
 def rollout(
     arm: Arm,
@@ -657,6 +735,7 @@ def rollout(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.Any,
     ]
     | None = None,
 ) -> tuple[Status, float, int, tuple[numpy.typing.NDArray[numpy.float64], ...]]: ...
@@ -689,6 +768,7 @@ def sweep_chunk(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.Any,
     ]
     | None,
     stop: Stop,

@@ -45,11 +45,28 @@ def tip_axes(arm: Arm, q: Array) -> Array:
     return rotation([0.0, 0.0, q.sum()])[:2, :2] if isinstance(arm, PlanarArm) else arm.forward(q)[:3, :3]
 
 
-def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array]:
-    """Positions of base, joints and tip, and axes of the joints."""
+def link_frames(arm: Arm, q: Array) -> Array:
+    """Frames of base and links in posture q, shape (n,): each that of its joint after its motion, as a Capsule's link.
+
+    Shape (n + 1, 4, 4), or (k + 1, 4, 4) of k joints, mimic joints included.
+    """
+    if isinstance(arm, PlanarArm):
+        turns = np.array([rotation([0.0, 0.0, angle]) for angle in np.cumsum(q)])
+        points = np.pad(joint_points(arm, q)[:-1], [(0, 0), (0, 1)])
+    else:
+        assert isinstance(arm, SerialArm)
+        points, _, turns = _forward_pass(arm, q)
+        points = points[1:-1]
+    frames = np.tile(np.eye(4), (len(turns) + 1, 1, 1))
+    frames[1:, :3, :3], frames[1:, :3, 3] = turns, points
+    return frames
+
+
+def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array, Array]:
+    """Positions of base, joints and tip; axes of the joints, and rotations after their motion."""
     p = np.zeros((*q.shape[:-1], 3))
     R = np.broadcast_to(np.eye(3), (*p.shape, 3))
-    points, axes = [p], []
+    points, axes, turns = [p], [], []
     for joint, position in zip(arm.joints, _positions(arm, q)):
         p, R = p + R @ joint.placement[:3, 3], R @ joint.placement[:3, :3]
         axis = joint.axis / np.linalg.norm(joint.axis)
@@ -59,7 +76,8 @@ def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array]:
         else:
             R = R @ _rotations(axis, position)
         points.append(p)
-    return np.stack([*points, p + R @ arm.tip[:3, 3]], axis=-2), np.stack(axes, axis=-2)
+        turns.append(R)
+    return np.stack([*points, p + R @ arm.tip[:3, 3]], axis=-2), np.stack(axes, axis=-2), np.stack(turns, axis=-3)
 
 
 def _positions(arm: SerialArm, q: Array) -> list[Array]:

@@ -1,4 +1,4 @@
-"""Arms, paths, schemes and limits as plain tables of numbers and text, for TOML, JSON and run files; and back.
+"""Things of this package as plain tables of numbers and text, for TOML, JSON and run files; and back.
 
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
@@ -13,7 +13,10 @@ from typing import Any
 import numpy as np
 
 from .arms import ARMS, Arm, Joint, JointLimits, SerialArm
+from .capsule import Capsule
+from .clearance import CLEARANCES, Clearance
 from .errors import ParameterError, not_one_of, suggestion, wrong
+from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
@@ -21,11 +24,24 @@ from .schemes import SCHEMES, SECOND_TASKS, SecondTask
 
 Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
-KINDS: Makers = {**ARMS, **EVERY_PATH, **SCHEMES, **SECOND_TASKS, JointLimits.kind: JointLimits}
+KINDS: Makers = {
+    **ARMS,
+    **EVERY_PATH,
+    **SCHEMES,
+    **SECOND_TASKS,
+    **OBSTACLES,
+    JointLimits.kind: JointLimits,
+    Clearance.kind: Clearance,
+}
 
 # What stands within other tables, by its key.
 WITHIN: dict[str, Makers] = {"arm": ARMS, "second_task": SECOND_TASKS}
-LISTS: dict[Any, Any] = {(SerialArm, "joints"): Joint, (PathSequence, "paths"): EVERY_PATH}
+LISTS: dict[Any, Any] = {
+    (SerialArm, "joints"): Joint,
+    (PathSequence, "paths"): EVERY_PATH,
+    (Clearance, "capsules"): {Capsule.kind: Capsule},
+    **{(maker, "obstacles"): OBSTACLES for maker in CLEARANCES.values()},
+}
 
 
 def to_table(thing: Any) -> Any:

@@ -35,7 +35,9 @@ def a_run_in_space(task: str = "pose", **options: Any) -> fp.Run:
 
 
 def a_run_within_limits() -> fp.Run:
-    """A run as if its limits had slowed it from 0.5 s to 1 s, with joint 2 on a bound then and at the very end."""
+    """A run as if its limits had slowed it from 0.5 s to 1 s, with joint 2 on a bound then and at the very end, and the
+    tip on its way up and down before a wall.
+    """
     run = a_run()
     slowed = (run.t >= 0.5) & (run.t < 1.0)
     saturated = np.zeros(run.q.shape, dtype=bool)
@@ -45,7 +47,10 @@ def a_run_within_limits() -> fp.Run:
     velocity = np.full(4, np.abs(run.qd).max())
     limits = fp.JointLimits(lower=lower, upper=upper, velocity=velocity, acceleration=np.full(4, np.inf))
     scale = np.where(slowed, 0.25, 1.0)
-    return replace(run, scale=scale, saturated=saturated, options={**run.options, "limits": limits})
+    clearance = fp.Clearance([fp.Capsule(4, [1, 0, 0], [1, 0, 0], 0.0)], [fp.HalfSpace([0, 1, 0], 0.0)])
+    distances = run.x[:, 1] - run.x[:, 1].min() + clearance.margin
+    options = {**run.options, "limits": limits, "clearance": clearance}
+    return replace(run, scale=scale, saturated=saturated, clearance=distances, options=options)
 
 
 def a_stopped_run() -> fp.Run:

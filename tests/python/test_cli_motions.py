@@ -89,8 +89,8 @@ def test_help_of_a_motion(name: str) -> None:
     assert result.exit_code == 0
     assert result.output.isascii()
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
-    scheme = ["Scheme:"]
-    assert headings == ["Options:", "Arm and start:", "Path:", *scheme, "Joint limits:"]
+    clear = ["Clearance:"] if name in ("track", "compare", "view") else []
+    assert headings == ["Options:", "Arm and start:", "Path:", "Scheme:", "Joint limits:", *clear]
     assert 2 <= len(examples(name)) <= 4
     for option in command.commands[name].params:
         assert isinstance(option, click.Argument) or option.help, option.name
@@ -103,6 +103,11 @@ def test_every_key_of_a_job_is_an_option() -> None:
         for kind in SECTIONS[section]:
             assert {f"{section}__{key}" for key in known(section, kind) if key != "second_task"} <= options
     assert {f"{section}__kind" for section in FREE} <= options
+    assert {f"clearance__{key}" for key in known("clearance", "urdf")} - options == {
+        "clearance__tip",  # The arm's own.
+        "clearance__base",
+        "clearance__obstacles",
+    }
 
 
 @pytest.mark.usefixtures("sketches")
@@ -633,6 +638,7 @@ def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (arm, scheme) == (panda, fp.FPBM(0.6, np.ones(7), 7, 25, null_damping=2))
     assert q0[3] == -2.3562
     limits = how.pop("limits")
+    assert how.pop("clearance") is None
     assert how == {"task": task, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
     assert (limits.velocity == 0.5).all()
     assert (limits.jerk == 1000).all()
@@ -645,9 +651,9 @@ def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_servo_has_no_path_and_always_limits() -> None:
     result = call("servo", "--help")
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
-    assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:"]
+    assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:", "Clearance:"]
     assert result.output.isascii()
-    assert len(examples("servo")) == 3
+    assert len(examples("servo")) == 4
     for option in ("--radius", "--hold", "--qd0", "--limits", "--no-limits"):
         assert call("servo", "panda", option, "1").exit_code == 2
 

@@ -86,6 +86,15 @@ ARMS_AND_OTHERS = {
     "limits": LIMITS,
     "gaze": fp.Gaze([0, 0, -1], k1=3),
     "point": ELBOW,
+    "capsule": fp.Capsule(3, [0, 0, 1 / 3], [0, 1, 0], 0.1, "elbow"),
+    "half-space": fp.HalfSpace([0, 0, 2], -1 / 3),
+    "box": fp.Cuboid(POSES[1], [0.1, 0, 1 / 3], name="shelf"),
+    "clearance": fp.Clearance(
+        [fp.Capsule(1, [0, 0, 0], [1, 0, 0], 1 / 3), fp.Capsule(3, [0, 0, 0], [0, 0, 0], 0.1, "hand")],
+        [fp.HalfSpace([0, 0, 1], 0.1, name="table"), fp.Cuboid(POSES[1], [1, 1, 1])],
+        margin=1 / 30,
+        allowed=[("hand", "table")],
+    ),
 }
 THINGS = {**SOME_PATHS, **SOME_SCHEMES, **ARMS_AND_OTHERS}
 every_thing = pytest.mark.parametrize("name", THINGS)
@@ -227,6 +236,10 @@ MAKERS = [
     fp.JointLimits,
     fp.SecondTask,
     fp.Gaze,
+    fp.Capsule,
+    fp.HalfSpace,
+    fp.Cuboid,
+    fp.Clearance,
     *PATHS.values(),
     *SCHEMES.values(),
 ]

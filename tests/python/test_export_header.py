@@ -18,6 +18,7 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from fpbm_cpp.arms import Joint
+from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.io.header import export_header, namespace_of
 
 pytest.importorskip("click")
@@ -25,6 +26,7 @@ pytest.importorskip("click")
 from click.testing import CliRunner, Result
 
 from fpbm_cpp.cli import command
+from fpbm_cpp.io.capsules import capsules_of
 from fpbm_cpp.io.urdf import read_urdf
 
 ROOT = Path(__file__).parents[2]
@@ -52,6 +54,10 @@ TIP = placed(np.random.default_rng(5))
 ARMS = {
     "serial": chain(1, ["revolute", "prismatic", "continuous"] * 2 + ["revolute"], {}),
     "my::coupled": chain(2, ["revolute", "prismatic", "revolute", "revolute"], {0: (2, -1.5, 0.3), 3: (1, 0.7, -0.2)}),
+}
+CAPSULES = {
+    "serial": [Capsule(i, [0.1 * i, -1 / 3, 1e-17], [-0.0, 2.0, 1e300], 0.1 + i, each) for i, each in enumerate(NASTY)],
+    "my::coupled": [],
 }
 
 
@@ -128,7 +134,11 @@ void print(const Eigen::MatrixBase<Derived>& M) {
 }
 
 template <int N, typename Arm>
-void run(const Arm& arm, const std::array<const char*, N>& names) {
+void run(const Arm& arm, const std::array<const char*, N>& names, const std::vector<fpbm::LinkCapsule<>>& capsules) {
+  for (const auto& [link, capsule, name] : capsules) {
+    std::printf("%d ", link), print(capsule.a), print(capsule.b), print("%.17g", capsule.radius);
+    std::printf("%c%s%c", 0, name.c_str(), 0);
+  }
   const auto& limits = arm.limits();
   for (const char* name : names) std::printf("%s%c", name, 0);
   print(limits.lower), print(limits.upper), print(limits.velocity), print(limits.acceleration), print(limits.jerk);
@@ -144,8 +154,8 @@ void run(const Arm& arm, const std::array<const char*, N>& names) {
 }
 
 int main() {
-  run<serial::kDof>(serial::arm(), serial::kJointNames);
-  run<my::coupled::kDof>(my::coupled::arm(), my::coupled::kJointNames);
+  run<serial::kDof>(serial::arm(), serial::kJointNames, serial::capsules());
+  run<my::coupled::kDof>(my::coupled::arm(), my::coupled::kJointNames, my::coupled::capsules());
 }
 """
 
@@ -155,7 +165,8 @@ def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
     for name, joints in ARMS.items():
         source = 'an "arm" \\\nint x = 1;'
         file = tmp_path / f"{name.split('::')[-1]}.hpp"
-        file.write_text(export_header(joints, TIP, name=name, source=source), encoding="utf-8")
+        text = export_header(joints, TIP, name=name, source=source, capsules=CAPSULES[name])
+        file.write_text(text, encoding="utf-8")
     (tmp_path / "main.cpp").write_text(PROGRAM)
     flags = ["-std=c++17", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
     includes = ["-I", str(ROOT / "cpp/include"), "-isystem", str(EIGEN)]
@@ -167,6 +178,10 @@ def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
     printed = subprocess.run([tmp_path / "main"], input=numbers.encode(), capture_output=True, check=True).stdout
     parts = iter(printed.split(b"\0"))
     for name, joints in ARMS.items():
+        for capsule in CAPSULES[name]:
+            link, *numbers = map(float, next(parts).split())
+            assert (link, numbers) == (capsule.link, [*capsule.a, *capsule.b, capsule.radius])
+            assert next(parts).decode() == capsule.name
         drives = [joint for joint in joints if joint.mimic is None]
         expected_names = [joint.name or f"joint_{joints.index(joint) + 1}" for joint in drives]
         assert [next(parts).decode() for _ in drives] == expected_names
@@ -211,6 +226,19 @@ def test_numbers_survive(numbers: list[float]) -> None:
     for name in ("chain.joints[0].placement", "chain.tip"):
         assert not np.any(p) or written(f"{name}.p") == p
         assert np.array_equal(R, np.eye(3)) or written(f"{name}.R") == R.ravel().tolist()
+
+
+def test_capsules_are_there_where_they_are_given() -> None:
+    without, none, one = (
+        export_header([Joint()], np.eye(4), name="n", capsules=capsules)
+        for capsules in (None, [], [Capsule(1, [0, 0, 0], [0, 0, 1], 0.5, "link")])
+    )
+    assert "LinkCapsule" not in without
+    assert "clearance" not in without
+    for text in (none, one):
+        assert "#include <fpbm/clearance/clearance.hpp>\n" in text
+        assert "inline std::vector<fpbm::LinkCapsule<>> capsules() {\n" in text
+    assert '      {1, {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 0.5}, "link"},\n' in one
 
 
 @pytest.mark.parametrize(
@@ -291,6 +319,20 @@ def test_standard_output(arm: Path) -> None:
         result = call(arm, "--tip", "tip", "-o", "-", *options)
         assert result.exit_code == 0
         assert result.stdout == export_header(joints, tip, name=name, source="two.urdf, tip tip")
+
+
+def test_capsules_of_a_file(arm: Path) -> None:
+    result = call(arm, "--tip", "tip", "-o", "-", "--capsules")
+    assert_refused(result, f"{arm}: has no <collision> geometry")
+    box = '<link name="tip"><collision><geometry><box size="0.1 0.2 0.5"/></geometry></collision></link>'
+    arm.write_text(URDF.replace('<link name="tip"/>', box))
+    for base, link, source in (None, 2, "two.urdf, tip tip"), ("mid", 1, "two.urdf, base mid, tip tip"):
+        options = () if base is None else ("--base", base)
+        result = call(arm, "--tip", "tip", *options, "-o", "-", "--capsules")
+        joints, tip = read_urdf(arm, "tip", base)
+        capsules = capsules_of(arm, "tip", base)
+        assert {(capsule.link, capsule.name) for capsule in capsules} == {(link, "tip")}
+        assert result.stdout == export_header(joints, tip, name="two", source=source, capsules=capsules)
 
 
 def test_file_is_replaced_and_its_mode_is_usual(arm: Path, tmp_path: Path) -> None:

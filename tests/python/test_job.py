@@ -366,7 +366,8 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", "arm.joints[1].axis = 'x': must be real numbers"),
         (
             f"{ARM}[pth]",
-            "pth: a job has no such key: must be one of arm, path, scheme, run, limits; did you mean 'path'?",
+            "pth: a job has no such key: must be one of arm, path, scheme, run, limits, clearance; "
+            "did you mean 'path'?",
         ),
         (f"{ARM}[path]\nkind = 'cirle'", f"path.kind = 'cirle': must be one of {SHAPES}; did you mean 'circle'?"),
         (f"{ARM}[path]\nradius = 1", f"path.kind: is missing: must be one of {SHAPES}"),

@@ -117,12 +117,38 @@ def test_the_limiter_is_the_trackers():
     assert unhindered.scale == 1.0
 
 
+@pytest.mark.parametrize("level", ["acceleration", "velocity"])
+def test_rows_are_kept_and_the_task_where_the_null_space_serves(level):
+    rng = np.random.default_rng(4)
+    n = 7
+    limits = fp.JointLimits(lower=[-3] * n, upper=[3] * n, velocity=[50] * n, acceleration=[1e5] * n)
+    limiter, rest = fp.Limiter(limits, DT, level=level), np.zeros(n)
+    missed = []
+    for p in rng.integers(1, 4, 200):
+        J, G, desired = rng.normal(size=(3, n)), rng.normal(size=(p, n)), rng.normal(size=n)
+        b = G @ desired + rng.normal(size=p)
+        free = limiter.motion(J, rest, rest, desired)
+        there = np.maximum(b, 0.1)
+        kept = limiter.motion(J, rest, rest, desired, rows=(G, there))
+        assert (G @ kept.u <= there + 1e-9).all()
+        if (G @ desired <= there).all():
+            assert kept.u.tobytes() == free.u.tobytes()
+        elif kept.scale == 1:
+            missed.append(np.linalg.norm(J @ (kept.u - desired)) / np.linalg.norm(J @ desired))
+    assert len(missed) > 50
+    assert np.max(missed) < 5e-3  # Self-motion has a price, lest it grow where J and G are all but dependent.
+
+
 def test_velocities_are_limited_too():
     limits = fp.JointLimits(lower=[-1, -1, -1], upper=[1, 1, 1], velocity=[1, 1, 1], acceleration=[5, 5, 5])
     limiter = fp.Limiter(limits, DT, level="velocity")
     motion = limiter.motion(np.ones((1, 3)), np.zeros(3), np.zeros(3), np.full(3, 2.0))
     np.testing.assert_allclose(motion.u, np.full(3, 0.005), rtol=1e-12)
     np.testing.assert_array_equal(limiter.brake(np.zeros(3), np.full(3, 0.5)).u, np.full(3, 0.495))
+
+
+def with_rows(limits, G, b):
+    return fp.Limiter(limits, DT).motion(np.ones((1, 2)), [0, 0], [0, 0], [1, 1], rows=(G, b))
 
 
 @pytest.mark.parametrize(
@@ -133,6 +159,10 @@ def test_velocities_are_limited_too():
         (lambda limits: fp.Limiter(limits, DT).motion(np.ones((3, 2)), [0, 0], [0, 0], [1, 1]), "number of rows = 3"),
         (lambda limits: fp.Limiter(limits, DT).motion(np.ones((1, 3)), [0, 0], [0, 0], [1, 1]), "J: must have shape"),
         (lambda limits: fp.Limiter(limits, DT).brake([0], [0, 0]), "q has 1 entries"),
+        (lambda limits: with_rows(limits, np.ones((1, 3)), [1]), r"rows\[0\]: must have shape \(1, 2\)"),
+        (lambda limits: with_rows(limits, np.ones((2, 2)), [1]), r"rows\[1\]'s number of entries = 1: must be one for"),
+        (lambda limits: with_rows(limits, np.ones((17, 2)), np.ones(17)), "number of rows = 17: must be at most 16"),
+        (lambda limits: with_rows(limits, np.ones((1, 2)), [np.inf]), r"rows\[1\]\[0\] = inf: must be finite"),
     ],
 )
 def test_bad_calls(make, words):

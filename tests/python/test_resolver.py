@@ -220,6 +220,59 @@ def test_a_singular_posture_is_refused_with_advice(arm, scheme):
     assert caught.value.status is fp.Status.SINGULAR
 
 
+SCHEMES = [fp.MVN(k=2.0), fp.MAN(), fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2, singular_radius=0.02)]
+
+
+@pytest.mark.parametrize("scheme", SCHEMES, ids=lambda scheme: scheme.kind)
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_many_states_are_each_alone(scheme, task):
+    arm, rng, k = IN_SPACE[0], np.random.default_rng(6), 50
+    q, qd = rng.uniform(-1.5, 1.5, (2, k, 7))
+    x = np.array([arm.kinematics(each, each, task=task).tip for each in rng.uniform(-1.5, 1.5, (k, 7))])
+    xd, xdd = rng.uniform(-1, 1, (2, k, 3 if task == "position" else 6))
+    each = np.array([scheme.resolve(arm, q[i], qd[i], x[i], xd[i], xdd[i], task=task) for i in range(k)])
+    many = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
+    assert many.tobytes() == each.tobytes()
+    assert scheme.resolve(arm, q.tolist(), qd.tolist(), x.tolist(), xd, xdd, task=task).tobytes() == each.tobytes()
+    # What is given once is for all.
+    held = np.array([scheme.resolve(arm, each, qd[0], x[0], xd[0], xdd[0], task=task) for each in q])
+    assert scheme.resolve(arm, q, qd[0], x[0], xd[0], xdd[0], task=task).tobytes() == held.tobytes()
+    assert scheme.resolve(arm, q[:0], qd[:0], x[0], xd[0], xdd[0], task=task).shape == (0, 7)
+
+
+def test_many_states_of_an_arm_in_the_plane(arm, q0):
+    q = q0 + np.linspace(0, 0.1, 5)[:, None]
+    many = fp.MVN().resolve(arm, q, 0 * q, [1.0, 1.0], [0.1, 0.2])
+    assert many.tobytes() == np.array([fp.MVN().resolve(arm, each, 0 * q0, [1, 1], [0.1, 0.2]) for each in q]).tobytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"qd": np.zeros((4, 7))}, r"qd: must have shape \(5, 7\), got \(4, 7\)"),
+        ({"qd": np.zeros(6)}, r"qd: must have shape \(7,\), got \(6,\)"),
+        ({"q": np.zeros((5, 6))}, r"q: must have shape \(5, 7\), got \(5, 6\)"),
+        ({"q": np.full((5, 7), np.nan)}, r"q\[0\] = nan: must be finite"),
+        ({"x": np.zeros((5, 4, 4))}, r"x\[0\]: must be a homogeneous matrix"),
+        ({"x": np.array([np.eye(4)] * 4 + [2 * np.eye(4) - np.diag([0, 0, 0, 1])])}, r"x\[4\].R: must be a rotation"),
+        ({"x": np.zeros((5, 3))}, r"x: must have shape \(4, 4\), got \(5, 3\)"),
+        ({"xd": np.zeros((5, 3))}, r"xd: must have shape \(5, 6\), got \(5, 3\)"),
+        ({"xdd": None}, "xdd: an acceleration-level scheme needs it"),
+    ],
+)
+def test_bad_arguments_of_many_states(change, words):
+    good = {"q": np.full((5, 7), 0.3), "qd": np.zeros((5, 7)), "x": np.eye(4), "xd": np.zeros(6), "xdd": np.zeros(6)}
+    with pytest.raises(fp.ParameterError, match=words):
+        fp.MAN().resolve(IN_SPACE[0], **{**good, **change}, task="pose")
+
+
+def test_of_many_states_the_singular_one_is_named(arm, q0):
+    q = np.array([q0, q0, 0 * q0, q0])
+    with pytest.raises(fp.ResolutionError, match=r"state 2: .*posture is singular") as caught:
+        fp.MVN().resolve(arm, q, 0 * q, [1, 1], [0, 0])
+    assert caught.value.status is fp.Status.SINGULAR
+
+
 def test_kinematics_of_ones_own(q0):
     """Planar, in space or a pose: by the shape of the tip, and the task where that does not tell."""
     J = np.random.default_rng(1).uniform(-1, 1, (3, 4))

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from test_data import ELBOW, PANDA, READY, SOME_PATHS, SOME_SCHEMES, expect_same
 
 import fpbm_cpp as fp
+from fpbm_cpp.table import to_table
 
 FLAT = fp.PlanarArm([1, 1, 1, 1])
 LIMITS = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[0.1, np.inf, 0.1, 0.1], acceleration=[1] * 4)
@@ -36,7 +37,7 @@ def run(q0):
 
 
 def bits(run):
-    arrays = (run.t, run.q, run.qd, run.qdd, run.x, run.x_ref, run.error, run.scale, run.saturated)
+    arrays = (run.t, run.q, run.qd, run.qdd, run.x, run.x_ref, run.error, run.scale, run.saturated, run.clearance)
     return [None if array is None else (array.shape, array.dtype, array.tobytes()) for array in arrays]
 
 
@@ -264,6 +265,19 @@ def rewritten(file, change=None, **members):
     arrays["meta"] = np.array(json.dumps(meta))
     arrays.update(members)
     np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
+
+
+def test_a_file_from_before_there_were_clearances(tmp_path, q0):
+    run = fp.track(FLAT, fp.Circle(0.45, 1.0), fp.MVN(k=5), q0, dt=0.01, limits=LIMITS)
+    run.save(tmp_path / "run.npz")
+    options = {name: to_table(value) for name, value in run.options.items() if name != "clearance"}
+    for code in ("SLOWED", "STALLED", "SINGULAR"):
+        status = {"code": code, "time": 1.0, "q": q0.tolist()}
+        rewritten(tmp_path / "run.npz", {"options": options, "status": status})
+        back = fp.load(tmp_path / "run.npz")
+        assert back.status.code is fp.Status[code]
+        assert back.clearance is None
+        assert bits(back.replay()) == bits(run)
 
 
 @pytest.mark.parametrize("what", NO_PATHS)

@@ -23,6 +23,8 @@ RAIL = fp.SerialArm(
     PANDA.tip,
 )
 
+WALL = fp.HalfSpace([-1, 0, 0], -9)
+
 
 def in_the_plane(**options):
     return fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MVN(), [0.3, 0.9, 0.9, 0.5], dt=1 / 48, **options)
@@ -34,9 +36,10 @@ def in_space(task="pose"):
     return fp.simulate(RAIL, path, fp.MVN(), [0, *BENT], dt=0.02, task=task)
 
 
-def limited():
+def limited(clearance=None):
     start = np.pi / np.array([12, 12, 15, 15])
-    return fp.track(FLAT, fp.Circle(0.45, 1.0), fp.FPBM(0.6, [1, 2, 3, 4], 10, 25), start, dt=0.02, limits=TIGHT)
+    scheme = fp.FPBM(0.6, [1, 2, 3, 4], 10, 25)
+    return fp.track(FLAT, fp.Circle(0.45, 1.0), scheme, start, dt=0.02, limits=TIGHT, clearance=clearance)
 
 
 RUNS = {
@@ -45,6 +48,7 @@ RUNS = {
     "position in space": lambda: in_space("position"),
     "pose in space": in_space,
     "within limits": limited,
+    "clear of a wall": lambda: limited(fp.Clearance([fp.Capsule(4, [1, 0, 0], [1, 0, 0], 0)], [WALL])),
     "of no sample": lambda: fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.MAN(), np.zeros(4), partial=True),
     "of no sample, in space": lambda: fp.simulate(
         PANDA, fp.Circle(0.2, 1.0), fp.MAN(), np.zeros(7), task="pose", partial=True
@@ -83,6 +87,8 @@ def expect_columns(columns, run):
     if run.scale is not None:
         expected["scale"] = run.scale
         expected.update({f"saturated_{joint}": run.saturated[:, i] for i, joint in enumerate(joints)})
+    if run.clearance is not None:
+        expected["clearance"] = run.clearance
     assert list(columns) == list(expected)
     for name, values in expected.items():
         assert np.asarray(columns[name], float).tobytes() == values.astype(float).tobytes(), name
@@ -158,6 +164,10 @@ def test_xarray(run):
     assert ("scale" in data) == ("saturated" in data) == (run.scale is not None)
     if run.scale is not None:
         np.testing.assert_array_equal(data.scale, run.scale)
+    assert ("clearance" in data) == (run.clearance is not None)
+    if run.clearance is not None:
+        np.testing.assert_array_equal(data.clearance, run.clearance)
+        assert data.clearance.attrs["units"] == "m"
         np.testing.assert_array_equal(data.saturated, run.saturated)
     assert all("units" in variable.attrs for variable in data.data_vars.values())
     assert data.attrs["scheme"] == repr(run.scheme)

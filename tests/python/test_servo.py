@@ -144,6 +144,27 @@ def test_without_bounds_there_is_nothing_to_keep():
         assert "speed (no bound)" in str(servo._chart._plot.series)
 
 
+def test_it_keeps_clear_of_what_is_dragged_to_it():
+    links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
+    around = [fp.Capsule(0, [2.2, 0.3, -1], [2.2, 0.3, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -2, name="wall")]
+    with a_servo(clearance=fp.Clearance(links, around)) as servo:
+        until(lambda: servo.tick is not None)
+        ((place, grip),) = servo._scene._grips  # Not the wall's.
+        np.testing.assert_allclose(place, [2.2, 0.3, 0])
+        servo.target = [2.2, 0.0]
+        until(lambda: "Drag the handle round the nearest shape." in says(servo))
+        assert f"{servo.tick.nearest.distance:.3f} m"[:4] in says(servo)
+        assert "post" in says(servo)
+        servo.target = [2.6, 2.4]
+        grip.position = np.array([2.2, 0.8, 0.0])
+        servo._loop.drag("post", grip.position - place)
+        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - grip.position).max() < 1e-6)
+        assert servo.tick.nearest.distance >= 0.01 - 1e-9
+        servo.restart()
+        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - place).max() < 1e-6)
+        np.testing.assert_allclose(grip.position, place)
+
+
 def test_it_keeps_pace_with_the_clock(servo):
     until(lambda: servo.tick is not None)
     begin, moment = time.perf_counter(), servo._loop.time
@@ -171,6 +192,7 @@ def test_it_serves_until_it_is_closed():
         ({"task": "dance"}, "task = 'dance'"),
         ({"q0": [0, 0]}, "q0 has 2 entries"),
         ({"q0": [9, 0, 0, 0]}, r"q0\[0\] = 9: must be within"),
+        ({"clearance": 3}, "clearance: must be a Clearance"),
         ({"port": -1}, "port = -1"),
         ({"urdf": "none.urdf"}, "must be left out where the arm is planar"),
         ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),

@@ -265,6 +265,64 @@ def test_own_bounds_of_the_tip():
     assert np.abs(np.diff(tips, axis=0)).max() / FRAME < 0.021
 
 
+def post(x=2.2, y=0.3):
+    return fp.Capsule(0, [x, y, -1], [x, y, 1], 0.1, "post")
+
+
+def a_clear_loop(**how):
+    links = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.05, f"link {i}") for i in range(1, 5)]
+    return a_loop("planar", "position", clearance=fp.Clearance(links, [post()]), **how)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(st.tuples(st.floats(-4, 4), st.floats(-4, 4)), min_size=1, max_size=5))
+def test_no_shape_is_touched_wherever_the_handle_jumps(places):
+    loop, clock = a_clear_loop()
+    for place in places:
+        loop.push(place)
+        for tick in play(loop, clock, 1):
+            assert tick.nearest.distance >= loop.clearance.margin - 1e-9
+            assert (np.abs(tick.qd) <= loop.limits.velocity + 1e-9).all()
+
+
+def test_an_obstacle_goes_evenly_where_it_is_dragged():
+    loop, clock = a_clear_loop()
+    loop.push([2.6, 2.4])
+    play(loop, clock, 3)
+    there = loop.tip
+    for way in ([0.0, 0.6, 0.0], [-0.3, 0.6, 0.0], [0.0, 0.0, 0.0]):
+        before = loop.clearance.obstacles[0].a
+        loop.drag("post", way)
+        for _ in range(60):
+            nearest = [tick.nearest.distance for tick in play(loop, clock, FRAME)]
+            now = loop.clearance.obstacles[0].a
+            assert np.linalg.norm(now - before) <= 0.3 * len(nearest) * loop.dt + 1e-9
+            assert min(nearest) >= loop.clearance.margin / 2  # It sets off at once, and the arm cannot.
+            before = now
+        play(loop, clock, 2)
+        np.testing.assert_allclose(loop.clearance.obstacles[0].a, post().a + way, atol=1e-12)
+    play(loop, clock, 3)
+    np.testing.assert_allclose(loop.tip, there, atol=1e-4)
+
+
+def test_obstacles_stay_under_another_scheme_and_go_back_to_the_start():
+    loop, clock = a_clear_loop()
+    loop.drag("post", [0.3, 0.0, 0.0])
+    play(loop, clock, 2)
+    loop.scheme = fp.MVN(k=5)
+    tick = play(loop, clock, FRAME)[-1]
+    expected = loop.clearance.nearest(PLANAR, loop.q)
+    assert loop.clearance.obstacles[0] == post(2.5)
+    assert tick.nearest.pair == expected.pair
+    assert tick.nearest.distance == pytest.approx(expected.distance, abs=1e-9)
+    loop.drag("post", [-1.0, 0.0, 0.0])
+    loop.restart()
+    play(loop, clock, 1)
+    assert loop.clearance.obstacles[0] == post()
+    with pytest.raises(ValueError, match=r"name = 'wall': must be one of the obstacles: post"):
+        loop.drag("wall", [0, 0, 0])
+
+
 def test_what_does_not_suit_is_refused():
     bent = fp.PlanarArm([1, 1, 1])
     limits = fp.JointLimits(lower=[-3] * 3, upper=[3] * 3, velocity=[1] * 3, acceleration=[np.inf] * 3)

@@ -378,10 +378,11 @@ def test_interruption_keeps_what_is_finished(arm, reference):
             large(arm, progress=interrupt, **how)
         sweep = caught.value.sweep
         assert isinstance(caught.value, KeyboardInterrupt)
-        assert 100 < sweep.done.sum() < 600
+        # Other workers may have finished all meanwhile, on a busy machine.
+        assert 100 < sweep.done.sum() < 600 + (how["workers"] > 1)
         assert (sweep.status[~sweep.done] == None).all()  # noqa: E711
         assert not sweep.ok[~sweep.done].any()
-        assert "not run" in repr(sweep)
+        assert ("not run" in repr(sweep)) == (not sweep.done.all())
         for name in FIGURES:
             values = getattr(sweep, name)
             assert values[sweep.done].tobytes() == getattr(reference, name)[sweep.done].tobytes()

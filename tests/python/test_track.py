@@ -120,6 +120,7 @@ def test_options_make_it_again(q0):
         "stall_time": 0.3,
         "singular_radius": 0.03,
         "singular_brake": 5.0,
+        "clearance": fp.Clearance([fp.Capsule(4, [0, 0, 0], [1, 0, 0], 0.1)], [fp.HalfSpace([0, 1, 0], -3)]),
     }
     run = fp.track(arm, SMOOTH, scheme, q0, **given)
     assert run.options == given

@@ -25,9 +25,10 @@ pytest.importorskip("yourdfpy")
 from viser.transforms import SO3
 
 from fpbm_cpp.parameter import parameters
-from fpbm_cpp.skeleton import joint_points
+from fpbm_cpp.skeleton import joint_points, link_frames
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
+from fpbm_cpp.viewer.gap import nearest_points
 from fpbm_cpp.viewer.scene import FRAMES, Links, Meshes, Playback, along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
@@ -105,6 +106,83 @@ def test_time_moves_the_arm(viewer):
     assert viewer.time == 3.0
     viewer.time = -1.0
     assert viewer.time == 0.0
+
+
+LINKS = [fp.Capsule(i, [0, 0, 0], [1, 0, 0], 0.04, f"link {i}") for i in range(1, 5)]
+AROUND = [fp.Capsule(0, [2.2, 0.2, -1], [2.2, 0.2, 1], 0.1, "post"), fp.HalfSpace([0, 1, 0], -1.5, name="wall")]
+CLEARANCE = fp.Clearance(LINKS, AROUND)
+WIDE = fp.JointLimits(lower=[-3] * 4, upper=[3] * 4, velocity=[2] * 4, acceleration=[10] * 4)
+
+
+def test_what_is_kept_clear_of_is_drawn_and_said():
+    arm = fp.PlanarArm([1, 1, 1, 1])
+    run = fp.track(arm, fp.Line([0, -2.5], 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, clearance=CLEARANCE)
+    with Viewer(run, port=0) as viewer:
+        shapes, label = viewer._scene._shapes, "distance of the nearest shapes"
+        for moment in (0.0, 1.0, 2.0):
+            viewer.time = moment
+            sample = round(100 * moment)
+            nearest = CLEARANCE.nearest(arm, run.q[sample])
+            assert f"{nearest.distance:.3f} m ({' and '.join(nearest.pair)})" in say(viewer)
+            points = joint_points(arm, run.q[sample])
+            for link, node in shapes._links.items():
+                np.testing.assert_allclose(node.position[:2], points[link - 1], atol=1e-6)
+                turned = SO3(node.wxyz).as_matrix() @ [1, 0, 0]
+                np.testing.assert_allclose(turned[:2], points[link] - points[link - 1], atol=1e-6)
+            ends = shapes._gap.points[0]
+            assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(nearest.distance, abs=1e-6)
+        assert f"{run.clearance.min():.3f} m" in say(viewer)
+        np.testing.assert_allclose(shapes._obstacles[0].position, [2.2, 0.2, 0], atol=1e-6)
+        viewer._chart._quantity.value = label
+        viewer._chart.show(viewer._playback)
+        np.testing.assert_allclose(viewer._chart._plot.data[1], run.clearance[viewer._playback.frames], atol=1e-9)
+        viewer._controls._limited.value = False  # Then it hits the post, and the page says so.
+        viewer._on_change()
+        assert viewer.run.clearance is None
+        assert viewer._playback.distances.min() < 0
+        assert "nearest shapes" in say(viewer)
+
+
+def test_nothing_is_drawn_of_a_run_that_keeps_clear_of_nothing(viewer):
+    assert viewer._scene._shapes is None
+    assert "nearest shapes" not in say(viewer)
+    assert "distance of the nearest shapes" not in viewer._chart._quantity.options
+
+
+def test_the_tip_before_a_wall_of_its_box_has_no_line():
+    arm, ways = fp.PlanarArm([1, 1, 1, 1]), [0.0, -2.0]
+    tip = np.append(arm.forward(Q0), 0.0)
+    room = np.array([2, 0.5, 1])
+    clearance = fp.Clearance(LINKS, tip_lower=tip - room, tip_upper=tip + room)
+    run = fp.track(arm, fp.Line(ways, 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, clearance=clearance)
+    with Viewer(run, port=0) as viewer:
+        viewer.time = 2.0
+        assert "(tip and lower y)" in say(viewer)
+        assert not viewer._scene._shapes._gap.visible
+
+
+@given(st.integers(0, 10**6))
+@settings(deadline=None, max_examples=200)
+def test_the_line_is_as_long_as_the_shapes_are_apart(seed):
+    rng = np.random.default_rng(seed)
+    arm = fp.SerialArm.preset("panda")
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = fp.rotation(rng.normal(size=3)), rng.uniform(-0.8, 0.8, 3)
+    around = [
+        fp.HalfSpace(rng.normal(size=3), rng.uniform(-1.0, -0.3)),
+        fp.Cuboid(pose, rng.uniform(0, 0.2, 3)),
+        fp.Capsule(0, rng.uniform(-0.8, 0.8, 3), rng.uniform(-0.8, 0.8, 3), 0.05),
+    ]
+    hand = [
+        fp.Capsule(7, [0, -0.1, 0.1], [0, 0.1, 0.1], 0.03, "hand"),
+        fp.Capsule(7, [0, 0, 0.1], [0, 0, 0.2], 0.02, "hand"),
+    ]
+    clearance = fp.Clearance([fp.Capsule(2, [0, 0, 0], [0, -0.3, 0], 0.05), *hand], around)
+    q = rng.uniform(-2.5, 2.5, 7)
+    nearest = clearance.nearest(arm, q)
+    ends = nearest_points(clearance, link_frames(arm, q), nearest.pair)
+    if nearest.distance > 1e-6:
+        assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(nearest.distance, abs=1e-9)
 
 
 def test_the_page_chooses_schemes_and_gains(viewer):

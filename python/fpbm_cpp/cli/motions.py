@@ -29,6 +29,7 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
     fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
     fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
     fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
+    clear=True,
 )
 @out_option
 @dark_option
@@ -69,6 +70,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --schemes mvn,man,fpbm --out circle
     fpbm-cpp compare --job job.toml --null-damping 0""",
     kind=False,
+    clear=True,
 )
 @click.option("--schemes", metavar="NAMES", help=f"Which, between commas; all unless given: {', '.join(SCHEMES)}.")
 @out_option
@@ -120,6 +122,7 @@ def _row(kind: str, run: Run) -> Row:
     fpbm-cpp view panda --task pose
     fpbm-cpp view my_arm.urdf --tip tool0 --path lissajous --port 9000
     fpbm-cpp view --job job.toml --no-browser""",
+    clear=True,
 )
 @port_option
 @browser_option
@@ -144,8 +147,10 @@ def view(request: Request, port: int, browser: bool) -> None:
     """
     fpbm-cpp servo panda --task pose
     fpbm-cpp servo planar:1,1,1,1 --limit-velocity 2 --limit-acceleration 10 --limit-jerk 200
-    fpbm-cpp servo my_arm.urdf --tip tool0 --limit-acceleration 10 --port 9000""",
+    fpbm-cpp servo my_arm.urdf --tip tool0 --limit-acceleration 10 --port 9000
+    fpbm-cpp servo my_arm.urdf --tip tool0 --clearance my_arm.urdf --srdf my_arm.srdf --job walls.toml""",
     path=False,
+    clear=True,
 )
 @port_option
 @browser_option
@@ -153,8 +158,9 @@ def servo(request: Request, port: int, browser: bool) -> None:
     """Drag a handle in the browser, and the arm's tip follows, within its joint limits.
 
     1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
-    keeps the arm from the handle. A URDF file is shown with its meshes. Ctrl-C ends it. ARM and the options are those
-    of track; of a job, the path does not matter.
+    keeps the arm from the handle. A URDF file is shown with its meshes. What the arm keeps clear of is drawn as well;
+    arrows move boxes and capsules of the surroundings. Ctrl-C ends it. ARM and the options are those of track; of a
+    job, the path does not matter.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():
@@ -170,6 +176,7 @@ def servo(request: Request, port: int, browser: bool) -> None:
                 task=motion.options.task,
                 dt=motion.options.dt,
                 limits=motion.limits,
+                clearance=motion.clearance,
                 urdf=motion.job["arm"].get("file"),
                 port=port,
                 open_browser=browser,

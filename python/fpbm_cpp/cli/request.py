@@ -17,9 +17,16 @@ from ..job.sections import FREE, SECTIONS, Table, known
 from ..parameter import REQUIRED, Parameter
 from .plain import PLACE, WIDTH, Plain, file_errors
 
-HEADING = {"arm": "Arm and start", "run": "Arm and start", "path": "Path", "scheme": "Scheme", "limits": "Joint limits"}
+HEADING = {
+    "arm": "Arm and start",
+    "run": "Arm and start",
+    "path": "Path",
+    "scheme": "Scheme",
+    "limits": "Joint limits",
+    "clearance": "Clearance",
+}
 SAVED = "Write the job to a TOML file, with all that was taken by default."
-METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES"}
+METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES", "file": "FILE", "srdf": "FILE"}
 # What jobs take where nothing is given and the arm decides.
 TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
 
@@ -54,11 +61,20 @@ class JobOption(click.Option):
         self.section, self.key, self.heading = section, key, HEADING[section]
 
 
+CLEAR = (
+    "Keep clear of the arm itself, by this URDF file's collision geometry, and of the job's obstacles; keeps limits."
+)
+SRDF = "MoveIt's file of link pairs that may meet."
+MARGIN = "Least distance of two shapes."
+PER_LINK = "At most so many capsules for each link."
+
 LIVE = {"task", "q0"}  # Of a run, where there is no path.
 
 
-def _job_options(kind: bool, path: bool) -> Iterator[JobOption]:
-    """The options of a job: all, or without the kind of scheme; or of an arm without a path, which keeps its limits."""
+def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
+    """The options of a job: all, or without the kind of scheme, or what it keeps clear of; or of an arm without a path,
+    which keeps its limits.
+    """
     urdf = known("arm", "urdf")
     yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
     yield _option("arm", "base", replace(urdf["base"], help="Link of a URDF file that stays."))
@@ -80,6 +96,11 @@ def _job_options(kind: bool, path: bool) -> Iterator[JobOption]:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     for key, declared in known("limits").items():
         yield _option("limits", key, declared, prefix="limit-")
+    if clear:
+        shapes = known("clearance", "urdf")
+        yield JobOption("clearance", "file", "--clearance", metavar="FILE", help=CLEAR)
+        for key, text in (("srdf", SRDF), ("margin", MARGIN), ("per_link", PER_LINK)):
+            yield _option("clearance", key, replace(shapes[key], help=text))
 
 
 def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
@@ -97,12 +118,12 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
 
 
 def motion_command(
-    short_help: str, examples: str, *, kind: bool = True, path: bool = True
+    short_help: str, examples: str, *, kind: bool = True, path: bool = True, clear: bool = False
 ) -> Callable[[Callable[..., None]], Plain]:
     """A command, named as its function, which gets a Request for ARM, --job, --save-job and the options of a job."""
 
     def make(function: Callable[..., None]) -> Plain:
-        ours = list(_job_options(kind, path))
+        ours = list(_job_options(kind, path, clear))
 
         @click.argument("arm", required=False, metavar="ARM")
         @click.option("--job", type=PLACE, metavar="FILE", help="TOML file with what options do not say.")
@@ -127,6 +148,7 @@ class Request:
         if arm is None and file is None:
             raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
         self.file, self.copy = file, copy
+        self.sections = {option.section for option in values}
         self.table: Table = {}
         self.flags: dict[str, str] = {}
         if file is not None:
@@ -153,6 +175,9 @@ class Request:
         at_rest: whether it has to begin at rest; limited: whether limits are kept though nobody asks.
         """
         table = {"limits": {}, **self.table} if limited else self.table
+        if "clearance" in table and "clearance" not in self.sections:
+            command = click.get_current_context().info_name
+            raise click.ClickException(f"{command} keeps clear of nothing: leave clearance out, or use track")
         if kind is not None:
             table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):

@@ -75,6 +75,8 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     yield at(manipulability.argmin(), "least manipulability", manipulability)
     if run.scale is not None:
         yield at(run.scale.argmin(), "least task scale", run.scale)
+    if run.clearance is not None:
+        yield at(run.clearance.argmin(), "least clearance", run.clearance, "m")
     outside = (run.q < limits.lower) | (run.q > limits.upper)
     too_fast = (np.abs(run.qd) > limits.velocity) | (np.abs(run.qdd) > limits.acceleration)
     flags = outside | too_fast if run.saturated is None else run.saturated

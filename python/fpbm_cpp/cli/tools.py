@@ -117,12 +117,14 @@ def reproduce(out: Path) -> None:
 @click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
 @click.option("-o", "--out", type=PLACE, metavar="FILE.hpp", required=True, help=HEADER)
 @click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
-def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str | None) -> None:
+@click.option("--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry.")
+def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str | None, capsules: bool) -> None:
     """Write the arm of a URDF file as a C++ header.
 
     The header constructs the arm from base to tip, with neither parser nor file when the program runs.
     """
     from ..io import write_whole
+    from ..io.capsules import capsules_of
     from ..io.header import export_header, namespace_of
     from ..io.urdf import read_urdf
 
@@ -131,8 +133,9 @@ def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str |
     try:
         with file_errors("read", urdf):
             joints, frame = read_urdf(urdf, tip, base)
+            shapes = capsules_of(urdf, tip, base) if capsules else None
         name = name or namespace_of((urdf if to_stdout else out).stem)
-        header = export_header(joints, frame, name=name, source=source)
+        header = export_header(joints, frame, name=name, source=source, capsules=shapes)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     if to_stdout:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arms import Joint
+from ..capsule import Capsule
 from ..errors import wrong
 
 # Names that a namespace cannot have: C++'s keywords, and namespaces of others.
@@ -19,12 +20,20 @@ return short signed sizeof static static_assert static_cast struct switch templa
 typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq Eigen fpbm std"""
 
 
-def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source: str = "") -> str:
+def export_header(
+    joints: Sequence[Joint],
+    tip: ArrayLike,
+    *,
+    name: str,
+    source: str = "",
+    capsules: Sequence[Capsule] | None = None,
+) -> str:
     """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
 
     It has kDof, kJointNames, chain() and arm(), an fpbm::CoupledArm where one joint mimics another, else an
-    fpbm::SerialArm, in the namespace of that name, 'my::arm' say. tip: its frame, shape (4, 4) [m], seen from the last
-    joint. source: where the arm comes from, for a comment. Raises ParameterError where no namespace can have the name.
+    fpbm::SerialArm, in the namespace of that name, 'my::arm' say; and capsules() where capsules on its links are given,
+    none or more. tip: its frame, shape (4, 4) [m], seen from the last joint. source: where the arm comes from, for a
+    comment. Raises ParameterError where no namespace can have the name.
     """
     if not all(_is_identifier(part) for part in name.split("::")):
         raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
@@ -35,13 +44,15 @@ def export_header(joints: Sequence[Joint], tip: ArrayLike, *, name: str, source:
     parts = [_joint_lines(i, joint) for i, joint in enumerate(joints)] + [_transform_lines("  chain.tip", tip)]
     chain = "\n\n".join("\n".join(lines) for lines in parts if lines)
     none = "  constexpr double kNone = fpbm::JointBounds<>::kNone;\n" if "kNone" in chain else ""
+    includes = ["array", f"fpbm/model/{'serial_arm' if kind == 'SerialArm' else 'coupled_arm'}.hpp"]
+    if capsules is not None:
+        includes += ["fpbm/clearance/clearance.hpp", "vector"]
     origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
     return f"""\
 // Written by fpbm-cpp export-header{origin}. Do not edit: write it again.
 #pragma once
 
-#include <array>
-#include <fpbm/model/{"serial_arm" if kind == "SerialArm" else "coupled_arm"}.hpp>
+{chr(10).join(f"#include <{include}>" for include in sorted(includes))}
 
 namespace {name} {{
 
@@ -66,7 +77,7 @@ inline fpbm::Chain<> chain() {{
 inline fpbm::{kind}<kDof> arm() {{
   return fpbm::{kind}<kDof>(chain());
 }}
-
+{"" if capsules is None else _capsule_lines(capsules)}
 }}  // namespace {name}
 """
 
@@ -101,6 +112,20 @@ def _joint_lines(i: int, joint: Joint) -> list[str]:
         leader, ratio, offset = joint.mimic
         lines.append(f"{member}.mimic = {{{leader}, {ratio!r}, {offset!r}}};  // joint, ratio, offset")
     return lines
+
+
+def _capsule_lines(capsules: Sequence[Capsule]) -> str:
+    each = "".join(
+        f"      {{{c.link}, {{{_braced(c.a)}, {_braced(c.b)}, {float(c.radius)!r}}}, {_literal(c.name)}}},\n"
+        for c in capsules
+    )
+    return f"""
+/// Capsules on the links [m], in the frames of the chain's joints; link 0 is the base.
+inline std::vector<fpbm::LinkCapsule<>> capsules() {{
+  return {{
+{each}  }};
+}}
+"""
 
 
 def _transform_lines(name: str, transform: ArrayLike) -> list[str]:

@@ -108,15 +108,16 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     arm = made_of["arm"]
     known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
     rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
-    shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": ()}
+    shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": (), "clearance": ()}
     for name, array in arrays.items():
         shape, kind = (rows, *shapes.get(name, (n,))), "bool" if name == "saturated" else "float64"
         if array.shape != shape or array.dtype != kind:
             raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")
     status = meta["status"]
     options = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
-    if options.get("limits") is not None:
-        options["limits"] = from_table(options["limits"], name="limits")
+    for name in ("limits", "clearance"):
+        if options.get(name) is not None:
+            options[name] = from_table(options[name], name=name)
     ended = RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float))
     how = {"task": meta["task"], "options": options, "provenance": dict(meta["provenance"])}
     return Run(**arrays, **made_of, **how, status=ended)

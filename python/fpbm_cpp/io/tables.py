@@ -47,6 +47,8 @@ def _quantities(run: Run) -> Iterator[Quantity]:
         yield "scale", "scale", "", run.scale, none
     if run.saturated is not None:
         yield "saturated", "saturated_{}", "joint", run.saturated, [""] * len(joints)
+    if run.clearance is not None:
+        yield "clearance", "clearance", "", run.clearance, ["m"]
 
 
 def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:

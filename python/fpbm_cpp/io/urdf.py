@@ -20,6 +20,7 @@ from .urdf_file import ENVELOPE, UrdfJoint, read_robot
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
 Tree = dict[str, "UrdfJoint | None"]  # The joint above each link, None above the root.
+Places = dict[str, tuple[int, Array]]  # By link: how many joints move it, and its frame seen from the last of them.
 Follow = tuple[str, float, float]  # Leader, ratio, offset: a position is ratio times the leader's, plus offset.
 
 
@@ -28,13 +29,20 @@ def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -
 
     As SerialArm.from_urdf() says. The bounds of a joint that another mimics are narrowed so that both keep theirs.
     """
+    return read_places(path, tip, base)[:2]
+
+
+def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array, Places]:
+    """Read as read_urdf() does, and where each link of the file is; joints off the way are held at zero."""
     name = os.fsdecode(path)
     try:
         links, every = read_robot(name)
-        way = _way(_tree(links, every), tip, base)
+        above = _tree(links, every)
+        way = _way(above, tip, base)
         follows = _follows(way, {joint.name: joint.mimic for joint in every})
-        joints, frame, held = _chain(way, follows)
-        joints = _coupled(joints, follows)
+        joints, places, held = _chain(way, follows)
+        joints, frame = _coupled(joints, follows), places[tip][1]
+        places = _all_places(above, places)
     except ParameterError:
         raise
     except ValueError as error:
@@ -43,8 +51,8 @@ def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -
         leader, _, offset = follows[joint.name]
         held_at = f"joint {joint.name!r} is held at {offset:g} {'m' if joint.type == 'prismatic' else 'rad'}"
         reason = f"it mimics {leader!r}, which does not move between base and tip"
-        warnings.warn(f"{name}: {held_at}: {reason}", stacklevel=3)
-    return joints, frame
+        warnings.warn(f"{name}: {held_at}: {reason}", stacklevel=4)
+    return joints, frame, places
 
 
 def _tree(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
@@ -138,33 +146,56 @@ def _follows(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> d
     return follows
 
 
-def _chain(way: Iterable[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Array, list[UrdfJoint]]:
-    """The joints that move, the tip's frame, and the joints that are held."""
+def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
+    """The joints that move, where the links on the way are, and the joints that are held."""
     moving = {joint.name for joint in way if joint.type != "fixed"}
     joints: list[Joint] = []
     held = []
-    frame = np.eye(4)
+    frame = _frame()
+    places: Places = {way[0].parent: (0, frame)}
     for joint in way:
         if joint.type not in TYPES:
             raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed")
-        roll, pitch, yaw = joint.rpy
-        R = rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0])
-        frame = frame @ _frame(joint.xyz, R)
-        if joint.type == "fixed":
-            continue
-        if not np.any(joint.axis):
-            raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
-        leader, _, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
-        if leader in moving:
-            joints.append(_joint(joint, frame))
-            frame = np.eye(4)
-        else:
-            held.append(joint)
-            along = offset * np.array(joint.axis) / np.linalg.norm(joint.axis)
-            frame = frame @ (_frame(p=along) if joint.type == "prismatic" else _frame(R=rotation(along)))
+        frame = frame @ pose(joint.xyz, joint.rpy)
+        if joint.type != "fixed":
+            if not np.any(joint.axis):
+                raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
+            leader, _, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
+            if leader in moving:
+                joints.append(_joint(joint, frame))
+                frame = _frame()
+            else:
+                held.append(joint)
+                along = offset * np.array(joint.axis) / np.linalg.norm(joint.axis)
+                frame = frame @ (_frame(p=along) if joint.type == "prismatic" else _frame(R=rotation(along)))
+        places[joint.child] = (len(joints), frame)
     if not joints:
         raise ValueError(f"no joints move but those that are held: {_listed(joint.name for joint in held)}")
-    return joints, frame, held
+    return joints, places, held
+
+
+def _all_places(above: Tree, known: Places) -> Places:
+    """Where all links are: those above the base and on side branches as if each joint there were fixed at zero."""
+    beside: dict[str, list[tuple[str, Array]]] = {link: [] for link in above}
+    for joint in filter(None, above.values()):
+        step = pose(joint.xyz, joint.rpy)
+        beside[joint.parent].append((joint.child, step))
+        beside[joint.child].append((joint.parent, np.asarray(np.linalg.inv(step))))
+    places = dict(known)
+    queue = list(known)
+    for link in queue:
+        count, frame = places[link]
+        for other, step in beside[link]:
+            if other not in places:
+                places[other] = (count, frame @ step)
+                queue.append(other)
+    return places
+
+
+def pose(xyz: ArrayLike, rpy: Iterable[float]) -> Array:
+    """The frame of a URDF's <origin>."""
+    roll, pitch, yaw = rpy
+    return _frame(xyz, rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0]))
 
 
 def _frame(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> Array:

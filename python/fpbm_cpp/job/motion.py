@@ -16,6 +16,7 @@ from tomlkit.exceptions import TOMLKitError
 from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits, PlanarArm
+from ..clearance import Clearance
 from ..errors import wrong
 from ..io import write_whole
 from ..motion.run import Run
@@ -24,7 +25,19 @@ from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Path
 from ..schemes import Scheme
 from ..table import to_table
-from .sections import FREE, SECTIONS, JobError, RunOptions, Table, in_order, job_errors, known, make, require_sound
+from .sections import (
+    FREE,
+    SECTIONS,
+    JobError,
+    RunOptions,
+    Table,
+    in_order,
+    job_errors,
+    known,
+    make,
+    require_sound,
+    with_kind,
+)
 
 # The hand points down, from the makers' ready postures: Franka's, 30° -90° 60° of the iiwa 14, Kinova's home, right
 # angles of UR's [rad].
@@ -54,6 +67,7 @@ class Motion:
     scheme: Scheme
     options: RunOptions
     limits: JointLimits | None  # None where they are not kept.
+    clearance: Clearance | None  # What is kept clear of, within limits.
 
     @property
     def q0(self) -> Array:
@@ -93,7 +107,7 @@ class Motion:
         keywords = {**self.keywords, "qd0": self.options.qd0}
         with job_errors():
             if self.limits is not None:
-                return track(self.arm, self.path, self.scheme, self.q0, **keywords)
+                return track(self.arm, self.path, self.scheme, self.q0, clearance=self.clearance, **keywords)
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
 
@@ -105,13 +119,14 @@ def prepare(job: Table) -> Motion:
     full = filled(job, arm)
     full = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
     path, scheme, options = (make(section, full[section], arm) for section in ("path", "scheme", "run"))
-    limits = make("limits", job["limits"], arm) if "limits" in job else None
-    if limits is not None and "acceleration" not in job["limits"]:
+    limits = make("limits", full["limits"], arm) if "limits" in full else None
+    if limits is not None and "acceleration" not in full["limits"]:
         bounded = np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
         if np.any(bounded & np.isinf(limits.acceleration)):
             missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(wrong("limits.acceleration", None, missing))
-    motion = Motion(full, taken(job, full), arm, path, scheme, options, limits)
+    clearance = make("clearance", full["clearance"], arm) if "clearance" in full else None
+    motion = Motion(full, taken(job, full), arm, path, scheme, options, limits, clearance)
     with job_errors():
         try:
             check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
@@ -132,7 +147,14 @@ def filled(job: Table, arm: Arm) -> Table:
     if "q0" not in run:
         preset = job["arm"].get("name")
         run["q0"] = list(READY.get(preset) or ready(arm, run["task"]))
-    return {**job, "path": pieces, "scheme": scheme, "run": run}
+    full = {**job, "path": pieces, "scheme": scheme, "run": run}
+    if "clearance" in job:
+        full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.
+        full["clearance"] = with_kind(job["clearance"])
+        if full["clearance"]["kind"] == job["arm"]["kind"] == "urdf":
+            ends = {key: job["arm"][key] for key in ("tip", "base") if key in job["arm"]}
+            full["clearance"] = {**ends, **full["clearance"]}
+    return full
 
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
@@ -202,9 +224,8 @@ def read_job(file: str | os.PathLike[str]) -> Table:
         table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise JobError(wrong("", None, f"no TOML: {error}")) from None
-    arm = table.get("arm")
-    if isinstance(arm, dict) and isinstance(arm.get("file"), str):
-        arm["file"] = os.path.normpath(FilePath(file).parent / arm["file"])
+    for each, key in _files(table):
+        each[key] = os.path.normpath(FilePath(file).parent / each[key])
     return table
 
 
@@ -212,9 +233,18 @@ def write_job(job: Table, file: str | os.PathLike[str]) -> None:
     """Write a job that is sound to a file, whole or not at all; read_job reads it back. Raises OSError."""
     place = FilePath(file).resolve()
     table = {section: in_order(section, job[section]) for section in SECTIONS if section in job}
-    if "file" in table["arm"]:
+    for each, key in _files(table):
         try:
-            table["arm"]["file"] = FilePath(os.path.relpath(table["arm"]["file"], place.parent)).as_posix()
+            each[key] = FilePath(os.path.relpath(each[key], place.parent)).as_posix()
         except ValueError:  # On another drive.
-            table["arm"]["file"] = str(FilePath(table["arm"]["file"]).resolve())
+            each[key] = str(FilePath(each[key]).resolve())
     write_whole(place, f"# fpbm-cpp track --job {place.name}\n\n{tomlkit.dumps(table)}".encode())
+
+
+def _files(table: Table) -> Iterator[tuple[Table, str]]:
+    """The sections that name a file, and the keys of those."""
+    for section in ("arm", "clearance"):
+        for key in ("file", "srdf"):
+            said = table.get(section)
+            if isinstance(said, dict) and isinstance(said.get(key), str):
+                yield said, key

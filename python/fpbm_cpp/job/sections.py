@@ -9,6 +9,7 @@ from typing import Any
 
 from .._types import OptionalArrayField
 from ..arms import ARMS, Arm, JointLimits
+from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
@@ -36,23 +37,30 @@ SECTIONS: dict[str, Makers] = {
     "scheme": SCHEMES,
     "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
+    "clearance": CLEARANCES,  # Which of them goes by whether there are capsules.
 }
 FREE = {"path": "circle", "scheme": "fpbm"}  # The kind that is taken where the section is missing.
 
 
 def known(section: str, kind: object = None) -> dict[str, Parameter]:
     """The keys of a section of this kind; none where there is no such kind."""
-    maker = SECTIONS[section].get(section if section in SECTIONS[section] else str(kind))
+    only = len(SECTIONS[section]) == 1
+    maker = SECTIONS[section].get(section if only else str(kind))
     return keys(maker) if maker else {}
 
 
 # The section of a key that the library names without one.
 OWNERS = {
     key: section
-    for section in ("arm", "path", "limits", "scheme", "run")
+    for section in ("clearance", "arm", "path", "limits", "scheme", "run")
     for kind in SECTIONS[section]
     for key in known(section, kind)
 }
+
+
+def with_kind(clearance: Table) -> Table:
+    """A clearance with its kind: of capsules where there are some, else of a URDF file."""
+    return {"kind": Clearance.kind if "capsules" in clearance else "urdf", **clearance}
 
 
 def in_order(section: str, said: Any) -> Any:
@@ -103,6 +111,8 @@ def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
     """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
     if not isinstance(said, dict):
         return said
+    if section == "clearance":
+        said = with_kind(said)
     if said.get("kind") == "urdf":
         return {"tip": "", **said}  # Which is refused with what links there are.
     if section == "limits":
@@ -112,4 +122,4 @@ def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
         said = {**own, **said, **every}
     if section == "scheme" and "weights" in known(section, said.get("kind")):
         return {"weights": [1.0], **said}  # Which are filled in for the arm.
-    return {"kind": section, **said} if section in SECTIONS[section] else said
+    return {"kind": section, **said} if len(SECTIONS[section]) == 1 else said

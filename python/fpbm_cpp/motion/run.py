@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
-LIMITED = ("scale", "saturated")  # Of runs that kept the joints' limits.
+LIMITED = ("scale", "saturated", "clearance")  # Of runs that kept the joints' limits, and kept clear of shapes.
 
 
 @dataclass(frozen=True)
 class RunStatus:
     """How a motion ended: why (code), when (time of the last sample [s]) and where (q [rad], shape (n,)).
 
-    The code is OK, COARSE, DAMPED, SLOWED or STALLED where the whole motion is done, and the status true.
+    The code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED where the whole motion is done, and the status true.
     """
 
     code: Status
@@ -80,6 +80,8 @@ class Run:
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it), and
         which joints were on a bound.
+    clearance : numpy.ndarray, shape (N,), or None
+        Of track() with a clearance: how far the two shapes are apart that are nearest to one another [m].
     provenance : dict
         Of a run from a file: when, where and by which versions it was made, with the note and seed saved with it.
     """
@@ -99,6 +101,7 @@ class Run:
     options: dict[str, Any] = field(default_factory=dict)
     scale: Array | None = None
     saturated: NDArray[np.bool_] | None = None
+    clearance: Array | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
     def max_error(self) -> float:
@@ -149,7 +152,7 @@ class Run:
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
 
     def arrays(self) -> dict[str, Any]:
-        """All arrays by name; scale and saturated only where the limits were kept."""
+        """All arrays by name; scale, saturated and clearance only where there are such."""
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
@@ -198,7 +201,7 @@ class Run:
         """Data frame of a row for each sample, with its units in frame.attrs["units"]. Needs the extra 'data'.
 
         Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
-        and so on, orientation_error_x and so on; scale and saturated_<joint> where the limits were kept.
+        and so on, orientation_error_x and so on; scale and saturated_<joint> where the limits were kept, and clearance.
         """
         from ..io.tables import to_pandas
 
@@ -217,7 +220,7 @@ class Run:
         """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
 
         Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
-        orientation_error; scale and saturated where the limits were kept.
+        orientation_error; scale and saturated where the limits were kept, and clearance.
         """
         from ..io.tables import to_xarray
 

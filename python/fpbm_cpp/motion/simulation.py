@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
+from ..clearance import Clearance
 from ..errors import ResolutionError
 from ..paths import Path
 from ..schemes import Scheme
@@ -23,6 +24,7 @@ class LimitOptions(NamedTuple):
     stall_time: float = 2.0
     singular_radius: float = 0.02
     singular_brake: float = 10.0
+    clearance: Clearance | None = None
 
 
 def simulate(
@@ -87,26 +89,27 @@ def track(
     stall_time: float = 2.0,
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
+    clearance: Clearance | None = None,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
     The motion is a Tracker's, where simulate() has the plain law's: every joint keeps its bounds, the motion is damped
     near singular postures, and nothing makes it stop early. Sample k is the state at t_k, the tip's error there, and
     the tick that begins there: its mean acceleration, its scale, and which joints it had on a bound. The run's status
-    is the worst of all ticks: OK, DAMPED, SLOWED or STALLED; without damping it may be SINGULAR, where the arm braked.
-    Raises ValueError as simulate() does, and if a limit is missing or the start breaks one.
+    is the worst of all ticks: OK, DAMPED, SLOWED, BLOCKED or STALLED; without damping it may be SINGULAR, where the arm
+    braked. Raises ValueError as simulate() does, and if a limit is missing or the start breaks one or is not clear.
 
     Parameters
     ----------
     arm, path, scheme, q0, dt, hold, qd0, task
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
-    limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
+    limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, clearance
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(
-        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
+        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, clearance
     )
     outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
     return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})

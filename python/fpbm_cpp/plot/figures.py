@@ -26,8 +26,8 @@ def plot_run(
     Its text is 9 points high. It is two columns of a paper wide, or one column where there are few panels and no arm.
     title is by default the scheme and the path. panels are names from PANELS, by default all but the components of the
     error; those that the run has no data for are left out: 'scale' and 'saturation' without joint limits,
-    'axis_orientation_errors' where the task is a position. dark draws on black. Raises ValueError if a panel is unknown
-    or given twice, or no panel is left.
+    'clearance' without one, 'axis_orientation_errors' where the task is a position. dark draws on black. Raises
+    ValueError if a panel is unknown or given twice, or no panel is left.
     """
     chosen = choose(run, panels)
     if title is None:

@@ -17,7 +17,14 @@ from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, ove
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
 __all__ = ["OVERVIEW", "PANELS", "arm_panel", "min_singular_values", "null_space_velocities"]
-__all__ += ["acceleration_panel", "position_panel", "saturation_panel", "scale_panel", "velocity_panel"]
+__all__ += [
+    "acceleration_panel",
+    "clearance_panel",
+    "position_panel",
+    "saturation_panel",
+    "scale_panel",
+    "velocity_panel",
+]
 __all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
 
 NEAR = 0.1  # Of the distance between a joint's bounds.
@@ -196,6 +203,19 @@ def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     axes.set_xlim(*(run.t[[0, -1]] if len(run.t) > 1 else (0.0, 1.0)))
 
 
+def clearance_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Distance of the two shapes that are nearest to one another, and the margin that is kept."""
+    assert run.clearance is not None
+    clearance = run.options.get("clearance")
+    axes.plot(run.t, np.where(np.isfinite(run.clearance), run.clearance, np.nan), color=theme.lines[0], lw=LINE)
+    if clearance is not None:
+        margin = axes.axhline(clearance.margin, color=theme.ink, lw=0.8, ls=(0, (1, 1)), label="margin")
+        head_legend(axes, theme, [margin])
+    over_time(axes, r"$d$ [m]")
+    if np.all(run.clearance >= 0.0):
+        from_zero(axes)
+
+
 def manipulability_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """√det(JJᵀ), which is 0 in a singular posture (Yoshikawa, 1985), and on its own scale J's least singular value."""
     right = axes.twinx()
@@ -259,6 +279,7 @@ PANELS = {
     "accelerations": Panel("Joint accelerations", acceleration_panel, of_joints=True),
     "saturation": Panel("Joints on a bound", saturation_panel, fits=lambda run: run.saturated is not None),
     "scale": Panel("Share of the task kept", scale_panel, fits=lambda run: run.scale is not None),
+    "clearance": Panel("Clearance", clearance_panel, fits=lambda run: run.clearance is not None),
     "manipulability": Panel("Manipulability", manipulability_panel),
     "null_space": Panel("Null-space velocity", null_space_panel),
 }

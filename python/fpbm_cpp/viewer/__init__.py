@@ -2,6 +2,7 @@
 
 The viewer's page asks for a scheme and a time (controls); the viewer makes the motion again; scene and readout draw it.
 The servo's page asks for a target (handle); the loop makes ticks at the pace of the clock; scene and live draw them.
+Both draw what the arm keeps clear of (shapes).
 """
 
 import os
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from .._core import TargetFilter
 from ..arms import Arm, JointLimits
+from ..clearance import Clearance
 from ..motion.simulation import simulate
 from ..paths import Path
 from ..schemes import Scheme
@@ -75,6 +77,7 @@ def servo(
     dt: float = 1e-3,
     limits: JointLimits | None = None,
     targets: TargetFilter | None = None,
+    clearance: Clearance | None = None,
     urdf: str | os.PathLike[str] | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -87,8 +90,10 @@ def servo(
     is late. fpbm_cpp.viewer.Servo does not wait.
 
     The handle's places, 20 a second, go through targets, a TargetFilter with bounds of one's own. Unless given, the
-    bounds suit the arm's length L: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2, 200 rad/s^3. task, dt and
-    limits are those of Tracker, urdf, host and port those of view().
+    bounds suit the arm's length L: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2, 200 rad/s^3. task, dt,
+    limits and clearance are those of Tracker, urdf, host and port those of view(). What the arm keeps clear of is drawn
+    translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings, which
+    follow them at 0.3 m/s.
 
     Raises what Tracker and view() raise, and ValueError where targets is for another task or tick.
     """
@@ -102,6 +107,7 @@ def servo(
         dt=dt,
         limits=limits,
         targets=targets,
+        clearance=clearance,
         urdf=urdf,
         host=host,
         port=port,

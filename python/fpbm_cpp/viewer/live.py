@@ -1,5 +1,6 @@
 """A live arm in words, numbers and curves: how it fares, and its motion of the last ten seconds against its bounds."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,13 @@ from .strip import SECONDS, Strip
 
 FAIR = "#8A6100"
 NEAR = 0.01  # To an end of its range [rad].
-COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR}
+COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR, Status.BLOCKED: FAIR}
 # What to do about it here.
 HINTS = {
     Status.DAMPED: "In all other directions it follows.",
     Status.SLOWED: "It follows as fast as its joints may.",
-    Status.STALLED: "Drag the handle into reach or, where a joint is at its end, round another way.",
+    Status.BLOCKED: "Drag the handle round the nearest shape.",
+    Status.STALLED: "Drag the handle into reach or, where a joint is at its end or a shape is near, round another way.",
 }
 NAMES = ("speed", "acceleration", "jerk")
 
@@ -66,7 +68,14 @@ def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
         *(("td", name, *cell) for name, cell in zip(names, cells)),
         ("td", "joints on a bound", ", ".join(joints) or "none", ""),
         ("td", "from tip to handle", _error(loop), ""),
+        *_nearest(loop),
     ]
+
+
+def _nearest(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
+    """The two shapes that are nearest to one another, where any are kept apart."""
+    if loop.tick is not None and loop.tick.nearest is not None:
+        yield "td", "nearest shapes", f"{loop.tick.nearest.distance:.3f} m", " and ".join(loop.tick.nearest.pair)
 
 
 def _on_bounds(loop: ServoLoop) -> list[bool]:

@@ -13,8 +13,10 @@ from numpy.typing import ArrayLike
 from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
 from ..arms import Arm, JointLimits
+from ..clearance import Clearance
 from ..schemes import Scheme
 from ..skeleton import joint_points
+from .obstacles import Obstacles
 from .strip import Strip
 
 MOST = 0.1  # Simulated at once [s]: what the clock asks for beyond that is dropped.
@@ -44,13 +46,15 @@ class ServoLoop:
         dt: float = 1e-3,
         limits: JointLimits | None = None,
         targets: TargetFilter | None = None,
+        clearance: Clearance | None = None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.arm, self.task, self.dt = arm, task, dt
         self.limits = arm.limits if limits is None else limits
         self._scheme, self._clock, self._lock = scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
-        self._tracker = Tracker(arm, scheme, q0, task=task, dt=dt, limits=self.limits)
+        self._obstacles = Obstacles(clearance, dt)
+        self._tracker = self._new_tracker(scheme, self._q0)
         self._targets = self._usual_targets() if targets is None else targets
         self._tracker.tick(self._targets)  # Refuses a filter that does not suit.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
@@ -79,12 +83,17 @@ class ServoLoop:
             due = int(self._owed / self.dt)
             self._owed -= due * self.dt
             self._time += due * self.dt
-            ticks = [self._tracker.tick(self._targets) for _ in range(due)]
+            ticks = [self._one_tick() for _ in range(due)]
             if ticks:
                 self._tick = ticks[-1]
                 self._said.extend(tick.status for tick in ticks)
                 self.strip.add(ticks)
             return ticks
+
+    def drag(self, name: str, way: ArrayLike) -> None:
+        """Let an obstacle go to a place this far from where it was given [m], evenly."""
+        with self._lock:
+            self._obstacles.drag(name, np.array(way, dtype=float))
 
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""
@@ -99,9 +108,10 @@ class ServoLoop:
             self._tracker.resume()
 
     def restart(self) -> None:
-        """Begin anew, at rest where the arm began, with the target at its tip."""
+        """Begin anew, at rest where the arm began, with the target at its tip and obstacles where they were given."""
         with self._lock:
-            self._tracker = Tracker(self.arm, self._scheme, self._q0, task=self.task, dt=self.dt, limits=self.limits)
+            self._obstacles.restart()
+            self._tracker = self._new_tracker(self._scheme, self._q0)
             self._begin()
 
     @property
@@ -113,12 +123,15 @@ class ServoLoop:
     def scheme(self, scheme: Scheme) -> None:
         with self._lock:
             now = self._tracker
-            self._tracker = Tracker(
-                self.arm, scheme, now.q, qd0=now.qd, qdd0=now.qdd, task=self.task, dt=self.dt, limits=self.limits
-            )
+            self._tracker = self._new_tracker(scheme, now.q, qd0=now.qd, qdd0=now.qdd)
             self._scheme = scheme
             if self._stopped:
                 self._tracker.stop()
+
+    @property
+    def clearance(self) -> Clearance | None:
+        """What the arm keeps clear of, where it is now."""
+        return self._obstacles.clearance
 
     @property
     def q(self) -> Array:
@@ -155,6 +168,22 @@ class ServoLoop:
     def stopped(self) -> bool:
         """Whether stop() was called last, not resume()."""
         return self._stopped
+
+    def _new_tracker(self, scheme: Scheme, q0: Array, **state: Array) -> Tracker:
+        return Tracker(
+            self.arm,
+            scheme,
+            q0,
+            task=self.task,
+            dt=self.dt,
+            limits=self.limits,
+            clearance=self._obstacles.clearance,
+            **state,
+        )
+
+    def _one_tick(self) -> Tick:
+        self._obstacles.step(self._tracker)
+        return self._tracker.tick(self._targets)
 
     def _begin(self) -> None:
         self._target = self._tracker.tip

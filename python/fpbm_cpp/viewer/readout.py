@@ -53,6 +53,10 @@ class Readout:
             ("td", "fastest joint", fastest(run.qd[sample : sample + 1]), fastest(run.qd)),
             ("td", "manipulability", f"{w[playback.frame(sample)]:.3g}", f"{w.min():.3g}"),
         ]
+        nearest = playback.nearest(sample)
+        if nearest is not None:
+            now, worst = f"{nearest.distance:.3f} m ({' and '.join(nearest.pair)})", f"{playback.distances.min():.3f} m"
+            rows.append(("td", "nearest shapes", now, worst))
         self._table.content = table(rows)
 
     def _say(self, text: str, colour: str) -> None:
@@ -79,6 +83,7 @@ QUANTITIES: dict[str, tuple[Callable[[Playback], Array], str]] = {
     "tip error": (lambda playback: playback.tip_error[playback.frames], "m"),
     "orientation error": (lambda playback: playback.orientation_error[playback.frames], "rad"),
     "manipulability": (lambda playback: playback.manipulability, ""),
+    "distance of the nearest shapes": (lambda playback: playback.distances, "m"),
 }
 
 
@@ -87,7 +92,10 @@ class Chart:
 
     def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
         self._playback, self._duration, self._sample = playback, duration, 0
-        names = [name for name in QUANTITIES if name != "orientation error" or playback.run.task == "pose"]
+        missing = {"orientation error"} if playback.run.task != "pose" else set()
+        if not playback.distances.size:
+            missing.add("distance of the nearest shapes")
+        names = [name for name in QUANTITIES if name not in missing]
         with gui.add_folder("Over time"):
             self._quantity = gui.add_dropdown("quantity", tuple(names))
             nothing = (np.zeros(1), np.zeros(1)), ({"label": ""}, {"label": ""})

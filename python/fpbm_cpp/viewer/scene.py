@@ -16,10 +16,14 @@ from viser import ClientHandle, FrameHandle, SceneApi, SceneNodeHandle, ViserSer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
+from .._core import Nearest
 from .._types import Array
 from ..arms import Arm, PlanarArm, SerialArm
+from ..clearance import Clearance
+from ..io.mesh_file import find_mesh
 from ..motion.run import Run
 from ..skeleton import joint_axes, joint_points, tip_axes
+from .shapes import Shapes, along
 
 FRAMES = 500
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
@@ -36,13 +40,16 @@ class Playback:
     manipulability, shape (F,), are those at the frames, the errors' norms those at all samples, shape (N,) [m], [rad].
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, clearance: Clearance | None = None) -> None:
+        self.clearance = clearance
         self.run = run = run if len(run.t) else _at_start(run)
         self.frames = np.unique(np.linspace(0, len(run.t) - 1, FRAMES).round().astype(int))
         self.tip = in_space(run.positions[self.frames])
         self.target = in_space(run.reference_positions[self.frames])
         self.manipulability = replace(run, q=run.q[self.frames]).manipulability()
         self.tip_error, self.orientation_error = run.error_norms()
+        found = (self.nearest(sample) for sample in self.frames)
+        self.distances = np.array([each.distance for each in found if each is not None])
 
     def sample(self, time: float) -> int:
         """The sample nearest to a time."""
@@ -51,6 +58,10 @@ class Playback:
     def frame(self, sample: int) -> int:
         """Index of the last frame that is not after a sample."""
         return int(np.searchsorted(self.frames, sample, side="right")) - 1
+
+    def nearest(self, sample: int) -> Nearest | None:
+        """The two shapes that are nearest to one another at a sample, where any are kept apart."""
+        return None if self.clearance is None else self.clearance.nearest(self.run.arm, self.run.q[sample])
 
     def pose(self, sample: int) -> Array:
         """The tip's frame at a sample, shape (4, 4)."""
@@ -137,16 +148,10 @@ class Meshes:
         return robot
 
     def _find(self, fname: str, missing: list[str]) -> str:
-        """The file of a mesh. A package is any folder above the URDF file, or a folder in one of those."""
-        place = fname.partition("://")[2] or fname
-        inside = place.partition("/")[2] if fname.startswith("package://") else place
-        folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
-        for folder in (*self.file.resolve().parents, *folders):
-            for candidate in (folder / inside, folder / place):
-                if candidate.is_file():
-                    return str(candidate)
-        missing.append(fname)
-        return fname
+        found = find_mesh(self.file, fname)
+        if found is None:
+            missing.append(fname)
+        return fname if found is None else str(found)
 
     def _frames(self, q: Array) -> Array:
         """Frames of the arm's joints in the file, seen from its root."""
@@ -165,6 +170,8 @@ class Scene:
         run, self._server = playback.run, server
         points = np.vstack([in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3), playback.target])
         self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
+        clearance = playback.clearance
+        self._shapes = None if clearance is None else Shapes(server.scene, run.arm, clearance)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
         self._start, self._target, self._path = (
@@ -187,6 +194,9 @@ class Scene:
             self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
             passed = playback.tip[: playback.frame(sample) + 1]
             self._path.points = segments(np.vstack([passed, pose[None, :3, 3]]))
+            if self._shapes is not None and playback.clearance is not None:
+                nearest = playback.nearest(sample)
+                self._shapes.at(playback.clearance, playback.run.q[sample], None if nearest is None else nearest.pair)
 
 
 def set_up(
@@ -267,12 +277,3 @@ class Links:
                 link.position, link.wxyz = (start + end) / 2, along(end - start)
         for joint, point, axis in zip(self._joints, points[-len(self._joints) - 1 :], joint_axes(self._arm, q)):
             joint.position, joint.wxyz = point, along(axis)
-
-
-def along(direction: Array) -> Array:
-    """Quaternion (w, x, y, z) of a rotation that takes the z axis to a direction."""
-    x, y, z = direction / np.linalg.norm(direction)
-    if z < -1.0 + 1e-12:
-        return np.array([0.0, 1.0, 0.0, 0.0])
-    quaternion = np.array([1.0 + z, -y, x, 0.0])
-    return np.asarray(quaternion / np.linalg.norm(quaternion))

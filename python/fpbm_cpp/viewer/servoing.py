@@ -6,23 +6,27 @@ import os
 import threading
 import webbrowser
 from collections import deque
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from viser import Icon, ViserServer
+from viser import Icon, TransformControlsHandle, ViserServer
 from viser.transforms import SO3
 
 from .._core import Status, TargetFilter, Tick
 from .._types import Array
 from ..arms import Arm, JointLimits
+from ..clearance import Clearance
 from ..schemes import Scheme
 from ..skeleton import joint_points
 from .controls import RATE, Controls
 from .handle import Handle
 from .live import LiveReadout, StripChart
 from .loop import ServoLoop
+from .obstacles import can_be_dragged
 from .page import Page
 from .scene import TARGET, TIP, Meshes, in_space, segments, set_up, tip_pose
+from .shapes import Shapes, centre
 from .strip import SECONDS
 
 REACH = 0.65  # Of the arm's length, about its base, is in view.
@@ -45,12 +49,13 @@ class Servo(Page):
         dt: float = 1e-3,
         limits: JointLimits | None = None,
         targets: TargetFilter | None = None,
+        clearance: Clearance | None = None,
         urdf: str | os.PathLike[str] | None = None,
         host: str = "127.0.0.1",
         port: int = 8080,
         open_browser: bool = False,
     ) -> None:
-        self._loop = ServoLoop(arm, scheme, q0, task=task, dt=dt, limits=limits, targets=targets)
+        self._loop = ServoLoop(arm, scheme, q0, task=task, dt=dt, limits=limits, targets=targets, clearance=clearance)
         meshes = None if urdf is None else Meshes(urdf, arm, self._loop.q)
         super().__init__(host, port)
         gui = self._server.gui
@@ -174,10 +179,14 @@ class LiveScene:
             server.scene.add_line_segments(name, nothing, color, thickness=width, thickness_units="screen")
             for name, color, width in (("/way", TIP, 4.0), ("/gap", TARGET, 2.0))
         )
+        self._shapes = None if loop.clearance is None else Shapes(server.scene, loop.arm, loop.clearance)
+        self._grips = _grips(server, loop, 0.12 * radius)
         self.restart(loop)
 
     def restart(self, loop: ServoLoop) -> None:
         self.handle.place(loop.target)
+        for place, grip in self._grips:
+            grip.position = place
         self._passed: deque[Array] = deque(maxlen=round(SECONDS * RATE))
 
     def show(self, loop: ServoLoop) -> None:
@@ -188,3 +197,28 @@ class LiveScene:
         self._passed.append(pose[:3, 3])
         self._way.points = segments(np.array(self._passed))
         self._gap.points = segments(np.array([pose[:3, 3], self.handle.position]))
+        if self._shapes is not None and loop.clearance is not None:
+            nearest = None if loop.tick is None else loop.tick.nearest
+            self._shapes.at(loop.clearance, q, None if nearest is None else nearest.pair)
+
+
+def _grips(server: ViserServer, loop: ServoLoop, size: float) -> list[tuple[Array, TransformControlsHandle]]:
+    """Arrows on each obstacle that can be dragged, and where it was given."""
+    clearance = loop.clearance
+    grips = []
+    for i, shape in enumerate(clearance.obstacles if clearance is not None else ()):
+        if can_be_dragged(shape):
+            look = {"scale": size, "disable_rotations": True, "depth_test": False}
+            grip = server.scene.add_transform_controls(f"/grip_{i}", position=centre(shape), **look)
+            grips.append((centre(shape), grip))
+            _follow(grip, loop, shape.name, centre(shape))
+    return grips
+
+
+def _follow(grip: TransformControlsHandle, loop: ServoLoop, name: str, place: Array) -> None:
+    """Let an obstacle follow its arrows."""
+
+    async def tell(_: Any) -> None:
+        loop.drag(name, np.array(grip.position) - place)
+
+    grip.on_update(tell)

@@ -32,7 +32,7 @@ class Viewer(Page):
         port: int = 8080,
         open_browser: bool = False,
     ) -> None:
-        playback = Playback(run)
+        playback = Playback(run, run.options.get("clearance"))
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
         super().__init__(host, port)
         self._first = run
@@ -100,7 +100,7 @@ class Viewer(Page):
                 self._readout.refuse(str(error))
 
     def _show(self, run: Run) -> None:
-        playback = Playback(run)
+        playback = Playback(run, self._first.options.get("clearance"))
         with self._lock, self._server.atomic():
             self._asked = run.scheme, self._controls.limited
             self._run, self._playback = run, playback

@@ -1,0 +1,148 @@
+#include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "arrays.hpp"
+#include "clearance.hpp"
+#include "fpbm/clearance/preset_capsules.hpp"
+
+namespace fpbm::bindings {
+
+Clearance<kDynamic> clearance_of(const Arm& arm, const py::object& given) {
+  if (given.is_none()) return {arm.chain(), {}, {}, 0.0};
+  if (!py::hasattr(given, "capsules")) validation::reject("clearance", ": must be a Clearance");
+  const auto name = [](const py::handle& shape) { return py::cast<std::string>(shape.attr("name")); };
+  std::vector<LinkCapsule<>> capsules;
+  for (const py::handle each : given.attr("capsules")) {
+    const auto& shape = py::cast<const Shape&>(each);
+    capsules.push_back({shape.link, std::get<Capsule<>>(shape.any), name(each)});
+  }
+  std::vector<Obstacle<>> obstacles;
+  for (const py::handle each : given.attr("obstacles")) {
+    obstacles.emplace_back(name(each), py::cast<const Shape&>(each).any);
+  }
+  using Allowed = std::vector<Clearance<kDynamic>::Names>;
+  Clearance<kDynamic> clearance(arm.chain(), capsules, obstacles, py::cast<double>(given.attr("margin")),
+                                py::cast<Allowed>(given.attr("allowed")));
+  clearance.keep_away({py::cast<double>(given.attr("away_gain")), py::cast<double>(given.attr("away_range"))});
+  clearance.bound_tip_speed(py::cast<double>(given.attr("tip_speed")));
+  if (!given.attr("tip_lower").is_none()) {
+    clearance.keep_tip_within(fixed_vector<3>(py::cast<ArrayLike>(given.attr("tip_lower")), "tip_lower"),
+                              fixed_vector<3>(py::cast<ArrayLike>(given.attr("tip_upper")), "tip_upper"));
+  }
+  return clearance;
+}
+
+std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q) {
+  if (clearance.pairs().empty()) return std::nullopt;
+  clearance.place(q);
+  const auto [pair, distance] = clearance.nearest_pair();
+  return PyNearest{clearance.names(clearance.pairs()[pair]), distance};
+}
+
+void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
+                   const Vector<3>& velocity) {
+  const auto& obstacles = clearance.obstacles();
+  const auto found =
+      std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& each) { return each.name == name; });
+  if (found == obstacles.end()) {
+    std::string names;
+    for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
+    validation::reject("name", " = '" + name + "': must be one of the obstacles" + (names.empty() ? "" : ": " + names));
+  }
+  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must be of the kind that it was");
+  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, in the world");
+  clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
+}
+
+namespace {
+
+/// A clearance for one arm.
+class PyClearance {
+ public:
+  using Pairs = std::vector<Clearance<kDynamic>::Names>;
+
+  PyClearance(const Arm& arm, const py::object& given) : clearance_(clearance_of(arm, given)) {}
+
+  [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) {
+    return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.links().dof())));
+  }
+  [[nodiscard]] Pairs pairs() const { return names(clearance_.pairs()); }
+  [[nodiscard]] Pairs left_out() const { return names(clearance_.left_out()); }
+
+ private:
+  [[nodiscard]] Pairs names(const std::vector<ShapePair>& pairs) const {
+    Pairs found;
+    for (const ShapePair& pair : pairs) found.push_back(clearance_.names(pair));
+    return found;
+  }
+
+  Clearance<kDynamic> clearance_;
+};
+
+using PlainCapsule = py::typing::Tuple<py::int_, Array, Array, py::float_, py::str>;
+using PlainPair = py::typing::Tuple<py::str, py::str>;
+
+/// Link, ends, radius and name of each of a preset's capsules; and the names of those that may meet.
+py::typing::Tuple<py::typing::List<PlainCapsule>, py::typing::List<PlainPair>> preset_capsules(
+    const std::string& name) {
+  std::string names;
+  for (const auto& preset : presets::kAllCapsules) {
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+    if (name != preset.name) continue;
+    py::list capsules;
+    for (const auto& [link, capsule, title] : preset.capsules()) {
+      capsules.append(py::make_tuple(link, array_of(capsule.a), array_of(capsule.b), capsule.radius, title));
+    }
+    return py::make_tuple(capsules, py::cast(preset.never_meet()));
+  }
+  validation::reject("name", " = '" + name + "': must be one of " + names);
+}
+
+Shape capsule(const ArrayLike& a, const ArrayLike& b, double radius, int link) {
+  validation::require_non_negative("radius", radius);
+  return {Capsule<>{fixed_vector<3>(a, "a"), fixed_vector<3>(b, "b"), radius}, link};
+}
+
+Shape half_space(const ArrayLike& normal, double offset) {
+  const Vector<3> n = fixed_vector<3>(normal, "normal");
+  if (!(n.stableNorm() > 0.0)) validation::reject("normal", " is zero: must point somewhere");
+  validation::require_finite("offset", offset);
+  return {HalfSpace<>{n.stableNormalized(), offset}};
+}
+
+Shape cuboid(const ArrayLike& pose, const ArrayLike& half) {
+  const Vector<3> edges = fixed_vector<3>(half, "half");
+  for (int i = 0; i < 3; ++i) validation::require_non_negative(validation::element("half", i), edges(i));
+  return {Cuboid<>{transform(pose, "pose"), edges}};
+}
+
+}  // namespace
+
+void bind_clearance(py::module_& m) {
+  py::class_<Shape>(m, "Shape", "The compiled part of a shape.")
+      .def(py::init(&capsule), py::kw_only(), py::arg("a"), py::arg("b"), py::arg("radius"), py::arg("link"))
+      .def(py::init(&half_space), py::kw_only(), py::arg("normal"), py::arg("offset"))
+      .def(py::init(&cuboid), py::kw_only(), py::arg("pose"), py::arg("half"));
+
+  m.def("preset_capsules", &preset_capsules, py::arg("name"));
+
+  py::class_<PyNearest>(m, "Nearest", "The two shapes of an arm and its surroundings that are nearest to one another.")
+      .def_readonly("pair", &PyNearest::pair, "Their names: of a capsule of the arm, and of the other.")
+      .def_readonly("distance", &PyNearest::distance,
+                    "How far they are apart [m]; below zero, how deep one is in the other.")
+      .def("__repr__", [](const PyNearest& nearest) {
+        return py::str("<Nearest: {} and {}, {:.6g} m apart>")
+            .format(nearest.pair.first, nearest.pair.second, nearest.distance);
+      });
+
+  py::class_<PyClearance>(m, "Clearance", "The compiled part of a clearance, for one arm.")
+      .def(py::init<const Arm&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
+      .def("nearest", &PyClearance::nearest, py::arg("q"))
+      .def("pairs", &PyClearance::pairs)
+      .def("left_out", &PyClearance::left_out);
+}
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <string>
+
+#include "arm.hpp"
+#include "fpbm/clearance/clearance.hpp"
+
+namespace fpbm::bindings {
+
+/// The compiled part of a shape: in the world, or a capsule on a link.
+struct Shape {
+  WorldShape<> any;
+  int link = 0;
+};
+
+/// Two shapes, by name, and how far they are apart.
+struct PyNearest {
+  Clearance<kDynamic>::Names pair;
+  double distance;
+};
+
+/// What an fpbm_cpp.Clearance, or None, is for an arm. Throws std::invalid_argument where it does not fit.
+Clearance<kDynamic> clearance_of(const Arm& arm, const pybind11::object& given);
+
+/// The pair nearest to one another in a posture; none where none is kept apart.
+std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q);
+
+/// Moves the obstacle of that name. Throws std::invalid_argument where there is none, or the shape is of another kind.
+void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,
+                   const Vector<3>& velocity);
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,187 @@
+"""The smallest capsule around points and balls.
+
+A capsule is all that lies within a radius r of a segment from a to b. Of those that contain the points, the one of
+least volume pi r^2 |b - a| + 4/3 pi r^3 is sought over a, b and r by sequential quadratic programming, as in El Khoury,
+"Planning optimal motions for anthropomorphic systems" (2013), 3.8.1, from the best of many directions: on a given line
+the best capsule is a search over r alone. The result contains all points whatever the search did.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._types import Array
+from ..errors import extra
+
+DIRECTIONS = 80  # Of lines that are tried.
+STARTS = 4  # Lines that the search starts from.
+APART = 0.9  # Cosine of the least angle between two of them.
+BALL = 0.1  # Capsules shorter than this are started from twice, once made longer; points fill a ball of radius 1.
+ACTIVE = 40  # Points that the search sees at first; those that it leaves outside join them.
+ROOM = 1e-12  # Of the radius, as a share of the coordinates: rounding in whoever computes a distance.
+
+
+class Fit(NamedTuple):
+    """A capsule: the ends of its axis, and its radius."""
+
+    a: Array
+    b: Array
+    radius: float
+
+    @property
+    def volume(self) -> float:
+        return float(np.pi * self.radius**2 * (np.linalg.norm(self.b - self.a) + 4 / 3 * self.radius))
+
+
+def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = False) -> Fit:
+    """The smallest capsule that contains balls about points (N, 3) of radii (N,), which are 0 unless given.
+
+    Deterministic. A rough fit is a few times as fast, and seldom larger. Raises ImportError where SciPy is missing.
+    """
+    radii = np.zeros(len(points)) if radii is None else radii
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    scale = float(np.max(np.linalg.norm(points - middle, axis=1) + radii))
+    if scale == 0.0:
+        return Fit(middle, middle, 0.0)
+    p, rho = _outermost((points - middle) / scale, radii / scale)
+    best = min(
+        (_improved(start, p, rho, 1e-5 if rough else 1e-10) for start in _starts(p, rho, rough)),
+        key=lambda fit: fit.volume,
+    )
+    return enclosing(middle + scale * best.a, middle + scale * best.b, points, radii)
+
+
+def fit_cylinder(radius: float, length: float) -> Fit:
+    """The smallest capsule about the z axis that contains a cylinder about it, whose middle is the origin."""
+    half = length / 2
+    return _on_line(
+        np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([[radius, 0, -half], [radius, 0, half]]), np.zeros(2)
+    )
+
+
+def enclosing(a: Array, b: Array, points: Array, radii: Array) -> Fit:
+    """The capsule with this axis that contains the balls, with some room for rounding."""
+    room = ROOM * float(np.max(np.abs(points), initial=0.0) + np.max(radii, initial=0.0))
+    return Fit(a, b, float(np.max(distances(points, a, b) + radii)) + room)
+
+
+def distances(points: Array, a: Array, b: Array) -> Array:
+    """Distances (N,) of points (N, 3) from the segment from a to b."""
+    return np.asarray(np.linalg.norm(points - _nearest(points, a, b)[1], axis=1))
+
+
+def _nearest(points: Array, a: Array, b: Array) -> tuple[Array, Array]:
+    """Where on the segment each point's nearest one is: as a share of the way from a to b, and in space."""
+    along = b - a
+    share = np.clip((points - a) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)[:, None]
+    return share, a + share * along
+
+
+def _outermost(points: Array, radii: Array) -> tuple[Array, Array]:
+    """Without the points that others' convex hull contains."""
+    spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
+    bare = points[radii == 0.0]
+    if len(bare) > 4:
+        with suppress(spatial.QhullError):  # They are flat, and few as a rule.
+            bare = bare[spatial.ConvexHull(bare).vertices]
+    balls = radii > 0.0
+    return np.vstack([bare, points[balls]]), np.concatenate([np.zeros(len(bare)), radii[balls]])
+
+
+def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
+    """The best capsules on lines of many directions, no two alike, or on a principal axis; they hold most points."""
+    i = np.arange(DIRECTIONS)
+    z, turn = 1.0 - (i + 0.5) / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * i  # A spiral over half the sphere.
+    flat = np.sqrt(1.0 - z * z)
+    spiral = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    # The points farthest out will do; the search sees all.
+    reach = np.hstack([points @ spiral.T, -points @ spiral.T]) + radii[:, None]
+    few = np.unique(np.argmax(reach, axis=0))
+    points, radii = points[few], radii[few]
+    principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
+    directions, most = (principal, 1) if rough else (np.vstack([principal, spiral]), STARTS)
+    fits = sorted(((_about(u, points, radii), u) for u in directions), key=lambda found: found[0].volume)
+    chosen: list[tuple[Fit, Array]] = []
+    for fit, u in fits:
+        if len(chosen) < most and all(abs(u @ other) < APART for _, other in chosen):
+            chosen.append((fit, u))
+    # The search cannot turn a ball.
+    balls = [(fit, u) for fit, u in chosen if np.linalg.norm(fit.b - fit.a) < BALL]
+    longer = [Fit(fit.a - BALL * u, fit.b + BALL * u, fit.radius) for fit, u in balls]
+    return [*(fit for fit, _ in chosen), *longer]
+
+
+def _about(u: Array, points: Array, radii: Array) -> Fit:
+    """A small capsule of direction u: its line goes about through the middle of the points' shadow."""
+    shadow = points - np.outer(points @ u, u)
+    middle = shadow.mean(axis=0)
+    for step in range(2, 30):  # Badoiu and Clarkson, "Smaller core-sets for balls".
+        middle = middle + (shadow[np.argmax(np.linalg.norm(shadow - middle, axis=1) + radii)] - middle) / step
+    return _on_line(middle, u, points, radii)
+
+
+def _on_line(origin: Array, u: Array, points: Array, radii: Array) -> Fit:
+    """The smallest capsule whose axis is on a line: the larger r, the shorter its axis may be."""
+    optimize = extra("scipy.optimize", "a capsule that fits", "clearance")
+    s = (points - origin) @ u
+    d = np.linalg.norm(points - origin - np.outer(s, u), axis=1)
+
+    def ends(r: float) -> tuple[float, float]:
+        reach = np.sqrt(np.maximum((r - radii) ** 2 - d * d, 0.0))
+        low, high = float(np.min(s + reach)), float(np.max(s - reach))
+        return (low, high) if low < high else ((low + high) / 2,) * 2
+
+    def volume(r: float) -> float:
+        low, high = ends(r)
+        return r * r * (high - low + 4 / 3 * r)
+
+    least = float(np.max(d + radii))
+    most = float(np.max(np.hypot(s - (s.min() + s.max()) / 2, d) + radii))  # Of a ball.
+    # Where the volume falls infinitely fast from the least radius, it does not over the root.
+    found = optimize.minimize_scalar(lambda x: volume(least + (most - least) * x * x), bounds=(0, 1), method="bounded")
+    r = min(least, most, least + (most - least) * float(found.x) ** 2, key=volume)
+    low, high = ends(r)
+    return enclosing(origin + low * u, origin + high * u, points, radii)
+
+
+def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
+    """A capsule that contains the points, and whose volume has a minimum there; near another."""
+    optimize = extra("scipy.optimize", "a capsule that fits", "clearance")
+
+    def volume(x: Array) -> tuple[float, Array]:
+        along, r = x[3:6] - x[:3], x[6]
+        length = float(np.linalg.norm(along))
+        pull = r * r * along / max(length, 1e-12)
+        return r * r * (length + 4 / 3 * r), np.concatenate([-pull, pull, [2 * r * length + 4 * r * r]])
+
+    def room(x: Array, seen: NDArray[np.intp]) -> Array:
+        return np.asarray(x[6] - radii[seen] - distances(points[seen], x[:3], x[3:6]))
+
+    def rates(x: Array, seen: NDArray[np.intp]) -> Array:
+        share, foot = _nearest(points[seen], x[:3], x[3:6])
+        away = points[seen] - foot
+        away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12)
+        return np.hstack([(1 - share) * away, share * away, np.ones((len(seen), 1))])
+
+    x = np.concatenate([start.a, start.b, [start.radius]])
+    everything = np.arange(len(points))
+    seen = np.argsort(room(x, everything), kind="stable")[:ACTIVE]
+    best = enclosing(start.a, start.b, points, radii)
+    for _ in range(10):
+        constraint: dict[str, Any] = {"type": "ineq", "fun": room, "jac": rates, "args": (seen,)}
+        options = {"ftol": tolerance}
+        x = optimize.minimize(volume, x, jac=True, method="SLSQP", constraints=constraint, options=options).x
+        if not np.all(np.isfinite(x)):
+            break
+        best = min(best, enclosing(x[:3], x[3:6], points, radii), key=lambda fit: fit.volume)
+        left = room(x, everything)
+        outside = everything[left < -tolerance]
+        outside = np.setdiff1d(outside[np.argsort(left[outside], kind="stable")][:ACTIVE], seen)
+        if not len(outside):
+            break
+        seen = np.concatenate([seen, outside])
+    return best

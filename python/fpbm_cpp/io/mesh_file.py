@@ -1,0 +1,59 @@
+"""Meshes that robots' files name: where they are, and what is in them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .._types import Array
+from ..errors import extra
+
+TYPES = ("stl", "obj", "dae")
+MAX_BYTES = 256 * 2**20
+
+
+def find_mesh(urdf: Path, name: str) -> Path | None:
+    """The file of a mesh that a URDF file names, or None.
+
+    A package is any folder above the URDF file or in ROS_PACKAGE_PATH, or a folder in one of those.
+    """
+    place = name.partition("://")[2] or name
+    inside = place.partition("/")[2] if name.startswith("package://") else place
+    folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
+    for folder in (*urdf.resolve().parents, *folders):
+        for candidate in (folder / inside, folder / place):
+            if candidate.is_file():
+                return candidate
+    return None
+
+
+def read_mesh(file: Path) -> Array:
+    """The edges of a mesh's triangles, shape (E, 2, 3) [m]: STL, OBJ or DAE.
+
+    A DAE's unit is heeded and its up axis is not, as ROS has it. No other file is opened: neither materials nor
+    textures. Raises ValueError where it is no such mesh, ImportError where trimesh or pycollada is missing.
+    """
+    trimesh = extra("trimesh", "a mesh's capsule", "clearance")
+    kind = file.suffix.lower().removeprefix(".")
+    if kind not in TYPES:
+        raise ValueError(f"mesh {str(file)!r}: must be one of {', '.join(TYPES)}")
+    if kind == "dae":
+        extra("collada", "a DAE mesh's capsule", "clearance")
+    if file.stat().st_size > MAX_BYTES:
+        raise ValueError(f"mesh {str(file)!r}: has more than {MAX_BYTES >> 20} MiB")
+    try:
+        with open(file, "rb") as opened:
+            scene = trimesh.load_scene(opened, file_type=kind, process=False)
+        mesh = scene.to_mesh()
+        vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces)
+        if scene.units not in (None, "meters"):
+            vertices *= trimesh.units.unit_conversion(scene.units, "meters")
+    except Exception as error:
+        raise ValueError(f"mesh {str(file)!r}: trimesh cannot read it: {error}") from None
+    if not len(faces) or not np.all(np.isfinite(vertices)):
+        raise ValueError(f"mesh {str(file)!r}: {'its vertices are not finite' if len(faces) else 'has no triangles'}")
+    pairs = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges: Array = vertices[np.unique(pairs, axis=0)]
+    return edges

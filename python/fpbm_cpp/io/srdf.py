@@ -1,0 +1,32 @@
+"""Pairs of links that an SRDF file says need not be kept apart."""
+
+from __future__ import annotations
+
+import os
+
+from .xml_file import Kept, read_xml
+
+KEPT: Kept = {("robot",): {"disable_collisions": ("link1", "link2")}}
+
+
+def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
+    """The links of each <disable_collisions link1="..." link2="...">, as MoveIt's setup assistant writes them.
+
+    Names in a pair and pairs are in order, and none is there twice. <disable_default_collisions> is not heeded: more
+    pairs are then kept apart than MoveIt does. Raises ValueError where the file is no sound SRDF, OSError where it
+    cannot be read.
+    """
+    name = os.fsdecode(path)
+    pairs = set()
+    try:
+        for element in read_xml(name, KEPT).parts:
+            links = [element.attributes.get(key) for key in ("link1", "link2")]
+            one, other = (link or "" for link in links)
+            if not one or not other or one == other:
+                raise ValueError(
+                    f"line {element.line}: <disable_collisions> of {one!r} and {other!r}: must be two links"
+                )
+            pairs.add((min(one, other), max(one, other)))
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    return sorted(pairs)

@@ -1,0 +1,151 @@
+"""Collision geometry of a URDF's links: what is to be kept apart, as edges and balls whose convex hulls fill it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from .._types import Array
+from .mesh_file import find_mesh, read_mesh
+from .urdf import pose
+from .xml_file import Element, Kept, named, read_xml
+
+SIDES = 64  # Of the prism around a cylinder: 0.12 % wider.
+SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
+KEPT: Kept = {
+    ("robot",): {"link": ("name",)},
+    ("robot", "link"): {"collision": ()},
+    ("robot", "link", "collision"): {"origin": ("xyz", "rpy"), "geometry": ()},
+    ("robot", "link", "collision", "geometry"): {**SHAPES, "mesh": ("filename", "scale")},
+}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A body in a link's frame: the faces between its edges, and balls.
+
+    edges: shape (E, 2, 3). centers and radii of the balls: (B, 3) and (B,). cylinder: radius, length and frame where it
+    is nothing but one; its edges are those of a prism around it. All in metres.
+    """
+
+    edges: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    centers: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    radii: Array = field(default_factory=lambda: np.zeros(0))
+    cylinder: tuple[float, float, Array] | None = None
+
+    @property
+    def points(self) -> Array:
+        """Ends of edges and centers of balls."""
+        return np.vstack([self.edges.reshape(-1, 3), self.centers])
+
+    @property
+    def sizes(self) -> Array:
+        """The radius about each point: 0 about ends of edges."""
+        return np.concatenate([np.zeros(2 * len(self.edges)), self.radii])
+
+    def moved(self, frame: Array) -> Shape:
+        R, p = frame[:3, :3], frame[:3, 3]
+        cylinder = self.cylinder and (*self.cylinder[:2], frame @ self.cylinder[2])
+        return Shape(self.edges @ R.T + p, self.centers @ R.T + p, self.radii, cylinder)
+
+    def between(self, u: Array, low: float, high: float) -> Shape:
+        """What lies in low <= u x < high; a ball belongs where its center is.
+
+        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face.
+        """
+        s = self.edges @ u
+        rise = s[:, 1] - s[:, 0]
+        flat = rise == 0.0
+        enter, leave = ((bound - s[:, 0]) / np.where(flat, 1.0, rise) for bound in (low, high))
+        enter, leave = np.minimum(enter, leave), np.maximum(enter, leave)
+        kept = (s.max(axis=1) >= low) & (s.min(axis=1) <= high)
+        shares = np.stack([np.where(flat, 0.0, enter), np.where(flat, 1.0, leave)], axis=1)[kept].clip(0.0, 1.0)
+        start, way = self.edges[kept, :1], self.edges[kept, 1:] - self.edges[kept, :1]
+        cut = np.where(shares[:, :, None] == 1.0, self.edges[kept, 1:], start + shares[:, :, None] * way)
+        mine = (self.centers @ u >= low) & (self.centers @ u < high)
+        return Shape(cut, self.centers[mine], self.radii[mine])
+
+
+def together(shapes: list[Shape]) -> Shape:
+    """Several shapes as one; one shape as it is."""
+    if len(shapes) == 1:
+        return shapes[0]
+    return Shape(
+        edges=np.concatenate([each.edges for each in shapes]),
+        centers=np.concatenate([each.centers for each in shapes]),
+        radii=np.concatenate([each.radii for each in shapes]),
+    )
+
+
+def read_shapes(path: str | os.PathLike[str]) -> dict[str, list[Shape]]:
+    """Collision geometry of each link that has any, in the link's frame.
+
+    Raises ValueError where the file is no sound URDF, or a mesh is not found or cannot be read; ImportError where what
+    reads meshes is missing.
+    """
+    name = os.fsdecode(path)
+    meshes: dict[str, Array] = {}
+    try:
+        links = named(read_xml(name, KEPT).all("link"))
+        return {
+            link: [_shape(each, f"link {link!r}", Path(name), meshes) for each in element.parts]
+            for link, element in links.items()
+            if element.parts
+        }
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def _shape(collision: Element, owner: str, urdf: Path, meshes: dict[str, Array]) -> Shape:
+    collision.require_one_each(f"{owner}: <collision>")
+    geometry = next((part.parts for part in collision.parts if part.tag == "geometry"), [])
+    if len(geometry) != 1:
+        kinds = ", ".join([*SHAPES, "mesh"])
+        raise ValueError(f"line {collision.line}: {owner}: <collision> must have one <geometry> of {kinds}")
+    (element,) = geometry
+    xyz, rpy = (collision.numbers("origin", key, [0.0] * 3, owner) for key in ("xyz", "rpy"))
+    shape = _mesh(element, owner, urdf, meshes) if element.tag == "mesh" else _primitive(element, owner)
+    return shape.moved(pose(xyz, rpy))
+
+
+def _primitive(element: Element, owner: str) -> Shape:
+    inside = Element("geometry", element.line, {}, [element])
+    sizes: list[float] = []
+    for key in SHAPES[element.tag]:
+        if key not in element.attributes:
+            raise ValueError(f'{owner} has no <{element.tag} {key}="...">')
+        sizes += inside.numbers(element.tag, key, [0.0] * (3 if key == "size" else 1), owner)
+    if min(sizes) < 0.0:
+        raise ValueError(f"{owner}: {element.tag} of {' '.join(f'{size:g}' for size in sizes)}: must not be negative")
+    if element.tag == "box":
+        corners = np.array(list(product((-0.5, 0.5), repeat=3))) * sizes
+        return Shape(np.array([[p, q] for i, p in enumerate(corners) for q in corners[:i] if np.sum(p != q) <= 1]))
+    if element.tag == "sphere":
+        return Shape(centers=np.zeros((1, 3)), radii=np.array(sizes))
+    radius, length = sizes
+    ends = np.array([[0.0, 0.0, -length / 2], [0.0, 0.0, length / 2]])
+    if element.tag == "capsule":
+        return Shape(centers=ends, radii=np.array([radius, radius]))
+    turn = 2 * np.pi * np.arange(SIDES) / SIDES
+    rim = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]) * radius / np.cos(np.pi / SIDES)
+    rims = [np.stack([rim + end, np.roll(rim, 1, axis=0) + end], axis=1) for end in ends]
+    return Shape(
+        np.vstack([*rims, np.stack([rim + ends[0], rim + ends[1]], axis=1)]), cylinder=(radius, length, np.eye(4))
+    )
+
+
+def _mesh(element: Element, owner: str, urdf: Path, meshes: dict[str, Array]) -> Shape:
+    name = element.attributes.get("filename")
+    if not name:
+        raise ValueError(f'{owner} has no <mesh filename="...">')
+    if name not in meshes:
+        file = find_mesh(urdf, name)
+        if file is None:
+            raise ValueError(f"{owner}: mesh {name!r} is not found")
+        meshes[name] = read_mesh(file)
+    scale = Element("geometry", element.line, {}, [element]).numbers("mesh", "scale", [1.0] * 3, owner)
+    return Shape(meshes[name] * scale)

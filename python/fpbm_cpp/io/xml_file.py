@@ -1,0 +1,122 @@
+"""XML files of robots.
+
+A file may come from anywhere: one bounded pass expands no entity, opens no other file, and keeps what is asked for.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+MAX_BYTES = 16 * 2**20
+MAX_ELEMENTS = 50_000
+MAX_DEPTH = 64
+MAX_TEXT = 256  # Characters of an attribute.
+
+# What is read of a file: by the elements around them, elements and those of their attributes that are kept.
+Kept = Mapping[tuple[str, ...], Mapping[str, tuple[str, ...]]]
+
+
+@dataclass
+class Element:
+    """An element, the attributes that are kept of it, and the elements in it that are kept."""
+
+    tag: str
+    line: int
+    attributes: dict[str, str]
+    parts: list[Element] = field(default_factory=list)
+
+    def all(self, tag: str) -> list[Element]:
+        return [part for part in self.parts if part.tag == tag]
+
+    def get(self, tag: str, key: str) -> str | None:
+        """An attribute of the first part with this tag; None where there is none."""
+        return next((part.attributes.get(key) for part in self.parts if part.tag == tag), None)
+
+    def require_one_each(self, owner: str) -> None:
+        """Raise ValueError where two of the parts have one tag."""
+        seen: set[str] = set()
+        for part in self.parts:
+            if part.tag in seen:
+                raise ValueError(f"line {part.line}: {owner} has a second <{part.tag}>: must have one")
+            seen.add(part.tag)
+
+    def numbers(self, tag: str, key: str, default: list[float], owner: str) -> list[float]:
+        """As many finite numbers as the default has, which they are where the part does not state them."""
+        text = self.get(tag, key)
+        if text is None:
+            return default
+        try:
+            # Python also reads 1_000 and the digits of other scripts.
+            found = [float(word) for word in text.split()] if text.isascii() and "_" not in text else []
+        except ValueError:
+            found = []
+        # No robot has numbers beyond 1e100, and products of smaller ones do not overflow.
+        if len(found) != len(default) or not all(abs(number) < 1e100 for number in found):
+            wanted = f"{len(default)} finite number{'s' * (len(default) > 1)}"
+            raise ValueError(f"{owner}: {tag} {key} = {text!r}: must be {wanted}")
+        return found
+
+
+def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
+    """Read what is kept of a file whose root is <robot>; a ValueError says what is wrong with the file."""
+    with open(path, "rb") as file:
+        xml = file.read(MAX_BYTES + 1)
+    if len(xml) > MAX_BYTES:
+        raise ValueError(f"has more than {MAX_BYTES >> 20} MiB")
+    parser = expat.ParserCreate()
+    opened: list[Element] = []
+    root = Element("robot", 1, {})
+    count = 0
+
+    def require(sound: object, reason: str) -> None:
+        if not sound:
+            raise ValueError(f"line {parser.CurrentLineNumber}: {reason}")
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        require(count <= MAX_ELEMENTS, f"has more than {MAX_ELEMENTS} XML elements")
+        require(len(opened) < MAX_DEPTH, f"XML elements are nested more than {MAX_DEPTH} deep")
+        require(not tag.startswith("xacro:"), f"<{cut(tag)}>: run xacro on the file first")
+        require(opened or tag == "robot", f"the root is <{cut(tag)}>: must be <robot>")
+        here = kept.get(tuple(element.tag for element in opened), {})
+        own = {key: attributes[key] for key in here.get(tag, ()) if key in attributes}
+        for key, text in own.items():
+            what = f"{tag} {key} = {cut(text)!r}"
+            require(len(text) <= MAX_TEXT, f"{what} has {len(text)} characters: must have at most {MAX_TEXT}")
+            require("${" not in text, f"{what}: run xacro on the file first")
+        element = Element(tag, parser.CurrentLineNumber, own) if opened else root
+        if tag in here:
+            opened[-1].parts.append(element)
+        opened.append(element)
+
+    parser.StartDoctypeDeclHandler = lambda *_: require(False, "has a DOCTYPE: must have none")
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: opened.pop()
+    try:
+        parser.Parse(xml, True)
+    except expat.ExpatError as error:
+        raise ValueError(f"line {error.lineno}: invalid XML: {expat.ErrorString(error.code)}") from None
+    except LookupError as error:
+        raise ValueError(f"line 1: invalid XML: {error}") from None
+    return root
+
+
+def cut(text: str) -> str:
+    return text if len(text) <= 40 else text[:40] + "..."
+
+
+def named(elements: Iterable[Element]) -> dict[str, Element]:
+    """Elements of one tag by their names, which none may lack or share."""
+    found: dict[str, Element] = {}
+    for i, element in enumerate(elements, 1):
+        name = element.attributes.get("name")
+        if not name:
+            raise ValueError(f"<{element.tag}> number {i} has no name")
+        if name in found:
+            raise ValueError(f"two {element.tag}s are named {name!r}")
+        found[name] = element
+    return found

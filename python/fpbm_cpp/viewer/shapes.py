@@ -1,0 +1,80 @@
+"""What an arm keeps clear of, in the scene: capsules on its links, obstacles, and the pair that is nearest."""
+
+import numpy as np
+from trimesh.creation import capsule as capsule_mesh
+from viser import SceneApi, SceneNodeHandle
+from viser.transforms import SO3
+
+from .._types import Array
+from ..arms import Arm
+from ..capsule import Capsule
+from ..clearance import Clearance
+from ..obstacle import Cuboid, HalfSpace, Obstacle
+from ..skeleton import link_frames
+from .gap import nearest_points
+
+BODY, OBSTACLE, GAP = (0, 114, 178), (230, 159, 0), (204, 121, 167)
+FACES = (16, 24)  # Of a capsule, from end to end and around.
+SLAB = 1.5  # A half-space is shown as a square of this half width [m].
+
+
+class Shapes:
+    """Capsules and obstacles, translucent, and a line between the two shapes that are nearest to one another."""
+
+    def __init__(self, scene: SceneApi, arm: Arm, clearance: Clearance) -> None:
+        self._arm = arm
+        used = {each.link for each in clearance.capsules}
+        self._links = {link: scene.add_frame(f"/clear/link_{link}", show_axes=False) for link in sorted(used)}
+        for i, each in enumerate(clearance.capsules):
+            _add(scene, f"/clear/link_{each.link}/{i}", each, BODY, 0.25)
+        self._obstacles = [
+            _add(scene, f"/clear/obstacle_{i}", each, OBSTACLE, 0.5) for i, each in enumerate(clearance.obstacles)
+        ]
+        if clearance.tip_lower is not None and clearance.tip_upper is not None:
+            lower, upper = clearance.tip_lower, clearance.tip_upper
+            scene.add_box("/clear/tip", OBSTACLE, upper - lower, wireframe=True, position=(lower + upper) / 2)
+        nothing = np.zeros((0, 2, 3), dtype=np.float32)
+        self._gap = scene.add_line_segments("/clear/gap", nothing, GAP, thickness=5.0, thickness_units="screen")
+
+    def at(self, clearance: Clearance, q: Array, pair: tuple[str, str] | None) -> None:
+        """Show the arm's capsules in a posture, obstacles where they are now, and the line between a pair by name."""
+        frames = link_frames(self._arm, q)
+        for link, node in self._links.items():
+            node.position, node.wxyz = frames[link, :3, 3], SO3.from_matrix(frames[link, :3, :3]).wxyz
+        for node, shape in zip(self._obstacles, clearance.obstacles):
+            node.position = centre(shape)
+        ends = None if pair is None else nearest_points(clearance, frames, pair)
+        self._gap.visible = ends is not None
+        if ends is not None:
+            self._gap.points = ends[None].astype(np.float32)
+
+
+def centre(shape: Obstacle) -> Array:
+    """Where a shape is [m]; of a half-space, the point of its surface that is nearest to the base frame's origin."""
+    if isinstance(shape, HalfSpace):
+        return np.asarray(shape.offset * shape.normal / np.linalg.norm(shape.normal))
+    return np.asarray(shape.pose[:3, 3] if isinstance(shape, Cuboid) else (shape.a + shape.b) / 2)
+
+
+def _add(scene: SceneApi, name: str, shape: Obstacle, color: tuple[int, int, int], opacity: float) -> SceneNodeHandle:
+    """A shape where it is given."""
+    looks = {"opacity": opacity, "cast_shadow": False, "position": centre(shape)}
+    if isinstance(shape, Capsule):
+        way = shape.b - shape.a
+        length = float(np.linalg.norm(way))
+        mesh = capsule_mesh(length, max(shape.radius, 1e-6), FACES)
+        turn = along(way) if length > 1e-12 else (1.0, 0.0, 0.0, 0.0)
+        return scene.add_mesh_simple(name, mesh.vertices, mesh.faces, color=color, wxyz=turn, **looks)
+    if isinstance(shape, Cuboid):
+        turn = SO3.from_matrix(shape.pose[:3, :3]).wxyz
+        return scene.add_box(name, color, 2.0 * shape.half, wxyz=turn, **looks)
+    return scene.add_box(name, color, (2.0 * SLAB, 2.0 * SLAB, 1e-3), wxyz=along(shape.normal), **looks)
+
+
+def along(direction: Array) -> Array:
+    """Quaternion (w, x, y, z) of a rotation that takes the z axis to a direction."""
+    x, y, z = direction / np.linalg.norm(direction)
+    if z < -1.0 + 1e-12:
+        return np.array([0.0, 1.0, 0.0, 0.0])
+    quaternion = np.array([1.0 + z, -y, x, 0.0])
+    return np.asarray(quaternion / np.linalg.norm(quaternion))

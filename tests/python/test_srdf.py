@@ -1,0 +1,55 @@
+"""Pairs of links that an SRDF file disables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from fpbm_cpp.io.srdf import read_disabled_pairs
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str], Path]:
+    def write(text: str) -> Path:
+        file = tmp_path / "arm.srdf"
+        file.write_text(text)
+        return file
+
+    return write
+
+
+def test_pairs_are_in_order_and_there_once(write) -> None:
+    file = write(
+        '<?xml version="1.0"?><robot name="r"><group name="arm"><chain base_link="a" tip_link="b"/></group>'
+        '<disable_collisions link1="b" link2="a" reason="Adjacent"/><disable_default_collisions link="a"/>'
+        '<disable_collisions link1="a" link2="b"/><group><disable_collisions link1="x" link2="y"/></group>'
+        '<disable_collisions link1="a" link2="c" reason="Never"/></robot>'
+    )
+    assert read_disabled_pairs(file) == [("a", "b"), ("a", "c")]
+    assert read_disabled_pairs(write("<robot/>")) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<robot>\n<disable_collisions link1='a'/></robot>", "line 2: <disable_collisions> of 'a' and '': must be two"),
+        ("<robot><disable_collisions link1='a' link2='a'/></robot>", "line 1: <disable_collisions> of 'a' and 'a'"),
+        ("<robot><disable_collisions link1='${p}a' link2='a'/></robot>", "run xacro on the file first"),
+        ("<!DOCTYPE r [<!ENTITY e 'a'>]><robot>&e;</robot>", "line 1: has a DOCTYPE: must have none"),
+        ("<robot>" + "<a>" * 100, "XML elements are nested more than 64 deep"),
+        ("<robot>", "line 1: invalid XML: no element found"),
+        ("<srdf/>", "line 1: the root is <srdf>: must be <robot>"),
+    ],
+)
+def test_refused(text: str, message: str, write) -> None:
+    file = write(text)
+    with pytest.raises(ValueError, match=f"^{re.escape(str(file))}: .*{re.escape(message)}"):
+        read_disabled_pairs(file)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read_disabled_pairs(tmp_path / "nowhere.srdf")
