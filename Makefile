@@ -162,11 +162,12 @@ $(VENV)/bench: pyproject.toml | $(VENV)/package
 	@touch $@
 
 # What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
-# the URDFs are read, so what it needs is left out; Debian's PyKDL is for a Python of Debian's version.
+# the URDFs are read, of those after it the meshes, so what they need is left out; Debian's PyKDL is for a Python of Debian's
+# version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
 	-for group in peers franka; do $(BIN)/python -m pip install --quiet --group $$group; done
-	-$(BIN)/python -m pip install --quiet --no-deps ManipulaPy==1.4.2
+	-$(BIN)/python -m pip install --quiet --no-deps ManipulaPy==1.4.2 airo-models==0.0.12 rtb-data==2.0.0 robosuite==1.5.2
 	-$(if $(filter $(call SUFFIX,/usr/bin/python3),$(call SUFFIX,$(BIN)/python)),\
 	  tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,$(BIN)/python):python3-pykdl)
 	@touch $@

@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
   count<Tick<false>>("loop/panda/pose/tick", calls);
   count<Tick<true>>("loop/panda/pose/tick_jerk", calls);
   count<Measured>("loop/panda/pose/measured", calls);
+  count<FreeTick>("loop/panda/pose/free", calls);
+  count<ClearTick>("loop/panda/pose/clear", calls);
   count<LimitedTick<fpbm::Pose, false>>("loop/panda/pose/limited", calls);
   count<LimitedTick<fpbm::Pose, true>>("loop/panda/pose/limited_jerk", calls);
   count<LimitedTick<fpbm::Position<3>, false>>("loop/panda/position/limited", calls);

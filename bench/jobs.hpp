@@ -169,6 +169,67 @@ class LimitedTick {
   int turn_ = 0;
 };
 
+/// A Panda among a table, a box, walls and posts, of which 20 pairs and more are within 15 cm of one another.
+inline fpbm::Clearance<7> surroundings() {
+  using Vector3 = fpbm::Vector<3>;
+  const auto post = [](double x, double y) { return fpbm::Capsule<>{{x, y, 0.2}, {x, y, 1.0}, 0.03}; };
+  const std::vector<fpbm::Obstacle<>> obstacles = {
+      {"table", fpbm::HalfSpace<>{Vector3::UnitZ(), -0.02}},
+      {"left", fpbm::HalfSpace<>{-Vector3::UnitY(), -0.22}},
+      {"right", fpbm::HalfSpace<>{Vector3::UnitY(), -0.22}},
+      {"back", fpbm::Cuboid<>{{Vector3(-0.32, 0.0, 0.5), fpbm::Matrix<3, 3>::Identity()}, Vector3(0.1, 0.3, 0.5)}},
+      {"post 1", post(0.35, 0.17)},
+      {"post 2", post(0.35, -0.17)},
+      {"lid", fpbm::Cuboid<>{{Vector3(0.2, 0.0, 1.05), fpbm::Matrix<3, 3>::Identity()}, Vector3(0.4, 0.3, 0.05)}}};
+  fpbm::Clearance<7> clearance(Panda::chain(), fpbm::presets::capsules::panda(), obstacles, 0.005,
+                               fpbm::presets::never_meet::panda());
+  return clearance;
+}
+
+/// How many of its pairs are within 15 cm of one another in the bent posture.
+inline int near_pairs() {
+  auto clearance = surroundings();
+  clearance.place(Panda::bent());
+  int count = 0;
+  for (const auto& pair : clearance.pairs()) count += clearance.nearest_of(pair).distance < 0.15;
+  return count;
+}
+
+/// A tick in a swing of 10 cm, with and without surroundings to keep clear of.
+template <typename Guard>
+class SwingingTick {
+ public:
+  void operator()() noexcept {
+    const double t = 1e-3 * (turn_++ % 6283);
+    auto target = fpbm::Reference<fpbm::Pose>::hold(home_);
+    target.x.p(1) += 0.05 * std::sin(t);
+    target.xd(1) = 0.05 * std::cos(t);
+    target.xdd(1) = -0.05 * std::sin(t);
+    auto result = loop_.tick(target);
+    escape(result);
+    escape(*this);
+  }
+
+ private:
+  static auto make() {
+    const fpbm::SerialArm<7> arm(Panda::chain());
+    const fpbm::State<7> start{Panda::bent(), fpbm::Vector<7>::Zero()};
+    const fpbm::Limits<fpbm::Level::kAcceleration, 7> limits(arm.limits(), 1e-3);
+    using Loop = fpbm::Tracker<fpbm::SerialArm<7>, fpbm::Pose, decltype(damped()), Guard>;
+    if constexpr (std::is_same_v<Guard, fpbm::Unguarded>) {
+      return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits);
+    } else {
+      return Loop(arm, fpbm::Pose{}, damped(), start, {}, limits, fpbm::Vector<7>::Zero(), Guard(surroundings()));
+    }
+  }
+
+  decltype(make()) loop_ = make();
+  fpbm::Transform<> home_ = loop_.tip();
+  int turn_ = 0;
+};
+using FreeTick = SwingingTick<fpbm::Unguarded>;
+using ClearTick = SwingingTick<fpbm::Guard<fpbm::Level::kAcceleration, 7>>;
+
 /// The answer for a measured state, without bounds on jerk: the states have nothing to do with each other.
 class Measured {
  public:

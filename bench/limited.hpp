@@ -61,7 +61,7 @@ class OursLimited {
     status_ = scheme_.resolve(kinematics_, asked.reference, asked.state, desired_);
   }
   bool limit(const Asked<Case>& asked, Answer<Case>& answer) const {
-    const auto found = limiter_.motion(kinematics_.J, asked.state, asked.last, desired_);
+    const auto found = limiter_.motion(kinematics_.J, asked.state, desired_, asked.last);
     answer = {found.u, found.scale};
     return true;
   }

@@ -18,6 +18,9 @@ void add_resolve() {
   add_resolve<Case<Planar<4>, fpbm::Position<2>>>();
   add_resolve<PandaPose>();
   for_each_law([](auto law) { add<Rk4Step<4, law()>>(std::string("rk4/planar4/position/") + name(law)); });
+  // A swing of a Panda by itself, and among shapes of which 26 pairs are within 15 cm of one another.
+  add<FreeTick>("loop/panda/pose/free");
+  add<ClearTick>("loop/panda/pose/clear");
   return true;
 }();
 

@@ -33,6 +33,7 @@ LIMITED = {
 }
 PYTHON = {
     "fpbm_cpp": "fpbm_cpp",
+    "fpbm_cpp_many": "10,000 states a call",
     "pinocchio_numpy": "Pinocchio + NumPy",
     "robotics_toolbox": "Robotics Toolbox + NumPy",
     "pink": "Pink (QP)",
@@ -66,6 +67,11 @@ class Results:
         self.values = values
         sections = ("step", "limited", "parts", "loop", "growth", "lanes", "python")
         self.rows: dict[str, Row] = {row["name"]: row for name in sections for row in values.get(name, [])}
+        for row in values.get("limited", []):
+            part, case = row["name"].split("/", 1)
+            if part == "limited":  # What limits add to a step.
+                least = row["least"] - self.rows[f"unlimited/{case}"]["least"]
+                self.rows[f"limits/{case}"] = {"name": f"limits/{case}", "least": least}
         self.tails: list[Row] = values.get("tail", [])
         self.sweeps: list[Row] = values.get("sweeps", [])
 
@@ -114,6 +120,8 @@ def bars(results: Results) -> list[str]:
     add("Panda pose step of FPBM, share of Pinocchio + Eigen's time", results.ratio(fpbm, "pinocchio"), 0.20, "{:.2f}")
     add("Panda pose step of FPBM, share of KDL + Eigen's time", results.ratio(fpbm, "kdl"), 0.06, "{:.3f}")
     add("planar step of FPBM, n = 4", results.least("step/planar4/position/fpbm/fpbm_cpp"), 80.0, "{:.0f} ns")
+    many = results.least("python/panda/pose/fpbm/fpbm_cpp_many")
+    add("Panda pose step of FPBM from Python, 10,000 states a call", many, 600.0, "{:.0f} ns")
     for row in results.tails:
         if row["caches"] == "warm" and row["name"] != "timer":
             name = row["name"].replace("/", " ")
@@ -142,7 +150,11 @@ def summary(results: Results) -> list[str]:
         lines += comparison(results, "limited", LIMITED, rows, kind="bounds")
     if results.values.get("python"):
         calls = ["panda/pose/fpbm", "panda/pose/mvn"]
-        lines += ["The same from Python, one call a step.", "", *comparison(results, "python", PYTHON, calls)]
+        lines += [
+            "The same from Python, one call a step or 10,000.",
+            "",
+            *comparison(results, "python", PYTHON, calls),
+        ]
     machine, built_with = results.values["machine"], results.values["built_with"]
     versions = {**built_with, **results.values.get("packages", {})}
     others = ", ".join(f"{name} {v}" for name, v in versions.items() if v and name not in ("compiler", "flags"))
@@ -200,21 +212,21 @@ def in_lanes(results: Results) -> list[str]:
 
 def limited(results: Results) -> list[str]:
     """Limited steps of each library, the share of them that limits take, and how its answers compare."""
-    rows = list(dict.fromkeys(name.split("/", 1)[1] for name in results.rows if name.startswith("limited/")))
-    alone = {}
+    columns = {
+        "unsolved": "without an answer",
+        "outside": "outside the box",
+        "off_line": "off the line",
+        "smaller": "smaller s",
+        "larger": "larger s",
+        "slowed": "unsolvable as an equality",
+    }
     scores = []
-    for row in rows:
-        whole, bare = results.rows[f"limited/{row}"], results.rows[f"unlimited/{row}"]
-        alone[f"limits/{row}"] = {"name": f"limits/{row}", "least": whole["least"] - bare["least"]}
-        *case, library = row.split("/")
-        if library == "fpbm_cpp":
-            continue
-        jerk = case[-1] == "jerk"
-        counts = (str(whole[key]) for key in ("unsolved", "outside", "slowed", "off_line", "smaller", "larger"))
-        scores.append(
-            [f"{', '.join(case)}: {LIMITED[library]}", *("" if jerk and i > 1 else n for i, n in enumerate(counts))]
-        )
-    results.rows |= alone
+    for row in results.values["limited"]:
+        part, *case, library = row["name"].split("/")
+        if part == "limited" and library != "fpbm_cpp":
+            known = list(columns)[:2] if case[-1] == "jerk" else columns
+            counts = (str(row[key]) if key in known else "" for key in columns)
+            scores.append([f"{', '.join(case)}: {LIMITED[library]}", *counts])
     return [
         "Kinematics, scheme and limits, in random states whose scheme asks for more than the limits allow:",
         "",
@@ -222,22 +234,10 @@ def limited(results: Results) -> list[str]:
         "The limits alone: the difference to the same step without them.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Of 10,000 problems each: how many get no answer; how many answers leave the box; how many problems have no",
-        "solution with the whole task as an equality, as it is often written; how answers compare. This library",
-        "answers all.",
+        "Answers to 10,000 problems, beside this library's, which answers all of them. The last column counts the",
+        "problems that have no solution where the whole task is an equality.",
         "",
-        *table(
-            [
-                "arm, task, bounds: library",
-                "none",
-                "outside",
-                "none, equality",
-                "off the line",
-                "smaller s",
-                "larger s",
-            ],
-            scores,
-        ),
+        *table(["arm, task, bounds: library", *columns.values()], scores),
     ]
 
 

@@ -1,0 +1,122 @@
+"""How much larger than their collision geometry the capsules of arms are: `python bench/capsules.py [per_link]`.
+
+Needs example-robot-data and the extra `clearance`; of the presets, those whose meshes are found, which
+tools/preset_capsules.py names. For each arm, over all links with collision geometry: the volume of the links' capsules
+(of their union, by sampling) over that of their convex hulls; how far the capsules reach beyond the hulls, max over
+directions u of h_capsule(u) - h_hull(u), of the median and of the worst link; and, to compare, the volume of capsules
+about trimesh's minimum cylinders. Least for a cube is 2.64 times its volume.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import importlib.util
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from scipy.spatial import ConvexHull
+
+from fpbm_cpp.capsule import Capsule
+from fpbm_cpp.io.capsule_fit import distances
+from fpbm_cpp.io.capsules import capsules_of
+from fpbm_cpp.io.urdf import read_places
+from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
+
+ARMS = {
+    "Panda, meshes": ("panda_description/urdf/panda.urdf", "panda_hand", None),
+    "Panda, Franka's capsules": ("panda_description/urdf/panda_collision.urdf", "panda_hand", None),
+    "UR5": ("ur_description/urdf/ur5_robot.urdf", "tool0", None),
+    "UR10": ("ur_description/urdf/ur10_robot.urdf", "tool0", None),
+    "xArm 7": ("xarm_description/urdf/xarm7.urdf", "link_eef", None),
+    "Jaco": ("kinova_description/robots/kinova.urdf", "j2s6s200_end_effector", None),
+    "TIAGo": ("tiago_description/robots/tiago_no_hand.urdf", "arm_7_link", "torso_lift_link"),
+    "TALOS": ("talos_data/robots/talos_left_arm.urdf", "gripper_left_base_link", None),
+    "Romeo": ("romeo_description/urdf/romeo_small.urdf", "l_wrist", "torso"),
+    "PR2": ("pr2_description/urdf/pr2.urdf", "r_wrist_roll_link", "torso_lift_link"),
+    "iCub": ("icub_description/robots/icub.urdf", "l_hand", "chest"),
+    "Baxter": ("baxter_description/urdf/baxter.urdf", "right_hand_link", None),
+}
+SAMPLES = 20_000
+DIRECTIONS = 4000
+
+
+def solid(shapes: list[Shape], rng: np.random.Generator) -> np.ndarray:
+    """Points whose convex hull is that of the shapes, but for balls, whose surfaces are sampled."""
+    u = rng.normal(size=(400, 3))
+    u /= np.linalg.norm(u, axis=1, keepdims=True)
+    balls = [c + r * u for shape in shapes for c, r in zip(shape.centers, shape.radii)]
+    return np.vstack([shape.edges.reshape(-1, 3) for shape in shapes] + balls)
+
+
+def union(capsules: list[Capsule], rng: np.random.Generator) -> float:
+    ends = np.array([end for c in capsules for end in (c.a - c.radius, c.a + c.radius, c.b - c.radius, c.b + c.radius)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    points = rng.uniform(low, high, (SAMPLES, 3))
+    inside = np.any([distances(points, c.a, c.b) <= c.radius for c in capsules], axis=0)
+    return float(inside.mean() * np.prod(high - low))
+
+
+def beyond(capsules: list[Capsule], points: np.ndarray, rng: np.random.Generator) -> float:
+    u = rng.normal(size=(DIRECTIONS, 3))
+    u /= np.linalg.norm(u, axis=1, keepdims=True)
+    hull = np.max(points @ u.T, axis=0)
+    return float(max(np.max(np.maximum(c.a @ u.T, c.b @ u.T) + c.radius - hull) for c in capsules))
+
+
+def around_cylinder(points: np.ndarray) -> float:
+    found = trimesh.bounds.minimum_cylinder(points)
+    r, length = found["radius"], found["height"]
+    return float(np.pi * r * r * (length + 4 / 3 * r))
+
+
+def row(
+    name: str, file: Path, tip: str, base: str | None, per_link: int, kept: Callable[[str], bool] = lambda link: True
+) -> str:
+    start = time.perf_counter()
+    capsules = capsules_of(file, tip, base, per_link=per_link)
+    taken = time.perf_counter() - start
+    places = read_places(file, tip, base)[2]
+    rng = np.random.default_rng(0)
+    sums, reach = np.zeros(3), []
+    shapes = {link: parts for link, parts in read_shapes(file).items() if kept(link)}
+    capsules = [each for each in capsules if kept(each.name)]
+    for link, parts in shapes.items():
+        points = solid([shape.moved(places[link][1]) for shape in parts], rng)
+        hull = ConvexHull(points)
+        own = [c for c in capsules if c.name == link]
+        sums += hull.volume, union(own, rng), around_cylinder(points[hull.vertices])
+        reach.append(1e3 * beyond(own, points[hull.vertices], rng))
+    ratios = f"{sums[1] / sums[0]:.2f} | {sums[2] / sums[0]:.2f}"
+    return (
+        f"| {name} | {len(shapes)} | {len(capsules)} | {ratios} | "
+        f"{np.median(reach):.0f} | {max(reach):.0f} | {taken:.1f} |"
+    )
+
+
+def main() -> None:
+    spec = importlib.util.find_spec("cmeel")
+    if spec is None or spec.origin is None:
+        sys.exit("needs example-robot-data: pip install example-robot-data")
+    robots = Path(spec.origin).parents[1] / "cmeel.prefix/share/example-robot-data/robots"
+    print("| arm | links | capsules | volume / hulls' | about cylinders / hulls' | beyond, median [mm] | worst | [s] |")
+    print("|---|---|---|---|---|---|---|---|")
+    per_link = int(sys.argv[1]) if len(sys.argv) > 1 else 2
+    for name, (path, tip, base) in ARMS.items():
+        print(row(name, robots / path, tip, base, per_link), flush=True)
+    sys.path.append(str(Path(__file__).parents[1] / "tools"))
+    presets = importlib.import_module("preset_capsules")
+    for name, source in presets.ARMS.items():
+        try:
+            with presets.urdf_of(name) as file:
+                print(row(f"preset {name}", file, source.tip, None, per_link, presets.is_of_arm), flush=True)
+        except (importlib.metadata.PackageNotFoundError, ValueError) as error:
+            print(f"preset {name}: {error}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

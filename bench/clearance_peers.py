@@ -1,0 +1,168 @@
+"""The same targets for fpbm_cpp, Pink and Mink, on one Panda: `python bench/clearance.py peers`.
+
+One set of capsules on its links, taken from its URDF, one set of pairs, one margin, the joints' ends and velocities the
+same, 1000 ticks a second. fpbm_cpp keeps bounds on acceleration and jerk besides. What became of it is measured alike
+for all, by Coal on the capsules.
+
+Pink and Mink have the gains of their own examples: Pink's of kukas_self_collision.py (cost of the frame 50, of the
+posture 1e-3, barrier's gain 20, safe displacement 1), Mink's of arm_ur5e.py (cost 1, Levenberg-Marquardt damping 1,
+damping 1e-3, limit's gain 0.85, which sees shapes at twice the margin). In both, the frame's gain of 1 wants the target
+within a tick; rows with a gain of 0.02 want it as fpbm_cpp does, at 20/s. A tick without an answer holds the arm.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from importlib import metadata
+from typing import NamedTuple
+
+import numpy as np
+from clearance_robots import MARGIN, Array, Robot, robot
+from clearance_solvers import Mink, Pink, Scene
+
+import fpbm_cpp as fp
+from fpbm_cpp.obstacle import Obstacle
+
+DT = 1e-3
+K = 20.0
+FAILED = (fp.Status.SINGULAR, fp.Status.STALLED)
+READY = np.array([0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854])
+
+
+class Scenario(NamedTuple):
+    name: str
+    obstacles: list[Obstacle]
+    path: fp.Path
+    hold: float
+    slide: tuple[float, float] = (0.0, 0.0)  # From when to when along a wall whose normal is x [s].
+
+
+class Motion(NamedTuple):
+    q: Array
+    tips: Array
+    failed: int
+    time: float  # Median of a tick, of the processor [µs].
+
+
+# What one tick does: the next posture and how it went, of x, xd, xdd.
+Step = Callable[[Array, Array, Array], tuple[Array, bool]]
+
+
+def box(place: Array | list[float], half: list[float], name: str) -> fp.Cuboid:
+    pose = np.eye(4)
+    pose[:3, 3] = place
+    return fp.Cuboid(pose, half, name=name)
+
+
+def scenarios() -> list[Scenario]:
+    down, aside, into, along = [0.15, 0.0, -0.45], [0.0, -0.15, 0.0], [0.13, 0.0, 0.0], [0.0, 0.35, 0.0]
+    behind = [-0.75, 0.05, -0.25]
+
+    def line(way: list[float], duration: float, back: bool = False) -> fp.Path:
+        return fp.Line(-np.array(way) if back else way, duration, time_law="quintic")
+
+    return [
+        Scenario(
+            "into a table",
+            [box([0.5, 0, 0.15], [0.3, 0.5, 0.1], "table")],
+            line(down, 1.5).then(line(down, 1.5, True)),
+            1.0,
+        ),
+        Scenario(
+            "along a wall",
+            [box([0.55, 0, 0.5], [0.1, 0.8, 0.5], "wall")],
+            line(aside, 1.0).then(line(into, 1.0)).then(line(along, 2.0)).then(line(into, 1.0, True)),
+            1.0,
+            slide=(2.2, 3.8),
+        ),
+        Scenario("behind its base", [], line(behind, 2.0).then(line(behind, 2.0, True)), 1.0),
+    ]
+
+
+def ours(scene: Scene, scheme: fp.Scheme, limits: fp.JointLimits, clearance: fp.Clearance | None) -> Step:
+    tracker = fp.Tracker(scene.arm, scheme, READY, limits=limits, clearance=clearance)
+
+    def step(x: Array, xd: Array, xdd: Array) -> tuple[Array, bool]:
+        tick = tracker.tick(x, xd, xdd)
+        return tick.q, tick.status not in FAILED
+
+    return step
+
+
+def moved(step: Step, arm: fp.SerialArm, scenario: Scenario) -> tuple[Motion, Array]:
+    """The motion, and the tip's reference."""
+    start = arm.forward(READY)[:3, 3]
+    ticks = round((scenario.path.duration + scenario.hold) / DT)
+    q, references, times, failed = [READY], [start], [], 0
+    for k in range(1, ticks + 1):
+        x, xd, xdd = scenario.path.sample(min((k - 1) * DT, scenario.path.duration))
+        if scenario.path.duration <= (k - 1) * DT:
+            xd, xdd = 0 * xd, 0 * xdd
+        begin = time.process_time_ns()
+        now, found = step(start + x, xd, xdd)
+        times.append((time.process_time_ns() - begin) / 1e3)
+        failed += not found
+        q.append(np.array(now))
+        references.append(start + scenario.path.sample(min(k * DT, scenario.path.duration))[0])
+    tips = np.array([arm.forward(each)[:3, 3] for each in q])
+    return Motion(np.array(q), tips, failed, statistics.median(times)), np.array(references)
+
+
+def row(name: str, motion: Motion, reference: Array, distances: Array, scenario: Scenario) -> list[str]:
+    error = 1e3 * (reference - motion.tips)
+    jerk = np.diff(motion.q, n=3, axis=0) / DT**3
+    first, last = (round(t / DT) for t in scenario.slide)
+    along = f"{np.sqrt((error[first:last, 1:] ** 2).sum(axis=1).mean()):.2f}" if last else ""
+    return [
+        name,
+        f"{(distances < 0).sum()}",
+        f"{1e3 * distances.min():.2f}",
+        f"{np.sqrt((error**2).sum(axis=1).mean()):.1f}",
+        f"{np.linalg.norm(error[-1]):.2f}",
+        along,
+        f"{np.sqrt((jerk**2).mean()):.0f}",
+        f"{np.abs(np.diff(motion.q, n=2, axis=0)).max() / DT**2:.0f}",
+        f"{motion.failed}",
+        f"{motion.time:.0f}",
+    ]
+
+
+HEADS = [
+    "", "ticks in contact", "nearest [mm]", "tip error, rms [mm]", "at the end [mm]", "along the wall [mm]",
+    "jerk, rms [rad/s³]", "acceleration, most [rad/s²]", "ticks without an answer", "a tick [µs]",
+]  # fmt: skip
+
+
+def solvers(scene: Scene, made: Robot, clearance: fp.Clearance) -> dict[str, Callable[[], Step]]:
+    """Each is made when it is its turn."""
+    ones = np.ones(scene.arm.dof)
+    fpbm = fp.FPBM(0.6, ones, 2 * K, K * K, null_damping=2.0)
+    acceleration = made.limits.acceleration
+    return {
+        "fpbm_cpp, no clearance": lambda: ours(scene, fpbm, made.limits, None),
+        "fpbm_cpp, FPBM": lambda: ours(scene, fpbm, made.limits, clearance),
+        "fpbm_cpp, MVN": lambda: ours(scene, fp.MVN(k=K), made.limits, clearance),
+        "Pink": lambda: Pink(scene, READY, DT).step,
+        "Pink, gain 0.02": lambda: Pink(scene, READY, DT, gain=K * DT).step,
+        "Pink, accelerations": lambda: Pink(scene, READY, DT, gain=K * DT, acceleration=acceleration).step,
+        "Mink": lambda: Mink(scene, READY, DT).step,
+        "Mink, gain 0.02": lambda: Mink(scene, READY, DT, gain=K * DT).step,
+    }
+
+
+def run() -> Iterator[str]:
+    made = robot("panda")
+    versions = {name: metadata.version(name) for name in ("pin-pink", "mink", "mujoco", "coal", "daqp")}
+    yield "Versions: " + ", ".join(f"{name} {version}" for name, version in versions.items())
+    for scenario in scenarios():
+        clearance = replace(made.clearance, obstacles=scenario.obstacles)
+        scene = Scene(made.arm, made.limits, clearance)
+        yield from ("", f"{scenario.name}: {len(scene.pairs)} pairs, margin {1e3 * MARGIN:g} mm", "")
+        yield from ("| " + " | ".join(HEADS) + " |", "|---|" + "---:|" * (len(HEADS) - 1))
+        for name, make in solvers(scene, made, clearance).items():
+            motion, reference = moved(make(), made.arm, scenario)
+            distances = np.array([scene.distance(q) for q in motion.q])
+            yield "| " + " | ".join(row(name, motion, reference, distances, scenario)) + " |"
