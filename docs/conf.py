@@ -57,4 +57,5 @@ breathe_show_include = False
 # Names of Eigen's, of the standard library's and of template parameters have no page here; bench/README.md has, by
 # another name.
 nitpicky = True
+suppress_warnings = ["duplicate_declaration.cpp"]  # A namespace may stand in more than one header.
 nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", r"\.\./README\.md")]
