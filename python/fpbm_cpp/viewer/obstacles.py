@@ -1,5 +1,6 @@
 """Obstacles that are dragged about."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..errors import wrong
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 
 SPEED = 0.3  # At most, toward where it is dragged [m/s].
+ACCELERATION = 1.0  # At most, when it sets off, turns and stops [m/s²].
 
 
 class Obstacles:
@@ -37,10 +39,11 @@ class Obstacles:
         """Back to where they were given."""
         self._goals: dict[str, Array] = {}
         self._ways: dict[str, Array] = {}
+        self._velocities: dict[str, Array] = {}
         self._moved: dict[str, Obstacle] = {}
 
     def drag(self, name: str, way: Array) -> None:
-        """Let a capsule or a box go to a place this far from where it was given [m], at SPEED at most.
+        """Let a capsule or a box go to a place this far from where it was given [m], within SPEED and ACCELERATION.
 
         Raises ParameterError where no obstacle has that name.
         """
@@ -52,15 +55,21 @@ class Obstacles:
     def step(self, tracker: Tracker) -> None:
         """Move those that are on their way, by a tick."""
         for name, goal in [*self._goals.items()]:
-            before = self._ways.get(name, np.zeros(3))
-            way = goal - before
-            distance = float(np.linalg.norm(way))
-            step = way * min(1.0, SPEED * self._dt / distance) if distance > 0.0 else way
-            self._ways[name] = before + step
-            self._moved[name] = shifted(self._given[name], before + step)
-            tracker.move(name, self._moved[name], step / self._dt)
-            if not step.any():  # The tracker has been told that it rests.
+            before, velocity = self._ways.get(name, np.zeros(3)), self._velocities.get(name, np.zeros(3))
+            left = goal - before
+            distance, change = float(np.linalg.norm(left)), ACCELERATION * self._dt
+            if distance <= change * self._dt and np.linalg.norm(velocity) <= 2 * change:
+                way, velocity = goal, np.zeros(3)
                 del self._goals[name]
+            else:
+                # Half of the acceleration stops it in time, though a tick late.
+                wanted = left * min(SPEED, math.sqrt(ACCELERATION * distance)) / max(distance, math.ulp(1.0))
+                turn = wanted - velocity
+                velocity = velocity + turn * min(1.0, change / max(float(np.linalg.norm(turn)), math.ulp(1.0)))
+                way = before + self._dt * velocity
+            self._ways[name], self._velocities[name] = way, velocity
+            self._moved[name] = shifted(self._given[name], way)
+            tracker.move(name, self._moved[name], velocity)
 
 
 def can_be_dragged(shape: Obstacle) -> bool:

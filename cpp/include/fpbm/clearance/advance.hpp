@@ -26,6 +26,12 @@ struct ChainSweep {
         low(links.least(sweep.low, sweep.high)),
         high(-links.least(-sweep.high, -sweep.low)),
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
+
+  /// Least that all but `way` adds to what has this gradient.
+  [[nodiscard]] Scalar least(const ChainVector& gradient) const noexcept {
+    return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum() +
+           std::min(gradient.dot(tick), Scalar(0));
+  }
 };
 
 /// What a sweep may take from a gap between shapes, t of its way done: at most linear·t + c₀ + c₁ t + c₂ t².
@@ -125,8 +131,8 @@ template <int N, typename Scalar>
       if (nearest.distance >= needs) return true;
       const Separation<N, Scalar> plane(clearance, pair, nearest);
       if (nearest.distance < clearance.margin() - kIntrusion && done == Scalar(0)) {
-        const auto gradient = plane.gradient[0] + plane.at * (plane.gradient[1] - plane.gradient[0]);
-        const bool opens = gradient.dot(sweep.way) >= Scalar(0);
+        const auto gradient = plane.of_distance();
+        const bool opens = gradient.dot(sweep.way) + sweep.least(gradient) >= Scalar(0);
         if (!opens) step = Scalar(0);
         return opens;
       }
@@ -134,8 +140,7 @@ template <int N, typename Scalar>
       Scalar sure = whole;
       for (int e = 0; e < 2; ++e) {
         const auto& g = plane.gradient[e];
-        const Scalar rest = g.cwiseProduct(sweep.low).cwiseMin(g.cwiseProduct(sweep.high)).sum() +
-                            std::min(g.dot(sweep.tick), Scalar(0)) - bend.c0;
+        const Scalar rest = sweep.least(g) - bend.c0;
         const Scalar gap = plane.gap[e] - clearance.margin() + rest - time * std::max(plane.closing, Scalar(0));
         const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
         sure = std::min(furthest(gap, slope, bend.c2, whole), sure);  // In this order NaN stays.

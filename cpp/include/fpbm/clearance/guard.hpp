@@ -109,7 +109,7 @@ class Guard {
       room_ += found.distance;
       const Separation<N, Scalar> plane(clearance_, pair, found);
       const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
-      const auto nearest = plane.gradient[0] + plane.at * (plane.gradient[1] - plane.gradient[0]);
+      const auto nearest = plane.of_distance();
       for (int e = 0; e < (between ? 1 : 2); ++e) {
         const Scalar gap = between ? plane.distance : plane.gap[e];
         const auto& gradient = between ? nearest : plane.gradient[e];

@@ -59,6 +59,9 @@ struct Separation {
       for (int e = 0; e < 2; ++e) gradient[e](k) = turns ? z.dot(moments[e] - offset) : z.dot(n);
     }
   }
+
+  /// Gradient of the distance, by the chain's joints.
+  [[nodiscard]] ChainVector of_distance() const noexcept { return gradient[0] + at * (gradient[1] - gradient[0]); }
 };
 
 }  // namespace fpbm

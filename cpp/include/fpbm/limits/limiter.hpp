@@ -71,9 +71,9 @@ class Limiter {
     const Scalar mu = kSelfMotion * J.squaredNorm();
     const auto [given_up, self_motion] = task_given_up(J, mu, rows, desired);
     const Scalar square = given_up.squaredNorm();
-    const Scalar hopeless = std::max(Scalar(1) - self_motion / kServes, Scalar(0));
+    const Scalar lacks = std::max(Scalar(1) - self_motion / kServes, Scalar(0));
     Matrix<M, M, Scalar> B = mu * Matrix<M, M, Scalar>::Identity(J.rows(), J.rows());
-    if (square > Scalar(0)) B += hopeless * hopeless * mu / kGivenUp / square * given_up * given_up.transpose();
+    if (square > Scalar(0)) B += lacks * lacks * mu / kGivenUp / square * given_up * given_up.transpose();
     RowProjection<M, N, P, Scalar> projection(J, B, rows);
     const JointVector wanted = projection(desired);
     Saturated<N, Scalar> found = bounded(J, state, wanted, last, rows);

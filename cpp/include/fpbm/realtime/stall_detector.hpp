@@ -45,13 +45,14 @@ class StallDetector {
   /// moved. room: a measure of how far they are from it.
   void wait(bool at_rest, Scalar room, Scalar length) noexcept {
     using std::abs;
-    if (at_rest && std::isnan(room_)) room_ = room;
-    if (abs(room - room_) > kStep * length) reset();
+    if (rests_ && abs(room - room_) > kStep * length) return reset();
+    if (at_rest && !rests_) room_ = room;
+    rests_ = rests_ || at_rest;
   }
 
   /// The arm is to try again.
   void reset() noexcept {
-    room_ = std::numeric_limits<Scalar>::quiet_NaN();
+    rests_ = false;
     least_ = std::numeric_limits<Scalar>::infinity();
     waited_ = Scalar(0);
   }
@@ -68,7 +69,8 @@ class StallDetector {
   Scalar dt_;
   Scalar waited_ = Scalar(0);  ///< Without progress [s].
   Scalar least_ = std::numeric_limits<Scalar>::infinity();
-  Scalar room_ = std::numeric_limits<Scalar>::quiet_NaN();  ///< When it came to rest.
+  bool rests_ = false;       ///< Since it stalled, it has come to rest.
+  Scalar room_ = Scalar(0);  ///< When it did.
   Point target_ = Space::template origin<Scalar>();
 };
 
