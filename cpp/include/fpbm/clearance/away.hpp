@@ -1,30 +1,12 @@
 #pragma once
 
-#include <algorithm>
-
-#include "fpbm/clearance/separation.hpp"
-
 namespace fpbm {
 
-/// The joint motion gain Σ (1 − s/range)² ∇s over the gaps s of all pairs that are nearer than the range beyond their
-/// margin, where the clearance is placed: up the gradient of −gain range/3 Σ (1 − s/range)³. Both ends of a capsule
-/// count, so that it is continuous where the nearest points jump.
-template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> motion_away(const Clearance<N, Scalar>& clearance) noexcept {
-  const Away<Scalar>& away = clearance.away();
-  using ChainVector = typename Clearance<N, Scalar>::ChainVector;
-  ChainVector sum = ChainVector::Zero(clearance.links().count());
-  for (const ShapePair& pair : clearance.pairs()) {
-    if (clearance.roughly(pair) >= clearance.margin() + away.range) continue;
-    const Separation<N, Scalar> plane(clearance, pair);
-    for (int e = 0; e < 2; ++e) {
-      const Scalar near = Scalar(1) - (plane.gap[e] - clearance.margin()) / away.range;
-      if (!(near > Scalar(0))) continue;
-      const Scalar share = std::min(near, Scalar(1));
-      sum += away.gain * share * share * plane.gradient[e];
-    }
-  }
-  return clearance.links().by_drive(sum);
-}
+/// Keeps an arm at a distance from shapes where its task leaves it free to: off where the gain is 0.
+template <typename Scalar = double>
+struct Away {
+  Scalar gain = Scalar(0);  ///< [rad/(m s²)], or [rad/(m s)] at velocity level; a joint that slides: [1/s²], [1/s].
+  Scalar range = Scalar(0.1);  ///< From the margin on [m].
+};
 
 }  // namespace fpbm

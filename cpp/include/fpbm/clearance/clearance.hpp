@@ -6,19 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "fpbm/clearance/away.hpp"
+#include "fpbm/clearance/body.hpp"
 #include "fpbm/clearance/link_capsule.hpp"
 #include "fpbm/clearance/obstacle.hpp"
 #include "fpbm/model/links.hpp"
 #include "fpbm/model/spread_posture.hpp"
 
 namespace fpbm {
-
-/// Keeps an arm at a distance from shapes where its task leaves it free to: off where the gain is 0.
-template <typename Scalar = double>
-struct Away {
-  Scalar gain = Scalar(0);  ///< [rad/(m s²)], or [rad/(m s)] at velocity level; a joint that slides: [1/s²], [1/s].
-  Scalar range = Scalar(0.1);  ///< From the margin on [m].
-};
 
 /// What an arm must keep clear of: itself and its surroundings, by a margin. Shapes of the world may move; all else is
 /// settled at construction.
@@ -28,19 +23,8 @@ class Clearance {
   using JointVector = Vector<N, Scalar>;
   using Vector3 = Vector<3, Scalar>;
   using ChainVector = typename Links<N, Scalar>::ChainVector;
+  using Body = fpbm::Body<N, Scalar>;
   using Names = std::pair<std::string, std::string>;
-
-  /// One of the arm's capsules, and where it is.
-  struct Body {
-    Eigen::Index link;
-    Capsule<Scalar> in_link;
-    std::string name;
-    ChainVector levers;  ///< Of both ends, the longer.
-    Capsule<Scalar> now;
-    Vector3 centre;
-    Scalar size;               ///< Radius of the ball around it.
-    Scalar reach = Scalar(0);  ///< Most that a motion in question can move its axis.
-  };
 
   /// margin: least distance of a pair [m]. allowed: names of pairs that need not be kept apart. Links next to one
   /// another need not either. Throws std::invalid_argument where a number is out of range, a link does not exist, or
@@ -54,9 +38,10 @@ class Clearance {
       const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
       capsules[i].require_sound(argument, links_.count());
       const Capsule<Scalar> placed{links_.in_frame(link, capsule.a), links_.in_frame(link, capsule.b), capsule.radius};
-      const ChainVector levers = links_.levers(link, placed.a).cwiseMax(links_.levers(link, placed.b));
-      if (!levers.allFinite()) validation::reject(argument, " moves with a prismatic joint that has no ends");
-      bodies_.push_back({link, placed, name, levers, placed, placed.a, Scalar(0)});
+      bodies_.emplace_back(links_, link, placed, name);
+      if (!bodies_.back().levers.allFinite()) {
+        validation::reject(argument, " moves with a prismatic joint that has no ends");
+      }
     }
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
       obstacles_[i].require_sound(validation::element("obstacles", static_cast<Eigen::Index>(i)));
@@ -123,8 +108,7 @@ class Clearance {
   /// Keeps the tip within a box in the base frame, from lower to upper [m]: six walls that nothing else heeds.
   void keep_tip_within(const Vector3& lower, const Vector3& upper) {
     const Eigen::Index last = links_.count();
-    const Capsule<Scalar> point{tip_, tip_, Scalar(0)};
-    bodies_.push_back({last, point, "tip", links_.levers(last, tip_), point, tip_, Scalar(0)});
+    bodies_.emplace_back(links_, last, Capsule<Scalar>{tip_, tip_, Scalar(0)}, "tip");
     for (int axis = 0; axis < 3; ++axis) {
       if (!(lower(axis) < upper(axis))) {
         validation::fail(validation::element("lower", axis), static_cast<double>(lower(axis)), "below upper");
@@ -148,11 +132,7 @@ class Clearance {
   /// Places the arm's capsules at a posture.
   void place(const JointVector& q) noexcept {
     links_.place(q, frames_);
-    for (Body& body : bodies_) {
-      body.now = placed(body.in_link, frames_[static_cast<std::size_t>(body.link)]);
-      body.centre = (body.now.a + body.now.b) / Scalar(2);
-      body.size = (body.now.b - body.now.a).norm() / Scalar(2) + body.now.radius;
-    }
+    for (Body& body : bodies_) body.place(frames_[static_cast<std::size_t>(body.link)]);
   }
 
   /// A lower bound on the distance of a pair where the arm is placed, found faster than nearest_of().

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "fpbm/clearance/advance.hpp"
-#include "fpbm/clearance/away.hpp"
+#include "fpbm/clearance/motion_away.hpp"
 #include "fpbm/clearance/tip_speed.hpp"
 #include "fpbm/limits/rows.hpp"
 
