@@ -118,6 +118,7 @@ void pull(const Chain<>& chain, std::uint32_t seed, int ticks, Run& run) {
 
 template <Level kLevel>
 void expect_to_keep_clear() {
+  constexpr auto kSeeds = static_cast<std::uint32_t>(trials(10));
   const std::vector<std::pair<std::string, Chain<>>> chains = {{"panda", presets::panda()},
                                                                {"panda without jerk", panda_without_jerk()},
                                                                {"soft panda", with_jerk(presets::panda(), 20.0)},
@@ -127,12 +128,14 @@ void expect_to_keep_clear() {
                                                                {"coupled", coupled_panda()}};
   for (const auto& [name, chain] : chains) {
     Run run;
-    for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
       pull<kLevel>(chain, seed, 4000, run);
       ASSERT_GE(run.nearest, -kSlack) << name << ", seed " << seed;
     }
     EXPECT_LE(run.joints, 1e-9) << name;
-    EXPECT_GE(run.blocked, run.ticks / 50) << name;
+    if (kSeeds >= 10) {  // A few may meet nothing.
+      EXPECT_GE(run.blocked, run.ticks / 50) << name;
+    }
     std::printf("%s: nearest %.1e beyond the margin, joints' bounds %.1e, blocked %d of %d ticks\n", name.c_str(),
                 run.nearest, run.joints, run.blocked, run.ticks);
   }
