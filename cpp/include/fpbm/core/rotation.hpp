@@ -186,9 +186,8 @@ template <typename Scalar>
   const Split b = column(1);
   const Split c = column(2);
   const Vector<3, Scalar> s(b.z - c.xy.second(), c.xy.first() - a.z, a.xy.second() - b.xy.first());
-  return rotation_detail::rotation_vector<Scalar>(s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> {
-    return x.lazyProduct(y.transpose());
-  });
+  return rotation_detail::rotation_vector<Scalar>(
+      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(y.transpose()); });
 }
 
 }  // namespace fpbm

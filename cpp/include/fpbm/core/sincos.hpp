@@ -79,11 +79,12 @@ struct ReducedSinCos {
 
     const Scalar z = r * r;
     const Scalar z2 = z * z;
-    const Scalar sin_tail =
-        polynomial(z, z2, {1.58962138989828173e-10, -2.50507474905790061e-08, 2.75573136197019395e-06,
-                       -1.98412698295848523e-04, 8.33333333332211303e-03, -1.66666666666666297e-01});
-    const Scalar cos_tail = polynomial(z, z2, {-1.13585252205869601e-11, 2.08757006287165171e-09, -2.75573141777659980e-07,
-                                           2.48015872888465437e-05, -1.38888888888730492e-03, 4.16666666666665950e-02});
+    const Scalar sin_tail = polynomial(z, z2,
+                                       {1.58962138989828173e-10, -2.50507474905790061e-08, 2.75573136197019395e-06,
+                                        -1.98412698295848523e-04, 8.33333333332211303e-03, -1.66666666666666297e-01});
+    const Scalar cos_tail = polynomial(z, z2,
+                                       {-1.13585252205869601e-11, 2.08757006287165171e-09, -2.75573141777659980e-07,
+                                        2.48015872888465437e-05, -1.38888888888730492e-03, 4.16666666666665950e-02});
     const Scalar head = Scalar(1) - Scalar(0.5) * z;
     return {r + r * z * sin_tail, head + (((Scalar(1) - head) - Scalar(0.5) * z) + z2 * cos_tail)};
   }
@@ -131,6 +132,19 @@ template <typename Scalar>
     }
   }
   return {sin(angle), cos(angle)};
+}
+
+/// N angles whose sines are wanted, and one more where that makes an even number of doubles, since two are computed at
+/// once.
+template <int N, typename Scalar>
+using Angles = Vector<(N != Eigen::Dynamic && std::is_same_v<Scalar, double>) ? N + N % 2 : N, Scalar>;
+
+/// Room for the angles of n joints.
+template <int N, typename Scalar>
+[[nodiscard]] Angles<N, Scalar> angles_of(Eigen::Index n) noexcept {
+  Angles<N, Scalar> angles;
+  angles.resize(N == Eigen::Dynamic ? n : Eigen::Index(Angles<N, Scalar>::SizeAtCompileTime));
+  return angles;
 }
 
 /// sin and cos of every angle [rad] at once.

@@ -58,6 +58,8 @@ class PlanarArm {
   }
 
  private:
+  using Two = Pair<Scalar>;
+
   /// A pass to the tip for the links, a pass back for the sums over all links beyond a joint:
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
   /// The tip's angle is θₙ.
@@ -67,26 +69,25 @@ class PlanarArm {
     constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>,
                   "a planar arm has tasks Position<2> and PlanarPose");
-    using Two = Pair<Scalar>;
     const auto n = extent<N>(lengths_.size());
     const auto pairs = pairs_of(n);
     out.J.resize(Space::kRows, n);
     if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
 
-    const Vector<N, Scalar> angles = running_sum(q);
-    Vector<N, Scalar> sines;
-    Vector<N, Scalar> cosines;
+    const Angles<N, Scalar> angles = running_sum(q);
+    Angles<N, Scalar> sines;
+    Angles<N, Scalar> cosines;
     sincos(angles, sines, cosines);
-    [[maybe_unused]] Vector<N, Scalar> rates;
+    [[maybe_unused]] Angles<N, Scalar> rates;
     if constexpr (kWithRate) rates = running_sum(qd);
 
     Two column(Scalar(0));
     [[maybe_unused]] Two column_rate(Scalar(0));
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
-      const Two lengths = two_of<N>(lengths_, i);
-      const Two x = lengths * two_of<N>(cosines, i);
-      const Two y = lengths * two_of<N>(sines, i);
+      const Two lengths = two_of(lengths_, i);
+      const Two x = lengths * two_of(cosines, i);
+      const Two y = lengths * two_of(sines, i);
       const Two back = Two(Scalar(0)) - y;
       if (i + 1 < n) {
         column += seconds(back, x);
@@ -95,7 +96,7 @@ class PlanarArm {
       column += firsts(back, x);
       column.store(&out.J.coeffRef(0, i));
       if constexpr (kWithRate) {
-        const Two rate = two_of<N>(rates, i);
+        const Two rate = two_of(rates, i);
         const Two xd = rate * x;
         const Two yd = rate * y;
         if (i + 1 < n) {
@@ -116,14 +117,15 @@ class PlanarArm {
   }
 
   /// Sums of the entries up to each.
-  [[nodiscard]] static Vector<N, Scalar> running_sum(const Vector<N, Scalar>& of) noexcept {
-    Vector<N, Scalar> result(of.size());
+  [[nodiscard]] static Angles<N, Scalar> running_sum(const Vector<N, Scalar>& of) noexcept {
+    Angles<N, Scalar> result = angles_of<N, Scalar>(of.size());
     Scalar sum(0);
     each(Constant<0>{}, pairs_of(extent<N>(of.size())), [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
-      const Scalar first = sum + of.coeff(i);
-      sum = i + 1 < of.size() ? first + of.coeff(i + 1) : first;
-      set_two_of<N>(result, i, Pair<Scalar>(first, sum));
+      const Two terms = two_of(of, i);
+      const Scalar first = sum + terms.first();
+      sum = first + terms.second();
+      set_two_of(result, i, Two(first, sum));
     });
     return result;
   }

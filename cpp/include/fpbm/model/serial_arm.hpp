@@ -9,8 +9,9 @@
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/unrolled.hpp"
-#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/pair.hpp"
 #include "fpbm/model/chain.hpp"
+#include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/link.hpp"
 #include "fpbm/model/screws.hpp"
@@ -44,7 +45,7 @@ class SerialArm {
         base_ = {p, R};
       } else {
         const DecomposedLink<Scalar> between({p, R});
-        set(i - 1, between.link);
+        links_[static_cast<std::size_t>(i - 1)] = LinkPassage<Scalar>(between.link);
         offsets_(i - 1) += between.before;
         offsets_(i) = between.after;
       }
@@ -60,9 +61,11 @@ class SerialArm {
     length_ += chain.tip.p.norm();
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
     const DecomposedLink<Scalar> last({turned_back * chain.tip.p, turned_back * chain.tip.R});
+    links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);
     offsets_(dof_ - 1) += last.before;
-    set(dof_ - 1, last.link);
-    tip_ = {Twice<Scalar>(std::cos(last.after)), Twice<Scalar>(std::sin(last.after))};
+    using std::cos;
+    using std::sin;
+    tip_ = {Twice<Scalar>(cos(last.after)), Twice<Scalar>(sin(last.after))};
   }
 
   /// The same arm for another Scalar.
@@ -82,21 +85,13 @@ class SerialArm {
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
                   Kinematics<Space, N, Scalar>& out) const noexcept {
-    if (slides_ == 0) {
-      forward_pass<true, false>(q, qd, out);
-    } else {
-      forward_pass<true, true>(q, qd, out);
-    }
+    slides_ == 0 ? forward_pass<true, false>(q, qd, out) : forward_pass<true, true>(q, qd, out);
   }
 
   /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
-    if (slides_ == 0) {
-      forward_pass<false, false>(q, q, out);
-    } else {
-      forward_pass<false, true>(q, q, out);
-    }
+    slides_ == 0 ? forward_pass<false, false>(q, q, out) : forward_pass<false, true>(q, q, out);
   }
 
  private:
@@ -113,23 +108,15 @@ class SerialArm {
         tip_(arm.tip_.template cast<Scalar>()),
         length_(static_cast<Scalar>(arm.length_)),
         limits_(arm.limits_.template cast<Scalar>()) {
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      for (int j = 0; j < 3; ++j) ways_[i].step[j] = arm.ways_[i].step[j].template cast<Scalar>();
-      ways_[i].tilt = arm.ways_[i].tilt.template cast<Scalar>();
-    }
+    for (std::size_t i = 0; i < links_.size(); ++i) links_[i] = arm.links_[i].template cast<Scalar>();
   }
 
   using Vector3 = Vector<3, Scalar>;
-  void set(Eigen::Index i, const Link<Scalar>& link) {
-    Way& way = ways_[static_cast<std::size_t>(i)];
-    for (int j = 0; j < 3; ++j) way.step[j] = Twice<Scalar>(link.step(j));
-    way.tilt = {Twice<Scalar>(link.cosine), Twice<Scalar>(link.sine)};
-  }
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
-  /// A pass along the chain finds the joints' axes; J and Jd follow from these. The column of a prismatic joint is
-  /// [zᵢ; 0].
+  /// A pass along the chain finds the joints' axes; J and Jd follow from these. With a code of its own for chains of
+  /// which no joint slides.
   template <bool kWithRate, bool kSlides, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                                      Kinematics<Space, N, Scalar>& out) const noexcept {
@@ -137,22 +124,23 @@ class SerialArm {
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");
     using Two = Pair<Scalar>;
+    using Joint = typename Screws<N, Scalar>::Joint;
     const auto n = extent<N>(dof_);
     const auto pairs = pairs_of(n);
-    Even angles(2 * pairs);
+
+    Angles<N, Scalar> angles = angles_of<N, Scalar>(n);
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
       const Two turned = kSlides ? two_of(turns_, i) * two_of(q, i) : two_of(q, i);
       set_two_of(angles, i, turned + two_of(offsets_, i));
     });
-    Even sines;
-    Even cosines;
+    Angles<N, Scalar> sines;
+    Angles<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
     Screws<N, Scalar> screws;
     Frame<Scalar> frame(base_);
-    SplitVector<Scalar> w;  // Its angular velocity.
-    using Joint = typename Screws<N, Scalar>::Joint;
+    SplitVector<Scalar> w;  // Angular velocity of the frame.
     const auto pass = [&](Eigen::Index i) -> Joint {
       if (kSlides && slides(i)) {
         frame.p += Two(q.coeff(i)) * frame.z;
@@ -160,45 +148,39 @@ class SerialArm {
         w += Two(qd.coeff(i)) * frame.z;
       }
       const Joint joint{frame.z, frame.p, w};
-      const Way& way = ways_[static_cast<std::size_t>(i)];
       frame.turn(Two(cosines.coeff(i)), Two(sines.coeff(i)));
-      frame.p += way.step[0]() * frame.x + way.step[1]() * frame.y + way.step[2]() * frame.z;
-      frame.tilt(way.tilt.cosine(), way.tilt.sine());
+      frame.pass(links_[static_cast<std::size_t>(i)]);
       return joint;
     };
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
-      const Joint first = pass(i);
-      screws.set(k, first, i + 1 < n ? pass(i + 1) : Joint{});
+      const Joint joint = pass(i);
+      screws.set(i, joint, i + 1 < n ? pass(i + 1) : Joint{});
     });
 
+    out.length = length_;
     if constexpr (kWithOrientation) {
-      frame.turn(tip_.cosine(), tip_.sine());
+      frame.turn(tip_.cosine.pair(), tip_.sine.pair());
       frame.store(out.tip);
     } else {
       frame.p.store(out.tip.data());
     }
-    out.length = length_;
-    out.J.resize(Space::kRows, dof_);
-    if constexpr (kWithRate) out.Jd.resize(Space::kRows, dof_);
-    screws.start(frame.p);
+    out.J.resize(Space::kRows, n);
+    if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
+    screws.set_tip(frame.p);
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
-      screws.columns(i, kSlides ? &turns_ : nullptr, kWithRate ? &qd : nullptr, out.J, out.Jd);
+      screws.template columns<kWithRate, kSlides>(i, turns_, qd, out.J, out.Jd);
     });
   }
 
-  static constexpr int kEven = N == Eigen::Dynamic ? N : N + N % 2;
-  using Even = Vector<kEven, Scalar>;
-  struct Way { Twice<Scalar> step[3]; Turn<Scalar> tilt; };
-
   Eigen::Index dof_;
-  Transform<Scalar> base_;                        ///< The first joint's frame at zero.
-  std::array<Way, kCapacity<N>> ways_;  ///< From each joint's frame to the next.
+  Transform<Scalar> base_;                               ///< The first joint's frame at zero.
+  std::array<LinkPassage<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
   Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: a frame's angle is turns q + offset.
   Vector<N, Scalar> offsets_;
   std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
-  Turn<Scalar> tip_;  ///< The tip's orientation in the frame of the last link's end.
+  FixedTurn<Scalar> tip_;     ///< About z, from the frame of the last link's end to the tip's.
   Scalar length_{0};          ///< [m]
   JointLimits<N, Scalar> limits_;
 };
