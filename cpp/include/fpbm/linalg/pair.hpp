@@ -30,7 +30,7 @@ struct PairStorage {
 };
 #if defined(__GNUC__)  // And compilers that claim to be GNU's.
 template <typename Scalar>
-struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar>>> {
+struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar> && sizeof(Scalar) <= sizeof(double)>> {
   using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
 };
 #endif
