@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
 
+#include "fpbm/linalg/pair.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "support/random.hpp"
 #include "support/textbook.hpp"
@@ -117,6 +119,28 @@ TEST_P(PlanarKinematics, differentiates_as_J_and_Jd_say) {
     const RealMatrix slope = (at(q + kStep * qd).J - at(q - kStep * qd).J) / (2 * static_cast<Real>(kStep));
     EXPECT_LE((out.Jd - slope).cwiseAbs().maxCoeff(), tolerance);
   });
+}
+
+/// Two neighbours of a vector, read and written at once; beyond its end is zero, and nothing is written.
+template <int N, typename Scalar>
+void expect_neighbours() {
+  Vector<N, Scalar> from(5);
+  for (int i = 0; i < 5; ++i) from(i) = Scalar(i + 1);
+  Vector<N, Scalar> to = Vector<N, Scalar>::Zero(5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const Pair<Scalar> two = two_of(from, i);
+    EXPECT_EQ(two.first(), from(i));
+    EXPECT_EQ(two.second(), i < 4 ? from(i + 1) : Scalar(0));
+    set_two_of(to, i, two);
+    EXPECT_EQ(to.head(i + 1), from.head(i + 1));
+    EXPECT_EQ(to.tail(5 - std::min<Eigen::Index>(i + 2, 5)).squaredNorm(), Scalar(0));
+  }
+}
+TEST(Pair, holds_two_neighbours_of_a_vector) {
+  expect_neighbours<5, double>();
+  expect_neighbours<5, float>();
+  expect_neighbours<5, long double>();
+  expect_neighbours<Eigen::Dynamic, double>();
 }
 
 INSTANTIATE_TEST_SUITE_P(every, PlanarKinematics, ::testing::ValuesIn(arms()),

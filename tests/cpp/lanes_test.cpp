@@ -59,8 +59,14 @@ TEST(Lanes, have_the_rotation_vector_of_each) {
       set_lane<3, 3>(all, lane, rotation(each[lane]));
     }
     const Vector<3, In> turns = rotation_vector<In>(all);
+    Matrix<3, 3, In> other;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      set_lane<3, 3>(other, lane, rotation(Vector<3>(random.uniform(3, -1.5, 1.5))));
+    }
+    const Vector<3, In> between = rotation_between<In>(all.lazyProduct(other), other);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       EXPECT_LE((lane_of<3, 1>(turns, lane) - each[lane]).norm(), 1e-15 + 4e-16 / (3.2 - each[lane].norm()));
+      EXPECT_LE((lane_of<3, 1>(between, lane) - each[lane]).norm(), 2e-15 + 2e-15 / (3.2 - each[lane].norm()));
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -69,6 +70,89 @@ TEST(SerialArm, jacobians_are_derivatives) {
   expect_derivatives_of_random_chains<7>(7);
   expect_derivatives_of_random_chains<Eigen::Dynamic>(9);
   expect_derivatives_of_random_chains<Eigen::Dynamic>(kMaxDof);
+}
+
+/// Column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], where that of J is [lᵢ; aᵢ]: with J from the arm at q alone.
+template <int N>
+void expect_rate_from_columns(int dof) {
+  Random random(static_cast<std::uint32_t>(dof));
+  for (int trial = 0; trial < 50; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const SerialArm<N> arm({random_chain(random, dof), random_transform(random)});
+    const Vector<N> q = random.uniform(dof, -3.0, 3.0);
+    const Vector<N> qd = random.uniform(dof, -1.0, 1.0);
+    Kinematics<Pose, N> at_rest;
+    Kinematics<Pose, N> moving;
+    Kinematics<Position<3>, N> position;
+    arm.kinematics(q, at_rest);
+    arm.kinematics(q, qd, moving);
+    arm.kinematics(q, qd, position);
+    Matrix<6, N> rate(6, dof);
+    for (int i = 0; i < dof; ++i) {
+      const Vector<3> l = at_rest.J.col(i).template head<3>();
+      const Vector<3> a = at_rest.J.col(i).template tail<3>();
+      Vector<3> w = Vector<3>::Zero();
+      Vector<3> u = Vector<3>::Zero();
+      for (int j = 0; j <= i; ++j) w += qd(j) * at_rest.J.col(j).template tail<3>();
+      for (int j = i + 1; j < dof; ++j) u += qd(j) * at_rest.J.col(j).template head<3>();
+      rate.col(i) << cross(w, l) + cross(a, u), cross(w, a);
+    }
+    constexpr double kStep = 1e-6;
+    Kinematics<Pose, N> before;
+    Kinematics<Pose, N> after;
+    arm.kinematics(Vector<N>(q - kStep * qd), before);
+    arm.kinematics(Vector<N>(q + kStep * qd), after);
+    EXPECT_LE((rate - (after.J - before.J) / (2 * kStep)).cwiseAbs().maxCoeff(), 1e-7);
+    const double round_off = 1e-15 * at_rest.J.norm() * (1.0 + qd.norm());
+    EXPECT_LE((moving.Jd - rate).cwiseAbs().maxCoeff(), round_off);
+    EXPECT_LE((position.Jd - rate.template topRows<3>()).cwiseAbs().maxCoeff(), round_off);
+  }
+}
+
+TEST(SerialArm, rate_of_J_follows_from_J_alone) {
+  expect_rate_from_columns<1>(1);
+  expect_rate_from_columns<2>(2);
+  expect_rate_from_columns<Eigen::Dynamic>(3);
+  expect_rate_from_columns<6>(6);
+  expect_rate_from_columns<7>(7);
+  expect_rate_from_columns<9>(9);
+  expect_rate_from_columns<Eigen::Dynamic>(kMaxDof);
+}
+
+/// An arm of other numbers is the same arm, to their round-off; so is one of N known at run time.
+template <int N, typename Scalar>
+void expect_same_arm(const Chain<>& chain, Random& random) {
+  const SerialArm<Eigen::Dynamic> arm(chain);
+  const auto other = SerialArm<N>(chain).template cast<Scalar>();
+  const auto dof = static_cast<int>(chain.joints.size());
+  const Vector<N, Scalar> q = random.uniform(dof, -3.0, 3.0).cast<Scalar>();
+  const Vector<N, Scalar> qd = random.uniform(dof, -1.0, 1.0).cast<Scalar>();
+  Kinematics<Pose, Eigen::Dynamic> expected;
+  Kinematics<Pose, N, Scalar> out;
+  arm.kinematics(Vector<Eigen::Dynamic>(q.template cast<double>()), Vector<Eigen::Dynamic>(qd.template cast<double>()),
+                 expected);
+  other.kinematics(q, qd, out);
+  const double round_off = 40.0 * std::max<double>(static_cast<double>(std::numeric_limits<Scalar>::epsilon()),
+                                                   std::numeric_limits<double>::epsilon());
+  EXPECT_LE((out.tip.p.template cast<double>() - expected.tip.p).norm(), round_off * (1.0 + expected.tip.p.norm()));
+  EXPECT_LE((out.tip.R.template cast<double>() - expected.tip.R).norm(), round_off);
+  EXPECT_LE((out.J.template cast<double>() - expected.J).norm(), round_off * expected.J.norm());
+  EXPECT_LE((out.Jd.template cast<double>() - expected.Jd).norm(), round_off * expected.J.norm() * (1.0 + qd.norm()));
+}
+
+TEST(SerialArm, is_the_same_in_other_numbers) {
+  Random random(9);
+  for (int trial = 0; trial < 50; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const Chain<> seven{random_chain(random, 7), random_transform(random)};
+    const Chain<> four{random_chain(random, 4), random_transform(random)};
+    expect_same_arm<7, double>(seven, random);
+    expect_same_arm<7, float>(seven, random);
+    expect_same_arm<7, long double>(seven, random);
+    expect_same_arm<4, double>(four, random);
+    expect_same_arm<4, float>(four, random);
+    expect_same_arm<4, long double>(four, random);
+  }
 }
 
 TEST(SerialArm, tip_is_the_product_of_its_transforms) {
@@ -163,6 +247,29 @@ TEST(Rotation, vector_and_matrix_are_inverse_to_each_other) {
   // At π itself both signs are right.
   const Matrix<3, 3> half = rotation(Vector<3>(0.0, kHalfTurn, 0.0));
   EXPECT_NEAR(rotation_vector(half).cwiseAbs()(1), kHalfTurn, 1e-14);
+}
+
+/// R_x R_yᵀ, not formed where it is a small turn, has the rotation vector of the matrix that is formed.
+template <typename Scalar>
+void expect_the_vector_between() {
+  const auto epsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+  Random random(8);
+  for (const double angle : {0.0, 1e-12, 1e-5, 0.1, 0.24, 0.26, 1.5, 3.0, kHalfTurn - 1e-2}) {
+    for (int trial = 0; trial < 50; ++trial) {
+      const Vector<3> r = angle * Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
+      const Matrix<3, 3, Scalar> y = rotation(Vector<3>(random.uniform(3, -1.8, 1.8))).cast<Scalar>();
+      const Matrix<3, 3, Scalar> x = rotation(r).cast<Scalar>() * y;
+      const Vector<3, Scalar> between = rotation_between(x, y);
+      EXPECT_LE((between.template cast<double>() - r).norm(), epsilon * (5.0 + 40.0 * angle)) << angle;
+      EXPECT_LE(static_cast<double>((between - rotation_vector<Scalar>(x * y.transpose())).norm()),
+                epsilon * (2.0 + 20.0 * angle))
+          << angle;
+    }
+  }
+}
+TEST(Rotation, between_two_is_that_of_their_quotient) {
+  expect_the_vector_between<double>();
+  expect_the_vector_between<float>();
 }
 
 TEST(SerialArm, bad_chains_are_refused) {

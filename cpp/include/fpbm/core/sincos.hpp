@@ -13,7 +13,7 @@ namespace fpbm {
 
 /// sin and cos of one angle |x| ≤ kReach [rad], to 2e-16, without a branch, so that a loop over it vectorises.
 ///
-/// Cody-Waite reduction by multiples of π/2 in three parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative
+/// Cody-Waite reduction by multiples of π/2 in two parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative
 /// error below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
 struct ReducedSinCos {
   static constexpr double kReach = 5e5;  ///< k · π/2 stays exact in its first part up to here.
@@ -72,28 +72,28 @@ struct ReducedSinCos {
   template <typename Scalar>
   static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Or the three parts become one, of 2e-11.
+#pragma clang fp reassociate(off)  // Or both parts become one, of 2e-11.
 #endif
     Scalar r = x - k * Scalar(1.57079632673412561e+00);
-    r -= k * Scalar(6.07710050630396598e-11);
-    r -= k * Scalar(2.02226624879595063e-21);
+    r -= k * Scalar(6.07710050650619225e-11);
 
     const Scalar z = r * r;
-    const Scalar sin_tail =
-        polynomial(z, {1.58962138989828173e-10, -2.50507474905790061e-08, 2.75573136197019395e-06,
-                       -1.98412698295848523e-04, 8.33333333332211303e-03, -1.66666666666666297e-01});
-    const Scalar cos_tail = polynomial(z, {-1.13585252205869601e-11, 2.08757006287165171e-09, -2.75573141777659980e-07,
-                                           2.48015872888465437e-05, -1.38888888888730492e-03, 4.16666666666665950e-02});
+    const Scalar z2 = z * z;
+    const Scalar sin_tail = polynomial(z, z2,
+                                       {1.58962138989828173e-10, -2.50507474905790061e-08, 2.75573136197019395e-06,
+                                        -1.98412698295848523e-04, 8.33333333332211303e-03, -1.66666666666666297e-01});
+    const Scalar cos_tail = polynomial(z, z2,
+                                       {-1.13585252205869601e-11, 2.08757006287165171e-09, -2.75573141777659980e-07,
+                                        2.48015872888465437e-05, -1.38888888888730492e-03, 4.16666666666665950e-02});
     const Scalar head = Scalar(1) - Scalar(0.5) * z;
-    return {r + r * z * sin_tail, head + (((Scalar(1) - head) - Scalar(0.5) * z) + z * z * cos_tail)};
+    return {r + r * z * sin_tail, head + (((Scalar(1) - head) - Scalar(0.5) * z) + z2 * cos_tail)};
   }
 
-  /// By Horner's rule, the highest power first.
+  /// The highest power first. By Horner's rule in z² on sums of two terms: half as long a chain as in z.
   template <typename Scalar>
-  static Scalar polynomial(const Scalar& z, const double (&coefficients)[6]) noexcept {
-    Scalar sum(coefficients[0]);
-    for (int i = 1; i < 6; ++i) sum = sum * z + Scalar(coefficients[i]);
-    return sum;
+  static Scalar polynomial(const Scalar& z, const Scalar& z2, const double (&coefficients)[6]) noexcept {
+    const auto two = [&](int i) { return Scalar(coefficients[i]) * z + Scalar(coefficients[i + 1]); };
+    return (two(0) * z2 + two(2)) * z2 + two(4);
   }
 
   static std::uint64_t bits(double value) noexcept {
@@ -132,6 +132,19 @@ template <typename Scalar>
     }
   }
   return {sin(angle), cos(angle)};
+}
+
+/// N angles whose sines are wanted, and one more where that makes an even number of doubles, since two are computed at
+/// once.
+template <int N, typename Scalar>
+using Angles = Vector<(N != Eigen::Dynamic && std::is_same_v<Scalar, double>) ? N + N % 2 : N, Scalar>;
+
+/// Room for the angles of n joints.
+template <int N, typename Scalar>
+[[nodiscard]] Angles<N, Scalar> angles_of(Eigen::Index n) noexcept {
+  Angles<N, Scalar> angles;
+  angles.resize(N == Eigen::Dynamic ? n : Eigen::Index(Angles<N, Scalar>::SizeAtCompileTime));
+  return angles;
 }
 
 /// sin and cos of every angle [rad] at once.

@@ -85,10 +85,12 @@ struct Pose {
   /// x ⊖ y: from y's origin to x's [m], then the rotation vector of R_x R_yᵀ [rad].
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
-    const Matrix<3, 3, Scalar> rotated = x.R.lazyProduct(y.R.transpose());
     Vector<6, Scalar> result;
-    result.template head<3>() = x.p - y.p;
-    result.template tail<3>() = rotation_vector(rotated);
+    using Two = Pair<Scalar>;
+    const Vector<3, Scalar> turn = rotation_between(x.R, y.R);
+    (Two::load(x.p.data()) - Two::load(y.p.data())).store(result.data());
+    Two(x.p(2) - y.p(2), turn(0)).store(result.data() + 2);
+    Two(turn(1), turn(2)).store(result.data() + 4);
     return result;
   }
 

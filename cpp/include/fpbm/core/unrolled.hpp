@@ -29,6 +29,15 @@ template <int N>
   }
 }
 
+/// Number of pairs that hold a number of things, the last one perhaps half.
+template <Eigen::Index I>
+[[nodiscard]] constexpr Constant<(I + 1) / 2> pairs_of(Constant<I>) noexcept {
+  return {};
+}
+[[nodiscard]] constexpr Eigen::Index pairs_of(Eigen::Index i) noexcept {
+  return (i + 1) / 2;
+}
+
 /// f(i) for i from first up to, but not including, last.
 template <typename F>
 void each(Eigen::Index first, Eigen::Index last, const F& f) noexcept {

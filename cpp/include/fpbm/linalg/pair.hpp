@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 #include "fpbm/core/mask.hpp"
@@ -29,7 +30,7 @@ struct PairStorage {
 };
 #if defined(__GNUC__)  // And compilers that claim to be GNU's.
 template <typename Scalar>
-struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar>>> {
+struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar> && sizeof(Scalar) <= sizeof(double)>> {
   using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
 };
 #endif
@@ -42,6 +43,26 @@ class Pair {
   Pair() = default;
   Pair(const Scalar& a, const Scalar& b) noexcept : both_{a, b} {}
   explicit Pair(const Scalar& a) noexcept : both_{a, a} {}
+
+  /// Of two neighbours in memory, read at once.
+  [[nodiscard]] static Pair load(const Scalar* from) noexcept {
+    if constexpr (kIsVector) {
+      Pair result;
+      std::memcpy(&result.both_, from, sizeof result.both_);
+      return result;
+    } else {
+      return {from[0], from[1]};
+    }
+  }
+  /// To two neighbours in memory, written at once: a processor waits where it reads at once what was written in parts.
+  void store(Scalar* to) const noexcept {
+    if constexpr (kIsVector) {
+      std::memcpy(to, &both_, sizeof both_);
+    } else {
+      to[0] = first();
+      to[1] = second();
+    }
+  }
 
   [[nodiscard]] Scalar first() const noexcept { return both_[0]; }
   [[nodiscard]] Scalar second() const noexcept { return both_[1]; }
@@ -65,6 +86,7 @@ class Pair {
 
  private:
   using Both = typename PairStorage<Scalar>::type;
+  static constexpr bool kIsVector = !std::is_same_v<Both, PlainPair<Scalar>>;
   struct All {};
   static constexpr All kAll{};
 
@@ -90,6 +112,31 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] Scalar first(const Pair<Scalar>& a) noexcept {
   return a.first();
+}
+
+/// The first, and the second, of a and of b.
+template <typename Scalar>
+[[nodiscard]] Pair<Scalar> firsts(const Pair<Scalar>& a, const Pair<Scalar>& b) noexcept {
+  return {a.first(), b.first()};
+}
+template <typename Scalar>
+[[nodiscard]] Pair<Scalar> seconds(const Pair<Scalar>& a, const Pair<Scalar>& b) noexcept {
+  return {a.second(), b.second()};
+}
+
+/// Entries i and i + 1 of a vector, zero where there is none.
+template <int N, typename Scalar>
+[[nodiscard]] Pair<Scalar> two_of(const Vector<N, Scalar>& vector, Eigen::Index i) noexcept {
+  return i + 1 < vector.size() ? Pair<Scalar>::load(vector.data() + i) : Pair<Scalar>(vector.coeff(i), Scalar(0));
+}
+/// Writes a pair there, or its first alone where there is no second.
+template <int N, typename Scalar>
+void set_two_of(Vector<N, Scalar>& vector, Eigen::Index i, const Pair<Scalar>& two) noexcept {
+  if (i + 1 < vector.size()) {
+    two.store(vector.data() + i);
+  } else {
+    vector.coeffRef(i) = two.first();
+  }
 }
 
 template <typename Scalar>

@@ -4,7 +4,9 @@
 
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/pair.hpp"
 #include "fpbm/model/joint.hpp"
 #include "fpbm/model/kinematics.hpp"
 
@@ -56,6 +58,8 @@ class PlanarArm {
   }
 
  private:
+  using Two = Pair<Scalar>;
+
   /// A pass to the tip for the links, a pass back for the sums over all links beyond a joint:
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
   /// The tip's angle is θₙ.
@@ -65,40 +69,65 @@ class PlanarArm {
     constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>,
                   "a planar arm has tasks Position<2> and PlanarPose");
-    const Eigen::Index n = lengths_.size();
+    const auto n = extent<N>(lengths_.size());
+    const auto pairs = pairs_of(n);
     out.J.resize(Space::kRows, n);
     if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
 
-    Vector<N, Scalar> angles = q;
-    for (Eigen::Index i = 1; i < n; ++i) angles(i) += angles(i - 1);
-    Vector<N, Scalar> sines;
-    Vector<N, Scalar> cosines;
+    const Angles<N, Scalar> angles = running_sum(q);
+    Angles<N, Scalar> sines;
+    Angles<N, Scalar> cosines;
     sincos(angles, sines, cosines);
+    [[maybe_unused]] Angles<N, Scalar> rates;
+    if constexpr (kWithRate) rates = running_sum(qd);
 
-    [[maybe_unused]] Scalar rate(0);  // Of the link's angle.
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Scalar x = lengths_(i) * cosines(i);
-      const Scalar y = lengths_(i) * sines(i);
-      out.J(0, i) = -y;
-      out.J(1, i) = x;
-      if constexpr (kWithRate) {
-        rate += qd(i);
-        out.Jd(0, i) = -rate * x;
-        out.Jd(1, i) = -rate * y;
+    Two column(Scalar(0));
+    [[maybe_unused]] Two column_rate(Scalar(0));
+    each(Constant<0>{}, pairs, [&](auto k) {
+      const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
+      const Two lengths = two_of(lengths_, i);
+      const Two x = lengths * two_of(cosines, i);
+      const Two y = lengths * two_of(sines, i);
+      const Two back = Two(Scalar(0)) - y;
+      if (i + 1 < n) {
+        column += seconds(back, x);
+        column.store(&out.J.coeffRef(0, i + 1));
       }
-    }
-    for (Eigen::Index i = n - 2; i >= 0; --i) {
-      out.J.col(i).template head<2>() += out.J.col(i + 1).template head<2>();
-      if constexpr (kWithRate) out.Jd.col(i).template head<2>() += out.Jd.col(i + 1).template head<2>();
-    }
+      column += firsts(back, x);
+      column.store(&out.J.coeffRef(0, i));
+      if constexpr (kWithRate) {
+        const Two rate = two_of(rates, i);
+        const Two xd = rate * x;
+        const Two yd = rate * y;
+        if (i + 1 < n) {
+          column_rate -= seconds(xd, yd);
+          column_rate.store(&out.Jd.coeffRef(0, i + 1));
+        }
+        column_rate -= firsts(xd, yd);
+        column_rate.store(&out.Jd.coeffRef(0, i));
+      }
+    });
     out.length = reach_;
-    out.tip(0) = out.J(1, 0);
-    out.tip(1) = -out.J(0, 0);
+    Two(column.second(), -column.first()).store(&out.tip.coeffRef(0));
     if constexpr (kWithOrientation) {
       out.tip(2) = angles(n - 1);
       out.J.row(2).setOnes();
       if constexpr (kWithRate) out.Jd.row(2).setZero();
     }
+  }
+
+  /// Sums of the entries up to each.
+  [[nodiscard]] static Angles<N, Scalar> running_sum(const Vector<N, Scalar>& of) noexcept {
+    Angles<N, Scalar> result = angles_of<N, Scalar>(of.size());
+    Scalar sum(0);
+    each(Constant<0>{}, pairs_of(extent<N>(of.size())), [&](auto k) {
+      const Eigen::Index i = 2 * Eigen::Index(k);
+      const Two terms = two_of(of, i);
+      const Scalar first = sum + terms.first();
+      sum = first + terms.second();
+      set_two_of(result, i, Two(first, sum));
+    });
+    return result;
   }
 
   Vector<N, Scalar> lengths_;

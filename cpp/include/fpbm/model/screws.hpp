@@ -1,86 +1,106 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
-#include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/split_vector.hpp"
 
 namespace fpbm {
 
-/// The axes of a chain's joints and their rates, from which J and Jd follow.
+/// The axes of a chain's joints, from which J and Jd follow.
 ///
-/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a joint that turns about the axis zᵢ through pᵢ, with the tip at p. Column
-/// i of Jd is its time derivative.
+/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a joint that turns about the axis zᵢ through pᵢ, with the tip at p, and
+/// [zᵢ; 0] for one that slides along it. Where it is [lᵢ; aᵢ], that of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], with
+/// wᵢ = Σ_{j≤i} q̇ⱼ aⱼ and uᵢ = Σ_{j>i} q̇ⱼ lⱼ: docs/equations.md proves it. Joints are taken two by two.
 template <int N, typename Scalar>
-struct Screws {
-  using Vector3 = Vector<3, Scalar>;
-  /// One row per joint, so that vector code computes several joints at once. Eigen demands row-major for a single row.
-  using JointVectors3 =
-      Eigen::Matrix<Scalar, N, 3, (N == 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign, kCapacity<N>, 3>;
+class Screws {
+ public:
+  /// A joint's axis, a point of it, and the angular velocity of what the joint moves.
+  struct Joint {
+    SplitVector<Scalar> axis;
+    SplitVector<Scalar> point;
+    SplitVector<Scalar> w;
+  };
 
-  JointVectors3 axes;
-  JointVectors3 points;
-  JointVectors3 axis_rates;
-  JointVectors3 point_rates;
+  /// Joints i and i + 1; where there is no second, anything finite. i is even.
+  void set(Eigen::Index i, const Joint& a, const Joint& b) noexcept {
+    joints_[static_cast<std::size_t>(i / 2)] = {both(a.axis, b.axis), both(a.point, b.point), both(a.w, b.w)};
+  }
 
-  explicit Screws(Eigen::Index dof) : axes(dof, 3), points(dof, 3), axis_rates(dof, 3), point_rates(dof, 3) {}
+  void set_tip(const SplitVector<Scalar>& p) noexcept {
+    tip_ = both(p, p);
+    u_ = both({}, {});
+  }
 
-  /// Makes points and their rates relative to the tip at p with velocity v. Call it before columns() and
-  /// column_rates().
-  template <bool kWithRate>
-  void relative_to_tip(const Vector3& p, [[maybe_unused]] const Vector3& v) noexcept {
-    for (int i = 0; i < 3; ++i) {
-      points.col(i).array() = p(i) - points.col(i).array();
-      if constexpr (kWithRate) point_rates.col(i).array() = v(i) - point_rates.col(i).array();
+  /// Columns i and i + 1 of J, and of Jd along qd; those of joints nearer the tip come before. turns is 1 for a joint
+  /// that turns and 0 for one that slides.
+  template <bool kWithRate, bool kSlides, int M>
+  [[gnu::always_inline]] void columns(Eigen::Index i, [[maybe_unused]] const Vector<N, Scalar>& turns,
+                                      [[maybe_unused]] const Vector<N, Scalar>& qd, Matrix<M, N, Scalar>& J,
+                                      [[maybe_unused]] Matrix<M, N, Scalar>& Jd) noexcept {
+    const auto& [axis, point, w] = joints_[static_cast<std::size_t>(i / 2)];
+    Columns columns{cross<Two>(axis, tip_ - point), axis};
+    if constexpr (kSlides) {
+      const Two turn = two_of(turns, i);
+      columns = {turn * columns.linear + (Two(Scalar(1)) - turn) * axis, turn * axis};
     }
-  }
-
-  /// The columns of J: linear rows and, where there are six rows, angular ones.
-  template <int M>
-  void columns(Matrix<M, N, Scalar>& J) const noexcept {
-    fill(
-        J, axes, [this](int i) { return cross_entry(axes, points, i); },
-        [this](Eigen::Index j) { return cross_joint(axes, points, j); });
-  }
-
-  /// The columns of Jd.
-  template <int M>
-  void column_rates(Matrix<M, N, Scalar>& Jd) const noexcept {
-    fill(
-        Jd, axis_rates,
-        [this](int i) { return cross_entry(axis_rates, points, i) + cross_entry(axes, point_rates, i); },
-        [this](Eigen::Index j) {
-          return Vector3(cross_joint(axis_rates, points, j) + cross_joint(axes, point_rates, j));
-        });
+    columns.store(J, i);
+    if constexpr (kWithRate) {
+      const auto& [l, a] = columns;
+      const Two3 moved = two_of(qd, i) * l;
+      for (int row = 0; row < 3; ++row) u_(row) += Two(moved(row).second(), Scalar(0));
+      Columns{cross<Two>(w, l) + cross<Two>(a, u_), cross<Two>(w, a)}.store(Jd, i);
+      for (int row = 0; row < 3; ++row) u_(row) = Two(u_(row).first() + moved(row).first());
+    }
   }
 
  private:
-  /// Entry i of a × b of all joints.
-  [[nodiscard]] static auto cross_entry(const JointVectors3& a, const JointVectors3& b, int i) noexcept {
-    const int j = (i + 1) % 3;
-    const int k = (i + 2) % 3;
-    return a.col(j).cwiseProduct(b.col(k)) - a.col(k).cwiseProduct(b.col(j));
-  }
+  using Two = Pair<Scalar>;
+  using Two3 = Vector<3, Two>;  ///< Vectors of two joints, side by side.
 
-  /// a × b of joint j.
-  [[nodiscard]] static Vector3 cross_joint(const JointVectors3& a, const JointVectors3& b, Eigen::Index j) noexcept {
-    return cross<Scalar>(a.row(j), b.row(j));
-  }
+  struct Joints {
+    Two3 axis;
+    Two3 point;
+    Two3 w;
+  };
 
-  /// Linear rows above angular ones. Entry by entry for all joints at once, which vectorises; joint by joint in lanes.
-  template <int M, typename Entry, typename Joint>
-  static void fill(Matrix<M, N, Scalar>& result, const JointVectors3& angular, [[maybe_unused]] const Entry& entry,
-                   [[maybe_unused]] const Joint& joint) noexcept {
-    if constexpr (kInLanes<Scalar>) {
-      for (Eigen::Index j = 0; j < angular.rows(); ++j) result.col(j).template head<3>() = joint(j);
-    } else {
-      JointVectors3 linear(angular.rows(), 3);
-      for (int i = 0; i < 3; ++i) linear.col(i) = entry(i);
-      result.template topRows<3>() = linear.transpose();
+  struct Columns {
+    Two3 linear;
+    Two3 angular;
+
+    /// As columns i and, where there is one, i + 1 of a matrix of six rows, or of the three linear ones.
+    template <int M>
+    [[gnu::always_inline]] void store(Matrix<M, N, Scalar>& to, Eigen::Index i) const noexcept {
+      if (i + 1 < to.cols()) {
+        store_one<M>(seconds<Scalar>(linear(0), linear(1)), seconds<Scalar>(linear(2), angular(0)),
+                     seconds<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i + 1));
+      }
+      store_one<M>(firsts<Scalar>(linear(0), linear(1)), firsts<Scalar>(linear(2), angular(0)),
+                   firsts<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i));
     }
-    if constexpr (M == 6) result.template bottomRows<3>() = angular.transpose();
+
+    template <int M>
+    static void store_one(const Two& a, const Two& b, [[maybe_unused]] const Two& c, Scalar* to) noexcept {
+      a.store(to);
+      if constexpr (M == 6) {
+        b.store(to + 2);
+        c.store(to + 4);
+      } else {
+        to[2] = b.first();
+      }
+    }
+  };
+
+  [[nodiscard]] static Two3 both(const SplitVector<Scalar>& a, const SplitVector<Scalar>& b) noexcept {
+    return {firsts(a.xy, b.xy), seconds(a.xy, b.xy), Two(a.z, b.z)};
   }
+
+  Two3 tip_;
+  Two3 u_;  ///< Of the pair at hand, then of the joint before it, twice.
+  std::array<Joints, (kCapacity<N> + 1) / 2> joints_;
 };
 
 }  // namespace fpbm

@@ -8,7 +8,10 @@
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/pair.hpp"
 #include "fpbm/model/chain.hpp"
+#include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/link.hpp"
 #include "fpbm/model/screws.hpp"
@@ -33,7 +36,7 @@ class SerialArm {
     offsets_.setZero(dof_);
     Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
     for (Eigen::Index i = 0; i < dof_; ++i) {
-      const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
+      const fpbm::Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
       const Vector3 p = turned_back * joint.placement.p;
@@ -42,7 +45,7 @@ class SerialArm {
         base_ = {p, R};
       } else {
         const DecomposedLink<Scalar> between({p, R});
-        links_[static_cast<std::size_t>(i - 1)] = between.link;
+        links_[static_cast<std::size_t>(i - 1)] = LinkPassage<Scalar>(between.link);
         offsets_(i - 1) += between.before;
         offsets_(i) = between.after;
       }
@@ -57,8 +60,12 @@ class SerialArm {
     }
     length_ += chain.tip.p.norm();
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
-    links_[static_cast<std::size_t>(dof_ - 1)] = {turned_back * chain.tip.p, Scalar(1), Scalar(0)};
-    tip_ = turned_back * chain.tip.R;
+    const DecomposedLink<Scalar> last({turned_back * chain.tip.p, turned_back * chain.tip.R});
+    links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);
+    offsets_(dof_ - 1) += last.before;
+    using std::cos;
+    using std::sin;
+    tip_ = {Twice<Scalar>(cos(last.after)), Twice<Scalar>(sin(last.after))};
   }
 
   /// The same arm for another Scalar.
@@ -78,13 +85,13 @@ class SerialArm {
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
                   Kinematics<Space, N, Scalar>& out) const noexcept {
-    forward_pass<true>(q, qd, out);
+    slides_ == 0 ? forward_pass<true, false>(q, qd, out) : forward_pass<true, true>(q, qd, out);
   }
 
   /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
-    forward_pass<false>(q, q, out);
+    slides_ == 0 ? forward_pass<false, false>(q, q, out) : forward_pass<false, true>(q, q, out);
   }
 
  private:
@@ -108,88 +115,72 @@ class SerialArm {
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
-  /// A pass along the chain finds the joints' axes; J and Jd follow from these. The column of a prismatic joint is
-  /// [zᵢ; 0].
-  template <bool kWithRate, typename Space>
+  /// A pass along the chain finds the joints' axes; J and Jd follow from these. With a code of its own for chains of
+  /// which no joint slides.
+  template <bool kWithRate, bool kSlides, typename Space>
   [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
                                      Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");
-    const Vector<N, Scalar> angles = turns_.cwiseProduct(q) + offsets_;
-    Vector<N, Scalar> sines;
-    Vector<N, Scalar> cosines;
+    using Two = Pair<Scalar>;
+    using Joint = typename Screws<N, Scalar>::Joint;
+    const auto n = extent<N>(dof_);
+    const auto pairs = pairs_of(n);
+
+    Angles<N, Scalar> angles = angles_of<N, Scalar>(n);
+    each(Constant<0>{}, pairs, [&](auto k) {
+      const Eigen::Index i = 2 * Eigen::Index(k);
+      const Two turned = kSlides ? two_of(turns_, i) * two_of(q, i) : two_of(q, i);
+      set_two_of(angles, i, turned + two_of(offsets_, i));
+    });
+    Angles<N, Scalar> sines;
+    Angles<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
-    Screws<N, Scalar> screws(dof_);
-    Vector3 p = base_.p;
-    Vector3 x = base_.R.col(0);
-    Vector3 y = base_.R.col(1);
-    Vector3 z = base_.R.col(2);
-    Vector3 v = Vector3::Zero();  // Velocity of p.
-    Vector3 w = Vector3::Zero();  // Angular velocity of the frame.
-    const auto advance = [&](const Vector3& step) {
-      p += step;
-      if constexpr (kWithRate) v += cross(w, step);
-    };
-    for (Eigen::Index i = 0; i < dof_; ++i) {
-      const Link<Scalar>& link = links_[static_cast<std::size_t>(i)];
-      screws.axes.row(i) = z;
-      if constexpr (kWithRate) screws.axis_rates.row(i) = cross(w, z);
-      if (slides(i)) {
-        advance(q(i) * z);
-        if constexpr (kWithRate) v += qd(i) * z;
+    Screws<N, Scalar> screws;
+    Frame<Scalar> frame(base_);
+    SplitVector<Scalar> w;  // Angular velocity of the frame.
+    const auto pass = [&](Eigen::Index i) -> Joint {
+      if (kSlides && slides(i)) {
+        frame.p += Two(q.coeff(i)) * frame.z;
       } else if constexpr (kWithRate) {
-        w += qd(i) * z;
+        w += Two(qd.coeff(i)) * frame.z;
       }
-      screws.points.row(i) = p;
-      if constexpr (kWithRate) screws.point_rates.row(i) = v;
-
-      const Vector3 turned = cosines(i) * x + sines(i) * y;
-      y = cosines(i) * y - sines(i) * x;
-      x = turned;
-      advance(link.step(0) * x + link.step(1) * y + link.step(2) * z);
-      const Vector3 tilted = link.cosine * y + link.sine * z;
-      z = link.cosine * z - link.sine * y;
-      y = tilted;
-    }
+      const Joint joint{frame.z, frame.p, w};
+      frame.turn(Two(cosines.coeff(i)), Two(sines.coeff(i)));
+      frame.pass(links_[static_cast<std::size_t>(i)]);
+      return joint;
+    };
+    each(Constant<0>{}, pairs, [&](auto k) {
+      const Eigen::Index i = 2 * Eigen::Index(k);
+      const Joint joint = pass(i);
+      screws.set(i, joint, i + 1 < n ? pass(i + 1) : Joint{});
+    });
 
     out.length = length_;
-    out.J.resize(Space::kRows, dof_);
-    screws.template relative_to_tip<kWithRate>(p, v);
-    screws.columns(out.J);
-    if constexpr (kWithRate) {
-      out.Jd.resize(Space::kRows, dof_);
-      screws.column_rates(out.Jd);
-    }
-    for (Eigen::Index i = 0; slides_ != 0 && i < dof_; ++i) {
-      if (!slides(i)) continue;
-      slide(screws.axes.row(i), out.J.col(i));
-      if constexpr (kWithRate) slide(screws.axis_rates.row(i), out.Jd.col(i));
-    }
     if constexpr (kWithOrientation) {
-      Matrix<3, 3, Scalar> R;
-      R << x, y, z;
-      out.tip = {p, R.lazyProduct(tip_)};
+      frame.turn(tip_.cosine.pair(), tip_.sine.pair());
+      frame.store(out.tip);
     } else {
-      out.tip = p;
+      frame.p.store(out.tip.data());
     }
-  }
-
-  /// The column of a prismatic joint.
-  template <typename Axis, typename Column>
-  static void slide(const Axis& axis, Column&& column) noexcept {
-    column.setZero();
-    column.template head<3>() = axis;
+    out.J.resize(Space::kRows, n);
+    if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
+    screws.set_tip(frame.p);
+    each(Constant<0>{}, pairs, [&](auto k) {
+      const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
+      screws.template columns<kWithRate, kSlides>(i, turns_, qd, out.J, out.Jd);
+    });
   }
 
   Eigen::Index dof_;
-  Transform<Scalar> base_;                        ///< The first joint's frame at zero.
-  std::array<Link<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
+  Transform<Scalar> base_;                               ///< The first joint's frame at zero.
+  std::array<LinkPassage<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
   Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: a frame's angle is turns q + offset.
   Vector<N, Scalar> offsets_;
   std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
-  Matrix<3, 3, Scalar> tip_;  ///< The tip's orientation in the frame of the last link's end.
+  FixedTurn<Scalar> tip_;     ///< About z, from the frame of the last link's end to the tip's.
   Scalar length_{0};          ///< [m]
   JointLimits<N, Scalar> limits_;
 };
