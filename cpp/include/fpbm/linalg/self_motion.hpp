@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
@@ -103,7 +104,7 @@ class SelfMotion<6, 7, Scalar> {
 
   /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², in the norm of Frobenius: of [P, (K − P G)/length], a right inverse of DJ, where
   /// P = (−X S⁺, S⁺) and G = B_T K.
-  [[nodiscard]] Scalar inverse_square(const Scalar& length) const noexcept {
+  [[nodiscard, gnu::noinline]] Scalar inverse_square(const Scalar& length) const noexcept {
     using std::sqrt;
     Twice xy[4];
     Scalar z[4];
@@ -122,13 +123,16 @@ class SelfMotion<6, 7, Scalar> {
     add_row(X12_.z, X34_.z);
     const Scalar P = sum(square) + square_z;
     const Scalar K = dot(K_[0], K_[0]) + dot(K_[1], K_[1]) + dot(K_[2], K_[2]);
-    const auto lever = [&](const Scalar& a, const Scalar& b, const Scalar& c) {
-      const Three<Scalar> row = {a * K_[0].x + b * K_[1].x + c * K_[2].x, a * K_[0].y + b * K_[1].y + c * K_[2].y,
-                                 a * K_[0].z + b * K_[1].z + c * K_[2].z};
-      return dot(row, row);
+    const auto lever = [&](const auto& a, const auto& b, const auto& c) {
+      using Value = std::decay_t<decltype(a)>;
+      const auto entry = [&](const Scalar& ka, const Scalar& kb, const Scalar& kc) {
+        const Value sum = a * Value(ka) + b * Value(kb) + c * Value(kc);
+        return sum * sum;
+      };
+      return entry(K_[0].x, K_[1].x, K_[2].x) + entry(K_[0].y, K_[1].y, K_[2].y) + entry(K_[0].z, K_[1].z, K_[2].z);
     };
-    const Scalar G =
-        lever(B_[0].x, B_[1].x, B_[2].x) + lever(B_[0].y, B_[1].y, B_[2].y) + lever(B_[0].z, B_[1].z, B_[2].z);
+    const Scalar G = sum(lever(Twice(B_[0].x, B_[0].y), Twice(B_[1].x, B_[1].y), Twice(B_[2].x, B_[2].y))) +
+                     lever(B_[0].z, B_[1].z, B_[2].z);
     const Scalar PG = P * G;
     return P + (PG + K + Scalar(2) * sqrt(PG * K)) / (length * length);
   }

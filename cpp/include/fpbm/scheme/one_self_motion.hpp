@@ -5,6 +5,7 @@
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/total.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/singular/damping.hpp"
 
@@ -24,36 +25,27 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
     const SelfMotion<M, N, Scalar>& motion, const Weights& weights, const Scalar& alpha, const Vector<M, Value>& rhs,
     [[maybe_unused]] const Matrix<M, N, Scalar>& Jd, const NullSpace<N, Scalar>& null_space,
     const State<N, Scalar>& state) noexcept {
-  constexpr Constant<0> kFirst{};
-  constexpr Constant<N> kLast{};
-  const Scalar zero(0);
   const Vector<N, Scalar> v = motion.null();
   const Vector<N, Scalar> Wv = weights.times(v);
   const Vector<N, Value> y = motion.solve(rhs);
-  Pair<Scalar> squares(zero);  // vᵀv and vᵀWv.
-  Pair<Scalar> along(zero);    // vᵀp and vᵀWp.
-  each(kFirst, kLast, [&](auto i) {
-    const Pair<Scalar> both(v.coeff(i), Wv.coeff(i));
-    squares += both * Pair<Scalar>(v.coeff(i));
-    along += both * Pair<Scalar>(first(y.coeff(i)));
-  });
+  const auto both = [&](auto i) { return Pair<Scalar>(v.coeff(i), Wv.coeff(i)); };
+  const auto squares = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(v.coeff(i)); });  // vᵀv and vᵀWv.
+  const auto along = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(first(y.coeff(i))); });  // vᵀp and vᵀWp.
   const Pair<Scalar> over = Pair<Scalar>(Scalar(1)) / squares;
   Scalar wanted = -alpha * along.second();
   if (null_space.template active<kLevel>()) {
     const Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-    each(kFirst, kLast, [&](auto i) { wanted += Wv.coeff(i) * z.coeff(i); });
+    wanted += total<0, N>([&](auto i) { return Wv.coeff(i) * z.coeff(i); });
   }
   if constexpr (!std::is_same_v<Value, Scalar>) {
-    Scalar rho = zero;
-    each(kFirst, kLast, [&](auto i) { rho += Wv.coeff(i) * y.coeff(i).second(); });
-    rho *= over.second();
+    const Scalar rho = over.second() * total<0, N>([&](auto i) { return Wv.coeff(i) * y.coeff(i).second(); });
     Vector<N, Scalar> rate;  // J_W⁺xd
-    each(kFirst, kLast, [&](auto i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
+    each(Constant<0>{}, Constant<N>{}, [&](auto i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
     wanted += alpha * motion.along(Jd.lazyProduct(v), weights.times(rate));
   }
   const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
   Vector<N, Scalar> u;
-  each(kFirst, kLast, [&](auto i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
+  each(Constant<0>{}, Constant<N>{}, [&](auto i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
   return u;
 }
 

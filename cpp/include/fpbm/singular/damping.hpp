@@ -54,12 +54,11 @@ template <int M, int N, typename Scalar>
 /// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
 template <int kTurns, int M, int N, typename Scalar>
 [[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
-  if constexpr (kTurns == 0) {
-    return J.squaredNorm();
-  } else {
-    return J.template topRows<M - kTurns>().squaredNorm() +
-           length * length * J.template bottomRows<kTurns>().squaredNorm();
-  }
+  Vector<M, Scalar> squares = J.col(0).cwiseAbs2();
+  each(Constant<1>{}, extent<N>(J.cols()), [&](auto i) { squares += J.col(i).cwiseAbs2(); });
+  Scalar sum = squares.template head<M - kTurns>().sum();
+  if constexpr (kTurns > 0) sum += length * length * squares.template tail<kTurns>().sum();
+  return sum;
 }
 
 /// Factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular. With Value = Pair<Scalar>, of two with different
