@@ -22,11 +22,92 @@ class SelfMotion;
 
 /// Whether there is one.
 template <int M, int N>
-inline constexpr bool kHasSelfMotion = N == 7 && M == 6;
+inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 6);
 
 /// |ṽ|² of a matrix whose largest entries are of the order of 1, from which on ṽ is not mostly round-off.
 template <typename Scalar>
 inline constexpr auto kLeastNullSquare = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
+
+/// A position in the plane, by the cross product of J's rows a and b:
+///
+///   v = a × b,   J⁺c = (c₁ b × v − c₂ a × v) / vᵀv.
+template <typename Scalar>
+class SelfMotion<2, 3, Scalar> {
+ public:
+  static constexpr int kKinds = 1;
+
+  [[nodiscard]] Mask<Scalar> factor(const Matrix<2, 3, Scalar>& J, const Scalar& length, int) noexcept {
+    const Three<Scalar> a = {J(0, 0), J(0, 1), J(0, 2)};
+    const Three<Scalar> b = {J(1, 0), J(1, 1), J(1, 2)};
+    v_ = cross(a, b);
+    const Scalar square = dot(v_, v_);
+    const Scalar over = Scalar(1) / square;
+    first_ = over * cross(b, v_);
+    second_ = over * cross(v_, a);
+    const Scalar area = length * length;
+    return square > Scalar(kLeastNullSquare<Scalar>) * (area * area);
+  }
+
+  [[nodiscard]] Vector<3, Scalar> null() const noexcept { return {v_.x, v_.y, v_.z}; }
+
+  template <typename Value>
+  [[nodiscard]] Vector<3, Value> solve(const Vector<2, Value>& b) const noexcept {
+    const auto row = [&](const Scalar& c, const Scalar& d) { return Value(c) * b.coeff(0) + Value(d) * b.coeff(1); };
+    return {row(first_.x, second_.x), row(first_.y, second_.y), row(first_.z, second_.z)};
+  }
+
+  [[nodiscard]] Scalar along(const Vector<2, Scalar>& t, const Vector<3, Scalar>& g) const noexcept {
+    const Three<Scalar> h = three(g.data());
+    return t(0) * dot(h, first_) + t(1) * dot(h, second_);
+  }
+
+  [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept {
+    return dot(first_, first_) + dot(second_, second_);
+  }
+
+ private:
+  Three<Scalar> v_;
+  Three<Scalar> first_;  ///< Columns of J⁺.
+  Three<Scalar> second_;
+};
+
+/// A pose in the plane: J is three by four itself.
+template <typename Scalar>
+class SelfMotion<3, 4, Scalar> {
+ public:
+  static constexpr int kKinds = 1;
+
+  [[nodiscard]] Mask<Scalar> factor(const Matrix<3, 4, Scalar>& J, const Scalar& length, int) noexcept {
+    const auto column = [&](int i) { return J.data() + 3 * i; };
+    S_.factor(three(column(0), column(1)), three(column(2), column(3)));
+    const Scalar area = length * length;
+    return S_.null_square() > Scalar(kLeastNullSquare<Scalar>) * (area * area);
+  }
+
+  [[nodiscard]] Vector<4, Scalar> null() const noexcept {
+    const auto &v12 = S_.null12(), &v34 = S_.null34();
+    return {v12.first(), v12.second(), v34.first(), v34.second()};
+  }
+
+  template <typename Value>
+  [[nodiscard]] Vector<4, Value> solve(const Vector<3, Value>& b) const noexcept {
+    Value y[4];
+    S_.solve(three(b.data()), y);
+    return {y[0], y[1], y[2], y[3]};
+  }
+
+  [[nodiscard]] Scalar along(const Vector<3, Scalar>& t, const Vector<4, Scalar>& g) const noexcept {
+    return S_.along(three(t.data()), {g(0), g(1)}, {g(2), g(3)});
+  }
+
+  [[nodiscard]] Scalar inverse_square(const Scalar& length) const noexcept {
+    const Three<Scalar> squares = S_.inverse_squares();
+    return squares.x + squares.y + squares.z / (length * length);
+  }
+
+ private:
+  ThreeByFour<Scalar> S_;  ///< J
+};
 
 /// A pose, by 3 × 3 blocks: with J = [B; A], B its linear rows and A its angular ones, three joints T whose axes span
 /// space (the hand) keep the tip from turning, and the four others, R, move it:
