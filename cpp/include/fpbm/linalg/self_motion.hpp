@@ -12,7 +12,7 @@ namespace fpbm {
 /// J (M × N) of an arm with one self-motion, N = M + 1, taken apart without JJᵀ: J v = 0, and any y with J y = b.
 ///
 /// Its condition enters the round-off once, and not squared. Each has the same functions:
-///   factor(J, length, kind)   false where this kind of factor is not certain or J is nearly singular
+///   factor(J, kind, share)    false where this kind of factor is not certain, or |v| less than √share of the most
 ///   null()                    v
 ///   solve(b)                  y, of two b side by side too
 ///   along(t, g)               μᵀt, where Jᵀμ = g
@@ -24,9 +24,9 @@ class SelfMotion;
 template <int M, int N>
 inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 6);
 
-/// |ṽ|² of a matrix whose largest entries are of the order of 1, from which on ṽ is not mostly round-off.
+/// The least share with which v is known to six digits or more, and half of them in float.
 template <typename Scalar>
-inline constexpr auto kLeastNullSquare = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
+inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
 
 /// A position in the plane, by the cross product of J's rows a and b:
 ///
@@ -36,7 +36,8 @@ class SelfMotion<2, 3, Scalar> {
  public:
   static constexpr int kKinds = 1;
 
-  [[nodiscard]] Mask<Scalar> factor(const Matrix<2, 3, Scalar>& J, const Scalar& length, int) noexcept {
+  [[nodiscard]] Mask<Scalar> factor(const Matrix<2, 3, Scalar>& J, int,
+                                    const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
     const Three<Scalar> a = {J(0, 0), J(0, 1), J(0, 2)};
     const Three<Scalar> b = {J(1, 0), J(1, 1), J(1, 2)};
     v_ = cross(a, b);
@@ -44,8 +45,7 @@ class SelfMotion<2, 3, Scalar> {
     const Scalar over = Scalar(1) / square;
     first_ = over * cross(b, v_);
     second_ = over * cross(v_, a);
-    const Scalar area = length * length;
-    return square > Scalar(kLeastNullSquare<Scalar>) * (area * area);
+    return square > share * (dot(a, a) * dot(b, b));
   }
 
   [[nodiscard]] Vector<3, Scalar> null() const noexcept { return {v_.x, v_.y, v_.z}; }
@@ -77,11 +77,11 @@ class SelfMotion<3, 4, Scalar> {
  public:
   static constexpr int kKinds = 1;
 
-  [[nodiscard]] Mask<Scalar> factor(const Matrix<3, 4, Scalar>& J, const Scalar& length, int) noexcept {
+  [[nodiscard]] Mask<Scalar> factor(const Matrix<3, 4, Scalar>& J, int,
+                                    const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
     const auto column = [&](int i) { return J.data() + 3 * i; };
     S_.factor(three(column(0), column(1)), three(column(2), column(3)));
-    const Scalar area = length * length;
-    return S_.null_square() > Scalar(kLeastNullSquare<Scalar>) * (area * area);
+    return S_.is_regular(share);
   }
 
   [[nodiscard]] Vector<4, Scalar> null() const noexcept {
@@ -120,8 +120,8 @@ class SelfMotion<6, 7, Scalar> {
   static constexpr int kKinds = 5;  ///< Of hands: any three consecutive joints. The wrist is tried first.
   using Twice = Pair<Scalar>;
 
-  [[nodiscard, gnu::always_inline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, const Scalar& length,
-                                                        int kind) noexcept {
+  [[nodiscard, gnu::always_inline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
+                                                        const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
     using std::abs;
     joint_ = kJoints[kind];
     const auto linear = [&](int i) { return J.data() + 6 * joint_[i]; };
@@ -140,8 +140,7 @@ class SelfMotion<6, 7, Scalar> {
     X12_ = hand(three(angular(3), angular(4)));
     X34_ = hand(three(angular(5), angular(6)));
     rest_.factor(left(three(linear(3), linear(4)), X12_), left(three(linear(5), linear(6)), X34_));
-    const Scalar cube = length * length * length;
-    return spans && rest_.null_square() > Scalar(kLeastNullSquare<Scalar>) * (cube * cube);
+    return spans && rest_.is_regular(share);
   }
 
   [[nodiscard]] Vector<7, Scalar> null() const noexcept {

@@ -29,12 +29,17 @@ class ThreeByFour {
     v34_ = seconds(v13, v24);
     square_ = sum(v12_ * v12_ + v34_ * v34_);
     over_ = Scalar(1) / square_;
+    const auto row = [](const Twice& a, const Twice& b) { return sum(a * a + b * b); };
+    largest_ = row(s12.x, s34.x) * row(s12.y, s34.y) * row(s12.z, s34.z);
   }
 
-  /// ṽ, and |ṽ|².
+  /// Whether |ṽ|² is more than this share of what it is where the rows of S are at right angles. The round-off in ṽ is
+  /// that of the product of their lengths.
+  [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
+
+  /// ṽ
   [[nodiscard]] const Twice& null12() const noexcept { return v12_; }
   [[nodiscard]] const Twice& null34() const noexcept { return v34_; }
-  [[nodiscard]] Scalar null_square() const noexcept { return square_; }
 
   /// y = S⁺a.
   template <typename Value>
@@ -111,8 +116,9 @@ class ThreeByFour {
   Three<Twice> c14_23_;
   Twice v12_;
   Twice v34_;
-  Scalar square_;
-  Scalar over_;
+  Scalar square_;   ///< |ṽ|²
+  Scalar over_;     ///< Its reciprocal.
+  Scalar largest_;  ///< Product of the squares of the rows.
 };
 
 }  // namespace fpbm

@@ -97,7 +97,7 @@ template <int kTurns, int M, int N, typename Scalar, typename Law>
   SelfMotion<M, N, Scalar> motion;
   const Mask<Scalar> undamped = damping.radius() == Scalar(0);
   for (int kind = 0; kind < motion.kKinds && !all_of(result.answered); ++kind) {
-    Mask<Scalar> found = motion.factor(J, length, kind);
+    Mask<Scalar> found = motion.factor(J, kind);
     if (none_of(found)) continue;
     const Vector<N, Scalar> u = law(motion);
     Mask<Scalar> regular = undamped;
