@@ -6,6 +6,7 @@
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/linalg/self_motion.hpp"
 
 namespace fpbm {
 
@@ -42,11 +43,13 @@ class NullSpaceSaturation {
                       const Rows<N, P, Scalar>& rows = {}) noexcept
       : unit_(unit), rows_(rows) {
     const Eigen::Index n = J.cols();
-    const RowSpace<M, N, Scalar> space(J * unit.asDiagonal());
     Eigen::Index all = n;
     if constexpr (P > 0) all += rows.count;
-    Z_.resize(all, n - space.rank());
-    for (Eigen::Index j = 0; j < Z_.cols(); ++j) space.column(space.rank() + j, Z_.col(j).head(n));
+    if (!set_self_motion(J, all)) {
+      const RowSpace<M, N, Scalar> space(J * unit.asDiagonal());
+      Z_.resize(all, n - space.rank());
+      for (Eigen::Index j = 0; j < Z_.cols(); ++j) space.column(space.rank() + j, Z_.col(j).head(n));
+    }
     if constexpr (P > 0) {
       // Each row in a unit of its own, so that its length is 1.
       for (Eigen::Index k = 0; k < rows.count; ++k) {
@@ -122,6 +125,8 @@ class NullSpaceSaturation {
   using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
   using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
 
+  /// Share of |v|² from which on v has lost a few digits at most.
+  static constexpr Scalar kRegular = Scalar(1e-4);
   static constexpr int kPasses = 3;  ///< At most, for each joint.
   /// A joint is still where its share of the motion is round-off.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
@@ -130,6 +135,21 @@ class NullSpaceSaturation {
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
   /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
   static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
+
+  /// Z of one self-motion v, away from singular postures: v in each joint's unit, at length 1. False elsewhere.
+  [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
+                                     [[maybe_unused]] Eigen::Index rows) noexcept {
+    if constexpr (kHasSelfMotion<M, N>) {
+      SelfMotion<M, N, Scalar> motion;
+      for (int kind = 0; kind < motion.kKinds; ++kind) {
+        if (!motion.factor(J, kind, kRegular)) continue;
+        Z_.resize(rows, 1);
+        Z_.col(0).template head<N>() = motion.null().cwiseQuotient(unit_).normalized();
+        return true;
+      }
+    }
+    return false;
+  }
 
   static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
     (held < joints ? result.joints : result.rows) |= std::uint32_t(1) << (held < joints ? held : held - joints);

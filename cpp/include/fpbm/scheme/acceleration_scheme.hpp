@@ -62,15 +62,41 @@ struct AccelerationScheme {
   [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
                              const Vector<M, Scalar>& xd, const Scalar& length, const State<N, Scalar>& state,
                              Vector<N, Scalar>& qdd) const noexcept {
+    if constexpr (kHasSelfMotion<M, N>) {
+      const auto foreseen = foresee<kTurns>(singular, J, length, [&](const auto& motion) noexcept {
+        if constexpr (!kInLanes<Scalar>) {
+          if (alpha == Scalar(0)) {
+            return with_one_self_motion<kLevel>(motion, weights, alpha, b, Jd, null_space, state);
+          }
+        }
+        const Vector<M, Pair<Scalar>> rhs = side_by_side<M, 1, Scalar>(b, xd);
+        return with_one_self_motion<kLevel>(motion, weights, alpha, rhs, Jd, null_space, state);
+      });
+      if (all_of(foreseen.regular)) {
+        qdd = foreseen.u;
+        return Status::kOk;
+      }
+      return by_gram<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
+    } else {
+      return by_gram<kTurns>(b, J, Jd, xd, length, state, Unforeseen{}, qdd);
+    }
+  }
+
+  /// solve() by one or two Gram matrices.
+  template <int kTurns, int M, typename Known>
+  [[nodiscard]] Status by_gram(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
+                               const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd, const Scalar& length,
+                               const State<N, Scalar>& state, const Known& foreseen,
+                               Vector<N, Scalar>& qdd) const noexcept {
     constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
     if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
-      return solve_pair<kTurns>(b, J, Jd, xd, length, state, qdd);
+      return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
     } else {
       if constexpr (kUnit) {
-        if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, qdd);
+        if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd);
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
-        const Status status = unweighted<kTurns>(b, J, length, state, result);
+        const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result);
         // Near a singular posture the brake is a motion for N_W to project: fall through to both factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
           if (!failed(status)) qdd = result;
@@ -78,35 +104,38 @@ struct AccelerationScheme {
         }
       }
       if constexpr (!kUnit) {
-        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, qdd);
+        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
       }
       const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
         const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(gram.solve(xd));
         return weights.solve(Jdtmu);
       };
-      return least_norm<kLevel, kTurns>(weights, b, drift, null_space, singular, J, length, state, qdd);
+      return least_norm<kLevel, kTurns>(weights, b, drift, null_space, singular, J, length, state, foreseen, qdd);
     }
   }
 
   /// The law with α = 0 and W = I: one factorisation.
-  template <int kTurns, int M>
+  template <int kTurns, int M, typename Known>
   [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
-                                  const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
-    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, length, state, qdd);
+                                  const State<N, Scalar>& state, const Known& foreseen,
+                                  Vector<N, Scalar>& qdd) const noexcept {
+    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, length, state, foreseen,
+                                      qdd);
   }
 
   /// Two factorisations, made side by side:
   ///
   ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
   ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z).
-  template <int kTurns, int M>
+  template <int kTurns, int M, typename Known>
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
                                                 const Scalar& length, const State<N, Scalar>& state,
-                                                Vector<N, Scalar>& qdd) const noexcept {
+                                                const Known& foreseen, Vector<N, Scalar>& qdd) const noexcept {
     DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of JJᵀ and JW⁻¹Jᵀ.
     const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);    // Jᵀ and W⁻¹Jᵀ.
     const Status status = gram.factor(WinvJt, Scalar(1));
+    if (foreseen.answers(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;
 
     const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, xd));
@@ -121,7 +150,8 @@ struct AccelerationScheme {
 
     const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
     const Vector<N, Pair<Scalar>> parts = WinvJt.lazyProduct(side_by_side<M, 1, Scalar>(shared, lambda2));
-    const Vector<N, Scalar> result = u + first<N, 1, Scalar>(parts) + second<N, 1, Scalar>(parts);
+    Vector<N, Scalar> result = u + first<N, 1, Scalar>(parts) + second<N, 1, Scalar>(parts);
+    foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;
     qdd = result;
     return status;

@@ -5,6 +5,7 @@
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/objective/null_space.hpp"
+#include "fpbm/scheme/one_self_motion.hpp"
 #include "fpbm/singular/damping.hpp"
 
 namespace fpbm {
@@ -17,17 +18,19 @@ struct NoDrift {};
 ///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
 ///
 /// u: velocities or accelerations by level. drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ,
-/// or NoDrift. The last kTurns rows of J are angular; length: the arm's [m]. Returns kDamped where damping acts. Leaves
-/// u unchanged where it fails. Flattened, since a large translation unit may not inline small calls.
-template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Drift>
+/// or NoDrift. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
+/// Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large translation unit may
+/// not inline small calls.
+template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Drift, typename Known>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Drift& drift,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
-                                              Vector<N, Scalar>& u) noexcept {
+                                              const Known& foreseen, Vector<N, Scalar>& u) noexcept {
   const auto WinvJt = weights.solve_transpose(J);
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
+  if (foreseen.answers(gram, u)) return Status::kOk;
   if (failed(status)) return status;
 
   constexpr bool kDrifts = !std::is_same_v<Drift, NoDrift>;
@@ -42,6 +45,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   } else {
     result = WinvJt.lazyProduct(gram.solve(v));
   }
+  foreseen.settle(result);
   if (!is_finite(result)) return Status::kNotFinite;
   u = result;
   return status;

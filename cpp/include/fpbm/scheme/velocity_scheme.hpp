@@ -43,8 +43,28 @@ struct VelocityScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    return least_norm<kLevel, Space::kTurns>(weights, v, NoDrift{}, null_space, singular, kinematics.J,
-                                             kinematics.length, state, qd);
+    const auto& J = kinematics.J;
+    const auto& length = kinematics.length;
+    if constexpr (kHasSelfMotion<Space::kRows, N>) {
+      const auto foreseen = foresee<Space::kTurns>(singular, J, length, [&](const auto& motion) noexcept {
+        return with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, kinematics.Jd, null_space, state);
+      });
+      if (all_of(foreseen.regular)) {
+        qd = foreseen.u;
+        return Status::kOk;
+      }
+      return by_gram<Space::kTurns>(v, J, length, state, foreseen, qd);
+    } else {
+      return by_gram<Space::kTurns>(v, J, length, state, Unforeseen{}, qd);
+    }
+  }
+
+ private:
+  template <int kTurns, int M, typename Known>
+  [[nodiscard]] Status by_gram(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Scalar& length,
+                               const State<N, Scalar>& state, const Known& foreseen,
+                               Vector<N, Scalar>& qd) const noexcept {
+    return least_norm<kLevel, kTurns>(weights, v, NoDrift{}, null_space, singular, J, length, state, foreseen, qd);
   }
 };
 

@@ -6,9 +6,10 @@
 
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost.
 ///
-/// Only the ratios of W matter, so each kind keeps W⁻¹ scaled to a largest diagonal entry of 1: no W is too large or
-/// too small. Each has the same functions:
-///   solve(a)            W⁻¹a of a vector
+/// Only the ratios of W matter, so each kind keeps W scaled so that W⁻¹ has a largest diagonal entry of 1: no W is too
+/// large or too small. Each has the same functions:
+///   times(a)            W a of a vector
+///   solve(a)            W⁻¹a
 ///   solve_transpose(J)  W⁻¹Jᵀ
 ///   with_unit(J)        Jᵀ and W⁻¹Jᵀ side by side
 ///   inverse_bound()     a bound on the largest eigenvalue of W⁻¹
@@ -24,6 +25,11 @@ struct UnitWeights {
   template <typename Scalar>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
     return Scalar(1);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] const Derived& times(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return a.derived();
   }
 
   template <typename Derived>
@@ -51,15 +57,20 @@ class DiagonalWeights {
   explicit DiagonalWeights(const Vector<N, Scalar>& weights) {
     validation::require_dof("weights", weights.size(), 1);
     validation::require_positive("weights", weights);
-    inverse_ = weights.minCoeff() * weights.cwiseInverse();
+    const Scalar least = weights.minCoeff();
+    weights_ = weights / least;
+    inverse_ = least * weights.cwiseInverse();
   }
 
   /// In lanes: get(lane) is the weights of one lane.
   template <typename Get>
   [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
     DiagonalWeights result;
-    result.inverse_.resize(get(0).inverse_.size());
-    for (Eigen::Index i = 0; i < result.inverse_.size(); ++i) {
+    const Eigen::Index dof = get(0).inverse_.size();
+    result.weights_.resize(dof);
+    result.inverse_.resize(dof);
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      result.weights_(i) = Scalar([&](auto lane) { return get(lane).weights_(i); });
       result.inverse_(i) = Scalar([&](auto lane) { return get(lane).inverse_(i); });
     }
     return result;
@@ -71,6 +82,11 @@ class DiagonalWeights {
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
     return Scalar(1);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return weights_.asDiagonal() * a.derived();
   }
 
   template <typename Derived>
@@ -100,6 +116,7 @@ class DiagonalWeights {
 
   DiagonalWeights() = default;
 
+  Vector<N, Scalar> weights_;
   Vector<N, Scalar> inverse_;
 };
 
@@ -119,7 +136,9 @@ class DenseWeights {
     }
     inverse_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
     for (Eigen::Index j = 0; j < W.cols(); ++j) inverse_.col(j) = cholesky.solve(inverse_.col(j));
-    inverse_ /= inverse_.diagonal().maxCoeff();
+    const Scalar largest = inverse_.diagonal().maxCoeff();
+    inverse_ /= largest;
+    weights_ = largest * W;
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
@@ -128,6 +147,11 @@ class DenseWeights {
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
     return inverse_.trace();
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return weights_.lazyProduct(a.derived());
   }
 
   template <typename Derived>
@@ -165,6 +189,7 @@ class DenseWeights {
     }
   }
 
+  Matrix<N, N, Scalar> weights_;
   Matrix<N, N, Scalar> inverse_;
 };
 

@@ -51,6 +51,16 @@ template <int M, int N, typename Scalar>
   return Scalar(1) / sqrt(cholesky.inverse_trace());
 }
 
+/// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
+template <int kTurns, int M, int N, typename Scalar>
+[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
+  Vector<M, Scalar> squares = J.col(0).cwiseAbs2();
+  each(Constant<1>{}, extent<N>(J.cols()), [&](auto i) { squares += J.col(i).cwiseAbs2(); });
+  Scalar sum = squares.template head<M - kTurns>().sum();
+  if constexpr (kTurns > 0) sum += length * length * squares.template tail<kTurns>().sum();
+  return sum;
+}
+
 /// Factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular. With Value = Pair<Scalar>, of two with different
 /// W side by side. With damping it is the factor of D(JW⁻¹Jᵀ)D + Δ, where D multiplies the last kTurns rows, which are
 /// angular, by length [m].
@@ -87,7 +97,7 @@ class DampedGram {
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
-    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm();
+    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
     const Scalar bound = threshold * inverse_bound;
     const Mask<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
     if constexpr (kInLanes<Scalar>) {
@@ -110,21 +120,14 @@ class DampedGram {
     }
   }
 
+  /// Whether Δ is not zero.
+  [[nodiscard]] bool damps() const noexcept { return lost_ > Scalar(0); }
+
   /// Additional damping of the null space [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
   static constexpr int kLengths = M - kTurns;
-
-  /// ‖DJ‖².
-  [[nodiscard]] Scalar squared_norm() const noexcept {
-    if constexpr (kTurns == 0) {
-      return J_.squaredNorm();
-    } else {
-      return J_.template topRows<kLengths>().squaredNorm() +
-             length_ * length_ * J_.template bottomRows<kTurns>().squaredNorm();
-    }
-  }
 
   [[nodiscard, gnu::noinline]] Status damped(Matrix<M, M, Value>& gram, Scalar threshold, Status undamped) noexcept {
     Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());

@@ -1,0 +1,124 @@
+#pragma once
+
+#include "fpbm/linalg/three.hpp"
+
+namespace fpbm {
+
+/// A matrix S of three rows and four columns s₁ … s₄, solved by its minors: with c_kl = s_k × s_l,
+///
+///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂)      S ṽ = 0,   |ṽ|² = det SSᵀ,
+///   S⁺a = D ṽ / |ṽ|²,   D skew, of the c_kl·a   (Cramer's rule on [S; ṽᵀ] y = [a; 0]).
+///
+/// No pivot, no root, one division. The condition of S enters the round-off once, and not squared as in SSᵀ.
+template <typename Scalar>
+class ThreeByFour {
+ public:
+  using Twice = Pair<Scalar>;
+
+  /// Columns s₁ and s₂, s₃ and s₄. What follows is finite where |ṽ|² is not zero.
+  void factor(const Three<Twice>& s12, const Three<Twice>& s34) noexcept {
+    const Three<Twice> s13 = firsts(s12, s34);
+    const Three<Twice> s24 = seconds(s12, s34);
+    c12_34_ = cross(s13, s24);
+    c13_24_ = cross(s12, s34);
+    c14_23_ = cross(s12, swapped(s34));
+    const Three<Twice> c34_12 = swapped(c12_34_);
+    const Twice v13 = dot(s24, c34_12);
+    const Twice v24 = Twice(Scalar(0)) - dot(s13, c34_12);
+    v12_ = firsts(v13, v24);
+    v34_ = seconds(v13, v24);
+    square_ = sum(v12_ * v12_ + v34_ * v34_);
+    over_ = Scalar(1) / square_;
+    const auto row = [](const Twice& a, const Twice& b) { return sum(a * a + b * b); };
+    largest_ = row(s12.x, s34.x) * row(s12.y, s34.y) * row(s12.z, s34.z);
+  }
+
+  /// Whether |ṽ|² is more than this share of what it is where the rows of S are at right angles. The round-off in ṽ is
+  /// that of the product of their lengths.
+  [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
+
+  /// ṽ
+  [[nodiscard]] const Twice& null12() const noexcept { return v12_; }
+  [[nodiscard]] const Twice& null34() const noexcept { return v34_; }
+
+  /// y = S⁺a.
+  template <typename Value>
+  [[gnu::always_inline]] void solve(const Three<Value>& a, Value (&y)[4]) const noexcept {
+    combine(minors(a), y);
+  }
+
+  /// S⁺: its first two columns side by side, and its third.
+  void inverse(Twice (&xy)[4], Scalar (&z)[4]) const noexcept {
+    combine(Minors<Twice>{firsts(c12_34_.x, c12_34_.y), firsts(c13_24_.x, c13_24_.y), firsts(c14_23_.x, c14_23_.y),
+                          seconds(c14_23_.x, c14_23_.y), seconds(c13_24_.x, c13_24_.y), seconds(c12_34_.x, c12_34_.y)},
+            xy);
+    combine(apart(c12_34_.z, c13_24_.z, c14_23_.z), z);
+  }
+
+  /// hᵀS⁺a.
+  [[nodiscard]] Scalar along(const Three<Scalar>& a, const Twice& h12, const Twice& h34) const noexcept {
+    const auto [d12, d13, d14, d23, d24, d34] = minors(a);
+    const Scalar h1 = h12.first(), h2 = h12.second(), h3 = h34.first(), h4 = h34.second();
+    const Scalar v1 = v12_.first(), v2 = v12_.second(), v3 = v34_.first(), v4 = v34_.second();
+    return over_ * (((h2 * v1 - h1 * v2) * d34 + (h1 * v3 - h3 * v1) * d24) +
+                    ((h4 * v1 - h1 * v4) * d23 + (h3 * v2 - h2 * v3) * d14) +
+                    ((h2 * v4 - h4 * v2) * d13 + (h4 * v3 - h3 * v4) * d12));
+  }
+
+  /// Squares of the lengths of the columns of S⁺: the diagonal of (SSᵀ)⁻¹, by the minors of its two other rows.
+  [[nodiscard]] Three<Scalar> inverse_squares() const noexcept {
+    const auto squares = [this](const Twice& a, const Twice& b, const Twice& c) {
+      return over_ * sum(a * a + b * b + c * c);
+    };
+    return {squares(c12_34_.x, c13_24_.x, c14_23_.x), squares(c12_34_.y, c13_24_.y, c14_23_.y),
+            squares(c12_34_.z, c13_24_.z, c14_23_.z)};
+  }
+
+ private:
+  /// The c_kl·a.
+  template <typename Value>
+  struct Minors {
+    Value d12, d13, d14, d23, d24, d34;
+  };
+
+  [[nodiscard]] static Minors<Scalar> apart(const Twice& d12_34, const Twice& d13_24, const Twice& d14_23) noexcept {
+    return {d12_34.first(), d13_24.first(), d14_23.first(), d14_23.second(), d13_24.second(), d12_34.second()};
+  }
+  [[nodiscard]] Minors<Scalar> minors(const Three<Scalar>& a) const noexcept {
+    const Three<Twice> both = repeated<Twice>(a);
+    return apart(dot(c12_34_, both), dot(c13_24_, both), dot(c14_23_, both));
+  }
+  [[nodiscard]] Minors<Twice> minors(const Three<Twice>& a) const noexcept {
+    const Three<Twice> one = repeated<Twice>(first(a));
+    const Three<Twice> other = repeated<Twice>(second(a));
+    const Twice d12_34 = dot(c12_34_, one), e12_34 = dot(c12_34_, other);
+    const Twice d13_24 = dot(c13_24_, one), e13_24 = dot(c13_24_, other);
+    const Twice d14_23 = dot(c14_23_, one), e14_23 = dot(c14_23_, other);
+    return {firsts(d12_34, e12_34),  firsts(d13_24, e13_24),  firsts(d14_23, e14_23),
+            seconds(d14_23, e14_23), seconds(d13_24, e13_24), seconds(d12_34, e12_34)};
+  }
+
+  /// D ṽ / |ṽ|².
+  template <typename Value>
+  void combine(const Minors<Value>& d, Value (&y)[4]) const noexcept {
+    const Value v1(over_ * v12_.first());
+    const Value v2(over_ * v12_.second());
+    const Value v3(over_ * v34_.first());
+    const Value v4(over_ * v34_.second());
+    y[0] = v3 * d.d24 - v2 * d.d34 - v4 * d.d23;
+    y[1] = v1 * d.d34 - v3 * d.d14 + v4 * d.d13;
+    y[2] = v2 * d.d14 - v1 * d.d24 - v4 * d.d12;
+    y[3] = v1 * d.d23 - v2 * d.d13 + v3 * d.d12;
+  }
+
+  Three<Twice> c12_34_;
+  Three<Twice> c13_24_;
+  Three<Twice> c14_23_;
+  Twice v12_;
+  Twice v34_;
+  Scalar square_;   ///< |ṽ|²
+  Scalar over_;     ///< Its reciprocal.
+  Scalar largest_;  ///< Product of the squares of the rows.
+};
+
+}  // namespace fpbm

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/total.hpp"
+#include "fpbm/objective/null_space.hpp"
+#include "fpbm/singular/damping.hpp"
+
+/// Where an arm has one joint more than its task has rows, there is one self-motion, J v = 0, and every law is
+/// u = p + γ v with any p that does the task: J is solved itself, and the condition of JJᵀ does not enter.
+namespace fpbm {
+
+/// The law with one self-motion. With any solutions of J p = b, J r = xd and J s = Jd v,
+///
+///   u = p + γ v,   γ = [α sᵀg + vᵀW(z − α p)] / vᵀWv − (1−α) vᵀp / vᵀv,
+///   g = W(r − ρ v) = W J_W⁺xd,   ρ = vᵀWr / vᵀWv,   sᵀg = vᵀJdᵀμ, since Jᵀμ = g.
+///
+/// rhs: b beside xd; or b alone, for a law without the drift W⁻¹Jdᵀμ, whose α is a balance only.
+/// docs/equations.md has the proof.
+template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Value>
+[[nodiscard, gnu::always_inline]] inline Vector<N, Scalar> with_one_self_motion(
+    const SelfMotion<M, N, Scalar>& motion, const Weights& weights, const Scalar& alpha, const Vector<M, Value>& rhs,
+    [[maybe_unused]] const Matrix<M, N, Scalar>& Jd, const NullSpace<N, Scalar>& null_space,
+    const State<N, Scalar>& state) noexcept {
+  const Vector<N, Scalar> v = motion.null();
+  const Vector<N, Scalar> Wv = weights.times(v);
+  const Vector<N, Value> y = motion.solve(rhs);
+  const auto both = [&](auto i) { return Pair<Scalar>(v.coeff(i), Wv.coeff(i)); };
+  const auto squares = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(v.coeff(i)); });  // vᵀv and vᵀWv.
+  const auto along = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(first(y.coeff(i))); });  // vᵀp and vᵀWp.
+  const Pair<Scalar> over = Pair<Scalar>(Scalar(1)) / squares;
+  Scalar wanted = -alpha * along.second();
+  if (null_space.template active<kLevel>()) {
+    const Vector<N, Scalar> z = null_space.template at<kLevel>(state);
+    wanted += total<0, N>([&](auto i) { return Wv.coeff(i) * z.coeff(i); });
+  }
+  if constexpr (!std::is_same_v<Value, Scalar>) {
+    const Scalar rho = over.second() * total<0, N>([&](auto i) { return Wv.coeff(i) * y.coeff(i).second(); });
+    Vector<N, Scalar> rate;  // J_W⁺xd
+    each(Constant<0>{}, Constant<N>{}, [&](auto i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
+    wanted += alpha * motion.along(Jd.lazyProduct(v), weights.times(rate));
+  }
+  const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
+  Vector<N, Scalar> u;
+  each(Constant<0>{}, Constant<N>{}, [&](auto i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
+  return u;
+}
+
+/// What is known of a state before a Gram matrix is factorised: nothing, where an arm has more self-motions or none.
+struct Unforeseen {
+  template <typename Gram, typename Result>
+  [[nodiscard]] static constexpr bool answers(const Gram&, Result&) noexcept {
+    return false;
+  }
+  template <typename Result>
+  static void settle(Result&) noexcept {}
+};
+
+/// The answer with one self-motion, which holds where damping does not act: with damping and without it the same bits.
+template <int N, typename Scalar>
+struct Foreseen {
+  Mask<Scalar> answered{false};  ///< u is the answer without damping.
+  Mask<Scalar> regular{false};   ///< And damping surely does not act.
+  Vector<N, Scalar> u;
+
+  /// Whether u is the answer, once the Gram matrix has told whether damping acts; it goes to result then.
+  template <typename Gram>
+  [[nodiscard]] bool answers([[maybe_unused]] const Gram& gram,
+                             [[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
+    if constexpr (kInLanes<Scalar>) {
+      return false;
+    } else {
+      if (!answered || gram.damps()) return false;
+      result = u;
+      return true;
+    }
+  }
+
+  /// The same for each lane, where the Gram matrix's result is NaN unless damping surely does not act.
+  void settle([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
+    if constexpr (kInLanes<Scalar>) {
+      const Mask<Scalar> holds = regular || (answered && result(0) == result(0));
+      for (int i = 0; i < N; ++i) where(holds, result(i)) = u(i);
+    }
+  }
+};
+
+/// The answer of law(motion). The last kTurns rows of J are angular; length: the arm's [m].
+template <int kTurns, int M, int N, typename Scalar, typename Law>
+[[nodiscard, gnu::always_inline]] inline Foreseen<N, Scalar> foresee(const SingularDamping<Scalar>& damping,
+                                                                     const Matrix<M, N, Scalar>& J,
+                                                                     const Scalar& length, const Law& law) noexcept {
+  Foreseen<N, Scalar> result;
+  SelfMotion<M, N, Scalar> motion;
+  const Mask<Scalar> undamped = damping.radius() == Scalar(0);
+  for (int kind = 0; kind < motion.kKinds && !all_of(result.answered); ++kind) {
+    Mask<Scalar> found = motion.factor(J, kind);
+    if (none_of(found)) continue;
+    const Vector<N, Scalar> u = law(motion);
+    Mask<Scalar> regular = undamped;
+    if (!all_of(undamped)) {
+      const Scalar threshold = damping.radius() * damping.radius() * squared_norm_in_metres<kTurns>(J, length);  // ε²
+      regular = regular || threshold * motion.inverse_square(length) <= Scalar(1);
+    }
+    if constexpr (kInLanes<Scalar>) {
+      found = found && !result.answered;
+      for (int i = 0; i < N; ++i) where(found, result.u(i)) = u(i);
+      result.answered = result.answered || found;
+      result.regular = result.regular || (found && regular);
+    } else {
+      if (!is_finite(u)) break;
+      result = {true, regular, u};
+    }
+  }
+  return result;
+}
+
+}  // namespace fpbm
