@@ -171,10 +171,6 @@ void time_warm_and_cold(const std::string& row, Options& options) {
 #endif
 }
 
-struct Nothing {
-  void operator()() noexcept { escape(*this); }
-};
-
 }  // namespace
 }  // namespace bench
 
