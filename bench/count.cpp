@@ -1,9 +1,11 @@
 #include <valgrind/callgrind.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "jobs.hpp"
 
@@ -15,8 +17,12 @@ namespace {
 
 volatile std::uint64_t mark = 0;
 
+/// Jobs that are asked for; none: all.
+std::vector<std::string> wanted;
+
 template <typename Job>
 void count(const std::string& row, int calls) {
+  if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row) == wanted.end()) return;
   std::printf("%s\n", row.c_str());
   Job job;
   for (int i = 0; i < calls; ++i) job();  // Libraries are bound at the first.
@@ -52,12 +58,12 @@ void count_parts(int calls) {
 
 int main(int argc, char** argv) {
   using namespace bench;
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: valgrind --tool=callgrind --collect-atstart=no %s CALLS\n", argv[0]);
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: valgrind --tool=callgrind --collect-atstart=no %s CALLS [JOB …]\n", argv[0]);
     return EXIT_FAILURE;
   }
+  wanted.assign(argv + 2, argv + argc);
   const int calls = std::atoi(argv[1]);
-  std::printf("%p\n", static_cast<const volatile void*>(&mark));
   count<Nothing>("nothing", calls);
   count_steps<Case<Planar<4>, fpbm::Position<2>>>(calls);
   count_steps<PandaPose>(calls);
