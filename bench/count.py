@@ -1,7 +1,7 @@
 """Instructions a call of each job in count.cpp, by callgrind: the same on a busy machine as on an idle one.
 
-The mean of all calls, the usual call (the median) and the worst. The mean is compared with that in instructions.json, where the compiler is one that it was recorded with. Fails where a mean
-has grown by more than 5 %.
+The mean of all calls, the usual call (the median) and the worst. Means are compared with those in instructions.json,
+where the compiler is one that they were recorded with. Fails where one has grown by more than 5 %.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Loads that wait for stores, a call of each job: store-forwarding stalls, found in a trace of memory by lackey.
 
-A load whose bytes are still in the processor's store buffer gets them from there at once only where one store wrote all of
-them. Where two did, or one of them and the memory before it, the load waits until the stores are done: a dozen cycles or
-more, on all of today's x86 and ARM processors. A usual cause is a 16-byte load of two numbers that were stored one by one.
-The trace has every address, so nothing is guessed; like an instruction count it does not depend on the load.
+A load of bytes that are still in the processor's store buffer gets them from there at once only where one store wrote
+all of them. Where two did, or one of them and the memory before it, it waits until the stores are done: a dozen cycles
+or so. A usual cause is a 16-byte load of two numbers that were stored one by one. The trace has every address, so that
+nothing is guessed; the counts do not depend on the machine's load.
 
 Compared with stalls.json, where the compiler is one that they were recorded with. Fails where a job has more than
 recorded.
@@ -30,7 +30,10 @@ CASES = {"planar4/position": ["fpbm", "fpbm_damped"], "panda/pose": ["fpbm", "fp
 JOBS = [
     job
     for case, schemes in CASES.items()
-    for job in [f"kinematics/{case}", *(f"{part}/{case}/{scheme}" for part in ("resolve", "step") for scheme in schemes)]
+    for job in [
+        f"kinematics/{case}",
+        *(f"{part}/{case}/{scheme}" for part in ("resolve", "step") for scheme in schemes),
+    ]
 ]
 
 
