@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import promises
+
 RESULTS = Path(__file__).parent / "results"
 README = Path(__file__).parent.parent / "README.md"
 BEGIN, END = "<!-- bench: begin -->\n", "<!-- bench: end -->\n"
@@ -39,17 +41,6 @@ PYTHON = {
     "robotics_toolbox": "Robotics Toolbox + NumPy",
     "pink": "Pink (QP)",
     "mink": "Mink (QP)",
-}
-# What promises are measured against that is no longer in the tree, 8e7cfab. Its Panda pose step of FPBM took 0.25 of
-# Pinocchio + Eigen's on a quiet machine (0.28 in its own results, on a busy one); bench/README.md says how it stands in
-# for the time. Instructions of its tick, by g++ 12; limited ticks were first counted at 02cf2e0.
-OLD_STEP = 0.25
-OLD_INSTRUCTIONS = {
-    "loop/panda/pose/tick": 22541.1,
-    "loop/panda/pose/limited": 29235.7,
-    "loop/panda/pose/limited_jerk": 32092.8,
-    "loop/panda/position/limited": 17321.3,
-    "loop/panda/position/limited_jerk": 19847.2,
 }
 # Okabe and Ito's colours, which most of the colour-blind tell apart.
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00"
@@ -97,11 +88,6 @@ class Results:
         ours, theirs = self.least(f"{name}/{library}"), self.least(f"{name}/{peer}")
         return ours / theirs if ours and theirs else None
 
-    def instructions(self, name: str) -> float | None:
-        """Mean of a job's calls, where its compiler is the one of OLD_INSTRUCTIONS."""
-        same = str(self.values["built_with"]["compiler"]).startswith("g++ 12.")
-        return self.values.get("instructions", {}).get(name) if same else None
-
 
 def comparison(
     results: Results, part: str, libraries: dict[str, str], rows: list[str] | None = None, kind: str = "scheme"
@@ -122,58 +108,6 @@ def comparison(
 
     lines = ([row.replace("/", ", "), *(cell(row, library) for library in present)] for row in rows)
     return table([f"arm, task, {kind}", *(libraries[library] for library in present)], lines)
-
-
-def bars(results: Results) -> list[str]:
-    """What is promised, and whether it holds."""
-    lines = []
-
-    def add(what: str, value: float | None, bar: float, text: str, at_least: bool = False) -> None:
-        if value is None:
-            lines.append([what, "not measured", text.format(bar), ""])
-            return
-        kept = value >= bar if at_least else value <= bar
-        lines.append([what, text.format(value), text.format(bar), "yes" if kept else "**no**"])
-
-    fpbm = "step/panda/pose/fpbm"
-    for damping, library in (("damping off", "fpbm_cpp"), ("damping on", "fpbm_cpp_damped")):
-        for step, name, peer, bar, text in (
-            ("Panda pose step", fpbm, "pinocchio", 0.17, "{:.2f}"),
-            ("Panda pose step", fpbm, "kdl", 0.055, "{:.3f}"),
-            ("planar n = 4 step", "step/planar4/position/fpbm", "pinocchio", 0.13, "{:.2f}"),
-        ):
-            share = results.ratio(name, peer, library)
-            add(f"{step} of FPBM, {damping}: share of {CPLUSPLUS[peer]}'s time", share, bar, text)
-    for kind, bar in (("avx2", 0.20), ("avx512", 0.14)):
-        share = results.ratio(fpbm, "pinocchio", kind)
-        old = share / OLD_STEP if share else None
-        add(f"Panda pose step of FPBM, an arm {LANES[kind]}: share of a step of 8e7cfab, reckoned", old, bar, "{:.2f}")
-    for case in ("panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration", "panda/position/jerk"):
-        shares = [results.ratio(f"limited/{case}", qp) for qp in ("eiquadprog_rt", "eiquadprog_fast")]
-        share = max((each for each in shares if each), default=None)
-        words = case.replace("/", ", ")
-        add(f"limited step, {words}: share of the faster eiquadprog's time", share, 0.30, "{:.2f}")
-    for job, before in OLD_INSTRUCTIONS.items():
-        count, bar = results.instructions(job), 0.75 if job.endswith("tick") else 0.8
-        share = count / before if count else None
-        add(f"instructions of {job.replace('/', ' ')}: share of those before", share, bar, "{:.2f}")
-    many = results.least("python/panda/pose/fpbm/fpbm_cpp_many")
-    add("Panda pose step of FPBM from Python, 10,000 states a call, on one thread", many, 600.0, "{:.0f} ns")
-    if results.values.get("isolated"):  # On a shared core this would be a promise about others.
-        for row in results.tails:
-            if row["caches"] == "warm" and row["name"] != "timer":
-                name = row["name"].replace("/", " ")
-                add(f"p99.9 over p50 in a warm loop, {name}", row["p99.9"] / row["p50"], 1.5, "{:.2f}")
-    for task in ("pose", "position"):
-        counts = results.values.get("instructions", {})
-        plain_count, jerk = (counts.get(f"loop/panda/{task}/limited{suffix}") for suffix in ("", "_jerk"))
-        ratio = jerk / plain_count if plain_count and jerk else None
-        add(f"limited tick, Panda {task}, with bounds on jerk: share of one without", ratio, 1.3, "{:.2f}")
-    best = max((row["ratio"] for row in results.sweeps if row["name"] == "planar4/position"), default=None)
-    add(
-        "sweep of the paper's circle on two threads, multiple of one without lanes", best, 10.0, "{:.1f}", at_least=True
-    )
-    return table(["promise", "measured", "bar", "kept"], lines)
 
 
 def summary(results: Results) -> list[str]:
@@ -362,7 +296,7 @@ def page(results: Results) -> str:
         "",
         "## Promises",
         "",
-        *bars(results),
+        *table(["promise", "measured", "bar", "kept"], promises.rows(results)),
     ]
     lines += ["## Steps in C++", "", *comparison(results, "step", CPLUSPLUS)]
     lines += ["## Kinematics in C++", "", *comparison(results, "kinematics", CPLUSPLUS)]
