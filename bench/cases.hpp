@@ -125,10 +125,10 @@ struct Input {
   fpbm::Reference<Space, Scalar> reference;
 };
 
-/// States about a bent posture, well away from singular ones, and references near by; the same on every run. Few enough
-/// to stay in the first-level cache, and enough that nothing can be hoisted.
-template <typename Space, typename Arm, int N = Arm::kDof>
-auto inputs(const Arm& arm, const fpbm::Vector<N>& bent) {
+/// States about a bent posture, scattered by so much [rad], and references near by; the same on every run. Of those,
+/// the first that are wanted. Few enough to stay in the first-level cache, and enough that nothing can be hoisted.
+template <typename Space, typename Arm, typename Wanted, int N = Arm::kDof>
+auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted wanted) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto fill = [&](auto vector, double reach) {
@@ -138,9 +138,11 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent) {
   const fpbm::Vector<Space::kRows> way = fpbm::Vector<Space::kRows>::Zero();
   std::array<Input<Space, N>, 64> result;
   for (auto& [state, reference] : result) {
-    state = {bent + fill(bent, 0.45), fill(bent, 1.0)};
     fpbm::Kinematics<Space, N> kinematics;
-    arm.kinematics(state.q, kinematics);
+    do {
+      state = {bent + fill(bent, scatter), fill(bent, 1.0)};
+      arm.kinematics(state.q, kinematics);
+    } while (!wanted(kinematics));
     reference.x = Space::template displace<double>(kinematics.tip, fill(way, 0.01));
     reference.xd = fill(way, 0.5);
     reference.xdd = fill(way, 0.5);
@@ -148,9 +150,24 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent) {
   return result;
 }
 
+/// Well away from singular postures.
 template <typename Case>
 auto inputs(Case) {
-  return inputs<typename Case::Space>(Case::Robot::arm(), Case::Robot::bent());
+  const auto any = [](const auto&) { return true; };
+  return inputs<typename Case::Space>(Case::Robot::arm(), Case::Robot::bent(), 0.45, any);
+}
+
+/// The case in postures where damping damps.
+template <typename Case>
+struct NearSingular : Case {};
+
+template <typename Case>
+auto inputs(NearSingular<Case>) {
+  const auto is_near = [](const auto& kinematics) {
+    const auto J = jacobian_in_metres(kinematics);
+    return fpbm::least_singular_value_bound(J) < 0.5 * fpbm::SingularDamping<>().radius() * J.norm();
+  };
+  return inputs<typename Case::Space>(Case::Robot::arm(), Case::Robot::bent(), 3.0, is_near);
 }
 
 }  // namespace bench

@@ -1,23 +1,39 @@
 #include <valgrind/callgrind.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "jobs.hpp"
 
-// Under callgrind: one dump a job, named after it, of what the calls take that the argument asks for. See count.py.
+// Under callgrind: a dump for each call, named after its job. See count.py.
+// Under lackey, which traces memory: each call is between two stores to `mark`. See stalls.py, which reads the address
+// of `mark` and the jobs' names from the standard output.
 namespace bench {
 namespace {
 
+volatile std::uint64_t mark = 0;
+
+/// Jobs that are asked for; none: all.
+std::vector<std::string> wanted;
+
 template <typename Job>
 void count(const std::string& row, int calls) {
+  if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row) == wanted.end()) return;
+  std::printf("%s\n", row.c_str());
   Job job;
   for (int i = 0; i < calls; ++i) job();  // Libraries are bound at the first.
-  CALLGRIND_TOGGLE_COLLECT;
-  for (int i = 0; i < calls; ++i) job();
-  CALLGRIND_TOGGLE_COLLECT;
-  CALLGRIND_DUMP_STATS_AT(row.c_str());
+  for (int i = 0; i < calls; ++i) {
+    CALLGRIND_TOGGLE_COLLECT;
+    mark = 1;
+    job();
+    mark = 0;
+    CALLGRIND_TOGGLE_COLLECT;
+    CALLGRIND_DUMP_STATS_AT(row.c_str());
+  }
 }
 
 template <typename Case>
@@ -25,18 +41,34 @@ void count_steps(int calls) {
   for_each_law([=](auto law) { count<Step<Ours<Case, law()>>>("step/" + Case::name() + "/" + name(law), calls); });
 }
 
+/// FPBM with damping on, in regular postures and in those where it damps; its kinematics and its scheme.
+template <typename Case>
+void count_parts(int calls) {
+  const std::string row = "/" + Case::name();
+  using Damped = Ours<Case, Law::kFPBM, true>;
+  count<Step<Damped>>("step" + row + "/fpbm_damped", calls);
+  count<Step<Ours<NearSingular<Case>, Law::kFPBM, true>>>("step" + row + "/fpbm_damped_singular", calls);
+  count<Move<Damped>>("kinematics" + row, calls);
+  count<Resolve<Ours<Case, Law::kFPBM>>>("resolve" + row + "/fpbm", calls);
+  count<Resolve<Damped>>("resolve" + row + "/fpbm_damped", calls);
+}
+
 }  // namespace
 }  // namespace bench
 
 int main(int argc, char** argv) {
   using namespace bench;
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: valgrind --tool=callgrind --collect-atstart=no %s CALLS\n", argv[0]);
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: valgrind --tool=callgrind --collect-atstart=no %s CALLS [JOB …]\n", argv[0]);
     return EXIT_FAILURE;
   }
+  wanted.assign(argv + 2, argv + argc);
   const int calls = std::atoi(argv[1]);
+  count<Nothing>("nothing", calls);
   count_steps<Case<Planar<4>, fpbm::Position<2>>>(calls);
   count_steps<PandaPose>(calls);
+  count_parts<Case<Planar<4>, fpbm::Position<2>>>(calls);
+  count_parts<PandaPose>(calls);
   count<Step<Ours<Case<Planar<7>, fpbm::Position<2>>, Law::kFPBM>>>("step/planar7/position/fpbm", calls);
   count<Step<Ours<Case<Panda, fpbm::Position<3>>, Law::kFPBM>>>("step/panda/position/fpbm", calls);
   count<Rk4Step<4, Law::kFPBM>>("rk4/planar4/position/fpbm", calls);

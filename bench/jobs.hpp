@@ -14,6 +14,11 @@ void escape(T& object) noexcept {
   asm volatile("" : : "g"(&object) : "memory");
 }
 
+/// No job: what timing and counting add.
+struct Nothing {
+  void operator()() noexcept { escape(*this); }
+};
+
 /// The states of a case, round and round.
 template <typename Case>
 class Ring {
@@ -44,14 +49,12 @@ class Move {
 };
 
 /// One evaluation of the closed loop: kinematics and scheme.
-template <typename Solver, bool kMoves = true>
+template <typename Solver>
 class Step {
  public:
-  Step() { solver_.move(ring_.next()); }
-
   void operator()() noexcept {
     const auto& input = ring_.next();
-    if constexpr (kMoves) solver_.move(input);
+    solver_.move(input);
     status_ = solver_.resolve(input, out_);
     escape(*this);
   }
@@ -63,9 +66,38 @@ class Step {
   fpbm::Status status_;
 };
 
-/// The scheme alone, its kinematics given.
+/// The scheme alone, on each state's own kinematics, found beforehand. Of few states, as J and Jd of all would not stay
+/// in the first-level cache.
 template <typename Solver>
-using Resolve = Step<Solver, false>;
+class Resolve {
+ public:
+  Resolve() {
+    const auto all = inputs(Case{});
+    for (std::size_t i = 0; i < given_.size(); ++i) {
+      solver_.move(all[i]);
+      given_[i] = {all[i], solver_.kinematics()};
+    }
+  }
+
+  void operator()() noexcept {
+    const auto& [input, kinematics] = given_[++turn_ % given_.size()];
+    status_ = solver_.resolve(kinematics, input, out_);
+    escape(*this);
+  }
+
+ private:
+  using Case = typename Solver::Case;
+  struct Given {
+    Input<typename Case::Space, Case::kDof, typename Case::Scalar> input;
+    fpbm::Kinematics<typename Case::Space, Case::kDof, typename Case::Scalar> kinematics;
+  };
+
+  Solver solver_;
+  std::array<Given, 16> given_;
+  std::size_t turn_ = 0;
+  fpbm::Vector<Case::kDof, typename Case::Scalar> out_;
+  fpbm::Status status_;
+};
 
 /// One RK4 step of 1 ms along the paper's circle, as rollout() takes it: time goes on from call to call.
 template <int N, Law law>

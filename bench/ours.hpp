@@ -4,16 +4,21 @@
 
 namespace bench {
 
-/// A step of this library.
-template <typename Case_, Law law>
+/// A step of this library, with damping near singular postures or without.
+template <typename Case_, Law law, bool kDamping = false>
 class Ours {
  public:
   using Case = Case_;
   using Space = typename Case::Space;
   using Scalar = typename Case::Scalar;
   static constexpr int N = Case::kDof;
+  using Moved = fpbm::Kinematics<Space, N, Scalar>;
   static constexpr Law kLaw = law;
-  static constexpr const char* kLibrary = "fpbm_cpp";
+  static constexpr const char* kLibrary = kDamping ? "fpbm_cpp_damped" : "fpbm_cpp";
+
+  Ours() {
+    if constexpr (kDamping) scheme_.singular = fpbm::SingularDamping<Scalar>();
+  }
 
   void move(const Input<Space, N, Scalar>& input) noexcept {
     if constexpr (is_acceleration(law)) {
@@ -23,13 +28,19 @@ class Ours {
     }
   }
   fpbm::Status resolve(const Input<Space, N, Scalar>& input, fpbm::Vector<N, Scalar>& out) const noexcept {
-    return scheme_.resolve(kinematics_, input.reference, input.state, out);
+    return resolve(kinematics_, input, out);
   }
+  /// For the kinematics of a state.
+  fpbm::Status resolve(const Moved& kinematics, const Input<Space, N, Scalar>& input,
+                       fpbm::Vector<N, Scalar>& out) const noexcept {
+    return scheme_.resolve(kinematics, input.reference, input.state, out);
+  }
+  [[nodiscard]] const Moved& kinematics() const noexcept { return kinematics_; }
 
  private:
   decltype(Case::Robot::arm().template cast<Scalar>()) arm_ = Case::Robot::arm().template cast<Scalar>();
   decltype(scheme<law, N, Scalar>()) scheme_ = scheme<law, N, Scalar>(arm_.dof());
-  fpbm::Kinematics<Space, N, Scalar> kinematics_;
+  Moved kinematics_;
 };
 
 }  // namespace bench

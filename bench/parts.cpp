@@ -12,6 +12,7 @@ void add(const std::string& row) {
 template <typename Case>
 void add_resolve() {
   for_each_law([](auto law) { add<Resolve<Ours<Case, law()>>>("resolve/" + Case::name() + "/" + name(law)); });
+  add<Resolve<Ours<Case, Law::kFPBM, true>>>("resolve/" + Case::name() + "/fpbm_damped");
 }
 
 [[maybe_unused]] const bool kAdded = [] {

@@ -12,6 +12,8 @@ import platform
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from importlib import metadata
 from pathlib import Path
 from statistics import median
@@ -19,6 +21,7 @@ from typing import Any
 
 import count
 import report
+import stalls
 
 from fpbm_cpp import _core
 
@@ -49,6 +52,32 @@ def machine() -> dict[str, Any]:
         "python": platform.python_version(),
         "load": round(os.getloadavg()[0], 1),
     }
+
+
+def isolated_core() -> int | None:
+    """One that the system was started to leave alone (isolcpus=…)."""
+    try:
+        cores = Path("/sys/devices/system/cpu/isolated").read_text().strip()
+    except OSError:
+        return None
+    return int(cores.replace(",", "-").split("-")[0]) if cores else None
+
+
+@contextmanager
+def kept_to(core: int | None) -> Iterator[None]:
+    """Programs run on that core alone, if any, and before all others where the system lets us."""
+    if core is None:
+        yield
+        return
+    cores, policy, priority = os.sched_getaffinity(0), os.sched_getscheduler(0), os.sched_getparam(0)
+    os.sched_setaffinity(0, {core})
+    with suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(80))
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, policy, priority)
+        os.sched_setaffinity(0, cores)
 
 
 def call(program: Path, *arguments: str | Path) -> bytes:
@@ -96,9 +125,15 @@ def cplusplus(folder: Path, quick: bool) -> dict[str, Any]:
     # Of the programs in lanes, those that this processor can run.
     programs = [folder / f"bench_lanes_{kind}" for kind in ("baseline", *_core.processor_kinds()[::-1])]
     results["lanes"] = [row for program in programs if program.exists() for row in google_benchmark(program, quick)]
-    results["tail"] = json.loads(call(folder / "bench_tail", *(("1e6", "1e4") if quick else ("1e7", "1e5"))))
+    core = isolated_core()
+    results["isolated"] = core is not None
+    with kept_to(core):
+        results["tail"] = json.loads(call(folder / "bench_tail", *(("1e6", "1e4") if quick else ("1e7", "1e5"))))
     if (program := folder / "bench_count").exists() and shutil.which("valgrind"):
-        results["instructions"] = count.count(program)
+        counts = count.count(program)
+        results["instructions"] = {job: each.mean for job, each in counts.items()}
+        results["paths"] = {job: [each.usual, each.worst] for job, each in counts.items()}
+        results["stalls"] = {job: sum(each.values()) / stalls.CALLS for job, each in stalls.stalls(program).items()}
     return results
 
 

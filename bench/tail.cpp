@@ -18,7 +18,8 @@
 #include "jobs.hpp"
 
 // How long single calls take, each waited for: percentiles of many, in warm and in cold caches, as JSON. The timer's
-// own time is that of nothing (row "timer"); it is not taken off.
+// own time is that of nothing (row "timer"); it is not taken off. In turn with a warm job an empty one is timed that
+// takes as long ("empty_…"): what of a tail is not the job's, but the machine's.
 namespace bench {
 namespace {
 
@@ -140,20 +141,59 @@ template <typename Job>
   histogram.add(Clock::stop() - start);
 }
 
-/// Prepares and times the job so many times, and prints a row.
-template <typename Job, typename Prepare>
-void time_all(const std::string& row, const char* caches, double calls, Job& job, Prepare prepare, Options& options) {
+/// Does nothing, for a while: arithmetic in a register, without memory or branches that differ.
+struct Empty {
+  int turns = 0;
+
+  void operator()() noexcept {
+    unsigned long x = 1;
+    for (int i = 0; i < turns; ++i) {
+      x *= 3;
+      asm volatile("" : "+r"(x));
+    }
+  }
+};
+
+template <typename Job>
+double median_time(Job& job) {
   Histogram histogram;
+  for (int i = 0; i < 10000; ++i) time_once(job, histogram);
+  return static_cast<double>(histogram.quantile(0.5));
+}
+
+/// One that takes as long as the job.
+template <typename Job>
+Empty as_long_as(Job& job) {
+  constexpr int kTurns = 1000;
+  Empty none;
+  Empty some{kTurns};
+  const double least = median_time(none);
+  const double turn = (median_time(some) - least) / kTurns;
+  return {std::max(0, static_cast<int>((median_time(job) - least) / turn))};
+}
+
+void print(const char* prefix, const Histogram& histogram, double tick) {
+  for (const auto& [name, fraction] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"worst", 1.0}}) {
+    std::printf(", \"%s%s\": %.1f", prefix, name, tick * static_cast<double>(histogram.quantile(fraction)));
+  }
+}
+
+/// Prepares and times the job so many times, the empty one in turn with it where there is one, and prints a row.
+template <typename Job, typename Prepare>
+void time_all(const std::string& row, const char* caches, double calls, Job& job, Empty* empty, Prepare prepare,
+              Options& options) {
+  Histogram histogram;
+  Histogram idle;
   const long before = preemptions();
   for (double i = 0; i < calls; ++i) {
     prepare();
     time_once(job, histogram);
+    if (empty) time_once(*empty, idle);
   }
   std::printf("%s  {\"name\": \"%s\", \"caches\": \"%s\", \"calls\": %.0f, \"preempted\": %ld",
               options.first ? "" : ",\n", row.c_str(), caches, calls, preemptions() - before);
-  for (const auto& [name, fraction] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"worst", 1.0}}) {
-    std::printf(", \"%s\": %.1f", name, options.tick * static_cast<double>(histogram.quantile(fraction)));
-  }
+  print("", histogram, options.tick);
+  if (empty) print("empty_", idle, options.tick);
   std::printf("}");
   std::fflush(stdout);
   options.first = false;
@@ -162,18 +202,14 @@ void time_all(const std::string& row, const char* caches, double calls, Job& job
 template <typename Job>
 void time_warm_and_cold(const std::string& row, Options& options) {
   Job job;
-  for (int i = 0; i < 10000; ++i) job();
+  Empty empty = as_long_as(job);
   time_all(
-      row, "warm", options.warm_calls, job, [] {}, options);
+      row, "warm", options.warm_calls, job, &empty, [] {}, options);
 #ifdef FPBM_HAS_CLFLUSH
   time_all(
-      row, "cold", options.cold_calls, job, [&job] { evict(job); }, options);
+      row, "cold", options.cold_calls, job, nullptr, [&job] { evict(job); }, options);
 #endif
 }
-
-struct Nothing {
-  void operator()() noexcept { escape(*this); }
-};
 
 }  // namespace
 }  // namespace bench
@@ -192,6 +228,7 @@ int main(int argc, char** argv) {
   time_warm_and_cold<Step<Ours<PandaPosition, Law::kFPBM>>>("step/panda/position/fpbm", options);
   time_warm_and_cold<Step<Ours<PandaPose, Law::kMVN>>>("step/panda/pose/mvn", options);
   time_warm_and_cold<Step<Ours<PandaPose, Law::kFPBM>>>("step/panda/pose/fpbm", options);
+  time_warm_and_cold<Step<Ours<PandaPose, Law::kFPBM, true>>>("step/panda/pose/fpbm_damped", options);
   time_warm_and_cold<Measured>("loop/panda/pose/measured", options);
   time_warm_and_cold<Tick<false>>("loop/panda/pose/tick", options);
   std::printf("\n]\n");
