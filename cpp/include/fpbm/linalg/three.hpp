@@ -54,14 +54,6 @@ template <typename Scalar>
 
 /// The first of each, and the second of each.
 template <typename Scalar>
-[[nodiscard]] Pair<Scalar> firsts(const Pair<Scalar>& a, const Pair<Scalar>& b) noexcept {
-  return {a.first(), b.first()};
-}
-template <typename Scalar>
-[[nodiscard]] Pair<Scalar> seconds(const Pair<Scalar>& a, const Pair<Scalar>& b) noexcept {
-  return {a.second(), b.second()};
-}
-template <typename Scalar>
 [[nodiscard]] Three<Pair<Scalar>> firsts(const Three<Pair<Scalar>>& a, const Three<Pair<Scalar>>& b) noexcept {
   return {firsts(a.x, b.x), firsts(a.y, b.y), firsts(a.z, b.z)};
 }
