@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
 .PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly fuzz soak lint format stubs docs \
-        notebooks bench count sdist wheel clean
+        notebooks bench count stalls sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -30,6 +30,7 @@ help:
 	@echo 'make lint             formatting, static analysis, imports, types, stubs'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
+	@echo 'make stalls           the loads of each step that wait for stores, against those recorded'
 	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; write the Python stubs afresh'
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
@@ -129,6 +130,13 @@ count:
 	cmake --preset bench
 	cmake --build --preset bench --target bench_count
 	$(PYTHON) bench/count.py build/bench/bench/bench_count $(if $(RECORD),--record)
+
+# Fails where a step has more loads that wait for stores than recorded; RECORD=1 records them.
+stalls:
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
+	cmake --preset bench
+	cmake --build --preset bench --target bench_count
+	$(PYTHON) bench/stalls.py build/bench/bench/bench_count $(if $(RECORD),--record)
 
 sdist: $(VENV)/wheel
 	tools/sdist.sh $(BIN)/python
