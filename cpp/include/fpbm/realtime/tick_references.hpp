@@ -13,6 +13,12 @@ struct TickReferences {
   std::array<Reference<Space, Scalar>, 3> stages;
   Number<Scalar> dt;  ///< Length of the tick [s].
 
+  /// ahead(seconds): the reference some seconds into the tick; noexcept.
+  template <typename Ahead>
+  [[nodiscard]] static TickReferences of(Ahead&& ahead, Number<Scalar> dt) noexcept {
+    return {{ahead(Number<Scalar>(0)), ahead(dt / Number<Scalar>(2)), ahead(dt)}, dt};
+  }
+
   [[nodiscard]] const Reference<Space, Scalar>& operator()(Number<Scalar> seconds) const noexcept {
     return stages[seconds < dt ? (seconds > Number<Scalar>(0) ? 1 : 0) : 2];
   }

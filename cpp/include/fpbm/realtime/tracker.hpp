@@ -3,6 +3,7 @@
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/tick.hpp"
+#include "fpbm/realtime/tick_references.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/rk4.hpp"
@@ -31,6 +32,7 @@ class Tracker {
   static constexpr Level kLevel = Scheme::kLevel;
   static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
   using Target = Reference<Space, Scalar>;
+  using References = TickReferences<Space, Scalar>;
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
@@ -68,27 +70,26 @@ class Tracker {
 
   /// One tick toward a reference, which continues at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
-    return advance([&reference](Scalar seconds) noexcept { return ahead(reference, seconds); });
+    return advance(References::of([&](Scalar seconds) noexcept { return ahead(reference, seconds); }, kept_.dt()));
   }
 
   /// One tick behind a path follower, whose clock advances.
   template <typename Path>
   Result tick(PathFollower<Path>& follower) noexcept {
-    const Result result = advance([&follower](Scalar seconds) noexcept { return follower.ahead(seconds); });
+    const Result result = advance(References::of([&](Scalar t) noexcept { return follower.ahead(t); }, kept_.dt()));
     if (!kept_.stopping()) follower.advance(kept_.dt());
     return result;
   }
 
   /// One tick behind a filter of targets, which goes on where the arm stops, too.
   Result tick(TargetFilter<Space, Scalar>& filter) noexcept {
-    const Result result = advance([&filter](Scalar seconds) noexcept { return filter.ahead(seconds); });
+    const Result result = advance(References::of([&](Scalar t) noexcept { return filter.ahead(t); }, kept_.dt()));
     filter.advance();
     return result;
   }
 
-  /// One tick toward reference(seconds), for seconds into the tick; noexcept.
-  template <typename References>
-  Result advance(References&& reference) noexcept {
+  /// One tick toward references.
+  Result advance(References references) noexcept {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
@@ -96,12 +97,15 @@ class Tracker {
     X x = packed(state);
     X dx = x;
     loop.update(x);
-    const Target now = reference(Scalar(0));
+    const Target now = references.stages[0];
     watch(loop.kinematics, now, result);
+    if (correction.active()) {
+      for (Target& stage : references.stages) stage = correction(stage);
+    }
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(correction(reference(seconds)), stage_x, stage_dx);
+      return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
-    result.status = loop.resolve(correction(now), dx);
+    result.status = loop.resolve(references.stages[0], dx);
     const JointVector field = dx.col(0);
     if (!failed(result.status)) {
       result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));

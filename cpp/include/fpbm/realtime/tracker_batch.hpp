@@ -140,7 +140,8 @@ int track_batch(Batch& batch, const Path& path, const TimeGrid<typename Batch::S
   for (int k = 0; k < grid.samples(); ++k) {
     sample.index = k;
     sample.t = grid.time(k);
-    batch.tick({{follower.ahead(Scalar(0)), follower.ahead(dt / Scalar(2)), follower.ahead(dt)}, dt}, sample);
+    const auto ahead = [&follower](Scalar seconds) noexcept { return follower.ahead(seconds); };
+    batch.tick(TickReferences<Space, Scalar>::of(ahead, dt), sample);
     follower.advance(dt);
     if (!show(record, sample)) return k + 1;
   }
