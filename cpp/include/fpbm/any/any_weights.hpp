@@ -31,10 +31,14 @@ class AnyWeights {
     return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.solve(a); }, weights_);
   }
 
+  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
+    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); }, weights_);
+  }
+
   template <int M>
-  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> solve_transpose(
+  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> root_transpose(
       const Matrix<M, Eigen::Dynamic>& J) const noexcept {
-    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.solve_transpose(J); },
+    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.root_transpose(J); },
                       weights_);
   }
 

@@ -15,7 +15,7 @@ struct NoDrift {};
 
 /// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
 ///
-///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
+///   u = u₀ + J_W⁺(v − J u₀) = u₀ + C (JC)⁺(v − J u₀),   C Cᵀ = W⁻¹,   u₀ = z + drift.
 ///
 /// u: velocities or accelerations by level. drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ,
 /// or NoDrift. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
@@ -27,9 +27,9 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
                                               const Known& foreseen, Vector<N, Scalar>& u) noexcept {
-  const auto WinvJt = weights.solve_transpose(J);
+  Matrix<N, M, Scalar> rows = weights.root_transpose(J);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
-  const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
+  const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
   if (foreseen.answers(gram, u)) return Status::kOk;
   if (failed(status)) return status;
 
@@ -41,9 +41,11 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     if constexpr (kDrifts) u0 += drift(gram);
     if (braked) u0 -= gram.brake() * state.qd;
     const Vector<M, Scalar> rest = v - J.lazyProduct(u0);
-    result = u0 + WinvJt.lazyProduct(gram.solve(rest));
+    const Vector<N, Scalar> task = gram.motion(gram.shares(rest));
+    result = u0 + weights.root(task);
   } else {
-    result = WinvJt.lazyProduct(gram.solve(v));
+    const Vector<N, Scalar> task = gram.motion(gram.shares(v));
+    result = weights.root(task);
   }
   foreseen.settle(result);
   if (!is_finite(result)) return Status::kNotFinite;

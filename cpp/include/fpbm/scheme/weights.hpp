@@ -10,8 +10,9 @@
 /// large or too small. Each has the same functions:
 ///   times(a)            W a of a vector
 ///   solve(a)            W⁻¹a
-///   solve_transpose(J)  W⁻¹Jᵀ
-///   with_unit(J)        Jᵀ and W⁻¹Jᵀ side by side
+///   root(a)             C a, where C Cᵀ = W⁻¹
+///   root_transpose(J)   CᵀJᵀ
+///   with_unit(J)        Jᵀ and CᵀJᵀ side by side
 ///   inverse_bound()     a bound on the largest eigenvalue of W⁻¹
 ///   is_unit()           whether W = I
 ///   require_dof(n)      throws std::invalid_argument where W is for another number of joints
@@ -38,8 +39,13 @@ struct UnitWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve_transpose(const Eigen::MatrixBase<Derived>& J) const noexcept {
-    return J.derived().transpose();
+  [[nodiscard]] const Derived& root(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return a.derived();
+  }
+
+  template <int M, int N, typename Scalar>
+  [[nodiscard]] Matrix<N, M, Scalar> root_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
+    return J.transpose();
   }
 
   template <int M, int N, typename Scalar>
@@ -60,6 +66,7 @@ class DiagonalWeights {
     const Scalar least = weights.minCoeff();
     weights_ = weights / least;
     inverse_ = least * weights.cwiseInverse();
+    root_ = inverse_.cwiseSqrt();
   }
 
   /// In lanes: get(lane) is the weights of one lane.
@@ -69,9 +76,11 @@ class DiagonalWeights {
     const Eigen::Index dof = get(0).inverse_.size();
     result.weights_.resize(dof);
     result.inverse_.resize(dof);
+    result.root_.resize(dof);
     for (Eigen::Index i = 0; i < dof; ++i) {
       result.weights_(i) = Scalar([&](auto lane) { return get(lane).weights_(i); });
       result.inverse_(i) = Scalar([&](auto lane) { return get(lane).inverse_(i); });
+      result.root_(i) = Scalar([&](auto lane) { return get(lane).root_(i); });
     }
     return result;
   }
@@ -94,9 +103,14 @@ class DiagonalWeights {
     return inverse_.asDiagonal() * a.derived();
   }
 
+  template <typename Derived>
+  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return root_.asDiagonal() * a.derived();
+  }
+
   template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
-    return solve(J.transpose());
+  [[nodiscard]] Matrix<N, M, Scalar> root_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
+    return root(J.transpose());
   }
 
   template <int M>
@@ -104,8 +118,8 @@ class DiagonalWeights {
     Matrix<N, M, Pair<Scalar>> result;
     result.resize(J.cols(), J.rows());
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const Pair<Scalar> weight(Scalar(1), inverse_(i));
-      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * weight;
+      const Pair<Scalar> root(Scalar(1), root_(i));
+      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * root;
     }
     return result;
   }
@@ -118,6 +132,7 @@ class DiagonalWeights {
 
   Vector<N, Scalar> weights_;
   Vector<N, Scalar> inverse_;
+  Vector<N, Scalar> root_;
 };
 
 /// W dense.
@@ -139,6 +154,9 @@ class DenseWeights {
     const Scalar largest = inverse_.diagonal().maxCoeff();
     inverse_ /= largest;
     weights_ = largest * W;
+    root_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) root_.col(j) = cholesky.inverse_root(root_.col(j));
+    root_ /= std::sqrt(largest);
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
@@ -159,14 +177,19 @@ class DenseWeights {
     return inverse_.lazyProduct(a.derived());
   }
 
+  template <typename Derived>
+  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return root_.lazyProduct(a.derived());
+  }
+
   template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
-    return solve(J.transpose());
+  [[nodiscard]] Matrix<N, M, Scalar> root_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
+    return root_.transpose().lazyProduct(J.transpose());
   }
 
   template <int M>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    return side_by_side<N, M, Scalar>(J.transpose(), solve_transpose(J));
+    return side_by_side<N, M, Scalar>(J.transpose(), root_transpose(J));
   }
 
  private:
@@ -191,6 +214,7 @@ class DenseWeights {
 
   Matrix<N, N, Scalar> weights_;
   Matrix<N, N, Scalar> inverse_;
+  Matrix<N, N, Scalar> root_;
 };
 
 }  // namespace fpbm
