@@ -345,7 +345,8 @@ RealMatrix with_singular_values(Random& random, const RealVector& sigma, Eigen::
 template <int M, int N, typename Scalar, typename Weights>
 RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>& damping,
                           const Matrix<M, N, Scalar>& J) {
-  Matrix<N, M, Scalar> rows = weights.root_transpose(J);
+  const Matrix<N, M, Scalar> Jt = J.transpose();
+  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);
   DampedGram<M, N, Scalar> gram(damping, J);
   EXPECT_FALSE(failed(gram.factor(rows, weights.template inverse_bound<Scalar>())));
   Matrix<N, M, Scalar> inverse;

@@ -32,17 +32,20 @@ class RowFactor {
     Value largest(Scalar(0));
     Value squares[M];
     each(kFirst, kLast, [&](auto j) {
-      const Value square = dot(n, j, j);
+      const Value square = dot(n, [&](auto k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
       squares[j] = square;
       reciprocal_[j] = Value(Scalar(1)) / square;
       Value whole = square;  // |a_j|², by Pythagoras.
       each(kFirst, j, [&](auto k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
       largest = max(largest, whole);
       each(next(j), kLast, [&](auto i) {
-        const Value share = dot(n, i, j) * reciprocal_[j];
+        const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
         L_[i][j] = share;
         each(kFirst, n, [&](auto k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
       });
+    });
+    each(kFirst, kLast, [&](auto i) {
+      each(kFirst, i, [&](auto j) { lean_[i][j] = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }); });
     });
     const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
     Mask<Scalar> regular(true);
@@ -66,6 +69,19 @@ class RowFactor {
     Vector<M, Value> s = b;
     each(kFirst, kLast, [&](auto i) { each(kFirst, i, [&](auto j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
     each(kFirst, kLast, [&](auto i) { s.coeffRef(i) *= reciprocal_[i]; });
+    return s;
+  }
+
+  /// What a's part in the span of A's rows takes of each column of Q: from the first column on, each spared what those
+  /// before it have taken, which takes back what Q lacks of right angles.
+  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+    const auto n = extent<N>(Q_.rows());
+    Vector<M, Value> s;
+    each(kFirst, kLast, [&](auto i) {
+      Value along = dot(n, [&](auto k) { return Q_.coeff(k, i) * a.coeff(k); });
+      each(kFirst, i, [&](auto j) { along -= lean_[i][j] * s.coeff(j); });
+      s.coeffRef(i) = along * reciprocal_[i];
+    });
     return s;
   }
 
@@ -109,13 +125,14 @@ class RowFactor {
   }
 
  private:
-  template <typename Count, typename I, typename J>
-  [[nodiscard, gnu::always_inline]] Value dot([[maybe_unused]] Count n, I i, J j) const noexcept {
+  /// f(k) summed over the columns of A.
+  template <typename Count, typename F>
+  [[nodiscard, gnu::always_inline]] static Value dot([[maybe_unused]] Count n, const F& f) noexcept {
     if constexpr (std::is_same_v<Count, Constant<N>>) {
-      return total<0, N>([&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); });
+      return total<0, N>(f);
     } else {
-      Value sum = Q_.coeff(0, i) * Q_.coeff(0, j);
-      for (Eigen::Index k = 1; k < n; ++k) sum += Q_.coeff(k, i) * Q_.coeff(k, j);
+      Value sum = f(0);
+      for (Eigen::Index k = 1; k < n; ++k) sum += f(k);
       return sum;
     }
   }
@@ -136,6 +153,7 @@ class RowFactor {
 
   Matrix<N, M, Value> Q_;
   Value L_[M][M];        ///< Below the diagonal.
+  Value lean_[M][M];     ///< QᵀQ below the diagonal: zero, but for round-off.
   Value reciprocal_[M];  ///< 1 / D.
 };
 

@@ -103,6 +103,11 @@ class DampedGram {
     const Vector<M, Value> scaled = in_metres(b);
     return damps() ? damped_.solve(scaled) : factor_.shares(scaled);
   }
+  /// shares(J C a), of a motion itself.
+  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+    if (damps()) return damped_.solve(Vector<M, Value>(rows_->transpose().lazyProduct(a)));
+    return factor_.within(a);
+  }
   [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
     if (damps()) return rows_->lazyProduct(shares);
     return factor_.sum(shares);
