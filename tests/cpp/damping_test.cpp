@@ -345,12 +345,16 @@ RealMatrix with_singular_values(Random& random, const RealVector& sigma, Eigen::
 template <int M, int N, typename Scalar, typename Weights>
 RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>& damping,
                           const Matrix<M, N, Scalar>& J) {
-  const Matrix<N, M, Scalar> WinvJt = weights.solve_transpose(J);
+  const Matrix<N, M, Scalar> Jt = J.transpose();
+  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);
   DampedGram<M, N, Scalar> gram(damping, J);
-  EXPECT_FALSE(failed(gram.factor(WinvJt, weights.template inverse_bound<Scalar>())));
-  Matrix<M, M, Scalar> inverse;
-  for (int i = 0; i < M; ++i) inverse.col(i) = gram.solve(Vector<M, Scalar>::Unit(i));
-  return real(WinvJt) * real(inverse);
+  EXPECT_FALSE(failed(gram.factor(rows, weights.template inverse_bound<Scalar>())));
+  Matrix<N, M, Scalar> inverse;
+  for (int i = 0; i < M; ++i) {
+    const Vector<N, Scalar> column = gram.motion(gram.shares(Vector<M, Scalar>::Unit(i)));
+    inverse.col(i) = weights.root(column);
+  }
+  return real(inverse);
 }
 
 /// Of M singular values in N columns.

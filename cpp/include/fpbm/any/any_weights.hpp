@@ -27,14 +27,18 @@ class AnyWeights {
 
   // Calls, so that the large functions that use them stay small. The variant is never empty, so no visit throws.
   // NOLINTBEGIN(bugprone-exception-escape)
-  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> solve(const Vector<Eigen::Dynamic>& a) const noexcept {
-    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.solve(a); }, weights_);
+  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
+    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); }, weights_);
   }
 
-  template <int M>
-  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M> solve_transpose(
-      const Matrix<M, Eigen::Dynamic>& J) const noexcept {
-    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, M> { return weights.solve_transpose(J); },
+  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> unroot(const Vector<Eigen::Dynamic>& a) const noexcept {
+    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.unroot(a); }, weights_);
+  }
+
+  template <int Columns>
+  [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, Columns> root_transpose(
+      const Matrix<Eigen::Dynamic, Columns>& A) const noexcept {
+    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, Columns> { return weights.root_transpose(A); },
                       weights_);
   }
 

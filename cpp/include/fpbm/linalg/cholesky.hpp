@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "fpbm/core/status.hpp"
@@ -64,6 +65,17 @@ class Cholesky {
     for (Eigen::Index i = m - 1; i >= 0; --i) {
       x(i) *= reciprocal_[i];
       for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
+    }
+    return x;
+  }
+
+  /// L⁻ᵀD^(−1/2) a: a root of A⁻¹, which times its transpose is A⁻¹.
+  [[nodiscard]] Vector<M, Value> inverse_root(const Vector<M, Value>& a) const noexcept {
+    using std::sqrt;
+    Vector<M, Value> x = a;
+    for (Eigen::Index i = size_ - 1; i >= 0; --i) {
+      x(i) *= sqrt(reciprocal_[i]);
+      for (Eigen::Index j = size_ - 1; j > i; --j) x(i) -= L_[j][i] * x(j);
     }
     return x;
   }

@@ -106,11 +106,10 @@ struct AccelerationScheme {
       if constexpr (!kUnit) {
         if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
       }
-      const auto drift = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
-        const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(gram.solve(xd));
-        return weights.solve(Jdtmu);
+      const auto force = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
+        return alpha * Jd.transpose().lazyProduct(gram.force(gram.shares(xd)));
       };
-      return least_norm<kLevel, kTurns>(weights, b, drift, null_space, singular, J, length, state, foreseen, qdd);
+      return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd);
     }
   }
 
@@ -119,38 +118,42 @@ struct AccelerationScheme {
   [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
                                   const State<N, Scalar>& state, const Known& foreseen,
                                   Vector<N, Scalar>& qdd) const noexcept {
-    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoDrift{}, null_space, singular, J, length, state, foreseen,
+    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoForce{}, null_space, singular, J, length, state, foreseen,
                                       qdd);
   }
 
-  /// Two factorisations, made side by side:
+  /// Two factors, of J and of JC with C Cᵀ = W⁻¹, made side by side:
   ///
-  ///   qdd = (1−α) Jᵀλ₁ + W⁻¹(α Jdᵀμ + Jᵀλ₂) + z,
-  ///   λ₁ = (JJᵀ)⁻¹b,  μ = (JW⁻¹Jᵀ)⁻¹xd,  λ₂ = (JW⁻¹Jᵀ)⁻¹(α b − α JW⁻¹Jdᵀμ − J z).
+  ///   qdd = (1−α) J⁺b + C [(JC)⁺(α b − JC y) + y],   y = C⁻¹u = α CᵀJdᵀμ + C⁻¹z,   μ = (JW⁻¹Jᵀ)⁻¹xd.
   template <int kTurns, int M, typename Known>
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
                                                 const Scalar& length, const State<N, Scalar>& state,
                                                 const Known& foreseen, Vector<N, Scalar>& qdd) const noexcept {
-    DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of JJᵀ and JW⁻¹Jᵀ.
-    const Matrix<N, M, Pair<Scalar>> WinvJt = weights.with_unit(J);    // Jᵀ and W⁻¹Jᵀ.
-    const Status status = gram.factor(WinvJt, Scalar(1));
+    DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of J and JC.
+    Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);            // Jᵀ and (JC)ᵀ.
+    const Status status = gram.factor(rows, Scalar(1));
     if (foreseen.answers(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;
 
-    const Vector<M, Pair<Scalar>> both = gram.solve(side_by_side<M, 1, Scalar>(b, xd));
-    const Vector<M, Scalar> lambda1 = first<M, 1, Scalar>(both);
-    const Vector<M, Scalar> mu = second<M, 1, Scalar>(both);
-    const Vector<N, Scalar> Jdtmu = alpha * Jd.transpose().lazyProduct(mu);
-    Vector<N, Scalar> u = weights.solve(Jdtmu);
-    if (null_space.template active<kLevel>()) u += null_space.template at<kLevel>(state);
-    if (status == Status::kDamped) u -= gram.brake() * state.qd;
-    const Vector<M, Scalar> rest = alpha * b - J.lazyProduct(u);
-    const Vector<M, Scalar> lambda2 = second<M, 1, Scalar>(gram.solve(side_by_side<M, 1, Scalar>(rest, rest)));
-
-    const Vector<M, Scalar> shared = (Scalar(1) - alpha) * lambda1;
-    const Vector<N, Pair<Scalar>> parts = WinvJt.lazyProduct(side_by_side<M, 1, Scalar>(shared, lambda2));
-    Vector<N, Scalar> result = u + first<N, 1, Scalar>(parts) + second<N, 1, Scalar>(parts);
+    const Vector<M, Pair<Scalar>> both = gram.shares(side_by_side<M, 1, Scalar>(b, xd));
+    const Vector<M, Scalar> mu = second<M, 1, Scalar>(gram.force(both));
+    const Vector<N, Scalar> force = alpha * Jd.transpose().lazyProduct(mu);
+    Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
+    const bool braked = status == Status::kDamped;
+    if (braked || null_space.template active<kLevel>()) {
+      Vector<N, Scalar> z = null_space.template at<kLevel>(state);
+      if (braked) z -= gram.brake() * state.qd;
+      y += weights.unroot(z);
+    }
+    const Vector<M, Scalar> b_shares = second<M, 1, Scalar>(gram.shares(side_by_side<M, 1, Scalar>(b, b)));
+    const Vector<M, Scalar> u_shares = second<M, 1, Scalar>(gram.within(side_by_side<N, 1, Scalar>(y, y)));
+    const Vector<M, Scalar> weighted = alpha * b_shares - u_shares;
+    const Vector<M, Scalar> even = (Scalar(1) - alpha) * first<M, 1, Scalar>(both);
+    const Vector<N, Pair<Scalar>> parts = gram.motion(side_by_side<M, 1, Scalar>(even, weighted));
+    y += second<N, 1, Scalar>(parts);
+    Vector<N, Scalar> result = weights.root(y);
+    result += first<N, 1, Scalar>(parts);
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;
     qdd = result;

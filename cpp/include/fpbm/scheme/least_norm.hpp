@@ -10,41 +10,43 @@
 
 namespace fpbm {
 
-/// Drift of a law that has none.
-struct NoDrift {};
+/// f of a law that has none.
+struct NoForce {};
 
 /// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
 ///
-///   u = u₀ + J_W⁺(v − J u₀) = u₀ + W⁻¹Jᵀλ,   λ = (JW⁻¹Jᵀ)⁻¹(v − J u₀),   u₀ = z + drift.
+///   u = u₀ + J_W⁺(v − J u₀) = C (y₀ + (JC)⁺(v − JC y₀)),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
 ///
-/// u: velocities or accelerations by level. drift(gram) is the part of u₀ that needs the factorised Gram matrix JW⁻¹Jᵀ,
-/// or NoDrift. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
+/// u: velocities or accelerations by level. force(gram) is f, which needs the factorised Gram matrix JW⁻¹Jᵀ, or
+/// NoForce. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
 /// Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large translation unit may
 /// not inline small calls.
-template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Drift, typename Known>
-[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Drift& drift,
+template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
+[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
                                               const Known& foreseen, Vector<N, Scalar>& u) noexcept {
-  const auto WinvJt = weights.solve_transpose(J);
+  const Matrix<N, M, Scalar> Jt = J.transpose();
+  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
-  const Status status = gram.factor(WinvJt, weights.template inverse_bound<Scalar>());
+  const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
   if (foreseen.answers(gram, u)) return Status::kOk;
   if (failed(status)) return status;
 
-  constexpr bool kDrifts = !std::is_same_v<Drift, NoDrift>;
+  constexpr bool kForced = !std::is_same_v<Force, NoForce>;
   const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
-  Vector<N, Scalar> result;
-  if (kDrifts || braked || null_space.template active<kLevel>()) {
-    Vector<N, Scalar> u0 = null_space.template at<kLevel>(state);
-    if constexpr (kDrifts) u0 += drift(gram);
-    if (braked) u0 -= gram.brake() * state.qd;
-    const Vector<M, Scalar> rest = v - J.lazyProduct(u0);
-    result = u0 + WinvJt.lazyProduct(gram.solve(rest));
+  Vector<N, Scalar> y;
+  if (kForced || braked || null_space.template active<kLevel>()) {
+    Vector<N, Scalar> z = null_space.template at<kLevel>(state);
+    if (braked) z -= gram.brake() * state.qd;
+    y = weights.unroot(z);
+    if constexpr (kForced) y += weights.root_transpose(force(gram));
+    y += gram.motion(gram.shares(v) - gram.within(y));
   } else {
-    result = WinvJt.lazyProduct(gram.solve(v));
+    y = gram.motion(gram.shares(v));
   }
+  Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);
   if (!is_finite(result)) return Status::kNotFinite;
   u = result;

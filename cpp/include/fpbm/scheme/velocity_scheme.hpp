@@ -64,7 +64,7 @@ struct VelocityScheme {
   [[nodiscard]] Status by_gram(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Scalar& length,
                                const State<N, Scalar>& state, const Known& foreseen,
                                Vector<N, Scalar>& qd) const noexcept {
-    return least_norm<kLevel, kTurns>(weights, v, NoDrift{}, null_space, singular, J, length, state, foreseen, qd);
+    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, foreseen, qd);
   }
 };
 

@@ -8,10 +8,11 @@
 ///
 /// Only the ratios of W matter, so each kind keeps W scaled so that W⁻¹ has a largest diagonal entry of 1: no W is too
 /// large or too small. Each has the same functions:
-///   times(a)            W a of a vector
-///   solve(a)            W⁻¹a
-///   solve_transpose(J)  W⁻¹Jᵀ
-///   with_unit(J)        Jᵀ and W⁻¹Jᵀ side by side
+///   times(a)            W a
+///   root(a)             C a, where C Cᵀ = W⁻¹
+///   unroot(a)           C⁻¹a
+///   root_transpose(A)   CᵀA of a vector, or of Jᵀ
+///   with_unit(J)        Jᵀ and CᵀJᵀ side by side
 ///   inverse_bound()     a bound on the largest eigenvalue of W⁻¹
 ///   is_unit()           whether W = I
 ///   require_dof(n)      throws std::invalid_argument where W is for another number of joints
@@ -33,13 +34,18 @@ struct UnitWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] const Derived& solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
+  [[nodiscard]] const Derived& root(const Eigen::MatrixBase<Derived>& a) const noexcept {
     return a.derived();
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve_transpose(const Eigen::MatrixBase<Derived>& J) const noexcept {
-    return J.derived().transpose();
+  [[nodiscard]] const Derived& unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return a.derived();
+  }
+
+  template <typename Derived>
+  [[nodiscard]] const Derived& root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return A.derived();
   }
 
   template <int M, int N, typename Scalar>
@@ -59,24 +65,24 @@ class DiagonalWeights {
     validation::require_positive("weights", weights);
     const Scalar least = weights.minCoeff();
     weights_ = weights / least;
-    inverse_ = least * weights.cwiseInverse();
+    root_ = (least * weights.cwiseInverse()).cwiseSqrt();
   }
 
   /// In lanes: get(lane) is the weights of one lane.
   template <typename Get>
   [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
     DiagonalWeights result;
-    const Eigen::Index dof = get(0).inverse_.size();
+    const Eigen::Index dof = get(0).root_.size();
     result.weights_.resize(dof);
-    result.inverse_.resize(dof);
+    result.root_.resize(dof);
     for (Eigen::Index i = 0; i < dof; ++i) {
       result.weights_(i) = Scalar([&](auto lane) { return get(lane).weights_(i); });
-      result.inverse_(i) = Scalar([&](auto lane) { return get(lane).inverse_(i); });
+      result.root_(i) = Scalar([&](auto lane) { return get(lane).root_(i); });
     }
     return result;
   }
 
-  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.size(), dof); }
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", root_.size(), dof); }
   [[nodiscard]] static constexpr bool is_unit() noexcept { return false; }
 
   template <typename>
@@ -90,13 +96,18 @@ class DiagonalWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return inverse_.asDiagonal() * a.derived();
+  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return root_.asDiagonal() * a.derived();
   }
 
-  template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
-    return solve(J.transpose());
+  template <typename Derived>
+  [[nodiscard]] auto unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return a.cwiseQuotient(root_);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return root_.asDiagonal() * A.derived();
   }
 
   template <int M>
@@ -104,8 +115,8 @@ class DiagonalWeights {
     Matrix<N, M, Pair<Scalar>> result;
     result.resize(J.cols(), J.rows());
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const Pair<Scalar> weight(Scalar(1), inverse_(i));
-      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * weight;
+      const Pair<Scalar> root(Scalar(1), root_(i));
+      for (Eigen::Index j = 0; j < J.rows(); ++j) result(i, j) = Pair<Scalar>(J(j, i)) * root;
     }
     return result;
   }
@@ -117,7 +128,7 @@ class DiagonalWeights {
   DiagonalWeights() = default;
 
   Vector<N, Scalar> weights_;
-  Vector<N, Scalar> inverse_;
+  Vector<N, Scalar> root_;
 };
 
 /// W dense.
@@ -134,19 +145,19 @@ class DenseWeights {
       validation::fail(validation::element("weights", i, i), static_cast<double>(W(i, i)),
                        "larger: W is not positive definite");
     }
-    inverse_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
-    for (Eigen::Index j = 0; j < W.cols(); ++j) inverse_.col(j) = cholesky.solve(inverse_.col(j));
-    const Scalar largest = inverse_.diagonal().maxCoeff();
-    inverse_ /= largest;
+    root_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
+    for (Eigen::Index j = 0; j < W.cols(); ++j) root_.col(j) = cholesky.inverse_root(root_.col(j));
+    const Scalar largest = root_.rowwise().squaredNorm().maxCoeff();
+    root_ /= std::sqrt(largest);
     weights_ = largest * W;
   }
 
-  void require_dof(Eigen::Index dof) const { validation::require_size("weights", inverse_.rows(), dof); }
+  void require_dof(Eigen::Index dof) const { validation::require_size("weights", root_.rows(), dof); }
   [[nodiscard]] static constexpr bool is_unit() noexcept { return false; }
 
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
-    return inverse_.trace();
+    return root_.squaredNorm();
   }
 
   template <typename Derived>
@@ -155,18 +166,24 @@ class DenseWeights {
   }
 
   template <typename Derived>
-  [[nodiscard]] auto solve(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return inverse_.lazyProduct(a.derived());
+  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    return root_.lazyProduct(a.derived());
   }
 
-  template <int M>
-  [[nodiscard]] Matrix<N, M, Scalar> solve_transpose(const Matrix<M, N, Scalar>& J) const noexcept {
-    return solve(J.transpose());
+  template <typename Derived>
+  [[nodiscard]] Vector<N, Scalar> unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
+    const Vector<N, Scalar> Wa = times(a);
+    return root_transpose(Wa);
+  }
+
+  template <typename Derived>
+  [[nodiscard]] auto root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
+    return root_.transpose().lazyProduct(A.derived());
   }
 
   template <int M>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    return side_by_side<N, M, Scalar>(J.transpose(), solve_transpose(J));
+    return side_by_side<N, M, Scalar>(J.transpose(), root_transpose(J.transpose()));
   }
 
  private:
@@ -190,7 +207,7 @@ class DenseWeights {
   }
 
   Matrix<N, N, Scalar> weights_;
-  Matrix<N, N, Scalar> inverse_;
+  Matrix<N, N, Scalar> root_;
 };
 
 }  // namespace fpbm

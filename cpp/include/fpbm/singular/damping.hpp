@@ -5,6 +5,7 @@
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 
 namespace fpbm {
@@ -61,9 +62,9 @@ template <int kTurns, int M, int N, typename Scalar>
   return sum;
 }
 
-/// Factor of a Gram matrix JW⁻¹Jᵀ, damped where J is nearly singular. With Value = Pair<Scalar>, of two with different
-/// W side by side. With damping it is the factor of D(JW⁻¹Jᵀ)D + Δ, where D multiplies the last kTurns rows, which are
-/// angular, by length [m].
+/// J C with C Cᵀ = W⁻¹, and the Gram matrix JW⁻¹Jᵀ, solved; damped where J is nearly singular. With Value =
+/// Pair<Scalar>, of two with different W side by side. Rows of J count in metres: D multiplies the last kTurns rows,
+/// which are angular, by length [m].
 template <int M, int N, typename Value, int kTurns = 0>
 class DampedGram {
  public:
@@ -76,52 +77,53 @@ class DampedGram {
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
              const Scalar& length = Scalar(1)) = delete;
 
-  /// Factorises JW⁻¹Jᵀ + Δ, given W⁻¹Jᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
-  /// Returns kDamped where Δ is not zero, or why there is no factor.
-  template <typename Derived>
-  [[nodiscard]] Status factor(const Eigen::MatrixBase<Derived>& weighted, Scalar inverse_bound) noexcept {
-    Matrix<M, M, Value> gram;  // Its lower triangle.
-    const auto rows = extent<M>(J_.rows());
-    const auto columns = extent<N>(J_.cols());
-    constexpr Constant<0> kFirst{};
-    each(kFirst, rows, [&](auto i) {
-      each(kFirst, next(i), [&](auto j) {
-        Value sum = Value(J_.coeff(i, 0)) * weighted.derived().coeff(0, j);
-        each(next(kFirst), columns, [&](auto k) { sum += Value(J_.coeff(i, k)) * weighted.derived().coeff(k, j); });
-        if (i >= kLengths) sum *= Value(length_);
-        if (j >= kLengths) sum *= Value(length_);
-        gram.coeffRef(i, j) = sum;
-      });
-    });
-    const Status status = cholesky_.factor(gram);
+  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first). The rows
+  /// must outlive it; angular ones are put in metres. Returns kDamped where Δ is not zero, or why there is no factor.
+  [[nodiscard]] Status factor(Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
+    for (int i = kLengths; i < M; ++i) rows.col(i) *= Value(length_);
+    rows_ = &rows;
+    const Status status = factor_.factor(rows);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
     const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
     const Scalar bound = threshold * inverse_bound;
-    const Mask<Scalar> regular = bound * first(cholesky_.inverse_trace()) <= Scalar(1);
+    const Mask<Scalar> regular = bound * first(factor_.inverse_trace()) <= Scalar(1);
     if constexpr (kInLanes<Scalar>) {
-      cholesky_.set_nan_unless(regular);
+      factor_.set_nan_unless(regular);
       return status;
     } else {
-      return status == Status::kOk && regular ? status : damped(gram, threshold, status);
+      return status == Status::kOk && regular ? status : damped(threshold, status);
     }
   }
 
-  [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
-    if constexpr (kTurns == 0) {
-      return cholesky_.solve(b);
-    } else {
-      Vector<M, Value> scaled = b;
-      for (int i = kLengths; i < M; ++i) scaled(i) *= Value(length_);
-      Vector<M, Value> x = cholesky_.solve(scaled);
-      for (int i = kLengths; i < M; ++i) x(i) *= Value(length_);
-      return x;
-    }
+  /// What the motion that does b is made of, which two functions make use of: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b,
+  /// is motion(shares(b)), and (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
+  [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+    const Vector<M, Value> scaled = in_metres(b);
+    return damps() ? damped_.solve(scaled) : factor_.shares(scaled);
+  }
+  /// shares(J C a), of a motion itself.
+  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+    if (damps()) return damped_.solve(Vector<M, Value>(rows_->transpose().lazyProduct(a)));
+    return factor_.within(a);
+  }
+  [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
+    if (damps()) return rows_->lazyProduct(shares);
+    return factor_.sum(shares);
+  }
+  [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
+    return in_metres(damps() ? shares : factor_.back(shares));
   }
 
   /// Whether Δ is not zero.
-  [[nodiscard]] bool damps() const noexcept { return lost_ > Scalar(0); }
+  [[nodiscard]] bool damps() const noexcept {
+    if constexpr (kInLanes<Scalar>) {
+      return false;
+    } else {
+      return lost_ > Scalar(0);
+    }
+  }
 
   /// Additional damping of the null space [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
@@ -129,25 +131,35 @@ class DampedGram {
  private:
   static constexpr int kLengths = M - kTurns;
 
-  [[nodiscard, gnu::noinline]] Status damped(Matrix<M, M, Value>& gram, Scalar threshold, Status undamped) noexcept {
+  /// D b.
+  [[nodiscard]] Vector<M, Value> in_metres(const Vector<M, Value>& b) const noexcept {
+    Vector<M, Value> scaled = b;
+    for (int i = kLengths; i < M; ++i) scaled(i) *= Value(length_);
+    return scaled;
+  }
+
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
     Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());
     even.template rightCols<kTurns>() *= length_;
     even.template bottomRows<kTurns>() *= length_;
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
+    Matrix<M, M, Value> gram = rows_->transpose().lazyProduct(*rows_);
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
     }
-    const Status status = cholesky_.factor(gram);
+    const Status status = damped_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;
   }
 
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  Cholesky<M, Value> cholesky_;
-  Scalar lost_{0};  ///< tr Δ/ε²: about the number of lost directions.
+  const Matrix<N, M, Value>* rows_ = nullptr;  ///< (DJC)ᵀ
+  RowFactor<M, N, Value> factor_;              ///< Of DJC.
+  Cholesky<M, Value> damped_;                  ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
+  Scalar lost_{0};                             ///< tr Δ/ε²: about the number of lost directions.
 };
 
 }  // namespace fpbm

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <limits>
+#include <type_traits>
+
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/total.hpp"
+
+namespace fpbm {
+
+/// Factor A = L Qᵀ of a matrix of M rows, M ≤ N, by Gram and Schmidt's method, modified: L has ones on its diagonal,
+/// the columns of Q are at right angles, and AAᵀ = L D Lᵀ with the squares D of their lengths.
+///
+/// L and Q are those of a matrix that is A to round-off, but for the condition of A times round-off in Q (Björck,
+/// "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967). So that condition enters the
+/// solutions once, and not squared as with a factor of AAᵀ. No root; M divisions. Value = Pair<Scalar> factorises two
+/// matrices at once.
+template <int M, int N, typename Value>
+class RowFactor {
+ public:
+  using Scalar = typename ScalarOf<Value>::type;
+
+  /// Factorises A, given Aᵀ. Returns kSingular where a row is lost in round-off, kNotFinite where A is not finite. In
+  /// lanes it returns kOk, and the solutions of a lane without a factor are NaN.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& At) noexcept {
+    using std::max;
+    Q_ = At;
+    const auto n = extent<N>(At.rows());
+    Value largest(Scalar(0));
+    Value squares[M];
+    each(kFirst, kLast, [&](auto j) {
+      const Value square = dot(n, [&](auto k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
+      squares[j] = square;
+      reciprocal_[j] = Value(Scalar(1)) / square;
+      Value whole = square;  // |a_j|², by Pythagoras.
+      each(kFirst, j, [&](auto k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
+      largest = max(largest, whole);
+      each(next(j), kLast, [&](auto i) {
+        const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
+        L_[i][j] = share;
+        each(kFirst, n, [&](auto k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
+      });
+    });
+    each(kFirst, kLast, [&](auto i) {
+      each(kFirst, i, [&](auto j) { lean_[i][j] = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }); });
+    });
+    const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
+    Mask<Scalar> regular(true);
+    each(kFirst, kLast, [&](auto j) { regular = regular && squares[j] > smallest; });
+    if constexpr (kInLanes<Scalar>) {
+      set_nan_unless(regular);
+      return Status::kOk;
+    } else {
+      return regular ? Status::kOk : lost(At);
+    }
+  }
+
+  /// Sets all solutions of a lane to NaN where its mask is false.
+  void set_nan_unless(const Mask<Scalar>& truth) noexcept {
+    fpbm::set_nan_unless(truth, reciprocal_[0]);
+    fpbm::set_nan_unless(truth, reciprocal_[M - 1]);
+  }
+
+  /// D⁻¹L⁻¹b: what A⁺b takes of each column of Q.
+  [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+    Vector<M, Value> s = b;
+    each(kFirst, kLast, [&](auto i) { each(kFirst, i, [&](auto j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
+    each(kFirst, kLast, [&](auto i) { s.coeffRef(i) *= reciprocal_[i]; });
+    return s;
+  }
+
+  /// What a's part in the span of A's rows takes of each column of Q: from the first column on, each spared what those
+  /// before it have taken, which takes back what Q lacks of right angles.
+  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+    const auto n = extent<N>(Q_.rows());
+    Vector<M, Value> s;
+    each(kFirst, kLast, [&](auto i) {
+      Value along = dot(n, [&](auto k) { return Q_.coeff(k, i) * a.coeff(k); });
+      each(kFirst, i, [&](auto j) { along -= lean_[i][j] * s.coeff(j); });
+      s.coeffRef(i) = along * reciprocal_[i];
+    });
+    return s;
+  }
+
+  /// Q s.
+  [[nodiscard]] Vector<N, Value> sum(const Vector<M, Value>& s) const noexcept {
+    Vector<N, Value> y;
+    y.resize(Q_.rows());
+    each(kFirst, extent<N>(Q_.rows()), [&](auto k) {
+      Value at = s.coeff(0) * Q_.coeff(k, 0);
+      each(next(kFirst), kLast, [&](auto i) { at += s.coeff(i) * Q_.coeff(k, i); });
+      y.coeffRef(k) = at;
+    });
+    return y;
+  }
+
+  /// (AAᵀ)⁻¹b = L⁻ᵀs, given these shares of b.
+  [[nodiscard]] Vector<M, Value> back(const Vector<M, Value>& s) const noexcept {
+    Vector<M, Value> x = s;
+    for (int i = M - 2; i >= 0; --i) {
+      for (int j = M - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
+    }
+    return x;
+  }
+
+  /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the least singular value of A, tight within a
+  /// factor M.
+  [[nodiscard]] Value inverse_trace() const noexcept {
+    Value inverse[M][M];  // −L⁻¹ below the diagonal.
+    Value trace = reciprocal_[0];
+    each(next(kFirst), kLast, [&](auto i) {
+      Value row = reciprocal_[i];
+      each(kFirst, i, [&](auto j) {
+        Value entry = L_[i][j];
+        each(next(j), i, [&](auto k) { entry -= L_[i][k] * inverse[k][j]; });
+        inverse[i][j] = entry;
+        row += entry * entry * reciprocal_[i];
+      });
+      trace += row;
+    });
+    return trace;
+  }
+
+ private:
+  /// f(k) summed over the columns of A.
+  template <typename Count, typename F>
+  [[nodiscard, gnu::always_inline]] static Value dot([[maybe_unused]] Count n, const F& f) noexcept {
+    if constexpr (std::is_same_v<Count, Constant<N>>) {
+      return total<0, N>(f);
+    } else {
+      Value sum = f(0);
+      for (Eigen::Index k = 1; k < n; ++k) sum += f(k);
+      return sum;
+    }
+  }
+
+  [[nodiscard, gnu::noinline]] static Status lost(const Matrix<N, M, Value>& At) noexcept {
+    for (int i = 0; i < M; ++i) {
+      Value square(Scalar(0));
+      for (Eigen::Index k = 0; k < At.rows(); ++k) square += At(k, i) * At(k, i);
+      if (!is_finite(square)) return Status::kNotFinite;
+    }
+    return Status::kSingular;
+  }
+
+  /// Least square of a column of Q, relative to the largest of a row of A, that is taken for more than round-off.
+  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
+  static constexpr Constant<0> kFirst{};
+  static constexpr Constant<M> kLast{};
+
+  Matrix<N, M, Value> Q_;
+  Value L_[M][M];        ///< Below the diagonal.
+  Value lean_[M][M];     ///< QᵀQ below the diagonal: zero, but for round-off.
+  Value reciprocal_[M];  ///< 1 / D.
+};
+
+}  // namespace fpbm
