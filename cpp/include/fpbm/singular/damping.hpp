@@ -97,23 +97,38 @@ class DampedGram {
     }
   }
 
-  /// What the motion that does b is made of, which two functions make use of: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b,
-  /// is motion(shares(b)), and (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
-  [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
-    const Vector<M, Value> scaled = in_metres(b);
-    return damps() ? damped_.solve(scaled) : factor_.shares(scaled);
-  }
-  /// shares(J C a), of a motion itself.
-  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
-    if (damps()) return damped_.solve(Vector<M, Value>(rows_->transpose().lazyProduct(a)));
-    return factor_.within(a);
-  }
-  [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
-    if (damps()) return rows_->lazyProduct(shares);
-    return factor_.sum(shares);
-  }
-  [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
-    return in_metres(damps() ? shares : factor_.back(shares));
+  /// The solutions: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b, is motion(shares(b)); (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
+  template <bool kDamped>
+  struct Solutions {
+    const DampedGram& of;
+
+    [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+      const Vector<M, Value> scaled = of.in_metres(b);
+      if constexpr (kDamped) return of.damped_.solve(scaled);
+      return of.factor_.shares(scaled);
+    }
+    /// shares(J C a), of a motion itself.
+    [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+      if constexpr (kDamped) return of.damped_.solve(Vector<M, Value>(of.rows_->transpose().lazyProduct(a)));
+      return of.factor_.within(a);
+    }
+    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return of.rows_->lazyProduct(shares);
+      return of.factor_.sum(shares);
+    }
+    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return of.in_metres(shares);
+      return of.in_metres(of.factor_.back(shares));
+    }
+  };
+
+  /// f(solutions): compiled for both kinds, so that the usual one has no branches in it.
+  template <typename F>
+  [[nodiscard, gnu::always_inline]] auto solved(const F& f) const noexcept {
+    if constexpr (!kInLanes<Scalar>) {
+      if (damps()) return f(Solutions<true>{*this});
+    }
+    return f(Solutions<false>{*this});
   }
 
   /// Whether Δ is not zero.
