@@ -131,7 +131,7 @@ struct AccelerationScheme {
                                                 const Scalar& length, const State<N, Scalar>& state,
                                                 const Known& foreseen, Vector<N, Scalar>& qdd) const noexcept {
     DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of J and JC.
-    Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);            // Jᵀ and (JC)ᵀ.
+    const Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);      // Jᵀ and (JC)ᵀ.
     const Status status = gram.factor(rows, Scalar(1));
     if (foreseen.answers(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;

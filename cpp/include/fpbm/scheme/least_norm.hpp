@@ -28,7 +28,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
                                               const Scalar& length, const State<N, Scalar>& state,
                                               const Known& foreseen, Vector<N, Scalar>& u) noexcept {
   const Matrix<N, M, Scalar> Jt = J.transpose();
-  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
+  const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
   if (foreseen.answers(gram, u)) return Status::kOk;

@@ -77,12 +77,12 @@ class DampedGram {
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
              const Scalar& length = Scalar(1)) = delete;
 
-  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first). The rows
-  /// must outlive it; angular ones are put in metres. Returns kDamped where Δ is not zero, or why there is no factor.
-  [[nodiscard]] Status factor(Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
-    for (int i = kLengths; i < M; ++i) rows.col(i) *= Value(length_);
-    rows_ = &rows;
-    const Status status = factor_.factor(rows);
+  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
+  /// Returns kDamped where Δ is not zero, or why there is no factor.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
+    rows_ = rows;
+    for (int i = kLengths; i < M; ++i) rows_.col(i) *= Value(length_);
+    const Status status = factor_.factor(rows_);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
@@ -109,11 +109,11 @@ class DampedGram {
     }
     /// shares(J C a), of a motion itself.
     [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
-      if constexpr (kDamped) return of.damped_.solve(Vector<M, Value>(of.rows_->transpose().lazyProduct(a)));
+      if constexpr (kDamped) return of.damped_.solve(Vector<M, Value>(of.rows_.transpose().lazyProduct(a)));
       return of.factor_.within(a);
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
-      if constexpr (kDamped) return of.rows_->lazyProduct(shares);
+      if constexpr (kDamped) return of.rows_.lazyProduct(shares);
       return of.factor_.sum(shares);
     }
     [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
@@ -160,7 +160,7 @@ class DampedGram {
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram = rows_->transpose().lazyProduct(*rows_);
+    Matrix<M, M, Value> gram = rows_.transpose().lazyProduct(rows_);
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
     }
@@ -171,10 +171,10 @@ class DampedGram {
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  const Matrix<N, M, Value>* rows_ = nullptr;  ///< (DJC)ᵀ
-  RowFactor<M, N, Value> factor_;              ///< Of DJC.
-  Cholesky<M, Value> damped_;                  ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
-  Scalar lost_{0};                             ///< tr Δ/ε²: about the number of lost directions.
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ
+  RowFactor<M, N, Value> factor_;  ///< Of DJC.
+  Cholesky<M, Value> damped_;      ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
+  Scalar lost_{0};                 ///< tr Δ/ε²: about the number of lost directions.
 };
 
 }  // namespace fpbm
