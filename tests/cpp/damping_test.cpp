@@ -346,12 +346,14 @@ template <int M, int N, typename Scalar, typename Weights>
 RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>& damping,
                           const Matrix<M, N, Scalar>& J) {
   const Matrix<N, M, Scalar> Jt = J.transpose();
-  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);
+  const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);
   DampedGram<M, N, Scalar> gram(damping, J);
   EXPECT_FALSE(failed(gram.factor(rows, weights.template inverse_bound<Scalar>())));
   Matrix<N, M, Scalar> inverse;
   for (int i = 0; i < M; ++i) {
-    const Vector<N, Scalar> column = gram.motion(gram.shares(Vector<M, Scalar>::Unit(i)));
+    const Vector<N, Scalar> column = gram.solved([i](const auto& solutions) -> Vector<N, Scalar> {
+      return solutions.motion(solutions.shares(Vector<M, Scalar>::Unit(i)));
+    });
     inverse.col(i) = weights.root(column);
   }
   return real(inverse);

@@ -26,18 +26,16 @@ class RowFactor {
   /// Factorises A, given Aᵀ. Returns kSingular where a row is lost in round-off, kNotFinite where A is not finite. In
   /// lanes it returns kOk, and the solutions of a lane without a factor are NaN.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& At) noexcept {
-    using std::max;
     Q_ = At;
     const auto n = extent<N>(At.rows());
-    Value largest(Scalar(0));
+    Value whole(Scalar(0));  // Σ|a_j|², by Pythagoras.
     Value squares[M];
     each(kFirst, kLast, [&](auto j) {
       const Value square = dot(n, [&](auto k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
       squares[j] = square;
       reciprocal_[j] = Value(Scalar(1)) / square;
-      Value whole = square;  // |a_j|², by Pythagoras.
+      whole += square;
       each(kFirst, j, [&](auto k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
-      largest = max(largest, whole);
       each(next(j), kLast, [&](auto i) {
         const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
         L_[i][j] = share;
@@ -47,7 +45,7 @@ class RowFactor {
     each(kFirst, kLast, [&](auto i) {
       each(kFirst, i, [&](auto j) { lean_[i][j] = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }); });
     });
-    const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
+    const Value smallest = Value(Scalar(kPivotTolerance)) * whole;
     Mask<Scalar> regular(true);
     each(kFirst, kLast, [&](auto j) { regular = regular && squares[j] > smallest; });
     if constexpr (kInLanes<Scalar>) {
@@ -146,8 +144,9 @@ class RowFactor {
     return Status::kSingular;
   }
 
-  /// Least square of a column of Q, relative to the largest of a row of A, that is taken for more than round-off.
-  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
+  /// Least square of a column of Q, relative to the sum of those of the rows of A, that is taken for more than
+  /// round-off.
+  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon() / M;
   static constexpr Constant<0> kFirst{};
   static constexpr Constant<M> kLast{};
 

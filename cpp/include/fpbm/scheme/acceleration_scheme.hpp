@@ -106,8 +106,8 @@ struct AccelerationScheme {
       if constexpr (!kUnit) {
         if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
       }
-      const auto force = [&](const auto& gram) noexcept -> Vector<N, Scalar> {
-        return alpha * Jd.transpose().lazyProduct(gram.force(gram.shares(xd)));
+      const auto force = [&](const auto& solutions) noexcept -> Vector<N, Scalar> {
+        return alpha * Jd.transpose().lazyProduct(solutions.force(solutions.shares(xd)));
       };
       return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd);
     }
@@ -131,29 +131,30 @@ struct AccelerationScheme {
                                                 const Scalar& length, const State<N, Scalar>& state,
                                                 const Known& foreseen, Vector<N, Scalar>& qdd) const noexcept {
     DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of J and JC.
-    Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);            // Jᵀ and (JC)ᵀ.
+    const Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);      // Jᵀ and (JC)ᵀ.
     const Status status = gram.factor(rows, Scalar(1));
     if (foreseen.answers(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;
 
-    const Vector<M, Pair<Scalar>> both = gram.shares(side_by_side<M, 1, Scalar>(b, xd));
-    const Vector<M, Scalar> mu = second<M, 1, Scalar>(gram.force(both));
-    const Vector<N, Scalar> force = alpha * Jd.transpose().lazyProduct(mu);
-    Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
-    const bool braked = status == Status::kDamped;
-    if (braked || null_space.template active<kLevel>()) {
-      Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-      if (braked) z -= gram.brake() * state.qd;
-      y += weights.unroot(z);
-    }
-    const Vector<M, Scalar> b_shares = second<M, 1, Scalar>(gram.shares(side_by_side<M, 1, Scalar>(b, b)));
-    const Vector<M, Scalar> u_shares = second<M, 1, Scalar>(gram.within(side_by_side<N, 1, Scalar>(y, y)));
-    const Vector<M, Scalar> weighted = alpha * b_shares - u_shares;
-    const Vector<M, Scalar> even = (Scalar(1) - alpha) * first<M, 1, Scalar>(both);
-    const Vector<N, Pair<Scalar>> parts = gram.motion(side_by_side<M, 1, Scalar>(even, weighted));
-    y += second<N, 1, Scalar>(parts);
-    Vector<N, Scalar> result = weights.root(y);
-    result += first<N, 1, Scalar>(parts);
+    Vector<N, Scalar> result = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
+      const Vector<M, Pair<Scalar>> both = solutions.shares(side_by_side<M, 1, Scalar>(b, xd));
+      const Vector<M, Scalar> mu = second<M, 1, Scalar>(solutions.force(both));
+      const Vector<N, Scalar> force = alpha * Jd.transpose().lazyProduct(mu);
+      Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
+      const bool braked = status == Status::kDamped;
+      if (braked || null_space.template active<kLevel>()) {
+        Vector<N, Scalar> z = null_space.template at<kLevel>(state);
+        if (braked) z -= gram.brake() * state.qd;
+        y += weights.unroot(z);
+      }
+      const Vector<M, Scalar> b_shares = second<M, 1, Scalar>(solutions.shares(side_by_side<M, 1, Scalar>(b, b)));
+      const Vector<M, Scalar> u_shares = second<M, 1, Scalar>(solutions.within(side_by_side<N, 1, Scalar>(y, y)));
+      const Vector<M, Scalar> weighted = alpha * b_shares - u_shares;
+      const Vector<M, Scalar> even = (Scalar(1) - alpha) * first<M, 1, Scalar>(both);
+      const Vector<N, Pair<Scalar>> parts = solutions.motion(side_by_side<M, 1, Scalar>(even, weighted));
+      y += second<N, 1, Scalar>(parts);
+      return weights.root(y) + first<N, 1, Scalar>(parts);
+    });
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;
     qdd = result;

@@ -28,7 +28,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
                                               const Scalar& length, const State<N, Scalar>& state,
                                               const Known& foreseen, Vector<N, Scalar>& u) noexcept {
   const Matrix<N, M, Scalar> Jt = J.transpose();
-  Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
+  const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
   if (foreseen.answers(gram, u)) return Status::kOk;
@@ -36,16 +36,14 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
 
   constexpr bool kForced = !std::is_same_v<Force, NoForce>;
   const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
-  Vector<N, Scalar> y;
-  if (kForced || braked || null_space.template active<kLevel>()) {
+  const Vector<N, Scalar> y = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
+    if (!(kForced || braked || null_space.template active<kLevel>())) return solutions.motion(solutions.shares(v));
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
     if (braked) z -= gram.brake() * state.qd;
-    y = weights.unroot(z);
-    if constexpr (kForced) y += weights.root_transpose(force(gram));
-    y += gram.motion(gram.shares(v) - gram.within(y));
-  } else {
-    y = gram.motion(gram.shares(v));
-  }
+    Vector<N, Scalar> y0 = weights.unroot(z);
+    if constexpr (kForced) y0 += weights.root_transpose(force(solutions));
+    return y0 + solutions.motion(solutions.shares(v) - solutions.within(y0));
+  });
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);
   if (!is_finite(result)) return Status::kNotFinite;

@@ -77,12 +77,12 @@ class DampedGram {
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
              const Scalar& length = Scalar(1)) = delete;
 
-  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first). The rows
-  /// must outlive it; angular ones are put in metres. Returns kDamped where Δ is not zero, or why there is no factor.
-  [[nodiscard]] Status factor(Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
-    for (int i = kLengths; i < M; ++i) rows.col(i) *= Value(length_);
-    rows_ = &rows;
-    const Status status = factor_.factor(rows);
+  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
+  /// Returns kDamped where Δ is not zero, or why there is no factor.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
+    rows_ = rows;
+    for (int i = kLengths; i < M; ++i) rows_.col(i) *= Value(length_);
+    const Status status = factor_.factor(rows_);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
@@ -97,23 +97,38 @@ class DampedGram {
     }
   }
 
-  /// What the motion that does b is made of, which two functions make use of: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b,
-  /// is motion(shares(b)), and (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
-  [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
-    const Vector<M, Value> scaled = in_metres(b);
-    return damps() ? damped_.solve(scaled) : factor_.shares(scaled);
-  }
-  /// shares(J C a), of a motion itself.
-  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
-    if (damps()) return damped_.solve(Vector<M, Value>(rows_->transpose().lazyProduct(a)));
-    return factor_.within(a);
-  }
-  [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
-    if (damps()) return rows_->lazyProduct(shares);
-    return factor_.sum(shares);
-  }
-  [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
-    return in_metres(damps() ? shares : factor_.back(shares));
+  /// The solutions: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b, is motion(shares(b)); (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
+  template <bool kDamped>
+  struct Solutions {
+    const DampedGram& of;
+
+    [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+      const Vector<M, Value> scaled = of.in_metres(b);
+      if constexpr (kDamped) return of.damped_.solve(scaled);
+      return of.factor_.shares(scaled);
+    }
+    /// shares(J C a), of a motion itself.
+    [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+      if constexpr (kDamped) return of.damped_.solve(Vector<M, Value>(of.rows_.transpose().lazyProduct(a)));
+      return of.factor_.within(a);
+    }
+    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return of.rows_.lazyProduct(shares);
+      return of.factor_.sum(shares);
+    }
+    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return of.in_metres(shares);
+      return of.in_metres(of.factor_.back(shares));
+    }
+  };
+
+  /// f(solutions): compiled for both kinds, so that the usual one has no branches in it.
+  template <typename F>
+  [[nodiscard, gnu::always_inline]] auto solved(const F& f) const noexcept {
+    if constexpr (!kInLanes<Scalar>) {
+      if (damps()) return f(Solutions<true>{*this});
+    }
+    return f(Solutions<false>{*this});
   }
 
   /// Whether Δ is not zero.
@@ -145,7 +160,7 @@ class DampedGram {
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram = rows_->transpose().lazyProduct(*rows_);
+    Matrix<M, M, Value> gram = rows_.transpose().lazyProduct(rows_);
     for (Eigen::Index i = 0; i < J_.rows(); ++i) {
       for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
     }
@@ -156,10 +171,10 @@ class DampedGram {
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  const Matrix<N, M, Value>* rows_ = nullptr;  ///< (DJC)ᵀ
-  RowFactor<M, N, Value> factor_;              ///< Of DJC.
-  Cholesky<M, Value> damped_;                  ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
-  Scalar lost_{0};                             ///< tr Δ/ε²: about the number of lost directions.
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ
+  RowFactor<M, N, Value> factor_;  ///< Of DJC.
+  Cholesky<M, Value> damped_;      ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
+  Scalar lost_{0};                 ///< tr Δ/ε²: about the number of lost directions.
 };
 
 }  // namespace fpbm
