@@ -29,7 +29,7 @@ class Correction {
   void begin(const Twist& error, Scalar length) noexcept {
     error_ = error;
     excess_.setZero();
-    size_ = length;
+    length_ = length;
     far_ = bring_near(excess_.template head<kLengths>(), error.template head<kLengths>(), error_bound_ * length);
     if constexpr (Space::kTurns > 0) {
       constexpr int kTurns = Space::kTurns;
@@ -39,6 +39,8 @@ class Correction {
 
   /// Whether the target lies beyond error_bound.
   [[nodiscard]] bool far() const noexcept { return far_; }
+  /// The arm's characteristic length, as begin() was told.
+  [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
     if (far_) reference.x = Space::template displace<Scalar>(reference.x, -excess_);
@@ -51,7 +53,7 @@ class Correction {
     if (gain_ == Scalar(0) || far_) return;
     integral_ += dt_ * error_;
     Twist even = integral_;  // In arm lengths and radians.
-    even.template head<kLengths>() /= size_;
+    even.template head<kLengths>() /= length_;
     const Scalar size = gain_ * even.norm();
     if (size > bound_) integral_ *= bound_ / size;
   }
@@ -73,7 +75,7 @@ class Correction {
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;
-  Scalar size_ = Scalar(1);  ///< Of the arm [m].
+  Scalar length_ = Scalar(1);  ///< Of the arm [m].
   Twist error_ = Twist::Zero();
   Twist excess_ = Twist::Zero();
   Twist integral_ = Twist::Zero();

@@ -1,11 +1,7 @@
 #pragma once
 
-#include "fpbm/clearance/guard.hpp"
-#include "fpbm/limits/limiter.hpp"
-#include "fpbm/realtime/correction.hpp"
+#include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/path_follower.hpp"
-#include "fpbm/realtime/slow_down.hpp"
-#include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
@@ -50,19 +46,10 @@ class Tracker {
   /// qdd0: acceleration of the tick before, for bounds on jerk. guard: what the arm keeps clear of.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
-      : arm_(arm),
-        scheme_(scheme),
-        dt_(options.dt),
-        correction_(options),
-        stall_(options.stall_time, options.dt),
-        limiter_(limits),
-        guard_(guard),
-        state_(start),
-        last_(qdd0),
-        answer_(qdd0) {
+      : arm_(arm), scheme_(scheme), kept_(options, limits, start, qdd0, guard), answer_(qdd0) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
-    if (limits.tick() != dt_) {
+    if (limits.tick() != options.dt) {
       validation::fail("limits' tick", static_cast<double>(limits.tick()), "the tracker's dt");
     }
     validation::require_joint_vector("q0", start.q, arm.dof());
@@ -70,7 +57,7 @@ class Tracker {
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
     limits.require_viable(start, qdd0);
     set_damping(scheme_, options.singular);
-    if constexpr (kGuarded) guard_.require_clear(limits, start, qdd0);
+    if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -88,7 +75,7 @@ class Tracker {
   template <typename Path>
   Result tick(PathFollower<Path>& follower) noexcept {
     const Result result = advance([&follower](Scalar seconds) noexcept { return follower.ahead(seconds); });
-    if (!stopping_) follower.advance(dt_);
+    if (!kept_.stopping()) follower.advance(kept_.dt());
     return result;
   }
 
@@ -104,204 +91,91 @@ class Tracker {
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
-    Result result = idle(measured);
-    if (!moderate(measured)) {
+    const auto& limits = kept_.limits();
+    Result result = kept_.idle(measured);
+    if (!kept_.moderate(measured)) {
       result.status = Status::kNotFinite;
       result.scale = Scalar(0);
-      result.qdd = answer_ = fade(limiter_.limits(), answer_);
+      result.qdd = answer_ = fade(limits, answer_);
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
     X dx = packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);
-    auto rows = guard_.rows(limiter_.limits(), measured);
-    result.status = loop.resolve(correction_(reference), dx);
-    if constexpr (kGuarded) guard_.bound_tip_speed(limiter_.limits(), measured, loop.qdd, rows);
-    result.qdd = answer_ = limited(loop.kinematics, measured, answer_, loop.qdd, rows, result);
-    if (result.status == Status::kOk) correction_.integrate();
+    auto rows = guard().rows(limits, measured);
+    result.status = loop.resolve(kept_.correction()(reference), dx);
+    if constexpr (kGuarded) guard().bound_tip_speed(limits, measured, loop.qdd, rows);
+    result.qdd = answer_ = kept_.limited(loop.kinematics, measured, answer_, loop.qdd, rows, result);
+    if (result.status == Status::kOk) kept_.correction().integrate();
     return result;
   }
 
   /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called.
-  void stop() noexcept { stopping_ = true; }
-  void resume() noexcept {
-    stopping_ = false;
-    stall_.reset();
-  }
+  void stop() noexcept { kept_.stop(); }
+  void resume() noexcept { kept_.resume(); }
 
-  [[nodiscard]] const JointState& state() const noexcept { return state_; }
+  [[nodiscard]] const JointState& state() const noexcept { return kept_.state(); }
   /// Acceleration of the last tick.
-  [[nodiscard]] const JointVector& acceleration() const noexcept { return last_; }
+  [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
 
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
-  [[nodiscard]] Guard_& guard() noexcept { return guard_; }
-  [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
+  [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
+  [[nodiscard]] const Guard_& guard() const noexcept { return kept_.guard(); }
 
   /// Tip f(q) of the tracker's own state, where a PathFollower usually starts.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
     Kinematics<Space, N, Scalar> kinematics;
-    arm_.kinematics(state_.q, kinematics);
+    arm_.kinematics(state().q, kinematics);
     return kinematics.tip;
   }
 
  private:
-  using Twist = Vector<Space::kRows, Scalar>;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
-  static constexpr bool kSecondOrder = Loop::kSecondOrder;
 
   [[nodiscard]] static X packed(const JointState& state) noexcept {
-    X x(state.q.size(), kSecondOrder ? 2 : 1);
+    X x(state.q.size(), Loop::kSecondOrder ? 2 : 1);
     x.col(0) = state.q;
-    if constexpr (kSecondOrder) x.col(1) = state.qd;
+    if constexpr (Loop::kSecondOrder) x.col(1) = state.qd;
     return x;
-  }
-
-  [[nodiscard]] static Result idle(const JointState& state) noexcept {
-    return {state.q, state.qd, JointVector::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
-  }
-
-  /// Whether a state is finite and far enough from overflow to brake from.
-  [[nodiscard]] bool moderate(const JointState& state) const noexcept {
-    return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
   }
 
   /// reference(seconds) is the reference that many seconds into the tick.
   template <typename References>
   Result advance(References&& reference) noexcept {
-    Result result = idle(state_);
-    Loop loop{arm_, scheme_, {}, state_, JointVector::Zero(state_.q.size())};
-    X x = packed(state_);
+    const JointState& state = kept_.state();
+    const auto& correction = kept_.correction();
+    Result result = kept_.idle(state);
+    Loop loop{arm_, scheme_, {}, state, JointVector::Zero(state.q.size())};
+    X x = packed(state);
     X dx = x;
     loop.update(x);
     const Target now = reference(Scalar(0));
     watch(loop.kinematics, now, result);
-    auto rows = guard_.rows(limiter_.limits(), state_);
-    if constexpr (kGuarded) {
-      if (stall_.stalled()) stall_.wait(state_.qd.isZero(Scalar(0)), guard_.room(), loop.kinematics.length);
-    }
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(correction_(reference(seconds)), stage_x, stage_dx);
+      return loop.evaluate(correction(reference(seconds)), stage_x, stage_dx);
     };
-    result.status = loop.resolve(correction_(now), dx);
+    result.status = loop.resolve(correction(now), dx);
     const JointVector field = dx.col(0);
-    if (!failed(result.status)) result.status = worse(result.status, RK4::step(derivative, Scalar(0), dt_, dx, x));
-
-    JointState next{x.col(0), state_.qd};
-    if constexpr (kSecondOrder) {
-      next.qd = x.col(1);
-      if (limiter_.limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
-    } else {
-      next.qd = (next.q - state_.q) / dt_;
+    if (!failed(result.status)) {
+      result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
     }
-    if constexpr (kGuarded) {
-      if (guard_.draws_away() && !failed(result.status)) next = after(motion_to(next) + self_motion_away(next.q));
-      guard_.bound_tip_speed(limiter_.limits(), state_, motion_to(next), rows);
-    }
-    if (!moderate(next)) result.status = Status::kNotFinite;
-    if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
-    if (stopping_ || result.status >= Status::kStalled || !limiter_.limits().admits(state_, next, last_) ||
-        !rows.admit(motion_to(next))) {
-      JointVector desired = next.qd;
-      Scalar share(1);
-      if constexpr (kSecondOrder) {
-        desired = (next.qd - state_.qd) / dt_;
-      } else if (!failed(result.status)) {
-        share = slow_down(loop, limiter_.limits(), correction_(now), state_.q, field);
-        if (share < Scalar(1)) desired = share * field;
-      }
-      // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
-      const JointVector middle = (state_.q + next.q) / Scalar(2);
-      arm_.kinematics(middle, loop.kinematics);
-      const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
-      if (share < Scalar(1)) {
-        result.scale *= share;
-        result.status = worse(result.status, Status::kSlowed);
-      }
-      next = after(u);
-    }
-    if constexpr (kGuarded) {
-      const bool braking = stopping_ || failed(result.status);
-      if (!guard_.empty() && (braking || !guard_.accepts(limiter_.limits(), state_, next))) {
-        const JointVector qdd = guard_.stop(limiter_.limits(), state_, last_);
-        next = after(kSecondOrder ? qdd : JointVector(state_.qd + dt_ * qdd));
-        result.scale = Scalar(0);
-        if (!braking) result.status = Status::kBlocked;
-      }
-    }
-    result.q = next.q;
-    result.qd = next.qd;
-    result.qdd = last_ = (next.qd - state_.qd) / dt_;
-    state_ = next;
-    if (stopping_ || failed(result.status)) return result;
-    if (result.status == Status::kOk) correction_.integrate();
-    if (result.scale < Scalar(1) || correction_.far()) stall_.update(now.x, result.error, loop.kinematics.length);
+    kept_.take(loop, now, x, field, result);
     return result;
-  }
-
-  /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
-  [[nodiscard]] JointVector self_motion_away(const JointVector& end) noexcept {
-    const JointVector middle = (state_.q + end) / Scalar(2);
-    Kinematics<Space, N, Scalar> kinematics;
-    arm_.kinematics(middle, kinematics);
-    const auto Z = null_basis<Space::kRows, N, Scalar>(jacobian_in_metres(kinematics));
-    return Z.lazyProduct(Z.transpose().lazyProduct(guard_.away(state_.q)).eval());
-  }
-
-  /// The motion of a tick: its mean acceleration, or its velocity at velocity level.
-  [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept {
-    return kSecondOrder ? JointVector((next.qd - state_.qd) / dt_) : next.qd;
-  }
-
-  /// The state after a tick of some motion.
-  [[nodiscard]] JointState after(const JointVector& u) const noexcept {
-    if constexpr (kSecondOrder) return {moved(u), state_.qd + dt_ * u};
-    return {state_.q + dt_ * u, u};
-  }
-
-  /// The position after a tick of constant acceleration.
-  [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
-    return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
-  }
-
-  /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
-  /// failed or stop() was called.
-  template <int P>
-  [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
-                                                   const JointState& state, const JointVector& last,
-                                                   const JointVector& desired, const Rows<N, P, Scalar>& rows,
-                                                   Result& result) const noexcept {
-    const bool braking = stopping_ || result.status >= Status::kStalled;
-    const bool gives_way = result.status == Status::kStalled;
-    const auto found = braking ? limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{})
-                               : limiter_.motion(jacobian_in_metres(kinematics), state, desired, last, rows);
-    result.scale = found.scale;
-    result.saturated = found.joints;
-    if (found.scale < Scalar(1) && !braking) {
-      result.status = guard_.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
-    }
-    return found.u;
   }
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.sigma = least_singular_value_bound(kinematics.J);
     result.error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-    correction_.begin(result.error, kinematics.length);
+    kept_.correction().begin(result.error, kinematics.length);
   }
 
   Arm arm_;
   Scheme scheme_;
-  Scalar dt_;
-  Correction<kLevel, Space, Scalar> correction_;
-  StallDetector<Space, Scalar> stall_;
-  JointLimiter limiter_;
-  Guard_ guard_;
-  JointState state_;
-  JointVector last_;    ///< Acceleration of the last tick.
+  LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
   JointVector answer_;  ///< The last one for a measured state.
-  bool stopping_ = false;
 };
 
 }  // namespace fpbm

@@ -1,0 +1,182 @@
+#pragma once
+
+#include "fpbm/clearance/guard.hpp"
+#include "fpbm/limits/limiter.hpp"
+#include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/realtime/correction.hpp"
+#include "fpbm/realtime/slow_down.hpp"
+#include "fpbm/realtime/stall_detector.hpp"
+#include "fpbm/realtime/tick.hpp"
+
+namespace fpbm {
+
+/// What a Tracker keeps from tick to tick, and how a tick ends: a step of RK4 that keeps every bound is taken as it is;
+/// otherwise the tick's mean motion is limited (Limiter).
+template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
+class LimitedState {
+ public:
+  static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
+  using JointVector = Vector<N, Scalar>;
+  using JointState = State<N, Scalar>;
+  using JointLimits = Limits<kLevel, N, Scalar>;
+  using Result = Tick<Space, N, Scalar>;
+
+  /// From a state after a tick of acceleration qdd0. Throws std::invalid_argument where an option is out of range.
+  LimitedState(const TrackerOptions<Scalar>& options, const JointLimits& limits, const JointState& start,
+               const JointVector& qdd0, const Guard_& guard)
+      : dt_(options.dt),
+        correction_(options),
+        stall_(options.stall_time, options.dt),
+        limiter_(limits),
+        guard_(guard),
+        state_(start),
+        last_(qdd0) {}
+
+  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
+  [[nodiscard]] const JointState& state() const noexcept { return state_; }
+  /// Acceleration of the last tick.
+  [[nodiscard]] const JointVector& last() const noexcept { return last_; }
+  [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
+  [[nodiscard]] Correction<kLevel, Space, Scalar>& correction() noexcept { return correction_; }
+  [[nodiscard]] Guard_& guard() noexcept { return guard_; }
+  [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
+
+  [[nodiscard]] bool stopping() const noexcept { return stopping_; }
+  void stop() noexcept { stopping_ = true; }
+  void resume() noexcept {
+    stopping_ = false;
+    stall_.reset();
+  }
+
+  /// The result of a tick in which nothing has happened yet.
+  [[nodiscard]] static Result idle(const JointState& state) noexcept {
+    using Twist = Vector<Space::kRows, Scalar>;
+    return {state.q, state.qd, JointVector::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
+  }
+
+  /// Whether a state is finite and far enough from overflow to brake from.
+  [[nodiscard]] bool moderate(const JointState& state) const noexcept {
+    return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
+  }
+
+  /// Ends a tick whose step of RK4 led to x and began with joint velocities field. now: the reference at its start.
+  /// result has the step's status, and the error that the correction began with. loop is evaluated anew.
+  template <typename Loop, typename Target>
+  void take(Loop& loop, const Target& now, const typename Loop::X& x, const JointVector& field,
+            Result& result) noexcept {
+    auto rows = guard_.rows(limits(), state_);
+    if constexpr (kGuarded) {
+      if (stall_.stalled()) stall_.wait(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
+    }
+    JointState next{x.col(0), state_.qd};
+    if constexpr (kSecondOrder) {
+      next.qd = x.col(1);
+      if (limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
+    } else {
+      next.qd = (next.q - state_.q) / dt_;
+    }
+    if constexpr (kGuarded) {
+      if (guard_.draws_away() && !failed(result.status)) {
+        next = after(motion_to(next) + self_motion_away(loop.arm, next.q));
+      }
+      guard_.bound_tip_speed(limits(), state_, motion_to(next), rows);
+    }
+    if (!moderate(next)) result.status = Status::kNotFinite;
+    if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
+    if (stopping_ || result.status >= Status::kStalled || !limits().admits(state_, next, last_) ||
+        !rows.admit(motion_to(next))) {
+      JointVector desired = next.qd;
+      Scalar share(1);
+      if constexpr (kSecondOrder) {
+        desired = (next.qd - state_.qd) / dt_;
+      } else if (!failed(result.status)) {
+        share = slow_down(loop, limits(), correction_(now), state_.q, field);
+        if (share < Scalar(1)) desired = share * field;
+      }
+      // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
+      const JointVector middle = (state_.q + next.q) / Scalar(2);
+      loop.arm.kinematics(middle, loop.kinematics);
+      const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
+      if (share < Scalar(1)) {
+        result.scale *= share;
+        result.status = worse(result.status, Status::kSlowed);
+      }
+      next = after(u);
+    }
+    if constexpr (kGuarded) {
+      const bool braking = stopping_ || failed(result.status);
+      if (!guard_.empty() && (braking || !guard_.accepts(limits(), state_, next))) {
+        const JointVector qdd = guard_.stop(limits(), state_, last_);
+        next = after(kSecondOrder ? qdd : JointVector(state_.qd + dt_ * qdd));
+        result.scale = Scalar(0);
+        if (!braking) result.status = Status::kBlocked;
+      }
+    }
+    result.q = next.q;
+    result.qd = next.qd;
+    result.qdd = last_ = (next.qd - state_.qd) / dt_;
+    state_ = next;
+    if (stopping_ || failed(result.status)) return;
+    if (result.status == Status::kOk) correction_.integrate();
+    if (result.scale < Scalar(1) || correction_.far()) stall_.update(now.x, result.error, correction_.length());
+  }
+
+  /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
+  /// failed or stop() was called.
+  template <int P>
+  [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
+                                                   const JointState& state, const JointVector& last,
+                                                   const JointVector& desired, const Rows<N, P, Scalar>& rows,
+                                                   Result& result) const noexcept {
+    const bool braking = stopping_ || result.status >= Status::kStalled;
+    const bool gives_way = result.status == Status::kStalled;
+    const auto found = braking ? limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{})
+                               : limiter_.motion(jacobian_in_metres(kinematics), state, desired, last, rows);
+    result.scale = found.scale;
+    result.saturated = found.joints;
+    if (found.scale < Scalar(1) && !braking) {
+      result.status = guard_.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
+    }
+    return found.u;
+  }
+
+ private:
+  static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+
+  /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
+  template <typename Arm>
+  [[nodiscard]] JointVector self_motion_away(const Arm& arm, const JointVector& end) noexcept {
+    const JointVector middle = (state_.q + end) / Scalar(2);
+    Kinematics<Space, N, Scalar> kinematics;
+    arm.kinematics(middle, kinematics);
+    const auto Z = null_basis<Space::kRows, N, Scalar>(jacobian_in_metres(kinematics));
+    return Z.lazyProduct(Z.transpose().lazyProduct(guard_.away(state_.q)).eval());
+  }
+
+  /// The motion of a tick: its mean acceleration, or its velocity at velocity level.
+  [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept {
+    return kSecondOrder ? JointVector((next.qd - state_.qd) / dt_) : next.qd;
+  }
+
+  /// The state after a tick of some motion.
+  [[nodiscard]] JointState after(const JointVector& u) const noexcept {
+    if constexpr (kSecondOrder) return {moved(u), state_.qd + dt_ * u};
+    return {state_.q + dt_ * u, u};
+  }
+
+  /// The position after a tick of constant acceleration.
+  [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
+    return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
+  }
+
+  Scalar dt_;
+  Correction<kLevel, Space, Scalar> correction_;
+  StallDetector<Space, Scalar> stall_;
+  Limiter<kLevel, N, Scalar> limiter_;
+  Guard_ guard_;
+  JointState state_;
+  JointVector last_;  ///< Acceleration of the last tick.
+  bool stopping_ = false;
+};
+
+}  // namespace fpbm
