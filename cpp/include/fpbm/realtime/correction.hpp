@@ -39,7 +39,10 @@ class Correction {
 
   /// Whether the target lies beyond error_bound.
   [[nodiscard]] bool far() const noexcept { return far_; }
-  /// The arm's characteristic length, as begin() was told.
+  /// Whether it changes a reference.
+  [[nodiscard]] bool active() const noexcept { return far_ || gain_ != Scalar(0); }
+  /// What begin() was told.
+  [[nodiscard]] const Twist& error() const noexcept { return error_; }
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {

@@ -38,6 +38,7 @@ class LimitedState {
   [[nodiscard]] const JointVector& last() const noexcept { return last_; }
   [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
   [[nodiscard]] Correction<kLevel, Space, Scalar>& correction() noexcept { return correction_; }
+  [[nodiscard]] const Correction<kLevel, Space, Scalar>& correction() const noexcept { return correction_; }
   [[nodiscard]] Guard_& guard() noexcept { return guard_; }
   [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
 

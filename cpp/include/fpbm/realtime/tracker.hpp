@@ -25,6 +25,9 @@ namespace fpbm {
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
 class Tracker {
+  using Loop = ClosedLoop<Arm, Scheme, Space>;
+  using X = typename Loop::X;
+
  public:
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
@@ -86,6 +89,44 @@ class Tracker {
     return result;
   }
 
+  /// One tick toward reference(seconds), for seconds into the tick; noexcept.
+  template <typename References>
+  Result advance(References&& reference) noexcept {
+    const JointState& state = kept_.state();
+    const auto& correction = kept_.correction();
+    Result result = kept_.idle(state);
+    Loop loop{arm_, scheme_, {}, state, JointVector::Zero(state.q.size())};
+    X x = packed(state);
+    X dx = x;
+    loop.update(x);
+    const Target now = reference(Scalar(0));
+    watch(loop.kinematics, now, result);
+    const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
+      return loop.evaluate(correction(reference(seconds)), stage_x, stage_dx);
+    };
+    result.status = loop.resolve(correction(now), dx);
+    const JointVector field = dx.col(0);
+    if (!failed(result.status)) {
+      result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+    }
+    kept_.take(loop, now, x, field, result);
+    return result;
+  }
+
+  /// A tick whose step is made elsewhere (TrackerBatch), from the error at its start, with references corrected: to x,
+  /// by joint velocities field at first. The result lacks sigma.
+  void begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
+    kept_.correction().begin(error, length);
+  }
+  [[nodiscard]] const Correction<kLevel, Space, Scalar>& correction() const noexcept { return kept_.correction(); }
+  Result finish(const Target& now, const X& x, const JointVector& field) noexcept {
+    Result result = kept_.idle(state());
+    result.error = correction().error();
+    Loop loop{arm_, scheme_, {}, state(), JointVector::Zero(state().q.size())};
+    kept_.take(loop, now, x, field, result);
+    return result;
+  }
+
   /// The acceleration within the limits for a measured state; the tracker's own state does not change. It never stalls:
   /// without feedback of the tip a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
@@ -119,6 +160,8 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  /// Length of a tick [s].
+  [[nodiscard]] Scalar dt() const noexcept { return kept_.dt(); }
 
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
   [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
@@ -132,38 +175,11 @@ class Tracker {
   }
 
  private:
-  using Loop = ClosedLoop<Arm, Scheme, Space>;
-  using X = typename Loop::X;
-
   [[nodiscard]] static X packed(const JointState& state) noexcept {
     X x(state.q.size(), Loop::kSecondOrder ? 2 : 1);
     x.col(0) = state.q;
     if constexpr (Loop::kSecondOrder) x.col(1) = state.qd;
     return x;
-  }
-
-  /// reference(seconds) is the reference that many seconds into the tick.
-  template <typename References>
-  Result advance(References&& reference) noexcept {
-    const JointState& state = kept_.state();
-    const auto& correction = kept_.correction();
-    Result result = kept_.idle(state);
-    Loop loop{arm_, scheme_, {}, state, JointVector::Zero(state.q.size())};
-    X x = packed(state);
-    X dx = x;
-    loop.update(x);
-    const Target now = reference(Scalar(0));
-    watch(loop.kinematics, now, result);
-    const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(correction(reference(seconds)), stage_x, stage_dx);
-    };
-    result.status = loop.resolve(correction(now), dx);
-    const JointVector field = dx.col(0);
-    if (!failed(result.status)) {
-      result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
-    }
-    kept_.take(loop, now, x, field, result);
-    return result;
   }
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
