@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fpbm/core/lanes.hpp"
+#include "fpbm/realtime/tracker_batch.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "lanes.hpp"
 
@@ -76,14 +77,50 @@ void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const T
   }
 }
 
+/// The same within limits.
+template <typename Space, typename Law>
+void track_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
+                 const std::vector<Law>& laws, const std::vector<Vector<Law::kDof>>& starts,
+                 const LimitedInLanes<Space>& limited, const std::atomic<bool>& stop, Outcome* outcomes) {
+  constexpr int N = Law::kDof;
+  TrackerOptions<> options = limited.options;
+  options.dt = grid.dt();
+  const Limits<Law::kLevel, N> limits(limited.limits, options.dt);
+  std::vector<Tracker<ArmInLanes<Space>, Space, Law>> trackers;
+  for (std::size_t lane = 0; lane < laws.size(); ++lane) {
+    trackers.emplace_back(arm, Space{}, laws[lane], State<N>{starts[lane], Vector<N>::Zero()}, options, limits);
+  }
+  TrackerBatch batch(arm.template cast<InLanes>(), Space{}, side_by_side(laws), trackers);
+  Summary<Space, N, InLanes> summarise(Level::kAcceleration);
+  const auto record = [&](const Sample<Space, N, InLanes>& sample) noexcept {
+    summarise(sample);
+    return !stop.load(std::memory_order_relaxed);
+  };
+  const int samples = track_batch(batch, path, grid, record);
+  const MotionSummary<InLanes> summary = summarise.result();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Status status = batch.status()[static_cast<std::size_t>(lane)];
+    outcomes[lane] = samples == grid.samples()
+                         ? Outcome{static_cast<int>(status), samples, grid.time(samples - 1), lane_of(summary, lane)}
+                         : Outcome::of_nothing();
+  }
+}
+
 template <typename Space>
 void run_in_lanes(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                   const SchemesInLanes<Space>& schemes, const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts,
-                  const std::atomic<bool>& stop, Outcome* outcomes) {
+                  const LimitedInLanes<Space>* limited, const std::atomic<bool>& stop, Outcome* outcomes) {
+  const auto run = [&](const auto& laws) {
+    if (limited == nullptr) {
+      run_level<Space>(arm, path, grid, laws, starts, stop, outcomes);
+    } else {
+      track_level<Space>(arm, path, grid, laws, starts, *limited, stop, outcomes);
+    }
+  };
   if (schemes.acceleration.empty()) {
-    run_level<Space>(arm, path, grid, schemes.velocity, starts, stop, outcomes);
+    run(schemes.velocity);
   } else {
-    run_level<Space>(arm, path, grid, schemes.acceleration, starts, stop, outcomes);
+    run(schemes.acceleration);
   }
 }
 

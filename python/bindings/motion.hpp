@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -14,6 +16,10 @@ struct Limited {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
+
+  [[nodiscard]] bool keeps_clear() const noexcept {
+    return !clearance.pairs().empty() || std::isfinite(clearance.tip_speed());
+  }
 };
 
 /// One motion of an arm along a path.

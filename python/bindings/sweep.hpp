@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -44,10 +45,11 @@ class Runner {
   }
 
   /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
-  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, std::size_t lanes,
-                RunInLanes<Space> run, Outcome* outcomes) const {
+  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, const Limited* limited,
+                std::size_t lanes, RunInLanes<Space> run, Outcome* outcomes) const {
     using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
     const ArmInLanes<Space> arm(std::get<Source>(arm_.source));
+    const std::optional<LimitedInLanes<Space>> kept = kept_in_lanes(limited);
     std::vector<Outcome> results(lanes, Outcome::of_nothing());
     for (std::size_t first = 0; first < members.size() && !stopped(); first += lanes) {
       const std::size_t last = std::min(first + lanes, members.size());
@@ -55,21 +57,30 @@ class Runner {
       std::vector<Vector<kDof>> starts;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
-        const DiagonalWeights<kDof> weights = job.scheme->template diagonal_weights<kDof>(kDof);
-        if (job.scheme->level == Level::kVelocity) {
-          schemes.velocity.push_back(job.scheme->template law<Level::kVelocity>(weights, arm.limits()));
+        const Scheme scheme = kept ? job.scheme->with_default_damping(kept->options.singular) : *job.scheme;
+        const DiagonalWeights<kDof> weights = scheme.template diagonal_weights<kDof>(kDof);
+        if (scheme.level == Level::kVelocity) {
+          schemes.velocity.push_back(scheme.template law<Level::kVelocity>(weights, arm.limits()));
         } else {
-          schemes.acceleration.push_back(job.scheme->template law<Level::kAcceleration>(weights, arm.limits()));
+          schemes.acceleration.push_back(scheme.template law<Level::kAcceleration>(weights, arm.limits()));
         }
         starts.emplace_back(job.q0);
       }
-      run(arm, path_, grid_, schemes, starts, stop_, results.data());
+      run(arm, path_, grid_, schemes, starts, kept ? &*kept : nullptr, stop_, results.data());
       for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
     }
   }
 
  private:
   static constexpr int kDof = ArmInLanes<Space>::kDof;
+
+  [[nodiscard]] static std::optional<LimitedInLanes<Space>> kept_in_lanes(const Limited* limited) {
+    if (limited == nullptr) return std::nullopt;
+    const JointLimits<kDynamic> given = limited->limits.complete();
+    auto limits = JointLimits<kDof>::none(kDof);
+    for (int i = 0; i < kDof; ++i) limits.set(i, given.joint(i));
+    return LimitedInLanes<Space>{limits, limited->options};
+  }
 
   const Arm& arm_;
   const AnyArmFor<Space>& any_;
@@ -83,6 +94,11 @@ class Runner {
     return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
   }
   return arm.dof() == 4;
+}
+
+[[nodiscard]] inline bool runs_in_lanes(const Arm& arm, const Limited* limited) noexcept {
+  if (limited == nullptr) return runs_in_lanes(arm);
+  return runs_in_lanes(arm) && limited->limits.lower.size() == arm.dof() && !limited->keeps_clear();
 }
 
 [[nodiscard]] inline bool runs_in_lanes(const Scheme& scheme) noexcept {
@@ -113,9 +129,9 @@ void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& g
   const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {
-    if (code != nullptr && limited == nullptr && runs_in_lanes(arm)) {
+    if (code != nullptr && runs_in_lanes(arm, limited)) {
       for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
-        runner.in_lanes(jobs, side_by_side(jobs, level), static_cast<std::size_t>(code->lanes),
+        runner.in_lanes(jobs, side_by_side(jobs, level), limited, static_cast<std::size_t>(code->lanes),
                         std::get<RunInLanes<Space>>(code->run), outcomes);
       }
     }

@@ -3,6 +3,7 @@
 #include "fpbm/clearance/guard.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/stall_detector.hpp"
