@@ -78,6 +78,7 @@
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
+#include "fpbm/realtime/tick_references.hpp"
 #include "fpbm/realtime/track.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/realtime/tracker_batch.hpp"

@@ -32,14 +32,4 @@ void set_lane(Transform<Scalar>& all, std::size_t lane, const Transform<Number<S
   set_lane(all.R, lane, one.R);
 }
 
-/// All lanes of a matrix: get(lane) is the matrix of one.
-template <typename Scalar, typename Get>
-[[nodiscard]] auto from_lanes(const Get& get) noexcept {
-  using One = std::decay_t<decltype(get(std::size_t{0}))>;
-  const auto& first = get(std::size_t{0});
-  Matrix<One::RowsAtCompileTime, One::ColsAtCompileTime, Scalar> all(first.rows(), first.cols());
-  for (Eigen::Index i = 0; i < all.size(); ++i) all(i) = Scalar([&](auto lane) { return get(lane)(i); });
-  return all;
-}
-
 }  // namespace fpbm

@@ -61,18 +61,16 @@ class LimitedState {
     return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
   }
 
-  /// Ends a tick whose step of RK4 led to x and began with joint velocities field. now: the reference at its start.
-  /// result has the step's status, and the error that the correction began with. loop is evaluated anew.
+  /// Ends a tick whose step of RK4 led to next, of which velocity level reads q alone, and began with joint velocities
+  /// field. now: the reference at its start. result has the step's status, and the error that the correction began
+  /// with. loop is evaluated anew.
   template <typename Loop, typename Target>
-  void take(Loop& loop, const Target& now, const typename Loop::X& x, const JointVector& field,
-            Result& result) noexcept {
+  void take(Loop& loop, const Target& now, JointState next, const JointVector& field, Result& result) noexcept {
     auto rows = guard_.rows(limits(), state_);
     if constexpr (kGuarded) {
       if (stall_.stalled()) stall_.wait(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
-    JointState next{x.col(0), state_.qd};
     if constexpr (kSecondOrder) {
-      next.qd = x.col(1);
       if (limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
     } else {
       next.qd = (next.q - state_.q) / dt_;

@@ -25,9 +25,6 @@ namespace fpbm {
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
 class Tracker {
-  using Loop = ClosedLoop<Arm, Scheme, Space>;
-  using X = typename Loop::X;
-
  public:
   using Scalar = typename Arm::Scalar;
   static constexpr int N = Arm::kDof;
@@ -109,22 +106,25 @@ class Tracker {
     if (!failed(result.status)) {
       result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
     }
-    kept_.take(loop, now, x, field, result);
+    JointState next{x.col(0), state.qd};
+    if constexpr (Loop::kSecondOrder) next.qd = x.col(1);
+    kept_.take(loop, now, next, field, result);
     return result;
   }
 
-  /// A tick whose step is made elsewhere (TrackerBatch), from the error at its start, with references corrected: to x,
-  /// by joint velocities field at first. The result lacks sigma.
-  void begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
+  /// A tick whose step is made elsewhere (TrackerBatch): begin() takes the error at its start, and says whether
+  /// references are to be corrected(); finish() takes where the step led, and its joint velocities at the start.
+  bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     kept_.correction().begin(error, length);
+    return kept_.correction().active();
   }
-  [[nodiscard]] const Correction<kLevel, Space, Scalar>& correction() const noexcept { return kept_.correction(); }
-  Result finish(const Target& now, const X& x, const JointVector& field) noexcept {
+  [[nodiscard]] Target corrected(const Target& reference) const noexcept { return kept_.correction()(reference); }
+  Status finish(const Target& now, const JointState& next, const JointVector& field) noexcept {
     Result result = kept_.idle(state());
-    result.error = correction().error();
+    result.error = kept_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), JointVector::Zero(state().q.size())};
-    kept_.take(loop, now, x, field, result);
-    return result;
+    kept_.take(loop, now, next, field, result);
+    return result.status;
   }
 
   /// The acceleration within the limits for a measured state; the tracker's own state does not change. It never stalls:
@@ -160,8 +160,6 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
-  /// Length of a tick [s].
-  [[nodiscard]] Scalar dt() const noexcept { return kept_.dt(); }
 
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
   [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
@@ -175,6 +173,9 @@ class Tracker {
   }
 
  private:
+  using Loop = ClosedLoop<Arm, Scheme, Space>;
+  using X = typename Loop::X;
+
   [[nodiscard]] static X packed(const JointState& state) noexcept {
     X x(state.q.size(), Loop::kSecondOrder ? 2 : 1);
     x.col(0) = state.q;

@@ -2,13 +2,16 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "fpbm/core/lane_access.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/realtime/path_follower.hpp"
-#include "fpbm/realtime/tracker.hpp"
+#include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/motion.hpp"
+#include "fpbm/sim/rk4.hpp"
 #include "fpbm/sim/rollout.hpp"
 #include "fpbm/sim/time_grid.hpp"
 
@@ -26,15 +29,13 @@ class TrackerBatch {
   using Scalar = Number<In>;
   static constexpr int N = Arm::kDof;
   static constexpr std::size_t kLanes = In::size();
-  /// References at a tick's start, middle and end, as displacements from where each tip started.
-  using Way = std::array<Reference<Space, Scalar>, 3>;
 
   /// arm, scheme: those of the trackers, damping included, in lanes. trackers: one a lane, their tips where the path
   /// starts. Throws std::invalid_argument where there are too many or too few.
-  TrackerBatch(const Arm& arm, Space, const Scheme& scheme, const std::vector<Tracker>& trackers)
-      : arm_(arm), scheme_(scheme), trackers_(trackers) {
-    validation::require_size("trackers", static_cast<Eigen::Index>(trackers.size()), kLanes);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(start_, lane, trackers[lane].tip());
+  TrackerBatch(const Arm& arm, Space, const Scheme& scheme, std::vector<Tracker> trackers)
+      : arm_(arm), scheme_(scheme), trackers_(std::move(trackers)) {
+    validation::require_size("trackers", static_cast<Eigen::Index>(trackers_.size()), kLanes);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) set_lane(start_, lane, trackers_[lane].tip());
     status_.fill(Status::kOk);
   }
 
@@ -42,89 +43,79 @@ class TrackerBatch {
   /// The worst of each tracker's ticks.
   [[nodiscard]] const std::array<Status, kLanes>& status() const noexcept { return status_; }
 
-  /// One tick of each. Writes a sample's state, tip, reference, error, J and mean acceleration.
-  void tick(const Way& way, Sample<Space, N, In>& sample) noexcept {
-    sample.q = from_lanes<In>([this](auto lane) -> auto& { return trackers_[lane].state().q; });
-    sample.qd = from_lanes<In>([this](auto lane) -> auto& { return trackers_[lane].state().qd; });
+  /// One tick of each. way: displacements from where each tip started. Writes all of a sample but its index and time.
+  void tick(const TickReferences<Space, Scalar>& way, Sample<Space, N, In>& sample) noexcept {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const State<N, Scalar> state = trackers_[lane].state();
+      set_lane(sample.q, lane, state.q);
+      set_lane(sample.qd, lane, state.qd);
+    }
     Loop loop{arm_, scheme_, {}, {sample.q, sample.qd}, sample.q};
     X x(sample.q.size(), Loop::kSecondOrder ? 2 : 1);
     x.col(0) = sample.q;
     if constexpr (Loop::kSecondOrder) x.col(1) = sample.qd;
     loop.update(x);
+    TickReferences<Space, In> references = way.template from<In>(start_);
     sample.tip = loop.kinematics.tip;
     sample.J = loop.kinematics.J;
-    sample.reference = from_start(way[0]);
+    sample.reference = references.stages[0];
     sample.error = Space::template difference<In>(sample.reference.x, sample.tip);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      trackers_[lane].begin(lane_of(sample.error, lane), In(loop.kinematics.length)[lane]);
+      const Scalar length = loop.kinematics.length[lane];
+      if (trackers_[lane].begin(lane_of(sample.error, lane), length)) correct(references, lane);
     }
-    const std::array<Target, 3> targets{corrected(sample.reference), corrected(from_start(way[1])),
-                                        corrected(from_start(way[2]))};
     X dx = x;
-    const Mask<In> stepped = step(loop, targets, x, dx);
-    const Vector<N, In> field = dx.col(0);
+    const Mask<In> stepped = step(loop, references, x, dx);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      Tracker& tracker = trackers_[lane];
-      const auto tick = stepped[lane]
-                            ? tracker.finish(of_lane(sample.reference, lane), lane_of(x, lane), lane_of(field, lane))
-                            : tracker.advance(AtStages{way, lane_of(start_, lane), tracker.dt()});
-      status_[lane] = worse(status_[lane], tick.status);
+      const Status status = stepped[lane] ? finish(lane, sample.reference, x, dx) : alone(lane, way);
+      status_[lane] = worse(status_[lane], status);
+      set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
-    sample.qdd = from_lanes<In>([this](auto lane) -> auto& { return trackers_[lane].acceleration(); });
   }
 
  private:
-  using Target = Reference<Space, In>;
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
 
-  /// The references of one lane in RK4's stages.
-  struct AtStages {
-    const Way& way;
-    typename Space::template Point<Scalar> start;
-    Scalar dt;
-
-    [[nodiscard]] Reference<Space, Scalar> operator()(Scalar seconds) const noexcept {
-      Reference<Space, Scalar> reference = way[seconds == Scalar(0) ? 0 : seconds < dt ? 1 : 2];
-      reference.x = Space::template compose<Scalar>(start, reference.x);
-      return reference;
+  /// A lane of the references as its tracker corrects them.
+  void correct(TickReferences<Space, In>& references, std::size_t lane) const noexcept {
+    for (Reference<Space, In>& all : references.stages) {
+      const Reference<Space, Scalar> own = trackers_[lane].corrected(of_lane(all, lane));
+      set_lane(all.x, lane, own.x);
+      set_lane(all.xd, lane, own.xd);
+      set_lane(all.xdd, lane, own.xdd);
     }
-  };
-
-  [[nodiscard]] Target from_start(const Reference<Space, Scalar>& displacement) const noexcept {
-    Target reference = displacement.template cast<In>();
-    reference.x = Space::template compose<In>(start_, reference.x);
-    return reference;
-  }
-
-  [[nodiscard]] static Reference<Space, Scalar> of_lane(const Target& reference, std::size_t lane) noexcept {
-    return {lane_of(reference.x, lane), lane_of(reference.xd, lane), lane_of(reference.xdd, lane)};
-  }
-
-  /// What each tracker makes of a reference.
-  [[nodiscard]] Target corrected(Target reference) const noexcept {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const auto& correction = trackers_[lane].correction();
-      if (!correction.active()) continue;
-      const Reference<Space, Scalar> own = correction(of_lane(reference, lane));
-      set_lane(reference.x, lane, own.x);
-      set_lane(reference.xd, lane, own.xd);
-      set_lane(reference.xdd, lane, own.xdd);
-    }
-    return reference;
   }
 
   /// A step of RK4 where loop was updated; dx: dx/dt at its start. Says in which lanes it is finite.
-  [[nodiscard]] Mask<In> step(Loop& loop, const std::array<Target, 3>& targets, X& x, X& dx) const noexcept {
-    const Scalar dt = trackers_[0].dt();
+  [[nodiscard]] static Mask<In> step(Loop& loop, const TickReferences<Space, In>& references, X& x, X& dx) noexcept {
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
-      return loop.evaluate(targets[seconds < dt ? 1 : 2], stage_x, stage_dx);
+      return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
-    Status status = loop.resolve(targets[0], dx);
-    if (!failed(status)) status = RK4::step(derivative, Scalar(0), dt, dx, x);
+    Status status = loop.resolve(references.stages[0], dx);
+    if (!failed(status)) status = RK4::step(derivative, Scalar(0), references.dt, dx, x);
     if (failed(status)) return Mask<In>(false);
     const In zero = x.sum() * In(0);  // Inf and NaN make NaN of it.
     return zero == In(0);
+  }
+
+  /// The end of a tracker's tick that was stepped to x, with dx/dt at its start.
+  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const X& x, const X& dx) noexcept {
+    State<N, Scalar> next{column(x, 0, lane), column(x, x.cols() - 1, lane)};
+    return trackers_[lane].finish(of_lane(now, lane), next, column(dx, 0, lane));
+  }
+
+  /// A tracker's whole tick.
+  [[nodiscard]] Status alone(std::size_t lane, const TickReferences<Space, Scalar>& way) noexcept {
+    return trackers_[lane].advance(way.template from<Scalar>(lane_of(start_, lane))).status;
+  }
+
+  [[nodiscard]] static Vector<N, Scalar> column(const X& x, Eigen::Index j, std::size_t lane) noexcept {
+    return lane_of(Vector<N, In>(x.col(j)), lane);
+  }
+
+  [[nodiscard]] static Reference<Space, Scalar> of_lane(const Reference<Space, In>& all, std::size_t lane) noexcept {
+    return {lane_of(all.x, lane), lane_of(all.xd, lane), lane_of(all.xdd, lane)};
   }
 
   Arm arm_;
@@ -145,11 +136,12 @@ int track_batch(Batch& batch, const Path& path, const TimeGrid<typename Batch::S
   using Scalar = typename Batch::Scalar;
   PathFollower<Path> follower(path, Space::template origin<Scalar>());
   Sample<Space, Batch::N, typename Batch::In> sample;
+  const Scalar dt = grid.dt();
   for (int k = 0; k < grid.samples(); ++k) {
     sample.index = k;
     sample.t = grid.time(k);
-    batch.tick({follower.ahead(Scalar(0)), follower.ahead(grid.dt() / Scalar(2)), follower.ahead(grid.dt())}, sample);
-    follower.advance(grid.dt());
+    batch.tick({{follower.ahead(Scalar(0)), follower.ahead(dt / Scalar(2)), follower.ahead(dt)}, dt}, sample);
+    follower.advance(dt);
     if (!show(record, sample)) return k + 1;
   }
   return grid.samples();
