@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "fpbm/core/lanes.hpp"
@@ -77,31 +78,23 @@ void run_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const T
   }
 }
 
-/// The same within limits.
+/// The same by trackers, within limits.
 template <typename Space, typename Law>
 void track_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-                 const std::vector<Law>& laws, const std::vector<Vector<Law::kDof>>& starts,
-                 const LimitedInLanes<Space>& limited, const std::atomic<bool>& stop, Outcome* outcomes) {
-  constexpr int N = Law::kDof;
-  TrackerOptions<> options = limited.options;
-  options.dt = grid.dt();
-  const Limits<Law::kLevel, N> limits(limited.limits, options.dt);
-  std::vector<Tracker<ArmInLanes<Space>, Space, Law>> trackers;
-  for (std::size_t lane = 0; lane < laws.size(); ++lane) {
-    trackers.emplace_back(arm, Space{}, laws[lane], State<N>{starts[lane], Vector<N>::Zero()}, options, limits);
-  }
-  TrackerBatch batch(arm.template cast<InLanes>(), Space{}, side_by_side(laws), trackers);
-  Summary<Space, N, InLanes> summarise(Level::kAcceleration);
-  const auto record = [&](const Sample<Space, N, InLanes>& sample) noexcept {
+                 const std::vector<Law>& laws, TrackersInLanes<Space> trackers, const std::atomic<bool>& stop,
+                 Outcome* outcomes) {
+  TrackerBatch batch(arm.template cast<InLanes>(), Space{}, side_by_side(laws), std::move(trackers));
+  Summary<Space, Law::kDof, InLanes> summarise(Level::kAcceleration);
+  const auto record = [&](const Sample<Space, Law::kDof, InLanes>& sample) noexcept {
     summarise(sample);
     return !stop.load(std::memory_order_relaxed);
   };
   const int samples = track_batch(batch, path, grid, record);
   const MotionSummary<InLanes> summary = summarise.result();
   for (int lane = 0; lane < kLanes; ++lane) {
-    const Status status = batch.status()[static_cast<std::size_t>(lane)];
+    const auto status = static_cast<int>(batch.status()[static_cast<std::size_t>(lane)]);
     outcomes[lane] = samples == grid.samples()
-                         ? Outcome{static_cast<int>(status), samples, grid.time(samples - 1), lane_of(summary, lane)}
+                         ? Outcome{status, samples, grid.time(samples - 1), lane_of(summary, lane)}
                          : Outcome::of_nothing();
   }
 }
@@ -109,12 +102,12 @@ void track_level(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const
 template <typename Space>
 void run_in_lanes(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                   const SchemesInLanes<Space>& schemes, const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts,
-                  const LimitedInLanes<Space>* limited, const std::atomic<bool>& stop, Outcome* outcomes) {
+                  TrackersInLanes<Space> trackers, const std::atomic<bool>& stop, Outcome* outcomes) {
   const auto run = [&](const auto& laws) {
-    if (limited == nullptr) {
+    if (trackers.empty()) {
       run_level<Space>(arm, path, grid, laws, starts, stop, outcomes);
     } else {
-      track_level<Space>(arm, path, grid, laws, starts, *limited, stop, outcomes);
+      track_level<Space>(arm, path, grid, laws, std::move(trackers), stop, outcomes);
     }
   };
   if (schemes.acceleration.empty()) {

@@ -9,11 +9,11 @@
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
-#include "fpbm/realtime/tick.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 #include "fpbm/sim/summary.hpp"
 #include "fpbm/sim/time_grid.hpp"
+#include "lane_tracker.hpp"
 
 namespace fpbm::bindings {
 
@@ -43,21 +43,17 @@ struct SchemesInLanes {
   std::vector<AccelerationScheme<N>> acceleration;
 };
 
-/// How motions in lanes keep limits; the length of their tick is the grid's.
 template <typename Space>
-struct LimitedInLanes {
-  JointLimits<ArmInLanes<Space>::kDof> limits;
-  TrackerOptions<> options;
-};
+using TrackersInLanes = std::vector<LaneTracker<Space, ArmInLanes<Space>::kDof>>;
 
 /// Moves one arm as many times as there are lanes, side by side: under each scheme from its start, at rest; within
-/// limits where limited is not null. Writes an outcome for each motion; kNotRun for one that was stopped, or that was
-/// not regular all the way and must be run by itself, as none within limits is.
+/// limits where there is a tracker for each. Writes an outcome for each motion; kNotRun for one that was stopped, or
+/// that was not regular all the way and must be run by itself, as none within limits is.
 template <typename Space>
 using RunInLanes = void (*)(const ArmInLanes<Space>& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
                             const SchemesInLanes<Space>& schemes,
-                            const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts,
-                            const LimitedInLanes<Space>* limited, const std::atomic<bool>& stop, Outcome* outcomes);
+                            const std::vector<Vector<ArmInLanes<Space>::kDof>>& starts, TrackersInLanes<Space> trackers,
+                            const std::atomic<bool>& stop, Outcome* outcomes);
 
 /// The code in lanes for one kind of processor. Each kind's is a module of its own, so that nothing compiled for a
 /// newer processor is ever linked into what runs on every one.

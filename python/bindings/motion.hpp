@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cmath>
-
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/sim/rollout.hpp"
+#include "lane_tracker.hpp"
 #include "recorder.hpp"
 #include "scheme.hpp"
 
@@ -16,10 +15,6 @@ struct Limited {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
-
-  [[nodiscard]] bool keeps_clear() const noexcept {
-    return !clearance.pairs().empty() || std::isfinite(clearance.tip_speed());
-  }
 };
 
 /// One motion of an arm along a path.
@@ -37,6 +32,10 @@ struct Motion {
   /// fpbm::track() of it. Throws std::invalid_argument where scheme, start, limits, options or clearance do
   /// not fit.
   RolloutResult<kDynamic> track(const Limited& limited, const Output<Space>& output) const;
+
+  /// The tracker of it, for an arm of N joints. Throws as track() does.
+  template <int N>
+  LaneTracker<Space, N> tracker(const Limited& limited) const;
 
   /// Throws as simulate() does, or as track() where there are limits.
   void require(const Limited* limited) const;

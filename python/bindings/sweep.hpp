@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "lanes.hpp"
@@ -36,9 +36,8 @@ class Runner {
     Output<Space> output = job.output;
     output.summary = &summary;
     output.stop = &stop_;
-    const State<kDynamic> start{job.q0, JointVector::Zero(job.q0.size())};
-    const Motion<Space> motion{any_, path_, *job.scheme, start, grid_};
-    const auto result = limited == nullptr ? motion.simulate(output) : motion.track(*limited, output);
+    const Motion<Space> one = motion(job);
+    const auto result = limited == nullptr ? one.simulate(output) : one.track(*limited, output);
     if (!failed(result.status) && result.samples < grid_.samples()) return nothing;
     if (result.samples == 0) summary = nothing.summary;
     return {static_cast<int>(result.status), result.samples, result.time, summary};
@@ -49,15 +48,15 @@ class Runner {
                 std::size_t lanes, RunInLanes<Space> run, Outcome* outcomes) const {
     using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
     const ArmInLanes<Space> arm(std::get<Source>(arm_.source));
-    const std::optional<LimitedInLanes<Space>> kept = kept_in_lanes(limited);
     std::vector<Outcome> results(lanes, Outcome::of_nothing());
     for (std::size_t first = 0; first < members.size() && !stopped(); first += lanes) {
       const std::size_t last = std::min(first + lanes, members.size());
       SchemesInLanes<Space> schemes;
       std::vector<Vector<kDof>> starts;
+      TrackersInLanes<Space> trackers;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
-        const Scheme scheme = kept ? job.scheme->with_default_damping(kept->options.singular) : *job.scheme;
+        const Scheme scheme = limited ? job.scheme->with_default_damping(limited->options.singular) : *job.scheme;
         const DiagonalWeights<kDof> weights = scheme.template diagonal_weights<kDof>(kDof);
         if (scheme.level == Level::kVelocity) {
           schemes.velocity.push_back(scheme.template law<Level::kVelocity>(weights, arm.limits()));
@@ -65,8 +64,9 @@ class Runner {
           schemes.acceleration.push_back(scheme.template law<Level::kAcceleration>(weights, arm.limits()));
         }
         starts.emplace_back(job.q0);
+        if (limited != nullptr) trackers.push_back(motion(job).template tracker<kDof>(*limited));
       }
-      run(arm, path_, grid_, schemes, starts, kept ? &*kept : nullptr, stop_, results.data());
+      run(arm, path_, grid_, schemes, starts, std::move(trackers), stop_, results.data());
       for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
     }
   }
@@ -74,12 +74,8 @@ class Runner {
  private:
   static constexpr int kDof = ArmInLanes<Space>::kDof;
 
-  [[nodiscard]] static std::optional<LimitedInLanes<Space>> kept_in_lanes(const Limited* limited) {
-    if (limited == nullptr) return std::nullopt;
-    const JointLimits<kDynamic> given = limited->limits.complete();
-    auto limits = JointLimits<kDof>::none(kDof);
-    for (int i = 0; i < kDof; ++i) limits.set(i, given.joint(i));
-    return LimitedInLanes<Space>{limits, limited->options};
+  [[nodiscard]] Motion<Space> motion(const Job<Space>& job) const {
+    return {any_, path_, *job.scheme, {job.q0, JointVector::Zero(job.q0.size())}, grid_};
   }
 
   const Arm& arm_;
@@ -94,11 +90,6 @@ class Runner {
     return arm.dof() == 7 && chain->joints.size() == 7;  // No joint follows another.
   }
   return arm.dof() == 4;
-}
-
-[[nodiscard]] inline bool runs_in_lanes(const Arm& arm, const Limited* limited) noexcept {
-  if (limited == nullptr) return runs_in_lanes(arm);
-  return runs_in_lanes(arm) && limited->limits.lower.size() == arm.dof() && !limited->keeps_clear();
 }
 
 [[nodiscard]] inline bool runs_in_lanes(const Scheme& scheme) noexcept {
@@ -129,7 +120,7 @@ void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& g
   const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {
-    if (code != nullptr && runs_in_lanes(arm, limited)) {
+    if (code != nullptr && runs_in_lanes(arm)) {
       for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
         runner.in_lanes(jobs, side_by_side(jobs, level), limited, static_cast<std::size_t>(code->lanes),
                         std::get<RunInLanes<Space>>(code->run), outcomes);

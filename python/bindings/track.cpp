@@ -39,6 +39,12 @@ RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Outpu
 }
 
 template <typename Space>
+template <int N>
+LaneTracker<Space, N> Motion<Space>::tracker(const Limited& limited) const {
+  return std::visit([](const auto& any) { return LaneTracker<Space, N>(any); }, tracker_of(*this, limited));
+}
+
+template <typename Space>
 void Motion<Space>::require(const Limited* limited) const {
   if (limited != nullptr) {
     (void)tracker_of(*this, *limited);
@@ -51,5 +57,8 @@ template struct Motion<Position<2>>;
 template struct Motion<PlanarPose>;
 template struct Motion<Position<3>>;
 template struct Motion<Pose>;
+template LaneTracker<Position<2>, 4> Motion<Position<2>>::tracker<4>(const Limited&) const;
+template LaneTracker<Position<3>, 7> Motion<Position<3>>::tracker<7>(const Limited&) const;
+template LaneTracker<Pose, 7> Motion<Pose>::tracker<7>(const Limited&) const;
 
 }  // namespace fpbm::bindings

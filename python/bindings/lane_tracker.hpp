@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/realtime/tick_references.hpp"
+
+namespace fpbm::bindings {
+
+/// A tracker as code in lanes sees it (TrackerBatch). What it does is compiled once, for every processor.
+template <typename Space, int N>
+class LaneTracker {
+ public:
+  using Point = typename Space::template Point<double>;
+  struct Ticked {
+    Status status;
+  };
+
+  template <typename Tracker>
+  explicit LaneTracker(const Tracker& tracker) : held_(std::make_unique<Held<Tracker>>(tracker)) {}
+
+  [[nodiscard]] Point tip() const noexcept { return held_->tip(); }
+  [[nodiscard]] State<N> state() const noexcept { return held_->state(); }
+  [[nodiscard]] Vector<N> acceleration() const noexcept { return held_->acceleration(); }
+  bool begin(const Vector<Space::kRows>& error, double length) noexcept { return held_->begin(error, length); }
+  [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept {
+    return held_->corrected(reference);
+  }
+  Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept {
+    return held_->finish(now, next, field);
+  }
+  Ticked advance(const TickReferences<Space>& references) noexcept { return {held_->advance(references)}; }
+
+ private:
+  struct Holder {
+    Holder() = default;
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+    virtual ~Holder() = default;
+    [[nodiscard]] virtual Point tip() const noexcept = 0;
+    [[nodiscard]] virtual State<N> state() const noexcept = 0;
+    [[nodiscard]] virtual Vector<N> acceleration() const noexcept = 0;
+    virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
+    [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
+    virtual Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept = 0;
+    virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
+  };
+
+  template <typename Tracker>
+  struct Held final : Holder {
+    explicit Held(const Tracker& tracker) : tracker_(tracker) {}
+
+    [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
+    [[nodiscard]] State<N> state() const noexcept override { return {tracker_.state().q, tracker_.state().qd}; }
+    [[nodiscard]] Vector<N> acceleration() const noexcept override { return tracker_.acceleration(); }
+    bool begin(const Vector<Space::kRows>& error, double length) noexcept override {
+      return tracker_.begin(error, length);
+    }
+    [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
+      return tracker_.corrected(reference);
+    }
+    Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept override {
+      return tracker_.finish(now, {next.q, next.qd}, field);
+    }
+    Status advance(const TickReferences<Space>& references) noexcept override {
+      return tracker_.advance(references).status;
+    }
+
+   private:
+    Tracker tracker_;
+  };
+
+  std::unique_ptr<Holder> held_;
+};
+
+}  // namespace fpbm::bindings
