@@ -53,6 +53,16 @@ CASES = {
 }
 
 
+def narrow(arm, velocity):
+    """Limits of that velocity, and ten times it for the acceleration."""
+    return fp.JointLimits(
+        lower=[-3.5] * arm.dof,
+        upper=[4.0] * arm.dof,
+        velocity=[velocity] * arm.dof,
+        acceleration=[10 * velocity] * arm.dof,
+    )
+
+
 def same(a, b):
     """The same sweep to the last bit."""
     np.testing.assert_array_equal(a.status, b.status)
@@ -79,13 +89,8 @@ def expect_run(sweep, i, k, run):
         np.testing.assert_allclose(getattr(sweep, name)[i, k], value, rtol=tolerance, atol=1e-15, err_msg=name)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case):
-    arm, path, task, q0 = CASES[case]
-    schemes = every_scheme(arm.dof)
-    q0s = q0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, arm.dof))
-    lanes = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task)
-    alone = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True)
+def expect_agreement(lanes, alone):
+    """The same sweep to round-off."""
     np.testing.assert_array_equal(lanes.status, alone.status)
     for name in FIGURES:
         differences = name in ("peak_acceleration", "final_acceleration")  # Of velocities, at velocity level.
@@ -93,19 +98,39 @@ def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case):
         np.testing.assert_allclose(getattr(lanes, name), getattr(alone, name), tolerance, tolerance, err_msg=name)
 
 
-def test_a_motion_does_not_feel_the_others_lanes():
+@pytest.mark.parametrize("within", [None, 1.0, 0.1])
+@pytest.mark.parametrize("case", CASES)
+def test_motions_side_by_side_in_lanes_are_those_that_go_alone(case, within):
+    arm, path, task, q0 = CASES[case]
+    schemes = every_scheme(arm.dof)
+    q0s = q0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, arm.dof))
+    how = {"hold": 0.5, "task": task, "limits": None if within is None else narrow(arm, within)}
+    lanes = fp.sweep(arm, path, schemes, q0s, 0.01, **how)
+    alone = fp.sweep(arm, path, schemes, q0s, 0.01, motions=True, **how)
+    expect_agreement(lanes, alone)
+    if within == 0.1:
+        assert (lanes.status == fp.Status.SLOWED).all()
+        assert lanes.peak_velocity.max() <= 0.1 + 1e-12
+
+
+@pytest.mark.parametrize("within", [None, 1.0, 0.1])
+def test_a_motion_does_not_feel_the_others_lanes(within):
     arm, path, task, q0 = CASES["panda pose"]
-    schemes = every_scheme(7)[-2]
+    scheme = every_scheme(7)[-2]
     q0s = q0 + np.random.default_rng(4).uniform(-0.05, 0.05, (fp.LANES + 3, 7))
     bad = q0s.copy()
     bad[1::2] = [0, 0, 0, -0.08, 0, 0.1, 0]  # Outstretched: the path leads out of reach.
-    good = fp.sweep(arm, path, schemes, q0s, 0.01, task=task)
-    mixed = fp.sweep(arm, path, schemes, bad, 0.01, task=task)
-    assert good.ok.all()
-    assert not mixed.ok[0, 1::2].any()
+    how = {"task": task, "limits": None if within is None else narrow(arm, within)}
+    good = fp.sweep(arm, path, scheme, q0s, 0.01, **how)
+    mixed = fp.sweep(arm, path, scheme, bad, 0.01, **how)
     for name in FIGURES:
         assert getattr(mixed, name)[0, ::2].tobytes() == getattr(good, name)[0, ::2].tobytes(), name
-    expect_run(mixed, 0, 1, fp.simulate(arm, path, schemes, bad[1], dt=0.01, task=task, partial=True))
+    assert good.ok.all()
+    if within is None:
+        assert not mixed.ok[0, 1::2].any()
+        expect_run(mixed, 0, 1, fp.simulate(arm, path, scheme, bad[1], dt=0.01, task=task, partial=True))
+    else:
+        expect_agreement(mixed, fp.sweep(arm, path, scheme, bad, 0.01, motions=True, **how))
 
 
 @pytest.mark.parametrize("choice", ["none", "avx2", "avx512"])
@@ -231,8 +256,7 @@ def test_within_limits_a_sweep_is_many_tracks(case):
     q0s = q0 + np.random.default_rng(0).uniform(-0.05, 0.05, (2, arm.dof))
     how = {"limits": LIMITED[case], "error_bound": 0.05, "integral_gain": 0.1, "singular_radius": 0.03}
     sweep = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, motions=True, **how)
-    figures = fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, **how)
-    same(figures, sweep)
+    expect_agreement(fp.sweep(arm, path, schemes, q0s, 0.01, hold=0.5, task=task, **how), sweep)
     for i, scheme in enumerate(schemes):
         for k, start in enumerate(q0s):
             run = fp.track(arm, path, scheme, start, dt=0.01, hold=0.5, task=task, **how)
