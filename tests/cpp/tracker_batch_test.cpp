@@ -183,6 +183,10 @@ TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
   const std::array<Vector<N>, kLanes> starts{Case::start(0.0), Case::start(0.1)};
   EXPECT_EQ(All::expect_agreement(starts, 0.1, 0.2, 1e-9, options), Status::kSlowed);
 
+  auto impatient = options;
+  impatient.stall_time = 0.03;
+  EXPECT_EQ(All::expect_agreement(starts, 5.0, 0.5, 1e-9, impatient), Status::kStalled);  // Out of reach.
+
   const auto limits = All::limits(0.2);
   auto all = All::batch(All::trackers(starts, 0.2, options));
   double fastest = 0.0;
