@@ -159,10 +159,14 @@ struct Motions {
 template <typename Subject>
 class TrackerBatchLaws : public testing::Test {};
 
+#ifdef FPBM_FEW_TYPES
+using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
+#else
 using Subjects =
     testing::Types<Subject<Planar, Level::kVelocity>, Subject<Planar, Level::kAcceleration>,
                    Subject<Panda<Position<3>>, Level::kVelocity>, Subject<Panda<Position<3>>, Level::kAcceleration>,
                    Subject<Panda<Pose>, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
+#endif
 TYPED_TEST_SUITE(TrackerBatchLaws, Subjects);
 
 TYPED_TEST(TrackerBatchLaws, move_freely_as_each_by_itself) {
