@@ -392,14 +392,16 @@ def test_interruption_keeps_what_is_finished_elsewhere(arm, reference):
     same(caught.value.sweep, reference)
 
 
-def test_interruption_keeps_what_is_finished(arm, reference):
+def test_interruption_keeps_what_is_finished(arm):
     def interrupt(done, total):
         if done > 100:
             raise KeyboardInterrupt
 
+    dt = 0.001  # Long enough that none finishes all meanwhile.
+    reference = large(arm, dt, workers=1)
     for how in ({"workers": 2}, {"workers": 1}):
         with pytest.raises(fp.SweepInterrupted, match=r"interrupted after \d+ of 600 motions") as caught:
-            large(arm, progress=interrupt, dt=0.001, **how)  # Long enough that none finishes all meanwhile.
+            large(arm, dt, progress=interrupt, **how)
         sweep = caught.value.sweep
         assert isinstance(caught.value, KeyboardInterrupt)
         assert 100 < sweep.done.sum() < 600
