@@ -56,6 +56,7 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/spatial_self_motion.hpp"
 #include "fpbm/linalg/split_vector.hpp"
 #include "fpbm/linalg/symmetric_eigen.hpp"
 #include "fpbm/linalg/three.hpp"

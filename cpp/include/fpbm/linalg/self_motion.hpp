@@ -1,10 +1,8 @@
 #pragma once
 
-#include <limits>
-#include <type_traits>
-
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/spatial_self_motion.hpp"
 #include "fpbm/linalg/three_by_four.hpp"
 
 namespace fpbm {
@@ -23,10 +21,6 @@ class SelfMotion;
 /// Whether there is one.
 template <int M, int N>
 inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 6);
-
-/// The least share with which v is known to six digits or more, and half of them in float.
-template <typename Scalar>
-inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
 
 /// A position in the plane, by the cross product of J's rows a and b:
 ///
@@ -109,143 +103,8 @@ class SelfMotion<3, 4, Scalar> {
   ThreeByFour<Scalar> S_;  ///< J
 };
 
-/// A pose, by 3 × 3 blocks: with J = [B; A], B its linear rows and A its angular ones, three joints T whose axes span
-/// space (the hand) keep the tip from turning, and the four others, R, move it:
-///
-///   K = A_T⁻¹,   X = K A_R,   S = B_R − B_T X   (3 × 4)
-///   J y = b:   S y_R = b_v − B_T K b_w,   y_T = K b_w − X y_R;      J v = 0:   S ṽ = 0,   v = (−X ṽ, ṽ).
+/// A pose in space.
 template <typename Scalar>
-class SelfMotion<6, 7, Scalar> {
- public:
-  static constexpr int kKinds = 5;  ///< Of hands: any three consecutive joints. The wrist is tried first.
-  using Twice = Pair<Scalar>;
-
-  [[nodiscard, gnu::always_inline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
-                                                        const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
-    using std::abs;
-    joint_ = kJoints[kind];
-    const auto linear = [&](int i) { return J.data() + 6 * joint_[i]; };
-    const auto angular = [&](int i) { return J.data() + 6 * joint_[i] + 3; };
-    const Three<Scalar> a = three(angular(0)), b = three(angular(1)), c = three(angular(2));
-    const Three<Scalar> ab = cross(a, b);
-    const Scalar det = dot(ab, c);
-    const Mask<Scalar> spans = abs(det) > Scalar(kSpans);
-    if (none_of(spans)) return spans;
-
-    const Scalar over = Scalar(1) / det;
-    K_[0] = over * cross(b, c);
-    K_[1] = over * cross(c, a);
-    K_[2] = over * ab;
-    for (int i = 0; i < 3; ++i) B_[i] = three(linear(i));
-    X12_ = hand(three(angular(3), angular(4)));
-    X34_ = hand(three(angular(5), angular(6)));
-    rest_.factor(left(three(linear(3), linear(4)), X12_), left(three(linear(5), linear(6)), X34_));
-    return spans && rest_.is_regular(share);
-  }
-
-  [[nodiscard]] Vector<7, Scalar> null() const noexcept {
-    const Twice &v12 = rest_.null12(), &v34 = rest_.null34();
-    const auto row = [&](const Twice& x12, const Twice& x34) { return -sum(x12 * v12 + x34 * v34); };
-    const Scalar v[7] = {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z), v12.first(),
-                         v12.second(),        v34.first(),         v34.second()};
-    Vector<7, Scalar> result;
-    for (int i = 0; i < 7; ++i) result.coeffRef(joint_[i]) = v[i];
-    return result;
-  }
-
-  template <typename Value>
-  [[nodiscard, gnu::always_inline]] Vector<7, Value> solve(const Vector<6, Value>& b) const noexcept {
-    const Three<Value> x = hand(three(b.data() + 3));
-    Value y[4];
-    rest_.solve(left(three(b.data()), x), y);
-    const auto row = [&](const Value& x0, const Twice& x12, const Twice& x34) {
-      return (x0 - (Value(x12.first()) * y[0] + Value(x12.second()) * y[1])) -
-             (Value(x34.first()) * y[2] + Value(x34.second()) * y[3]);
-    };
-    Vector<7, Value> result;
-    result.coeffRef(joint_[0]) = row(x.x, X12_.x, X34_.x);
-    result.coeffRef(joint_[1]) = row(x.y, X12_.y, X34_.y);
-    result.coeffRef(joint_[2]) = row(x.z, X12_.z, X34_.z);
-    for (int i = 0; i < 4; ++i) result.coeffRef(joint_[3 + i]) = y[i];
-    return result;
-  }
-
-  /// gᵀs for J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
-  [[nodiscard, gnu::always_inline]] Scalar along(const Vector<6, Scalar>& t,
-                                                 const Vector<7, Scalar>& g) const noexcept {
-    const auto at = [&](int i) -> const Scalar& { return g.coeffRef(joint_[i]); };
-    const Three<Scalar> hands = {at(0), at(1), at(2)};
-    const Three<Twice> both = repeated<Twice>(hands);
-    const Three<Scalar> x = hand(three(t.data() + 3));
-    return rest_.along(left(three(t.data()), x), Twice(at(3), at(4)) - dot(both, X12_),
-                       Twice(at(5), at(6)) - dot(both, X34_)) +
-           dot(hands, x);
-  }
-
-  /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², in the norm of Frobenius: of [P, (K − P G)/length], a right inverse of DJ, where
-  /// P = (−X S⁺, S⁺) and G = B_T K.
-  [[nodiscard, gnu::noinline]] Scalar inverse_square(const Scalar& length) const noexcept {
-    using std::sqrt;
-    Twice xy[4];
-    Scalar z[4];
-    rest_.inverse(xy, z);
-    Twice square = xy[0] * xy[0] + xy[1] * xy[1] + xy[2] * xy[2] + xy[3] * xy[3];
-    Scalar square_z = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
-    const auto add_row = [&](const Twice& x12, const Twice& x34) {
-      const Twice two = Twice(x12.first()) * xy[0] + Twice(x12.second()) * xy[1] + Twice(x34.first()) * xy[2] +
-                        Twice(x34.second()) * xy[3];
-      const Scalar one = x12.first() * z[0] + x12.second() * z[1] + x34.first() * z[2] + x34.second() * z[3];
-      square += two * two;
-      square_z += one * one;
-    };
-    add_row(X12_.x, X34_.x);
-    add_row(X12_.y, X34_.y);
-    add_row(X12_.z, X34_.z);
-    const Scalar P = sum(square) + square_z;
-    const Scalar K = dot(K_[0], K_[0]) + dot(K_[1], K_[1]) + dot(K_[2], K_[2]);
-    const auto lever = [&](const auto& a, const auto& b, const auto& c) {
-      using Value = std::decay_t<decltype(a)>;
-      const auto entry = [&](const Scalar& ka, const Scalar& kb, const Scalar& kc) {
-        const Value sum = a * Value(ka) + b * Value(kb) + c * Value(kc);
-        return sum * sum;
-      };
-      return entry(K_[0].x, K_[1].x, K_[2].x) + entry(K_[0].y, K_[1].y, K_[2].y) + entry(K_[0].z, K_[1].z, K_[2].z);
-    };
-    const Scalar G = sum(lever(Twice(B_[0].x, B_[0].y), Twice(B_[1].x, B_[1].y), Twice(B_[2].x, B_[2].y))) +
-                     lever(B_[0].z, B_[1].z, B_[2].z);
-    const Scalar PG = P * G;
-    return P + (PG + K + Scalar(2) * sqrt(PG * K)) / (length * length);
-  }
-
- private:
-  /// The hand, then the rest.
-  static constexpr int kJoints[kKinds][7] = {{4, 5, 6, 0, 1, 2, 3},
-                                             {2, 3, 4, 0, 1, 5, 6},
-                                             {3, 4, 5, 0, 1, 2, 6},
-                                             {1, 2, 3, 0, 4, 5, 6},
-                                             {0, 1, 2, 3, 4, 5, 6}};
-  /// Least |det A_T| with which a hand spans space.
-  static constexpr auto kSpans = 0.3F;
-
-  /// K a: what the hand does about a turn a.
-  template <typename Value>
-  [[nodiscard]] Three<Value> hand(const Three<Value>& a) const noexcept {
-    return {dot(repeated<Value>(K_[0]), a), dot(repeated<Value>(K_[1]), a), dot(repeated<Value>(K_[2]), a)};
-  }
-  /// b − B_T x: what of b the hand leaves.
-  template <typename Value>
-  [[nodiscard]] Three<Value> left(const Three<Value>& b, const Three<Value>& x) const noexcept {
-    return {(b.x - Value(B_[0].x) * x.x) - (Value(B_[1].x) * x.y + Value(B_[2].x) * x.z),
-            (b.y - Value(B_[0].y) * x.x) - (Value(B_[1].y) * x.y + Value(B_[2].y) * x.z),
-            (b.z - Value(B_[0].z) * x.x) - (Value(B_[1].z) * x.y + Value(B_[2].z) * x.z)};
-  }
-
-  const int* joint_;
-  Three<Scalar> K_[3];  ///< Rows of K.
-  Three<Scalar> B_[3];  ///< Columns of B_T.
-  Three<Twice> X12_;    ///< Columns of X.
-  Three<Twice> X34_;
-  ThreeByFour<Scalar> rest_;  ///< S
-};
+class SelfMotion<6, 7, Scalar> : public SpatialSelfMotion<Scalar> {};
 
 }  // namespace fpbm

@@ -4,6 +4,10 @@
 
 namespace fpbm {
 
+/// The least share with which v is known to six digits or more, and half of them in float.
+template <typename Scalar>
+inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
+
 /// A matrix S of three rows and four columns s₁ … s₄, solved by its minors: with c_kl = s_k × s_l,
 ///
 ///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂)      S ṽ = 0,   |ṽ|² = det SSᵀ,
