@@ -87,7 +87,7 @@ Row measure(const Arm& arm) {
     const auto reference = reference_at(random(fpbm::Vector<M>(), 0.01));
 
     const RealMatrix J = kinematics.J.template cast<Real>();
-    const RealVector sigma = J.bdcSvd().singularValues();
+    const RealVector sigma = Eigen::JacobiSVD<RealMatrix>(J).singularValues();
     const auto decade = static_cast<int>(std::log10(static_cast<double>(sigma(0) / sigma(M - 1))));
     if (decade >= kDecades) continue;
     fpbm::Vector<N> qdd;

@@ -11,7 +11,7 @@ enum class Status : unsigned char {
   kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
   kBlocked,    ///< Shapes that the arm keeps clear of leave no room for the whole task: it is scaled down.
   kStalled,    ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
-  kSingular,   ///< The task Jacobian has lost rank: its Gram matrix has no usable Cholesky factor.
+  kSingular,   ///< The task Jacobian has lost rank, to round-off.
   kTaskLost,   ///< The tip left the motion that the scheme prescribes within one step.
   kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
 };
