@@ -129,8 +129,8 @@ class RowFactor {
     if constexpr (std::is_same_v<Count, Constant<N>>) {
       return total<0, N>(f);
     } else {
-      Value sum = f(0);
-      for (Eigen::Index k = 1; k < n; ++k) sum += f(k);
+      Value sum(Scalar(0));
+      for (Eigen::Index k = 0; k < n; ++k) sum += f(k);
       return sum;
     }
   }
