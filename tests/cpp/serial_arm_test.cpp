@@ -124,9 +124,8 @@ template <int N, typename Scalar>
 void expect_same_arm(const Chain<>& chain, Random& random) {
   const SerialArm<Eigen::Dynamic> arm(chain);
   const auto other = SerialArm<N>(chain).template cast<Scalar>();
-  const auto dof = static_cast<int>(chain.joints.size());
-  const Vector<N, Scalar> q = random.uniform(dof, -3.0, 3.0).cast<Scalar>();
-  const Vector<N, Scalar> qd = random.uniform(dof, -1.0, 1.0).cast<Scalar>();
+  const Vector<N, Scalar> q = random.uniform(N, -3.0, 3.0).cast<Scalar>();
+  const Vector<N, Scalar> qd = random.uniform(N, -1.0, 1.0).cast<Scalar>();
   Kinematics<Pose, Eigen::Dynamic> expected;
   Kinematics<Pose, N, Scalar> out;
   arm.kinematics(Vector<Eigen::Dynamic>(q.template cast<double>()), Vector<Eigen::Dynamic>(qd.template cast<double>()),
