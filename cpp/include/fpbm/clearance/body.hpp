@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "fpbm/clearance/shape.hpp"
 #include "fpbm/model/links.hpp"
@@ -21,10 +22,10 @@ struct Body {
   Scalar size;               ///< Radius of the ball around it.
   Scalar reach = Scalar(0);  ///< Most that a motion in question can move its axis.
 
-  Body(const Links<N, Scalar>& links, Eigen::Index link_, const Capsule<Scalar>& capsule, const std::string& name_)
+  Body(const Links<N, Scalar>& links, Eigen::Index link_, const Capsule<Scalar>& capsule, std::string name_)
       : link(link_),
         in_link(capsule),
-        name(name_),
+        name(std::move(name_)),
         levers(links.levers(link, capsule.a).cwiseMax(links.levers(link, capsule.b))) {
     place({});
   }

@@ -82,7 +82,7 @@ struct Foreseen {
   /// The same for each lane, where the Gram matrix's result is NaN unless damping surely does not act.
   void settle([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
     if constexpr (kInLanes<Scalar>) {
-      const Mask<Scalar> holds = regular || (answered && result(0) == result(0));
+      const Mask<Scalar> holds = regular || (answered && !isnan(result(0)));
       for (int i = 0; i < N; ++i) where(holds, result(i)) = u(i);
     }
   }
