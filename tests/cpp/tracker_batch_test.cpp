@@ -36,8 +36,12 @@ struct Laws {
 
   static auto side_by_side() {
     const std::vector<Law> laws{of(0.0), of(1.0)};
-    const auto weights = DiagonalWeights<N, In>::side_by_side([&](auto lane) -> auto& { return laws[lane].weights; });
-    const auto null_space = NullSpace<N, In>::side_by_side([&](auto lane) -> auto& { return laws[lane].null_space; });
+    const auto weights = DiagonalWeights<N, In>::side_by_side([&](auto lane) -> auto& {
+      return laws[static_cast<std::size_t>(lane)].weights;
+    });
+    const auto null_space = NullSpace<N, In>::side_by_side([&](auto lane) -> auto& {
+      return laws[static_cast<std::size_t>(lane)].null_space;
+    });
     const SingularDamping<In> singular;
     const In lane([](auto i) { return static_cast<double>(i); });
     if constexpr (kLevel == Level::kVelocity) {
@@ -169,7 +173,7 @@ using Subjects =
                    Subject<Panda<Position<3>>, Level::kVelocity>, Subject<Panda<Position<3>>, Level::kAcceleration>,
                    Subject<Panda<Pose>, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
 #endif
-TYPED_TEST_SUITE(TrackerBatchLaws, Subjects);
+TYPED_TEST_SUITE(TrackerBatchLaws, Subjects, );
 
 TYPED_TEST(TrackerBatchLaws, move_freely_as_each_by_itself) {
   using All = Motions<TypeParam>;
