@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <variant>
 
+#include "fpbm/scheme/dense_weights.hpp"
 #include "fpbm/scheme/weights.hpp"
 
 namespace fpbm {

@@ -116,12 +116,14 @@ template <int N, typename Scalar>
   if (!is_finite(drives.way + drives.tick + drives.low + drives.high)) return false;
   const ChainSweep<N, Scalar> sweep(clearance.links(), drives);
   clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
-  clearance.open_all();
+  OpenPairs& open = clearance.open();
+  open.open_all();
   Scalar done(0);
   for (int advance = 0; advance < kAdvances; ++advance) {
     const Scalar whole = Scalar(1) - done;
     Scalar step = whole;
-    clearance.close_if([&](const ShapePair& pair) noexcept {
+    open.close_if([&](std::size_t number) noexcept {
+      const ShapePair& pair = clearance.pairs()[number];
       const Scalar moves = pair.world ? time * clearance.obstacles()[pair.second].velocity.norm() : Scalar(0);
       if (moves > Scalar(0) && pairs == Pairs::kAtRest) return true;
       const Scalar most = clearance.margin() + moves;

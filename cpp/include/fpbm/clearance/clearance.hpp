@@ -10,6 +10,7 @@
 #include "fpbm/clearance/body.hpp"
 #include "fpbm/clearance/link_capsule.hpp"
 #include "fpbm/clearance/obstacle.hpp"
+#include "fpbm/clearance/open_pairs.hpp"
 #include "fpbm/model/links.hpp"
 #include "fpbm/model/spread_posture.hpp"
 
@@ -118,9 +119,9 @@ class Clearance {
         const std::string name = std::string(side < Scalar(0) ? "lower " : "upper ") + "xyz"[axis];
         pairs_.push_back({bodies_.size() - 1, obstacles_.size(), true});
         obstacles_.push_back({name, HalfSpace<Scalar>{inward, -side * (side < Scalar(0) ? lower : upper)(axis)}});
-        open_.push_back(0);
       }
     }
+    open_.resize(pairs_.size());
   }
 
   /// Whether any obstacle moves by itself.
@@ -153,19 +154,8 @@ class Clearance {
     for (Body& body : bodies_) body.reach = body.levers.dot(most);
   }
 
-  /// Pairs that a question is still open about: first all, then but those that close(pair) says are settled.
-  void open_all() noexcept {
-    for (std::size_t i = 0; i < pairs_.size(); ++i) open_[i] = i;
-    open_count_ = pairs_.size();
-  }
-  template <typename Close>
-  void close_if(Close&& close) noexcept {
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < open_count_; ++k) {
-      if (!close(pairs_[open_[k]])) open_[left++] = open_[k];
-    }
-    open_count_ = left;
-  }
+  /// Pairs that a question is still open about, for who asks it.
+  [[nodiscard]] OpenPairs& open() noexcept { return open_; }
 
   /// The pair that is nearest to one another where the arm is placed, and its distance; infinite without pairs.
   [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept {
@@ -200,8 +190,7 @@ class Clearance {
   std::vector<Obstacle<Scalar>> obstacles_;
   std::vector<ShapePair> pairs_;
   std::vector<ShapePair> left_out_;
-  std::vector<std::size_t> open_;
-  std::size_t open_count_ = 0;
+  OpenPairs open_;
   Scalar margin_;
   Away<Scalar> away_;
   Scalar tip_speed_ = std::numeric_limits<Scalar>::infinity();

@@ -11,16 +11,6 @@
 
 namespace fpbm {
 
-/// Keeps clear of nothing.
-struct Unguarded {
-  [[nodiscard]] static constexpr bool empty() noexcept { return true; }
-  [[nodiscard]] static constexpr bool is_near(std::uint32_t) noexcept { return false; }
-  template <Level kLevel, int N, typename Scalar>
-  [[nodiscard]] static Rows<N, 0, Scalar> rows(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&) noexcept {
-    return {};
-  }
-};
-
 /// Keeps an arm clear of itself and its surroundings, tick by tick.
 ///
 /// A tick is taken only if from its end the arm can stop with all pairs keeping their margin all the way

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fpbm/limits/box.hpp"
+#include "fpbm/limits/held_joints.hpp"
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/linalg/self_motion.hpp"
@@ -82,18 +83,18 @@ class NullSpaceSaturation {
     }
     All u = All::Zero(n);
     Saturated<N, Scalar> result{rest, Scalar(0), 0, 0};
-    count_ = 0;
+    held_.clear();
     const Eigen::Index most = kPasses * n;
     while (result.passes < most) {
       ++result.passes;
-      const All rate = direction(goal);
+      const All rate = held_.direction(Z_, goal);
       const Scalar fastest = rate.cwiseAbs().maxCoeff();
       if (fastest > kSteepest) break;
       const Scalar still = kStill * fastest;
       Scalar step = Scalar(1) - result.scale;
       Eigen::Index hit = -1;
       for (Eigen::Index i = 0; i < n; ++i) {
-        if (!(abs(rate(i)) > still) || active(i)) continue;
+        if (!(abs(rate(i)) > still) || held_.has(i)) continue;
         const Scalar reach = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
         if (reach < step) {
           step = reach > Scalar(0) ? reach : Scalar(0);
@@ -105,15 +106,16 @@ class NullSpaceSaturation {
       if (hit < 0) break;
       const bool above = rate(hit) > Scalar(0);
       u(hit) = above ? upper(hit) : lower(hit);
-      if (!hold(hit, above)) {
+      if (!held_.hold(Z_, hit, above)) {
         count(result, hit, joints);
         break;
       }
     }
-    for (int i = 0; i < count_; ++i) count(result, held_[i], joints);
     result.u = box.nearest(rest + unit_.cwiseProduct(u.head(joints)));
-    for (int i = 0; i < count_; ++i) {
-      if (held_[i] < joints) result.u(held_[i]) = above_[i] ? box.upper(held_[i]) : box.lower(held_[i]);
+    for (int i = 0; i < held_.count(); ++i) {
+      const auto [joint, above] = held_[i];
+      count(result, joint, joints);
+      if (joint < joints) result.u(joint) = above ? box.upper(joint) : box.lower(joint);
     }
     return result;
   }
@@ -123,18 +125,15 @@ class NullSpaceSaturation {
   static constexpr int kMost = kCapacity<N>;
   using All = Eigen::Matrix<Scalar, kAll, 1, Eigen::ColMajor | Eigen::DontAlign, kMost + P, 1>;  ///< Joints, then rows.
   using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
-  using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
+  using Held = HeldJoints<kMost, Scalar>;
 
   /// Share of |v|² from which on v has lost a few digits at most.
   static constexpr Scalar kRegular = Scalar(1e-4);
   static constexpr int kPasses = 3;  ///< At most, for each joint.
   /// A joint is still where its share of the motion is round-off.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-  /// A joint can be held too where the part of its row of Z outside the held joints' rows is longer than this: about
-  /// √epsilon, below which the part is mostly round-off.
-  static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
   /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
-  static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
+  static constexpr Scalar kSteepest = Scalar(100) / Held::kIndependent;
 
   /// Z of one self-motion v, away from singular postures: v in each joint's unit, at length 1. False elsewhere.
   [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
@@ -155,86 +154,10 @@ class NullSpaceSaturation {
     (held < joints ? result.joints : result.rows) |= std::uint32_t(1) << (held < joints ? held : held - joints);
   }
 
-  [[nodiscard]] bool active(Eigen::Index joint) const noexcept {
-    for (int i = 0; i < count_; ++i) {
-      if (held_[i] == joint) return true;
-    }
-    return false;
-  }
-
-  /// du/ds: the goal plus the least null-space motion that keeps the held joints at rest.
-  [[nodiscard]] All direction(const All& goal) const noexcept {
-    All rate = goal;
-    if (count_ == 0) return rate;
-    Free change = Free::Zero(Z_.cols());
-    Free y(count_);
-    for (int j = 0; j < count_; ++j) {
-      y(j) = -goal(held_[j]);
-      for (int i = 0; i < j; ++i) y(j) -= R_[i][j] * y(i);
-      y(j) /= R_[j][j];
-      change += y(j) * Q_[j];
-    }
-    rate += Z_.lazyProduct(change);
-    for (int j = 0; j < count_; ++j) rate(held_[j]) = Scalar(0);
-    return rate;
-  }
-
-  /// Z_jointᵀ = Σ R_[i][k] Q_[i] + Q_[k], over i < k: one column more of Z_heldᵀ = QR, not yet of length 1. Gram and
-  /// Schmidt, twice, so that Q is orthogonal where the rest is short.
-  void split(Eigen::Index joint, int k) noexcept {
-    Q_[k] = Z_.row(joint).transpose();
-    for (int i = 0; i < k; ++i) R_[i][k] = Scalar(0);
-    for (int round = 0; round < 2; ++round) {
-      for (int i = 0; i < k; ++i) {
-        const Scalar along = Q_[i].dot(Q_[k]);
-        R_[i][k] += along;
-        Q_[k] -= along * Q_[i];
-      }
-    }
-    R_[k][k] = Q_[k].norm();
-  }
-
-  /// Holds one more joint on its bound, or holds it in place of one that may leave its own. False where neither works.
-  [[nodiscard]] bool hold(Eigen::Index joint, bool above) noexcept {
-    split(joint, count_);
-    if (R_[count_][count_] > kIndependent) {
-      Q_[count_] /= R_[count_][count_];
-      held_[count_] = joint;
-      above_[count_] = above;
-      ++count_;
-      return true;
-    }
-    Free share(count_);  // c in Z_joint = Σ c_i Z_held(i).
-    int leaving = -1;
-    Scalar most = kIndependent;
-    for (int i = count_ - 1; i >= 0; --i) {
-      share(i) = R_[i][count_];
-      for (int j = i + 1; j < count_; ++j) share(i) -= R_[i][j] * share(j);
-      share(i) /= R_[i][i];
-      const Scalar inward = above_[i] == above ? share(i) : -share(i);
-      if (inward > most) {
-        most = inward;
-        leaving = i;
-      }
-    }
-    if (leaving < 0) return false;
-    held_[leaving] = joint;
-    above_[leaving] = above;
-    for (int j = leaving; j < count_; ++j) {
-      split(held_[j], j);
-      Q_[j] /= R_[j][j];
-    }
-    return true;
-  }
-
   Basis Z_;  ///< Basis of the null space, in each joint's unit.
   JointVector unit_;
   Rows<N, P, Scalar> rows_;  ///< Each in a unit of its own.
-  int count_ = 0;
-  Eigen::Index held_[kMost];
-  bool above_[kMost];
-  Free Q_[kMost + 1];  ///< Z_heldᵀ = QR, one column per held joint.
-  Scalar R_[kMost + 1][kMost + 1];
+  Held held_;
 };
 
 }  // namespace fpbm

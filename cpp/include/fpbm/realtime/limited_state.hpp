@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/clearance/guard.hpp"
+#include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "fpbm/scheme/acceleration_scheme.hpp"
+#include "fpbm/scheme/dense_weights.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
 /// The paper's schemes by name, with its equation numbers: FPBM<7>(0.6, weights, 10, 25).

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "fpbm/limits/limits.hpp"
+#include "fpbm/limits/rows.hpp"
+
+namespace fpbm {
+
+/// Keeps clear of nothing.
+struct Unguarded {
+  [[nodiscard]] static constexpr bool empty() noexcept { return true; }
+  [[nodiscard]] static constexpr bool is_near(std::uint32_t) noexcept { return false; }
+  template <Level kLevel, int N, typename Scalar>
+  [[nodiscard]] static Rows<N, 0, Scalar> rows(const Limits<kLevel, N, Scalar>&, const State<N, Scalar>&) noexcept {
+    return {};
+  }
+};
+
+}  // namespace fpbm
