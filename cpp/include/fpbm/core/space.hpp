@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
@@ -97,8 +98,11 @@ struct Pose {
   /// y ⊕ d: y moved by d's first three rows and turned by the rotation vector in its last three.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
-    const Vector<3, Scalar> rotated = d.template tail<3>();
-    return {y.p + d.template head<3>(), rotation(rotated).lazyProduct(y.R)};
+    const Vector<3, Scalar> turned = d.template tail<3>();
+    const Vector<3, Scalar> p = y.p + d.template head<3>();
+    const Scalar none(0);
+    if (all_of(turned(0) == none && turned(1) == none && turned(2) == none)) return {p, y.R};
+    return {p, rotation(turned).lazyProduct(y.R)};
   }
 
   /// y moved by x.p and turned by x.R, both along the base frame's axes.

@@ -7,6 +7,7 @@ namespace fpbm {
 /// An index known at compile time.
 template <Eigen::Index I>
 struct Constant {
+  static constexpr Eigen::Index kIndex = I;
   constexpr operator Eigen::Index() const noexcept { return I; }
 };
 

@@ -6,6 +6,7 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/inverse_trace.hpp"
 #include "fpbm/linalg/pair.hpp"
 
 namespace fpbm {
@@ -81,22 +82,7 @@ class Cholesky {
   }
 
   /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, tight within a factor M.
-  [[nodiscard]] Value inverse_trace() const noexcept {
-    const auto m = extent<M>(size_);
-    Value inverse[kCapacity<M>][kCapacity<M>];  // −L⁻¹ below the diagonal.
-    Value trace = reciprocal_[0];
-    each(next(kFirst), m, [&](auto i) {
-      Value row = reciprocal_[i];
-      each(kFirst, i, [&](auto j) {
-        Value entry = L_[i][j];
-        each(next(j), i, [&](auto k) { entry -= L_[i][k] * inverse[k][j]; });
-        inverse[i][j] = entry;
-        row += entry * entry * reciprocal_[i];
-      });
-      trace += row;
-    });
-    return trace;
-  }
+  [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, extent<M>(size_)); }
 
  private:
   [[nodiscard]] Status lost(const Matrix<M, M, Value>& A, const Value& smallest) noexcept {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
 
 namespace fpbm {
 
@@ -21,31 +22,30 @@ template <int M, int N, typename Scalar>
 class RowSpace {
  public:
   explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.transpose()), beta_(A.rows()) {
-    using std::sqrt;
-    const Eigen::Index n = V_.rows();
-    const Eigen::Index m = V_.cols();
+    const auto n = extent<N>(V_.rows());
+    const auto m = extent<M>(V_.cols());
     Scalar round_off = kLeast;
-    for (Eigen::Index k = 0; k < m; ++k) {
+    each(Constant<0>{}, m, [&](auto k) {
+      using std::sqrt;
+      if (rank_ != k) return;
       Eigen::Index largest = k;
       Scalar square = Scalar(0);
-      for (Eigen::Index j = k; j < m; ++j) {
+      each(k, m, [&](auto j) {
         Scalar left = Scalar(0);
-        for (Eigen::Index i = k; i < n; ++i) left += V_(i, j) * V_(i, j);
-        if (!(left > square)) continue;
+        each(k, n, [&](auto i) { left += V_.coeff(i, j) * V_.coeff(i, j); });
+        if (!(left > square)) return;
         square = left;
         largest = j;
-      }
+      });
       if (!(square > round_off)) return;
       if (k == 0 && square * kRoundOff > round_off) round_off = square * kRoundOff;
-      if (largest != k) {
-        for (Eigen::Index i = k; i < n; ++i) std::swap(V_(i, k), V_(i, largest));
-      }
-      const Scalar head = V_(k, k);
-      V_(k, k) += head < Scalar(0) ? -sqrt(square) : sqrt(square);
-      beta_(k) = Scalar(1) / (square + sqrt(square) * (head < Scalar(0) ? -head : head));
-      for (Eigen::Index j = k + 1; j < m; ++j) reflect(k, V_.col(j));
+      if (largest != k) V_.col(k).swap(V_.col(largest));
+      const Scalar head = V_.coeff(k, k);
+      V_.coeffRef(k, k) += head < Scalar(0) ? -sqrt(square) : sqrt(square);
+      beta_.coeffRef(k) = Scalar(1) / (square + sqrt(square) * (head < Scalar(0) ? -head : head));
+      each(next(k), m, [&](auto j) { reflect(k, V_.col(j)); });
       rank_ = k + 1;
-    }
+    });
   }
 
   [[nodiscard]] Eigen::Index rank() const noexcept { return rank_; }
@@ -55,7 +55,11 @@ class RowSpace {
   void column(Eigen::Index j, Column&& out) const noexcept {
     out.setZero();
     out(j) = Scalar(1);
-    for (Eigen::Index k = rank_ - 1; k >= 0; --k) reflect(k, out);
+    const auto m = extent<M>(V_.cols());
+    each(Constant<0>{}, m, [&](auto from_last) {
+      const Eigen::Index k = m - 1 - from_last;
+      if (k < rank_) reflect(k, out);
+    });
   }
 
  private:
@@ -66,13 +70,13 @@ class RowSpace {
       Scalar(1024) * std::numeric_limits<Scalar>::epsilon() * std::numeric_limits<Scalar>::epsilon();
 
   /// Applies the k-th reflection.
-  template <typename Column>
-  void reflect(Eigen::Index k, Column&& x) const noexcept {
-    const Eigen::Index n = V_.rows();
+  template <typename Index, typename Column>
+  void reflect(Index k, Column&& x) const noexcept {
+    const auto n = extent<N>(V_.rows());
     Scalar along = Scalar(0);
-    for (Eigen::Index i = k; i < n; ++i) along += V_(i, k) * x(i);
-    along *= beta_(k);
-    for (Eigen::Index i = k; i < n; ++i) x(i) -= along * V_(i, k);
+    each(k, n, [&](auto i) { along += V_.coeff(i, k) * x.coeff(i); });
+    along *= beta_.coeff(k);
+    each(k, n, [&](auto i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
   }
 
   Matrix<N, M, Scalar> V_;  ///< Column k becomes the k-th reflection's vector, below row k − 1.

@@ -6,6 +6,7 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/inverse_trace.hpp"
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/total.hpp"
 
@@ -42,9 +43,6 @@ class RowFactor {
         each(kFirst, n, [&](auto k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
       });
     });
-    each(kFirst, kLast, [&](auto i) {
-      each(kFirst, i, [&](auto j) { lean_[i][j] = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }); });
-    });
     const Value smallest = Value(Scalar(kPivotTolerance)) * whole;
     Mask<Scalar> regular(true);
     each(kFirst, kLast, [&](auto j) { regular = regular && squares[j] > smallest; });
@@ -70,17 +68,16 @@ class RowFactor {
     return s;
   }
 
-  /// What a's part in the span of A's rows takes of each column of Q: from the first column on, each spared what those
-  /// before it have taken, which takes back what Q lacks of right angles.
-  [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
+  /// a without its part in the span of A's rows: without the share of each column of Q in turn, of what those before
+  /// it have left.
+  [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
-    Vector<M, Value> s;
+    Vector<N, Value> left = a;
     each(kFirst, kLast, [&](auto i) {
-      Value along = dot(n, [&](auto k) { return Q_.coeff(k, i) * a.coeff(k); });
-      each(kFirst, i, [&](auto j) { along -= lean_[i][j] * s.coeff(j); });
-      s.coeffRef(i) = along * reciprocal_[i];
+      const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * left.coeff(k); }) * reciprocal_[i];
+      each(kFirst, n, [&](auto k) { left.coeffRef(k) -= share * Q_.coeff(k, i); });
     });
-    return s;
+    return left;
   }
 
   /// Q s.
@@ -106,21 +103,7 @@ class RowFactor {
 
   /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the least singular value of A, tight within a
   /// factor M.
-  [[nodiscard]] Value inverse_trace() const noexcept {
-    Value inverse[M][M];  // −L⁻¹ below the diagonal.
-    Value trace = reciprocal_[0];
-    each(next(kFirst), kLast, [&](auto i) {
-      Value row = reciprocal_[i];
-      each(kFirst, i, [&](auto j) {
-        Value entry = L_[i][j];
-        each(next(j), i, [&](auto k) { entry -= L_[i][k] * inverse[k][j]; });
-        inverse[i][j] = entry;
-        row += entry * entry * reciprocal_[i];
-      });
-      trace += row;
-    });
-    return trace;
-  }
+  [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, kLast); }
 
  private:
   /// f(k) summed over the columns of A.
@@ -152,7 +135,6 @@ class RowFactor {
 
   Matrix<N, M, Value> Q_;
   Value L_[M][M];        ///< Below the diagonal.
-  Value lean_[M][M];     ///< QᵀQ below the diagonal: zero, but for round-off.
   Value reciprocal_[M];  ///< 1 / D.
 };
 

@@ -15,6 +15,7 @@ namespace fpbm {
 ///   solve(b)                  y, of two b side by side too
 ///   along(t, g)               μᵀt, where Jᵀμ = g
 ///   inverse_square(length)    a bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
+///   rough_inverse_square(length)   a bound that is larger and costs less
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
@@ -58,6 +59,7 @@ class SelfMotion<2, 3, Scalar> {
   [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept {
     return dot(first_, first_) + dot(second_, second_);
   }
+  [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
 
  private:
   Three<Scalar> v_;
@@ -98,6 +100,7 @@ class SelfMotion<3, 4, Scalar> {
     const Three<Scalar> squares = S_.inverse_squares();
     return squares.x + squares.y + squares.z / (length * length);
   }
+  [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
 
  private:
   ThreeByFour<Scalar> S_;  ///< J

@@ -43,7 +43,7 @@ class SpatialSelfMotion {
     return spans && rest_.is_regular(share);
   }
 
-  [[nodiscard]] Vector<7, Scalar> null() const noexcept {
+  [[nodiscard, gnu::always_inline]] Vector<7, Scalar> null() const noexcept {
     const Twice &v12 = rest_.null12(), &v34 = rest_.null34();
     const auto row = [&](const Twice& x12, const Twice& x34) { return -sum(x12 * v12 + x34 * v34); };
     const Scalar v[7] = {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z), v12.first(),
@@ -101,8 +101,6 @@ class SpatialSelfMotion {
     add_row(X12_.x, X34_.x);
     add_row(X12_.y, X34_.y);
     add_row(X12_.z, X34_.z);
-    const Scalar P = sum(square) + square_z;
-    const Scalar K = dot(K_[0], K_[0]) + dot(K_[1], K_[1]) + dot(K_[2], K_[2]);
     const auto lever = [&](const auto& a, const auto& b, const auto& c) {
       using Value = std::decay_t<decltype(a)>;
       const auto entry = [&](const Scalar& ka, const Scalar& kb, const Scalar& kc) {
@@ -113,8 +111,16 @@ class SpatialSelfMotion {
     };
     const Scalar G = sum(lever(Twice(B_[0].x, B_[0].y), Twice(B_[1].x, B_[1].y), Twice(B_[2].x, B_[2].y))) +
                      lever(B_[0].z, B_[1].z, B_[2].z);
-    const Scalar PG = P * G;
-    return P + (PG + K + Scalar(2) * sqrt(PG * K)) / (length * length);
+    const Scalar P = sum(square) + square_z;
+    const Scalar K = squares(K_);
+    return P + (P * G + K + Scalar(2) * sqrt(P * G * K)) / (length * length);
+  }
+
+  /// The same with ‖P‖² ≤ ‖S⁺‖² (1 + ‖X‖²), ‖G‖ ≤ ‖B_T‖ ‖K‖ and (a + b)² ≤ 2 (a² + b²).
+  [[nodiscard, gnu::always_inline]] Scalar rough_inverse_square(const Scalar& length) const noexcept {
+    const Scalar X = sum(dot(X12_, X12_) + dot(X34_, X34_));
+    const Scalar P = rest_.inverse_square() * (Scalar(1) + X);
+    return P + Scalar(2) * (P * squares(B_) + Scalar(1)) * squares(K_) / (length * length);
   }
 
  private:
@@ -127,14 +133,17 @@ class SpatialSelfMotion {
   /// Least |det A_T| with which a hand spans space.
   static constexpr auto kSpans = 0.3F;
 
+  [[nodiscard]] static Scalar squares(const Three<Scalar> (&vectors)[3]) noexcept {
+    return dot(vectors[0], vectors[0]) + dot(vectors[1], vectors[1]) + dot(vectors[2], vectors[2]);
+  }
   /// K a: what the hand does about a turn a.
   template <typename Value>
-  [[nodiscard]] Three<Value> hand(const Three<Value>& a) const noexcept {
+  [[nodiscard, gnu::always_inline]] Three<Value> hand(const Three<Value>& a) const noexcept {
     return {dot(repeated<Value>(K_[0]), a), dot(repeated<Value>(K_[1]), a), dot(repeated<Value>(K_[2]), a)};
   }
   /// b − B_T x: what of b the hand leaves.
   template <typename Value>
-  [[nodiscard]] Three<Value> left(const Three<Value>& b, const Three<Value>& x) const noexcept {
+  [[nodiscard, gnu::always_inline]] Three<Value> left(const Three<Value>& b, const Three<Value>& x) const noexcept {
     return {(b.x - Value(B_[0].x) * x.x) - (Value(B_[1].x) * x.y + Value(B_[2].x) * x.z),
             (b.y - Value(B_[0].y) * x.x) - (Value(B_[1].y) * x.y + Value(B_[2].y) * x.z),
             (b.z - Value(B_[0].z) * x.x) - (Value(B_[1].z) * x.y + Value(B_[2].z) * x.z)};

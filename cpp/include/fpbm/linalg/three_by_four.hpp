@@ -20,7 +20,7 @@ class ThreeByFour {
   using Twice = Pair<Scalar>;
 
   /// Columns s₁ and s₂, s₃ and s₄. What follows is finite where |ṽ|² is not zero.
-  void factor(const Three<Twice>& s12, const Three<Twice>& s34) noexcept {
+  [[gnu::always_inline]] void factor(const Three<Twice>& s12, const Three<Twice>& s34) noexcept {
     const Three<Twice> s13 = firsts(s12, s34);
     const Three<Twice> s24 = seconds(s12, s34);
     c12_34_ = cross(s13, s24);
@@ -76,6 +76,10 @@ class ThreeByFour {
     };
     return {squares(c12_34_.x, c13_24_.x, c14_23_.x), squares(c12_34_.y, c13_24_.y, c14_23_.y),
             squares(c12_34_.z, c13_24_.z, c14_23_.z)};
+  }
+  /// ‖S⁺‖², the sum of these squares.
+  [[nodiscard]] Scalar inverse_square() const noexcept {
+    return over_ * sum(dot(c12_34_, c12_34_) + dot(c13_24_, c13_24_) + dot(c14_23_, c14_23_));
   }
 
  private:

@@ -124,7 +124,7 @@ struct AccelerationScheme {
 
   /// Two factors, of J and of JC with C Cᵀ = W⁻¹, made side by side:
   ///
-  ///   qdd = (1−α) J⁺b + C [(JC)⁺(α b − JC y) + y],   y = C⁻¹u = α CᵀJdᵀμ + C⁻¹z,   μ = (JW⁻¹Jᵀ)⁻¹xd.
+  ///   qdd = (1−α) J⁺b + C [α (JC)⁺b + (I − (JC)⁺JC) y],   y = α CᵀJdᵀμ + C⁻¹z,   μ = (JW⁻¹Jᵀ)⁻¹xd.
   template <int kTurns, int M, typename Known>
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
@@ -137,8 +137,8 @@ struct AccelerationScheme {
     if (failed(status)) return status;
 
     Vector<N, Scalar> result = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-      const Vector<M, Pair<Scalar>> both = solutions.shares(side_by_side<M, 1, Scalar>(b, xd));
-      const Vector<M, Scalar> mu = second<M, 1, Scalar>(solutions.force(both));
+      const Vector<M, Scalar> mu =
+          second<M, 1, Scalar>(solutions.force(solutions.shares(side_by_side<M, 1, Scalar>(xd, xd))));
       const Vector<N, Scalar> force = alpha * Jd.transpose().lazyProduct(mu);
       Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
       const bool braked = status == Status::kDamped;
@@ -147,11 +147,11 @@ struct AccelerationScheme {
         if (braked) z -= gram.brake() * state.qd;
         y += weights.unroot(z);
       }
-      const Vector<M, Scalar> b_shares = second<M, 1, Scalar>(solutions.shares(side_by_side<M, 1, Scalar>(b, b)));
-      const Vector<M, Scalar> u_shares = second<M, 1, Scalar>(solutions.within(side_by_side<N, 1, Scalar>(y, y)));
-      const Vector<M, Scalar> weighted = alpha * b_shares - u_shares;
-      const Vector<M, Scalar> even = (Scalar(1) - alpha) * first<M, 1, Scalar>(both);
-      const Vector<N, Pair<Scalar>> parts = solutions.motion(side_by_side<M, 1, Scalar>(even, weighted));
+      const Vector<M, Scalar> even = (Scalar(1) - alpha) * b;
+      const Vector<M, Scalar> weighted = alpha * b;
+      const Vector<N, Pair<Scalar>> parts =
+          solutions.motion(solutions.shares(side_by_side<M, 1, Scalar>(even, weighted)));
+      y = second<N, 1, Scalar>(solutions.without(side_by_side<N, 1, Scalar>(y, y)));
       y += second<N, 1, Scalar>(parts);
       return weights.root(y) + first<N, 1, Scalar>(parts);
     });

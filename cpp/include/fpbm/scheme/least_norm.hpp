@@ -15,7 +15,7 @@ struct NoForce {};
 
 /// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
 ///
-///   u = u₀ + J_W⁺(v − J u₀) = C (y₀ + (JC)⁺(v − JC y₀)),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
+///   u = u₀ + J_W⁺(v − J u₀) = C ((JC)⁺v + (I − (JC)⁺JC) y₀),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
 ///
 /// u: velocities or accelerations by level. force(gram) is f, which needs the factorised Gram matrix JW⁻¹Jᵀ, or
 /// NoForce. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
@@ -42,7 +42,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     if (braked) z -= gram.brake() * state.qd;
     Vector<N, Scalar> y0 = weights.unroot(z);
     if constexpr (kForced) y0 += weights.root_transpose(force(solutions));
-    return y0 + solutions.motion(solutions.shares(v) - solutions.within(y0));
+    return solutions.without(y0) + solutions.motion(solutions.shares(v));
   });
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);

@@ -103,7 +103,8 @@ template <int kTurns, int M, int N, typename Scalar, typename Law>
     Mask<Scalar> regular = undamped;
     if (!all_of(undamped)) {
       const Scalar threshold = damping.radius() * damping.radius() * squared_norm_in_metres<kTurns>(J, length);  // ε²
-      regular = regular || threshold * motion.inverse_square(length) <= Scalar(1);
+      regular = regular || threshold * motion.rough_inverse_square(length) <= Scalar(1);
+      if (!all_of(regular)) regular = regular || threshold * motion.inverse_square(length) <= Scalar(1);
     }
     if constexpr (kInLanes<Scalar>) {
       found = found && !result.answered;

@@ -5,6 +5,7 @@
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 
@@ -47,8 +48,7 @@ template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
   using std::sqrt;
   Cholesky<M, Scalar> cholesky;
-  const Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
-  if (cholesky.factor(gram) != Status::kOk) return Scalar(0);
+  if (cholesky.factor(lower_gram(J)) != Status::kOk) return Scalar(0);
   return Scalar(1) / sqrt(cholesky.inverse_trace());
 }
 
@@ -107,10 +107,13 @@ class DampedGram {
       if constexpr (kDamped) return of.damped_.solve(scaled);
       return of.factor_.shares(scaled);
     }
-    /// shares(J C a), of a motion itself.
-    [[nodiscard]] Vector<M, Value> within(const Vector<N, Value>& a) const noexcept {
-      if constexpr (kDamped) return of.damped_.solve(Vector<M, Value>(of.rows_.transpose().lazyProduct(a)));
-      return of.factor_.within(a);
+    /// a − motion(shares(J C a)), of a motion itself.
+    [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
+      if constexpr (kDamped) {
+        const Vector<M, Value> done = of.rows_.transpose().lazyProduct(a);
+        return a - of.rows_.lazyProduct(of.damped_.solve(done));
+      }
+      return of.factor_.without(a);
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
       if constexpr (kDamped) return of.rows_.lazyProduct(shares);
