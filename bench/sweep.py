@@ -1,4 +1,5 @@
-"""Arm-steps a second of fp.sweep, by the lanes it runs in and the threads: the paper's circle, and a Panda's in poses.
+"""Arm-steps a second of fp.sweep, by the lanes it runs in and the threads: the paper's circle, and a Panda's in poses,
+without limits and within its own.
 
 An arm-step is an RK4 step of 1 ms of one motion, four evaluations of the closed loop. Lanes are chosen when the package
 is imported, so that each kind has a process of its own; rounds of the kinds alternate. "none" is the code for every
@@ -39,8 +40,17 @@ class Case(NamedTuple):
     q0: NDArray[np.float64]
     task: str
     share: float  # Of the number of motions.
+    limits: fp.JointLimits | None = None
 
 
+PANDA = Case(
+    fp.SerialArm.preset("panda"),
+    fp.Circle(0.15, 4.0).in_plane("yz"),
+    fp.FPBM(0.6, np.arange(1.0, 8.0), 10.0, 25.0, null_damping=2.0),
+    np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785]),
+    "pose",
+    0.2,
+)
 CASES = {
     PAPER: Case(
         fp.PlanarArm(np.ones(4)),
@@ -50,14 +60,8 @@ CASES = {
         "position",
         1.0,
     ),
-    "panda/pose": Case(
-        fp.SerialArm.preset("panda"),
-        fp.Circle(0.15, 4.0).in_plane("yz"),
-        fp.FPBM(0.6, np.arange(1.0, 8.0), 10.0, 25.0, null_damping=2.0),
-        np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785]),
-        "pose",
-        0.2,
-    ),
+    "panda/pose": PANDA,
+    "panda/pose/limited": PANDA._replace(share=0.1, limits=PANDA.arm.limits),
 }
 
 
@@ -74,7 +78,7 @@ def measure(motions: int) -> list[dict[str, Any]]:
         starts = case.q0 + np.random.default_rng(0).normal(0, SCATTER, (count, len(case.q0)))
         for workers in WORKERS:
             begin = time.perf_counter()
-            sweep = fp.sweep(case.arm, case.path, case.scheme, starts, DT, task=case.task, workers=workers)
+            sweep = fp.sweep(case.arm, case.path, case.scheme, starts, DT, task=case.task, limits=case.limits, workers=workers)
             seconds = time.perf_counter() - begin
             if not sweep.ok.all():
                 raise SystemExit(f"{name}: {(~sweep.ok).sum()} of {count} motions stopped early")

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fpbm/any/any_scheme.hpp"
+#include "fpbm/core/lanes.hpp"
 #include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
@@ -202,6 +203,28 @@ TEST(NoAllocation, in_a_control_loop) {
       {"box", Cuboid<>{{Vector<3>(0.4, -0.4, 0.4), Matrix<3, 3>::Identity()}, Vector<3>::Constant(0.1)}}};
   const Clearance<7> clearance(presets::panda(), presets::capsules::panda(), obstacles, 0.005);
   expect_none_in_a_loop<Pose>(fixed, fpbm, Guard<Level::kAcceleration, 7>(clearance));
+}
+
+/// In both lanes its limits are met, so that each tracker ends its ticks by itself.
+TEST(NoAllocation, in_trackers_side_by_side) {
+  using In = Lanes<2>;
+  constexpr double kTick = 4e-3;
+  const PlanarArm<4> arm(Vector<4>::Ones());
+  auto bounds = JointLimits<4>::none(4);
+  for (int i = 0; i < 4; ++i) bounds.set(i, {-3.5, 3.9, 0.2, 2.0});
+  TrackerOptions<> options;
+  options.dt = kTick;
+  const Tracker tracker(arm, Position<2>{}, MAN<4>(10.0, 25.0, {}, SingularDamping<>()),
+                        State<4>{paper_start().q, Vector<4>::Zero()}, options, {bounds, kTick});
+  const auto scheme = MAN<4, In>(In(10.0), In(25.0), {}, SingularDamping<In>());
+  TrackerBatch all(arm.cast<In>(), Position<2>{}, scheme, std::vector{tracker, tracker});
+  const Path path(Circle<>(0.45), 1.0);
+  int samples = 0;
+  const AllocationWatch watch;
+  (void)track_batch(all, path, TimeGrid<>(1.0, kTick, 0.2), [&](const auto&) { ++samples; });
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_GT(samples, 250);
+  for (const Status status : all.status()) EXPECT_EQ(status, Status::kSlowed);
 }
 
 /// A motion that has to stop does so without an allocation as well.
