@@ -16,14 +16,16 @@ clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):lib
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly fuzz soak lint format stubs docs \
-        notebooks bench count stalls sdist wheel clean
+.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross fuzz soak lint \
+        format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make test             build and run every test'
 	@echo 'make test-view        test the pages in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
+	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
+	@echo 'make cross            only a few motions there, compared with those here'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
@@ -53,6 +55,30 @@ test-cpp clang sanitize nightly:
 	cmake --preset $(preset)
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	ctest --preset $(preset) --parallel $(JOBS)
+
+# Other kinds of machines, by cross compilers and emulators.
+QEMU_ARM64 := qemu-aarch64 -L /usr/aarch64-linux-gnu
+arm64 windows: preset = $@
+arm64 windows: cross
+	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
+	cmake --preset $(preset)
+	cmake --build --preset $(preset) --parallel $(JOBS)
+	WINEDEBUG=-all ctest --preset $(preset) --parallel $(JOBS)
+
+# The same digits on x86-64 under Windows, and to round-off on Arm, where a product and a sum are rounded once. In float
+# sines and cosines are each system's own.
+cross:
+	tools/need.sh g++ aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user \
+	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 $(EIGEN)
+	mkdir -p build/cross
+	for compiler in g++ aarch64-linux-gnu-g++ 'x86_64-w64-mingw32-g++-posix -static'; do \
+	  $$compiler -std=c++17 -O2 -Icpp/include -isystem /usr/include/eigen3 tests/cross/motions.cpp \
+	    -o build/cross/$${compiler%%-*} || exit 1; done
+	build/cross/g++ > build/cross/here.txt
+	$(QEMU_ARM64) build/cross/aarch64 > build/cross/arm64.txt
+	WINEDEBUG=-all wine build/cross/x86_64.exe | tr -d '\r' > build/cross/windows.txt
+	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/arm64.txt --double 1e-13 --float 1e-3
+	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/windows.txt --double 0 --float 1e-3
 
 # A day at 1 kHz, or TICKS of it.
 soak: TICKS ?= 8.64e7
@@ -166,7 +192,7 @@ $(VENV)/wheel: pyproject.toml
 
 # Who else is timed from Python, each as far as it is to be had.
 $(VENV)/bench: pyproject.toml | $(VENV)/package
-	-for peer in pinocchio qp toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
+	-for peer in pinocchio qp tsid toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
 # What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only

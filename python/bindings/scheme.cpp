@@ -3,6 +3,16 @@
 #include "fpbm/any/any_weights.hpp"
 
 namespace fpbm::bindings {
+namespace {
+
+/// Joints of the arms that have schemes of their own size: the paper's arm, a quarter faster, and arms with a pose and
+/// one self-motion, by half. 0 for none.
+template <typename Space>
+constexpr int kOwnSize = std::is_same_v<Space, Position<2>> ? 4
+                         : std::is_same_v<Space, Pose>      ? 7
+                                                            : 0;
+
+}  // namespace
 
 template <typename Space>
 EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
@@ -11,11 +21,11 @@ EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
     return AnyScheme<Level::kAcceleration, Space>(law<Level::kAcceleration>(W, bounds));
   };
   const Eigen::Index dof = limits.lower.size();
-  if constexpr (std::is_same_v<Space, Position<2>>) {
-    // The paper's arm by code of its own size, which is a quarter faster.
-    if (dof == 4 && !std::holds_alternative<Dense>(weights))
-      return with(diagonal_weights<4>(dof),
-                  JointLimits<4>{limits.lower, limits.upper, limits.velocity, limits.acceleration});
+  if constexpr (constexpr int N = kOwnSize<Space>; N > 0) {
+    if (dof == N && !std::holds_alternative<Dense>(weights)) {
+      return with(diagonal_weights<N>(dof),
+                  JointLimits<N>{limits.lower, limits.upper, limits.velocity, limits.acceleration});
+    }
   }
   const AnyWeights W = std::visit(
       [](const auto& given) {

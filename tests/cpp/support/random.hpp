@@ -8,7 +8,7 @@ namespace fpbm::test {
 
 /// How many of so many trials are made: under a sanitizer, which makes a program some twenty times slower, a tenth.
 [[nodiscard]] constexpr int trials(int all) {
-#ifdef FPBM_SANITIZED
+#ifdef FPBM_FEW_TRIALS
   return all / 10;
 #else
   return all;
