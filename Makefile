@@ -72,7 +72,7 @@ cross:
 	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 $(EIGEN)
 	mkdir -p build/cross
 	for compiler in g++ aarch64-linux-gnu-g++ 'x86_64-w64-mingw32-g++-posix -static'; do \
-	  $$compiler -std=c++17 -O2 -Icpp/include -isystem /usr/include/eigen3 tests/cross/motions.cpp \
+	  $$compiler -std=c++17 -O1 -Icpp/include -isystem /usr/include/eigen3 tests/cross/motions.cpp \
 	    -o build/cross/$${compiler%%-*} || exit 1; done
 	build/cross/g++ > build/cross/here.txt
 	$(QEMU_ARM64) build/cross/aarch64 > build/cross/arm64.txt

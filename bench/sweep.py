@@ -78,7 +78,9 @@ def measure(motions: int) -> list[dict[str, Any]]:
         starts = case.q0 + np.random.default_rng(0).normal(0, SCATTER, (count, len(case.q0)))
         for workers in WORKERS:
             begin = time.perf_counter()
-            sweep = fp.sweep(case.arm, case.path, case.scheme, starts, DT, task=case.task, limits=case.limits, workers=workers)
+            sweep = fp.sweep(
+                case.arm, case.path, case.scheme, starts, DT, task=case.task, limits=case.limits, workers=workers
+            )
             seconds = time.perf_counter() - begin
             if not sweep.ok.all():
                 raise SystemExit(f"{name}: {(~sweep.ok).sum()} of {count} motions stopped early")

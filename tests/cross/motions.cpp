@@ -47,7 +47,6 @@ void planar(const std::string& scalar) {
   const Vector4 q(S(0.26), S(0.26), S(0.21), S(0.21));
   const Vector4 w(1, 2, 3, 4);
   roll("planar/mvn/" + scalar, arm, path, MVN<4, S>(S(1)), q);
-  roll("planar/wmvn/" + scalar, arm, path, WMVN<4, S>(w, S(1)), q);
   roll("planar/fpbm/" + scalar, arm, path, FPBM<4, S>(S(0.6), w, S(10), S(25)), q);
 }
 
@@ -59,10 +58,7 @@ void panda(const std::string& scalar) {
   const auto weights = Vector<7, S>::LinSpaced(S(1), S(7)).eval();
   const auto fpbm = FPBM<7, S>(S(0.6), weights, S(10), S(25), NullSpace<7, S>().with_damping(S(2)));
   const InPlane<Path<Circle<S>>> circle(Path(Circle<S>(S(0.15)), S(2)), {S(0), S(1), S(0)}, {S(0), S(0), S(1)});
-  roll("panda/position/" + scalar, arm, circle, fpbm, q);
-  follow<Position<3>>("panda/position/" + scalar, arm, circle, fpbm, q);
   const WithRotation pose(circle, Vector<3, S>(S(0.2), S(0), S(0.3)));
-  roll("panda/pose/" + scalar, arm, pose, fpbm, q);
   follow<Pose>("panda/pose/" + scalar, arm, pose, fpbm, q);
   const WithRotation wide(
       InPlane(Path(Circle<S>(S(0.3)), S(1)), Vector<3, S>(S(0), S(1), S(0)), Vector<3, S>(S(0), S(0), S(1))),
