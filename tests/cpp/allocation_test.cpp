@@ -214,10 +214,11 @@ TEST(NoAllocation, in_trackers_side_by_side) {
   for (int i = 0; i < 4; ++i) bounds.set(i, {-3.5, 3.9, 0.2, 2.0});
   TrackerOptions<> options;
   options.dt = kTick;
-  const Tracker tracker(arm, Position<2>{}, MAN<4>(10.0, 25.0, {}, SingularDamping<>()),
-                        State<4>{paper_start().q, Vector<4>::Zero()}, options, {bounds, kTick});
-  const auto scheme = MAN<4, In>(In(10.0), In(25.0), {}, SingularDamping<In>());
-  TrackerBatch all(arm.cast<In>(), Position<2>{}, scheme, std::vector{tracker, tracker});
+  const AccelerationScheme<4, double, UnitWeights> scheme(0.0, {}, 10.0, 25.0, {}, SingularDamping<>());
+  const AccelerationScheme<4, In, UnitWeights> in_lanes(In(0.0), {}, In(10.0), In(25.0), {}, SingularDamping<In>());
+  const State<4> start{paper_start().q, Vector<4>::Zero()};
+  const Tracker tracker(arm, Position<2>{}, scheme, start, options, {bounds, kTick});
+  TrackerBatch all(arm.cast<In>(), Position<2>{}, in_lanes, std::vector{tracker, tracker});
   const Path path(Circle<>(0.45), 1.0);
   int samples = 0;
   const AllocationWatch watch;
