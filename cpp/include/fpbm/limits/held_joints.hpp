@@ -5,9 +5,10 @@
 
 namespace fpbm {
 
-/// The joints that a motion in a null space keeps on their bounds: at most kMost, the dimension of that space.
+/// The joints that a motion in a null space keeps on their bounds. No more can be held than that space has dimensions;
+/// kMost is the most that it may have.
 ///
-/// Keeps Z_heldᵀ = QR of their rows of a basis Z, one column for each joint.
+/// Z is its basis (joints × dimensions). Keeps Z_heldᵀ = QR of the rows of the joints held, one column for each.
 template <int kMost, typename Scalar>
 class HeldJoints {
  public:

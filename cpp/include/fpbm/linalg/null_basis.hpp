@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"

@@ -15,7 +15,7 @@ namespace fpbm {
 ///   solve(b)                  y, of two b side by side too
 ///   along(t, g)               μᵀt, where Jᵀμ = g
 ///   inverse_square(length)    a bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
-///   rough_inverse_square(length)   a bound that is larger and costs less
+///   rough_inverse_square(length)   the same bound or a larger one, for less
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
