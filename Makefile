@@ -16,7 +16,7 @@ clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):lib
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross fuzz soak lint \
+.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross firmware fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -26,6 +26,7 @@ help:
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
 	@echo 'make cross            only a few motions there, compared with those here'
+	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with one here'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
@@ -79,6 +80,17 @@ cross:
 	WINEDEBUG=-all wine build/cross/x86_64.exe | tr -d '\r' > build/cross/windows.txt
 	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/arm64.txt --double 1e-13 --float 1e-3
 	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/windows.txt --double 0 --float 1e-3
+
+# A bare Cortex-M7 in qemu, beside the same program here.
+firmware:
+	tools/need.sh g++ cmake arm-none-eabi-g++:gcc-arm-none-eabi qemu-system-arm $(EIGEN) \
+	  /usr/lib/arm-none-eabi/newlib/nano.specs:libnewlib-arm-none-eabi \
+	  /usr/lib/arm-none-eabi/newlib/libstdc++_nano.a:libstdc++-arm-none-eabi-newlib
+	cmake -S examples/firmware -B build/firmware/board -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/examples/firmware/cortex_m7.cmake
+	cmake -S examples/firmware -B build/firmware/host -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1
+	cmake --build build/firmware/board
+	cmake --build build/firmware/host
+	$(PYTHON) tests/firmware/check.py build/firmware/board/firmware build/firmware/host/firmware
 
 # A day at 1 kHz, or TICKS of it.
 soak: TICKS ?= 8.64e7

@@ -21,10 +21,9 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
 /// The joints from base to tip, each placed as seen from the one before [m].
 /// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
 /// an end; what is left out has no bound.
-inline fpbm::Chain<> chain() {
-  constexpr double kNone = fpbm::JointBounds<>::kNone;
-  fpbm::Chain<> chain;
-  chain.joints.resize(7);
+inline fpbm::Chain<double, 7> chain() {
+  constexpr double kNone = fpbm::JointBounds<double>::kNone;
+  fpbm::Chain<double, 7> chain;
 
   chain.joints[0].name = "base_yaw";
   chain.joints[0].type = fpbm::JointType::kRevolute;
@@ -69,7 +68,7 @@ inline fpbm::Chain<> chain() {
   chain.joints[6].bounds = {-kNone, kNone, 3.1};
 
   chain.tip.p = {0.0, 0.0, 0.14};
-  chain.tip.R = fpbm::Matrix<3, 3>{
+  chain.tip.R = fpbm::Matrix<3, 3, double>{
       {0.7071067811865475, -0.7071067811865476, 0.0},
       {0.7071067811865476, 0.7071067811865475, 0.0},
       {0.0, 0.0, 1.0},
@@ -78,8 +77,8 @@ inline fpbm::Chain<> chain() {
   return chain;
 }
 
-inline fpbm::SerialArm<kDof> arm() {
-  return fpbm::SerialArm<kDof>(chain());
+inline fpbm::SerialArm<kDof, double> arm() {
+  return fpbm::SerialArm<kDof, double>(chain());
 }
 
 }  // namespace exported_arm

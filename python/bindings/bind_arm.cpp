@@ -31,8 +31,8 @@ Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& ti
     const auto array = [&](const char* attribute) { return ArrayLike(py::object(given.attr(attribute))); };
     Joint<> joint;
     joint.type = joint_type(py::cast<std::string>(given.attr("type")), name + ".type");
-    joint.placement = transform(array("placement"), (name + ".placement").text.c_str());
-    joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text.c_str());
+    joint.placement = transform(array("placement"), (name + ".placement").text().c_str());
+    joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text().c_str());
     joint.bounds = {number("lower"), number("upper"),           number("velocity"),    number("acceleration"),
                     number("jerk"),  number("velocity_offset"), number("deceleration")};
     joint.name = py::cast<std::string>(given.attr("name"));

@@ -120,7 +120,7 @@ template <typename Space>
 std::vector<typename Space::template Point<double>> points_of(const Array& array) {
   std::vector<typename Space::template Point<double>> points;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    const std::string name = validation::element("points", i).text;
+    const std::string name = validation::element("points", i).text();
     points.push_back(point<Space>(ArrayLike(py::object(array[py::int_(i)])), name.c_str()));
   }
   return points;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "fpbm/model/planar_arm.hpp"
@@ -269,6 +270,51 @@ void expect_the_vector_between() {
 TEST(Rotation, between_two_is_that_of_their_quotient) {
   expect_the_vector_between<double>();
   expect_the_vector_between<float>();
+}
+
+TEST(SerialArm, of_a_chain_of_known_length_is_the_same) {
+  Random random(11);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Chain<> chain{random_chain(random, 7), random_transform(random)};
+    Chain<double, 7> fixed;
+    fixed.tip = chain.tip;
+    for (std::size_t i = 0; i < 7; ++i) {
+      const auto& [type, placement, axis, bounds, name, mimic] = chain.joints[i];
+      fixed.joints[i] = {type, placement, axis, bounds, name, mimic};
+    }
+    const State<7> state{Vector<7>(random.uniform(7, -2.0, 2.0)), Vector<7>(random.uniform(7, -2.0, 2.0))};
+    Kinematics<Pose, 7> a;
+    SerialArm<7>(chain).kinematics(state.q, state.qd, a);
+    for (const auto& arm : {SerialArm<7>(fixed), SerialArm<7>(Chain<>(fixed))}) {
+      Kinematics<Pose, 7> b;
+      arm.kinematics(state.q, state.qd, b);
+      EXPECT_EQ(a.tip.p, b.tip.p);
+      EXPECT_EQ(a.J, b.J);
+      EXPECT_EQ(a.Jd, b.Jd);
+      EXPECT_EQ(arm.limits().upper, SerialArm<7>(chain).limits().upper);
+    }
+  }
+}
+
+TEST(SerialArm, what_is_refused_has_a_name_an_index_and_a_value) {
+  const auto refused = [](auto change) {
+    Chain<double, 2> chain;
+    chain.joints[0].name = "elbow";
+    change(chain.joints);
+    try {
+      const SerialArm<2> arm(chain);
+    } catch (const ParameterError& error) {
+      return std::tuple(std::string(error.what()), error.name(), error.index(), error.value());
+    }
+    return std::tuple(std::string("accepted"), std::string(), 0, 0.0);
+  };
+  EXPECT_EQ(refused([](auto& joints) { joints[1].bounds.lower = joints[1].bounds.upper = 0.5; }),
+            std::tuple("joints[1].lower = 0.5: must be below upper = 0.5", "joints", 1, 0.5));
+  EXPECT_EQ(refused([](auto& joints) { joints[0].bounds.jerk = -2.0; }),
+            std::tuple("joint 'elbow'.jerk = -2: must be positive", "joint 'elbow'.jerk", -1, -2.0));
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refused([](auto& joints) { joints[0].placement.p(1) = kInfinite; }),
+            std::tuple("joint 'elbow'.placement.p[1] = inf: must be finite", "joint 'elbow'.placement.p", 1, kInfinite));
 }
 
 TEST(SerialArm, bad_chains_are_refused) {

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
+import fpbm_cpp as fp
 from fpbm_cpp.arms import Joint
 from fpbm_cpp.capsule import Capsule
 from fpbm_cpp.io.header import export_header, namespace_of
@@ -207,7 +208,7 @@ def test_what_is_as_by_default_is_left_out() -> None:
     assert "chain.tip" not in text
     assert "joints[0].bounds" not in text
     assert "  chain.joints[1].bounds = {-kNone, kNone, 2.0};\n" in text
-    assert "constexpr double kNone = fpbm::JointBounds<>::kNone;" in text
+    assert "constexpr double kNone = fpbm::JointBounds<double>::kNone;" in text
     assert "kNone" not in export_header([Joint()], np.eye(4), name="n")
 
 
@@ -218,7 +219,7 @@ def test_numbers_survive(numbers: list[float]) -> None:
     text = export_header([Joint("revolute", T, axis, lower)], T, name="n")
 
     def written(name: str) -> list[float]:
-        (braces,) = re.findall(rf"  {re.escape(name)} = (?:fpbm::Matrix<3, 3>)?({{[^;]*}});", text)
+        (braces,) = re.findall(rf"  {re.escape(name)} = (?:fpbm::Matrix<3, 3, double>)?({{[^;]*}});", text)
         return [inf if number == "kNone" else float(number) for number in re.findall(r"[^{},\s]+", braces)]
 
     assert written("chain.joints[0].axis") == axis
@@ -237,7 +238,7 @@ def test_capsules_are_there_where_they_are_given() -> None:
     assert "clearance" not in without
     for text in (none, one):
         assert "#include <fpbm/clearance/clearance.hpp>\n" in text
-        assert "inline std::vector<fpbm::LinkCapsule<>> capsules() {\n" in text
+        assert "inline std::vector<fpbm::LinkCapsule<double>> capsules() {\n" in text
     assert '      {1, {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 0.5}, "link"},\n' in one
 
 
@@ -303,6 +304,41 @@ def test_example_is_as_written_today(tmp_path: Path) -> None:
     result = call(ROOT / "examples/04_exported_arm.urdf", "--tip", "tool", "-o", out)
     assert (result.exit_code, result.output) == (0, "")
     assert out.read_bytes() == (ROOT / "examples/04_exported_arm.hpp").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_firmware_s_arms_are_as_written_today(name: str, tmp_path: Path) -> None:
+    """If not: fpbm-cpp export-header panda --scalar float -o examples/firmware/panda.hpp, and so on."""
+    out = tmp_path / f"{name}.hpp"
+    result = call(name, "--scalar", "float", "-o", out)
+    assert (result.exit_code, result.output) == (0, "")
+    assert out.read_bytes() == (ROOT / f"examples/firmware/{name}.hpp").read_bytes()
+
+
+def test_presets_have_their_own_tip() -> None:
+    for option in ("--tip", "--base"):
+        result = call("panda", option, "x", "-o", "-")
+        assert result.exit_code == 2
+        assert "--tip and --base are for URDF files" in result.output
+    capsules = fp.Clearance.preset("panda").capsules
+    assert call("panda", "-o", "-", "--capsules").stdout == export_header(
+        fp.SerialArm.preset("panda").joints,
+        fp.SerialArm.preset("panda").tip,
+        name="panda",
+        source="preset panda",
+        capsules=capsules,
+    )
+
+
+def test_numbers_in_float() -> None:
+    joint = Joint("revolute", velocity=2.0, mimic=(1, 0.5, 0.1))
+    text = export_header([joint, Joint()], np.eye(4), name="n", scalar="float")
+    assert "inline fpbm::Chain<float, 2> chain() {\n  constexpr float kNone" in text
+    assert "bounds = {-kNone, kNone, 2.0F};" in text
+    assert "mimic = {1, 0.5F, 0.1F};" in text
+    assert "return fpbm::CoupledArm<kDof, float>(chain());" in text
+    with pytest.raises(fp.ParameterError, match="scalar = 'half': must be one of double, float"):
+        export_header([Joint()], np.eye(4), name="n", scalar="half")
 
 
 def test_command_writes_what_the_function_does(arm: Path, tmp_path: Path) -> None:
@@ -403,7 +439,7 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
 
 
 def test_wrong_usage(arm: Path) -> None:
-    for arguments, said in (((arm, "-o", "x.hpp"), "--tip"), ((arm, "--tip", "tip"), "--out"), ((), "ARM.urdf")):
+    for arguments, said in (((arm, "-o", "x.hpp"), "--tip"), ((arm, "--tip", "tip"), "--out"), ((), "ARM")):
         result = call(*arguments)
         assert result.exit_code == 2
         assert said in result.output.splitlines()[-1]

@@ -27,6 +27,7 @@
 #include "fpbm/clearance/tip_speed.hpp"
 #include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/clearance/widest_gap.hpp"
+#include "fpbm/core/argument.hpp"
 #include "fpbm/core/float_model.hpp"
 #include "fpbm/core/lane_access.hpp"
 #include "fpbm/core/level.hpp"

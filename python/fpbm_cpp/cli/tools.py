@@ -3,14 +3,19 @@
 import os
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import click
 import numpy as np
 from click.shell_completion import get_completion_class
 
-from .._core import __version__
+from .._core import PRESETS, __version__
+from .._types import Array
+from ..arms import Joint, SerialArm
+from ..capsule import Capsule
+from ..clearance import Clearance
+from ..io.header import SCALARS
 from ..job import Motion, prepare
 from ..job.sections import Table
 from ..motion.lanes import LANES
@@ -20,6 +25,8 @@ from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .text import columns
 
 EVALUATIONS = 4000  # Of a scheme, by RK4, on a path of 1 s at 1 kHz.
+# Joints, the tip's frame, capsules, and what a comment says of where they come from.
+Exported = tuple[Sequence[Joint], Array, Sequence[Capsule] | None, str]
 PROCESSORS = os.cpu_count() or 1
 MOTIONS = 4 * PROCESSORS * LANES  # Of a sweep.
 HOW = (
@@ -111,31 +118,31 @@ def reproduce(out: Path) -> None:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
 
 
-@tool("Write the arm of a URDF file in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
-@click.argument("urdf", metavar="ARM.urdf", type=PLACE)
-@click.option("--tip", metavar="LINK", required=True, help="Link to move.")
+@tool("Write an arm in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
+@click.argument("arm", metavar="ARM", type=PLACE)
+@click.option("--tip", metavar="LINK", help="Link to move; needed for a URDF file.")
 @click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
 @click.option("-o", "--out", type=PLACE, metavar="FILE.hpp", required=True, help=HEADER)
 @click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
 @click.option("--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry.")
-def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str | None, capsules: bool) -> None:
-    """Write the arm of a URDF file as a C++ header.
+@click.option(
+    "--scalar", type=click.Choice(SCALARS), default="double", help="Type of all numbers; double unless given."
+)
+def export_header(
+    arm: Path, tip: str | None, base: str | None, out: Path, name: str | None, capsules: bool, scalar: str
+) -> None:
+    """Write the arm of a URDF file, or a preset such as panda, as a C++ header.
 
     The header constructs the arm from base to tip, with neither parser nor file when the program runs.
     """
     from ..io import write_whole
-    from ..io.capsules import capsules_of
     from ..io.header import export_header, namespace_of
-    from ..io.urdf import read_urdf
 
     to_stdout = str(out) == "-"
-    source = f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"
     try:
-        with file_errors("read", urdf):
-            joints, frame = read_urdf(urdf, tip, base)
-            shapes = capsules_of(urdf, tip, base) if capsules else None
-        name = name or namespace_of((urdf if to_stdout else out).stem)
-        header = export_header(joints, frame, name=name, source=source, capsules=shapes)
+        joints, frame, shapes, source = _preset(arm, tip, base, capsules) or _urdf(arm, tip, base, capsules)
+        name = name or namespace_of((arm if to_stdout else out).stem)
+        header = export_header(joints, frame, name=name, source=source, capsules=shapes, scalar=scalar)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     if to_stdout:
@@ -143,6 +150,27 @@ def export_header(urdf: Path, tip: str, base: str | None, out: Path, name: str |
         return
     with file_errors("write to", out):
         write_whole(out.resolve(), header.encode())
+
+
+def _preset(arm: Path, tip: str | None, base: str | None, capsules: bool) -> Exported | None:
+    if str(arm) not in PRESETS:
+        return None
+    if tip or base:
+        raise click.UsageError(f"{arm} is a preset, from its base to its flange: --tip and --base are for URDF files.")
+    preset = SerialArm.preset(str(arm))
+    return preset.joints, preset.tip, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
+
+
+def _urdf(urdf: Path, tip: str | None, base: str | None, capsules: bool) -> Exported:
+    from ..io.capsules import capsules_of
+    from ..io.urdf import read_urdf
+
+    if tip is None:
+        raise click.UsageError("Missing option '--tip'.")
+    with file_errors("read", urdf):
+        joints, frame = read_urdf(urdf, tip, base)
+        shapes = capsules_of(urdf, tip, base) if capsules else None
+    return joints, frame, shapes, f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"
 
 
 @click.command(

@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike
 
 from ..arms import Joint
 from ..capsule import Capsule
-from ..errors import wrong
+from ..errors import not_one_of, wrong
+
+SCALARS = ("double", "float")
 
 # Names that a namespace cannot have: C++'s keywords, and namespaces of others.
 TAKEN = """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
@@ -27,23 +29,30 @@ def export_header(
     name: str,
     source: str = "",
     capsules: Sequence[Capsule] | None = None,
+    scalar: str = "double",
 ) -> str:
     """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
 
     It has kDof, kJointNames, chain() and arm(), an fpbm::CoupledArm where one joint mimics another, else an
     fpbm::SerialArm, in the namespace of that name, 'my::arm' say; and capsules() where capsules on its links are given,
     none or more. tip: its frame, shape (4, 4) [m], seen from the last joint. source: where the arm comes from, for a
-    comment. Raises ParameterError where no namespace can have the name.
+    comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError where no namespace can
+    have the name.
     """
+    if scalar not in SCALARS:
+        raise not_one_of("scalar", scalar, SCALARS)
     if not all(_is_identifier(part) for part in name.split("::")):
         raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
     drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
     width = max(map(len, drives), default=0)
     names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
     kind = "SerialArm" if len(drives) == len(joints) else "CoupledArm"
-    parts = [_joint_lines(i, joint) for i, joint in enumerate(joints)] + [_transform_lines("  chain.tip", tip)]
+    parts = [_joint_lines(i, joint, scalar) for i, joint in enumerate(joints)]
+    parts.append(_transform_lines("  chain.tip", tip, scalar))
     chain = "\n\n".join("\n".join(lines) for lines in parts if lines)
-    none = "  constexpr double kNone = fpbm::JointBounds<>::kNone;\n" if "kNone" in chain else ""
+    none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in chain else ""
+    length = f"<{scalar}, {len(joints)}>"
+    arm = f"fpbm::{kind}<kDof, {scalar}>"
     includes = ["array", f"fpbm/model/{'serial_arm' if kind == 'SerialArm' else 'coupled_arm'}.hpp"]
     if capsules is not None:
         includes += ["fpbm/clearance/clearance.hpp", "vector"]
@@ -65,19 +74,18 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 /// The joints from base to tip, each placed as seen from the one before [m].
 /// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
 /// an end; what is left out has no bound.
-inline fpbm::Chain<> chain() {{
-{none}  fpbm::Chain<> chain;
-  chain.joints.resize({len(joints)});
+inline fpbm::Chain{length} chain() {{
+{none}  fpbm::Chain{length} chain;
 
 {chain}
 
   return chain;
 }}
 
-inline fpbm::{kind}<kDof> arm() {{
-  return fpbm::{kind}<kDof>(chain());
+inline {arm} arm() {{
+  return {arm}(chain());
 }}
-{"" if capsules is None else _capsule_lines(capsules)}
+{"" if capsules is None else _capsule_lines(capsules, scalar)}
 }}  // namespace {name}
 """
 
@@ -93,13 +101,13 @@ def _is_identifier(name: str) -> bool:
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
 
 
-def _joint_lines(i: int, joint: Joint) -> list[str]:
+def _joint_lines(i: int, joint: Joint, scalar: str) -> list[str]:
     member = f"  chain.joints[{i}]"
     lines = [
         f"{member}.name = {_literal(joint.name)};",
         f"{member}.type = fpbm::JointType::k{joint.type.capitalize()};",
-        *_transform_lines(f"{member}.placement", joint.placement),
-        f"{member}.axis = {_braced(joint.axis)};",
+        *_transform_lines(f"{member}.placement", joint.placement, scalar),
+        f"{member}.axis = {_braced(joint.axis, scalar)};",
     ]
     bounds = [joint.lower, joint.upper, joint.velocity, joint.acceleration, joint.jerk]
     if joint.deceleration < inf:
@@ -107,41 +115,49 @@ def _joint_lines(i: int, joint: Joint) -> list[str]:
     if bounds != [-inf, inf, inf, inf, inf]:
         while bounds[-1] == inf:
             bounds.pop()
-        lines.append(f"{member}.bounds = {_braced(bounds)};")
+        lines.append(f"{member}.bounds = {_braced(bounds, scalar)};")
     if joint.mimic is not None:
-        leader, ratio, offset = joint.mimic
-        lines.append(f"{member}.mimic = {{{leader}, {ratio!r}, {offset!r}}};  // joint, ratio, offset")
+        leader, *line = joint.mimic
+        ratio, offset = (_number(x, scalar) for x in line)
+        lines.append(f"{member}.mimic = {{{leader}, {ratio}, {offset}}};  // joint, ratio, offset")
     return lines
 
 
-def _capsule_lines(capsules: Sequence[Capsule]) -> str:
+def _capsule_lines(capsules: Sequence[Capsule], scalar: str) -> str:
     each = "".join(
-        f"      {{{c.link}, {{{_braced(c.a)}, {_braced(c.b)}, {float(c.radius)!r}}}, {_literal(c.name)}}},\n"
+        f"      {{{c.link}, {{{_braced(c.a, scalar)}, {_braced(c.b, scalar)}, {_number(c.radius, scalar)}}}, "
+        f"{_literal(c.name)}}},\n"
         for c in capsules
     )
     return f"""
 /// Capsules on the links [m], in the frames of the chain's joints; link 0 is the base.
-inline std::vector<fpbm::LinkCapsule<>> capsules() {{
+inline std::vector<fpbm::LinkCapsule<{scalar}>> capsules() {{
   return {{
 {each}  }};
 }}
 """
 
 
-def _transform_lines(name: str, transform: ArrayLike) -> list[str]:
+def _transform_lines(name: str, transform: ArrayLike, scalar: str) -> list[str]:
     """Assignments to the parts of a Transform that differ from its default."""
     T = np.asarray(transform, dtype=float)
     lines = []
     if np.any(T[:3, 3]):
-        lines.append(f"{name}.p = {_braced(T[:3, 3])};")
+        lines.append(f"{name}.p = {_braced(T[:3, 3], scalar)};")
     if not np.array_equal(T[:3, :3], np.eye(3)):
-        rows = (f"      {_braced(row)}," for row in T[:3, :3])
-        lines += [f"{name}.R = fpbm::Matrix<3, 3>{{", *rows, "  };"]
+        rows = (f"      {_braced(row, scalar)}," for row in T[:3, :3])
+        lines += [f"{name}.R = fpbm::Matrix<3, 3, {scalar}>{{", *rows, "  };"]
     return lines
 
 
-def _braced(numbers: ArrayLike) -> str:
-    return f"{{{', '.join(map(repr, np.asarray(numbers, dtype=float).tolist()))}}}".replace("inf", "kNone")
+def _braced(numbers: ArrayLike, scalar: str) -> str:
+    return f"{{{', '.join(_number(x, scalar) for x in np.asarray(numbers, dtype=float).tolist())}}}"
+
+
+def _number(number: float, scalar: str) -> str:
+    if abs(number) == inf:
+        return "kNone" if number > 0 else "-kNone"
+    return f"{float(number)!r}{'F' if scalar == 'float' else ''}"
 
 
 def _literal(text: str) -> str:

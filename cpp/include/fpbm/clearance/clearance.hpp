@@ -33,7 +33,7 @@ class Clearance {
   Clearance(const Chain<Scalar>& chain, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
       : links_(chain), tip_(links_.in_frame(links_.count(), chain.tip.p)), obstacles_(obstacles), margin_(margin) {
-    validation::require_non_negative("margin", static_cast<double>(margin));
+    validation::require_non_negative("margin", margin);
     for (std::size_t i = 0; i < capsules.size(); ++i) {
       const auto& [link, capsule, name] = capsules[i];
       const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
@@ -90,15 +90,15 @@ class Clearance {
 
   /// Keeps a distance in time, by self-motion. Throws std::invalid_argument where a number is out of range.
   void keep_away(const Away<Scalar>& away) {
-    validation::require_non_negative("away.gain", static_cast<double>(away.gain));
-    validation::require_positive("away.range", static_cast<double>(away.range));
+    validation::require_non_negative("away.gain", away.gain);
+    validation::require_positive("away.range", away.range);
     away_ = away;
   }
   [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
 
   /// Keeps the tip's speed below one [m/s]. Throws std::invalid_argument unless it is positive; infinite for none.
   void bound_tip_speed(Scalar most) {
-    if (!(most > Scalar(0))) validation::fail("tip_speed", static_cast<double>(most), "positive, or infinite");
+    if (!(most > Scalar(0))) validation::fail("tip_speed", most, "positive, or infinite");
     tip_speed_ = most;
   }
   [[nodiscard]] Scalar tip_speed() const noexcept { return tip_speed_; }
@@ -112,7 +112,7 @@ class Clearance {
     bodies_.emplace_back(links_, last, Capsule<Scalar>{tip_, tip_, Scalar(0)}, "tip");
     for (int axis = 0; axis < 3; ++axis) {
       if (!(lower(axis) < upper(axis))) {
-        validation::fail(validation::element("lower", axis), static_cast<double>(lower(axis)), "below upper");
+        validation::fail(validation::element("lower", axis), lower(axis), "below upper");
       }
       for (const Scalar side : {Scalar(-1), Scalar(1)}) {
         const Vector3 inward = -side * Vector3::Unit(axis);

@@ -38,8 +38,8 @@ class Guard {
     const auto [pair, distance] = clearance_.nearest_pair();
     if (!(distance >= clearance_.margin())) {
       const auto [a, b] = clearance_.names(clearance_.pairs()[pair]);
-      const validation::Argument argument("q0", -1, "q0: the distance of '" + a + "' and '" + b + "'");
-      validation::fail(argument, static_cast<double>(distance), "at least the margin");
+      validation::reject_value("q0", distance, ": the distance of '", a, "' and '", b, "' = ", distance,
+                               ": must be at least the margin");
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);

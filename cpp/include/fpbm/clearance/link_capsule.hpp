@@ -18,9 +18,9 @@ struct LinkCapsule {
   /// Throws std::invalid_argument where a number is out of range, or the arm has no such link.
   void require_sound(const validation::Argument& argument, Eigen::Index links) const {
     if (link < 0 || link > links) validation::fail(argument + ".link", link, "a link of the arm");
-    validation::require_finite((argument + ".a").text.c_str(), capsule.a);
-    validation::require_finite((argument + ".b").text.c_str(), capsule.b);
-    validation::require_non_negative(argument + ".radius", static_cast<double>(capsule.radius));
+    validation::require_finite(argument + ".a", capsule.a);
+    validation::require_finite(argument + ".b", capsule.b);
+    validation::require_non_negative(argument + ".radius", capsule.radius);
   }
 };
 

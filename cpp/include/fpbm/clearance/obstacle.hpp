@@ -35,28 +35,26 @@ struct Obstacle {
 
   /// Throws std::invalid_argument where a number is not finite or out of range, or a normal's length is not 1.
   void require_sound(const validation::Argument& argument) const {
-    const auto finite = [&](const char* part, const Vector3& x) {
-      validation::require_finite((argument + part).text.c_str(), x);
-    };
+    const auto finite = [&](const char* part, const Vector3& x) { validation::require_finite(argument + part, x); };
     finite(".velocity", velocity);
     if (const auto* capsule = std::get_if<Capsule<Scalar>>(&shape)) {
       finite(".a", capsule->a);
       finite(".b", capsule->b);
-      validation::require_non_negative(argument + ".radius", static_cast<double>(capsule->radius));
+      validation::require_non_negative(argument + ".radius", capsule->radius);
     } else if (const auto* cuboid = std::get_if<Cuboid<Scalar>>(&shape)) {
       chain_check::require_transform(argument + ".pose", cuboid->pose);
       finite(".half", cuboid->half);
       if (!(cuboid->half.minCoeff() >= Scalar(0))) {
-        validation::fail(argument + ".half", static_cast<double>(cuboid->half.minCoeff()), "not negative");
+        validation::fail(argument + ".half", cuboid->half.minCoeff(), "not negative");
       }
     } else {
       const auto* wall = std::get_if<HalfSpace<Scalar>>(&shape);
       const Scalar length = wall->normal.norm();
       if (!(std::abs(length - Scalar(1)) < Scalar(1e-4))) {
-        validation::fail(argument + ".normal's length", static_cast<double>(length), "1");
+        validation::fail(argument + ".normal's length", length, "1");
       }
       if (!std::isfinite(wall->offset)) {
-        validation::fail(argument + ".offset", static_cast<double>(wall->offset), "finite");
+        validation::fail(argument + ".offset", wall->offset, "finite");
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "fpbm/core/argument.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
@@ -35,83 +36,64 @@ class ParameterError : public std::invalid_argument {
 }  // namespace fpbm
 
 /// What constructors require of their arguments. Each failure is a ParameterError, whose message names the argument,
-/// the index and the value; without exceptions, the end of the program with that message.
+/// the index and the value. Without exceptions it ends the program with that message; under EIGEN_NO_IO, where there is
+/// nothing to print on, without.
 namespace fpbm::validation {
 
-/// An argument, or an entry of it, and how messages name it: text begins with name.
-struct Argument {
-  Argument(const char* argument) : Argument(std::string(argument)) {}
-  Argument(const std::string& argument) : name(argument), text(argument) {}
-  Argument(std::string argument, Eigen::Index i, std::string label)
-      : name(std::move(argument)), index(static_cast<int>(i)), text(std::move(label)) {}
-
-  std::string name;
-  int index = -1;
-  std::string text;
-
-  /// A part of it: element("joints", 2) + ".axis".
-  [[nodiscard]] friend Argument operator+(Argument argument, const std::string& part) {
-    if (argument.index < 0) argument.name += part;
-    argument.text += part;
-    return argument;
-  }
-};
-
-inline Argument element(const char* argument, Eigen::Index i) {
-  return {argument, i, std::string(argument) + "[" + std::to_string(i) + "]"};
-}
-
-/// An entry of a matrix, whose index is its row.
-inline Argument element(const char* argument, Eigen::Index i, Eigen::Index j) {
-  return {argument, i, std::string(argument) + "[" + std::to_string(i) + ", " + std::to_string(j) + "]"};
-}
-
-/// Throws a ParameterError that says "<argument><what>". Where the compiler was told to do without exceptions, says so
-/// on the standard error output and aborts.
-[[noreturn]] inline void reject(const Argument& argument, const std::string& what,
-                                [[maybe_unused]] double value = std::numeric_limits<double>::quiet_NaN()) {
+/// Throws a ParameterError of that value, which says "<argument><words>".
+template <typename Scalar, typename... Words>
+[[noreturn]] void reject_value([[maybe_unused]] const Argument& argument, [[maybe_unused]] Scalar value,
+                               [[maybe_unused]] const Words&... words) {
 #if defined(__cpp_exceptions)
-  throw ParameterError(argument.name, argument.index, value, argument.text + what);
+  throw ParameterError(argument.name(), argument.index(), static_cast<double>(value),
+                       (argument.text() + ... + text_of(words)));
 #else
-  std::fprintf(stderr, "fpbm: %s\n", (argument.text + what).c_str());
+#if !defined(EIGEN_NO_IO)
+  std::fprintf(stderr, "fpbm: %s\n", (argument.text() + ... + text_of(words)).c_str());
+#endif
   std::abort();
 #endif
 }
 
+/// The same of an argument that is no number.
+template <typename... Words>
+[[noreturn]] void reject(const Argument& argument, const Words&... words) {
+  reject_value(argument, std::numeric_limits<float>::quiet_NaN(), words...);
+}
+
 /// Throws a ParameterError that says "<argument> = <value>: must be <demand>".
-[[noreturn]] inline void fail(const Argument& argument, double value, const char* demand) {
-  char number[32];
-  std::snprintf(number, sizeof number, "%.9g", value);
-  reject(argument, std::string(" = ") + number + ": must be " + demand, value);
+template <typename Scalar, typename... Demand>
+[[noreturn]] void fail(const Argument& argument, Scalar value, const Demand&... demand) {
+  reject_value(argument, value, " = ", value, ": must be ", demand...);
 }
 
 /// demand(number) for the number, or each of the numbers, that a Scalar is.
 template <typename Scalar, typename Demand>
 void each_number(const Scalar& value, Demand&& demand) {
   if constexpr (kInLanes<Scalar>) {
-    for (std::size_t lane = 0; lane < value.size(); ++lane) demand(static_cast<double>(value[lane]));
+    for (std::size_t lane = 0; lane < value.size(); ++lane) demand(value[lane]);
   } else {
-    demand(static_cast<double>(value));
+    demand(value);
   }
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
 void require_positive(const Argument& argument, const Scalar& values) {
-  each_number(values, [&](double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
+  each_number(values, [&](auto value) {
+    if (!(value > 0) || !std::isfinite(value)) fail(argument, value, "positive and finite");
   });
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
 void require_non_negative(const Argument& argument, const Scalar& values) {
-  each_number(values, [&](double value) {
-    if (!(value >= 0.0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
+  each_number(values, [&](auto value) {
+    if (!(value >= 0) || !std::isfinite(value)) fail(argument, value, "finite and not negative");
   });
 }
 
 template <typename Scalar, typename = Mask<Scalar>>
 void require_finite(const Argument& argument, const Scalar& values) {
-  each_number(values, [&](double value) {
+  each_number(values, [&](auto value) {
     if (!std::isfinite(value)) fail(argument, value, "finite");
   });
 }
@@ -119,43 +101,39 @@ void require_finite(const Argument& argument, const Scalar& values) {
 /// Balance between two schemes: 0 ≤ value ≤ 1.
 template <typename Scalar, typename = Mask<Scalar>>
 void require_fraction(const Argument& argument, const Scalar& values) {
-  each_number(values, [&](double value) {
-    if (!(value >= 0.0 && value <= 1.0)) fail(argument, value, "in [0, 1]");
+  each_number(values, [&](auto value) {
+    if (!(value >= 0 && value <= 1)) fail(argument, value, "in [0, 1]");
   });
 }
 
 template <typename Derived>
-void require_positive(const char* argument, const Eigen::MatrixBase<Derived>& values) {
+void require_positive(const Argument& argument, const Eigen::MatrixBase<Derived>& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i) require_positive(element(argument, i), values(i));
 }
 
 template <typename Derived>
-void require_finite(const char* argument, const Eigen::MatrixBase<Derived>& values) {
+void require_finite(const Argument& argument, const Eigen::MatrixBase<Derived>& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i) require_finite(element(argument, i), values(i));
 }
 
-inline void require_size(const char* argument, Eigen::Index size, Eigen::Index expected) {
+inline void require_size(const Argument& argument, Eigen::Index size, Eigen::Index expected) {
   if (size != expected) {
-    reject(argument,
-           " has " + std::to_string(size) + " entries: must have " + std::to_string(expected) + ", one per joint",
-           static_cast<double>(size));
+    reject_value(argument, size, " has ", size, " entries: must have ", expected, ", one per joint");
   }
 }
 
 /// A joint vector: one finite entry per joint.
 template <typename Derived>
-void require_joint_vector(const char* argument, const Eigen::MatrixBase<Derived>& values, Eigen::Index dof) {
+void require_joint_vector(const Argument& argument, const Eigen::MatrixBase<Derived>& values, Eigen::Index dof) {
   require_size(argument, values.size(), dof);
   require_finite(argument, values);
 }
 
 /// Number of joints: at least one for each task row, at most kMaxDof.
-inline void require_dof(const char* argument, Eigen::Index dof, int task_rows) {
+inline void require_dof(const Argument& argument, Eigen::Index dof, int task_rows) {
   if (dof < task_rows || dof > kMaxDof) {
-    reject(argument,
-           " has " + std::to_string(dof) + " entries: must have " + std::to_string(task_rows) + " to " +
-               std::to_string(kMaxDof) + ", one per joint, and no fewer than the task has rows",
-           static_cast<double>(dof));
+    reject_value(argument, dof, " has ", dof, " entries: must have ", task_rows, " to ", kMaxDof,
+                 ", one per joint, and no fewer than the task has rows");
   }
 }
 

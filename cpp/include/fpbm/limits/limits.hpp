@@ -31,7 +31,7 @@ class Limits {
   /// tick: h [s]. A joint that has bounds needs one on its acceleration, except at velocity level, where it may then
   /// change its velocity at once. Throws std::invalid_argument naming the joint and the value.
   Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds.complete()) {
-    validation::require_positive("dt", static_cast<double>(tick));
+    validation::require_positive("dt", tick);
     const Eigen::Index n = bounds.lower.size();
     validation::require_size("limits.upper", bounds.upper.size(), n);
     validation::require_size("limits.velocity", bounds.velocity.size(), n);
@@ -71,7 +71,7 @@ class Limits {
       const Scalar q = std::clamp(state.q(i), bounds_.lower(i), bounds_.upper(i));
       const Scalar slack = round_off(i, q);
       if (!(std::abs(state.q(i) - q) <= slack)) {
-        validation::fail(validation::element("q0", i), static_cast<double>(state.q(i)),
+        validation::fail(validation::element("q0", i), state.q(i),
                          std::isfinite(bounds_.deceleration(i))
                              ? "where the bound on the joint's velocity is above zero"
                              : "within the joint's range");
@@ -80,11 +80,10 @@ class Limits {
       const Scalar margin = slack / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::abs(qd);
       const Scalar slower = qd - std::clamp(qd, -margin, margin);
       if (!(std::abs(last(i)) <= bounds_.acceleration(i) + margin / tick_)) {
-        validation::fail(validation::element("qdd0", i), static_cast<double>(last(i)), "within the joint's bound");
+        validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound");
       }
       if (!(bounds_jerk(i) ? jerk_limited(i).viable(q, qd, last(i), margin * tick_) : viable(i, q, slower))) {
-        validation::fail(validation::element("qd0", i), static_cast<double>(qd),
-                         "slow enough for the joint to stop within its bounds");
+        validation::fail(validation::element("qd0", i), qd, "slow enough for the joint to stop within its bounds");
       }
     }
   }

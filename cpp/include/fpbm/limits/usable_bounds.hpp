@@ -23,7 +23,7 @@ namespace fpbm {
 template <Level kLevel, typename Scalar>
 [[nodiscard]] JointBounds<Scalar> usable_bounds(Eigen::Index i, JointBounds<Scalar> bounds, Scalar tick) {
   const auto require = [i](bool good, const char* name, Scalar value, const char* what) {
-    if (!good) validation::fail(validation::element(name, i), static_cast<double>(value), what);
+    if (!good) validation::fail(validation::element(name, i), value, what);
   };
   require(bounds.lower < bounds.upper, "limits.lower", bounds.lower, "below limits.upper");
   require(bounds.velocity > Scalar(0), "limits.velocity", bounds.velocity, "positive");

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fpbm/core/rotation.hpp"
@@ -12,20 +13,36 @@
 
 namespace fpbm {
 
-/// Joints from base to tip: an arm is built from it.
-template <typename Scalar = double>
+/// Joints from base to tip: an arm is built from it. With a length known at compile time it takes no memory from a
+/// heap.
+template <typename Scalar = double, int Length = Eigen::Dynamic>
 struct Chain {
-  std::vector<Joint<Scalar>> joints;
+  std::array<Joint<Scalar, std::string_view>, Length> joints = {};
   Transform<Scalar> tip = {};  ///< The tip's frame in that of the last joint.
+
+  /// The same with a length known at run time.
+  operator Chain<Scalar>() const {
+    Chain<Scalar> chain{{}, tip};
+    for (const auto& [type, placement, axis, bounds, name, mimic] : joints) {
+      chain.joints.push_back({type, placement, axis, bounds, std::string(name), mimic});
+    }
+    return chain;
+  }
+};
+
+template <typename Scalar>
+struct Chain<Scalar, Eigen::Dynamic> {
+  std::vector<Joint<Scalar>> joints;
+  Transform<Scalar> tip = {};
 };
 
 namespace chain_check {
 
 /// How messages name joint i.
-template <typename Scalar>
-validation::Argument name_of(const Chain<Scalar>& chain, Eigen::Index i) {
-  const std::string& name = chain.joints[static_cast<std::size_t>(i)].name;
-  return name.empty() ? validation::element("joints", i) : validation::Argument("joint '" + name + "'");
+template <typename Scalar, int Length>
+validation::Argument name_of(const Chain<Scalar, Length>& chain, Eigen::Index i) {
+  const std::string_view name = chain.joints[static_cast<std::size_t>(i)].name;
+  return name.empty() ? validation::element("joints", i) : validation::Argument("joint '") + name + "'";
 }
 
 /// Whether a matrix is a rotation, to half of the digits.
@@ -42,32 +59,26 @@ template <typename Scalar>
 
 template <typename Scalar>
 void require_transform(const validation::Argument& name, const Transform<Scalar>& transform) {
-  validation::require_finite((name + ".p").text.c_str(), transform.p);
-  validation::require_finite((name + ".R").text.c_str(), transform.R.reshaped());
-  if (!is_rotation(transform.R)) {
-    validation::reject(name + ".R", ": must be a rotation matrix");
-  }
+  validation::require_finite(name + ".p", transform.p);
+  validation::require_finite(name + ".R", transform.R.reshaped());
+  if (!is_rotation(transform.R)) validation::reject(name + ".R", ": must be a rotation matrix");
 }
 
 template <typename Scalar>
 void require_bounds(const validation::Argument& name, JointType type, const JointBounds<Scalar>& bounds) {
-  const auto lower = static_cast<double>(bounds.lower);
-  const auto upper = static_cast<double>(bounds.upper);
-  if (!(lower < upper)) validation::fail(name + ".lower", lower, ("below upper = " + std::to_string(upper)).c_str());
+  const auto& [lower, upper, velocity, acceleration, jerk, velocity_offset, deceleration] = bounds;
+  if (!(lower < upper)) validation::fail(name + ".lower", lower, "below upper = ", upper);
   if (type == JointType::kContinuous && (std::isfinite(lower) || std::isfinite(upper))) {
     validation::reject(name, " is continuous: must have no lower and no upper bound");
   }
-  if (!(bounds.velocity > Scalar(0))) {
-    validation::fail(name + ".velocity", static_cast<double>(bounds.velocity), "positive");
-  }
-  if (!(bounds.acceleration > Scalar(0))) {
-    validation::fail(name + ".acceleration", static_cast<double>(bounds.acceleration), "positive");
-  }
-  if (!(bounds.jerk > Scalar(0))) validation::fail(name + ".jerk", static_cast<double>(bounds.jerk), "positive");
-  if (!(bounds.deceleration > Scalar(0))) {
-    validation::fail(name + ".deceleration", static_cast<double>(bounds.deceleration), "positive");
-  }
-  validation::require_non_negative(name + ".velocity_offset", static_cast<double>(bounds.velocity_offset));
+  const auto require_positive = [&](const char* part, Scalar value) {
+    if (!(value > Scalar(0))) validation::fail(name + part, value, "positive");
+  };
+  require_positive(".velocity", velocity);
+  require_positive(".acceleration", acceleration);
+  require_positive(".jerk", jerk);
+  require_positive(".deceleration", deceleration);
+  validation::require_non_negative(name + ".velocity_offset", velocity_offset);
 }
 
 }  // namespace chain_check
@@ -76,16 +87,16 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
 ///
 /// Throws std::invalid_argument, with the joint's name where it has one, where that number is not n or exceeds kMaxDof,
 /// an axis is zero, a number is not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
-template <typename Scalar>
-Eigen::Index require_chain(const Chain<Scalar>& chain, int n = Eigen::Dynamic) {
+template <typename Scalar, int Length>
+Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dynamic) {
   const auto dof = static_cast<Eigen::Index>(chain.joints.size());
   validation::require_dof("joints", dof, 1);
   if (n != Eigen::Dynamic) validation::require_size("joints", dof, n);
   for (Eigen::Index i = 0; i < dof; ++i) {
-    const Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
+    const auto& joint = chain.joints[static_cast<std::size_t>(i)];
     const validation::Argument name = chain_check::name_of(chain, i);
     chain_check::require_transform(name + ".placement", joint.placement);
-    validation::require_finite((name + ".axis").text.c_str(), joint.axis);
+    validation::require_finite(name + ".axis", joint.axis);
     if (!(joint.axis.norm() > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
     if (joint.mimic.joint >= 0) validation::reject(name, " moves with another: must be in a CoupledArm");
     chain_check::require_bounds(name, joint.type, joint.bounds);

@@ -47,8 +47,8 @@ class CoupledArm {
       if (mimic.joint >= length || column(mimic.joint) < 0) {
         validation::fail(name + ".joint", mimic.joint, "the index of a joint with a drive of its own");
       }
-      validation::require_finite(name + ".ratio", static_cast<double>(mimic.ratio));
-      validation::require_finite(name + ".offset", static_cast<double>(mimic.offset));
+      validation::require_finite(name + ".ratio", mimic.ratio);
+      validation::require_finite(name + ".offset", mimic.offset);
       A_(i, column(mimic.joint)) = mimic.ratio;
       b_(i) = mimic.offset;
     }
@@ -97,7 +97,7 @@ class CoupledArm {
     const auto& [leader, ratio, offset] = joint.mimic;
     if (ratio == Scalar(0)) {
       if (!(bounds.lower <= offset && offset <= bounds.upper)) {
-        validation::fail(chain_check::name_of(chain, i) + ".mimic.offset", static_cast<double>(offset),
+        validation::fail(chain_check::name_of(chain, i) + ".mimic.offset", offset,
                          "within its bounds, since its ratio is 0");
       }
       return;
@@ -112,12 +112,12 @@ class CoupledArm {
     limits_.acceleration(k) = std::min(limits_.acceleration(k), bounds.acceleration / std::abs(ratio));
     limits_.jerk(k) = std::min(limits_.jerk(k), bounds.jerk / std::abs(ratio));
     if (bounds.deceleration < JointBounds<Scalar>::kNone) {
-      validation::fail(chain_check::name_of(chain, i) + ".deceleration", static_cast<double>(bounds.deceleration),
+      validation::fail(chain_check::name_of(chain, i) + ".deceleration", bounds.deceleration,
                        "infinite, since the joint follows another");
     }
     if (!(lower < upper)) {
-      const std::string room = "below upper = " + std::to_string(upper) + " for its followers to keep their bounds";
-      validation::fail(chain_check::name_of(chain, leader) + ".lower", static_cast<double>(lower), room.c_str());
+      validation::fail(chain_check::name_of(chain, leader) + ".lower", lower, "below upper = ", upper,
+                       " for its followers to keep their bounds");
     }
   }
 

@@ -37,14 +37,14 @@ struct Mimic {
   Scalar offset = 0;  ///< [rad] or [m]
 };
 
-/// One joint of a chain.
-template <typename Scalar = double>
+/// One joint of a chain. Its name, for messages, is a std::string, or a std::string_view of a text that outlives it.
+template <typename Scalar = double, typename Name = std::string>
 struct Joint {
   JointType type = JointType::kRevolute;
   Transform<Scalar> placement = {};  ///< The joint's frame in that of the joint before, both at zero.
   Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the joint's frame; its length does not matter.
   JointBounds<Scalar> bounds = {};
-  std::string name = {};
+  Name name = {};
   Mimic<Scalar> mimic = {};
 };
 

@@ -30,13 +30,14 @@ class SerialArm {
 
   /// Throws std::invalid_argument where the number of joints is not N or exceeds kMaxDof, an axis is zero, a number is
   /// not finite, a placement's R is no rotation, or a joint's lower bound is not below its upper.
-  explicit SerialArm(const Chain<Scalar>& chain)
+  template <int Length = Eigen::Dynamic>
+  explicit SerialArm(const Chain<Scalar, Length>& chain)
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
     turns_.setOnes(dof_);
     offsets_.setZero(dof_);
     Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
     for (Eigen::Index i = 0; i < dof_; ++i) {
-      const fpbm::Joint<Scalar>& joint = chain.joints[static_cast<std::size_t>(i)];
+      const auto& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
       const Vector3 p = turned_back * joint.placement.p;

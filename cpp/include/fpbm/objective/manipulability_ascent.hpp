@@ -25,7 +25,7 @@ struct ManipulabilityAscent {
   Scalar gain;  ///< [rad²/s²], or [rad²/s] at velocity level, for each unit of w.
 
   ManipulabilityAscent(const Scheme& scheme_, const Arm& arm_, Scalar gain_) : scheme(scheme_), arm(arm_), gain(gain_) {
-    validation::require_non_negative("manipulability_gain", static_cast<double>(gain));
+    validation::require_non_negative("manipulability_gain", gain);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

@@ -49,8 +49,7 @@ class NullSpace {
     for (Eigen::Index i = 0; i < dof; ++i) {
       const Scalar range = limits.upper(i) - limits.lower(i);
       if (!(range > Scalar(0))) {
-        validation::fail(validation::element("limits.lower", i), static_cast<double>(limits.lower(i)),
-                         "below limits.upper");
+        validation::fail(validation::element("limits.lower", i), limits.lower(i), "below limits.upper");
       }
       if (!std::isfinite(static_cast<double>(range))) continue;
       stiffness(i) = gain / (range * range);

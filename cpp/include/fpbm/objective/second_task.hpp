@@ -58,10 +58,10 @@ struct SecondTask {
   SecondTask(const Scheme& scheme_, const Arm& arm_, const Reference<Space, Scalar>& reference_, Scalar k1_, Scalar k2_,
              Scalar radius_ = Scalar(0.05))
       : scheme(scheme_), arm(arm_), reference(reference_), k1(k1_), k2(k2_), radius(radius_) {
-    validation::require_non_negative("second_task.k1", static_cast<double>(k1));
-    validation::require_non_negative("second_task.k2", static_cast<double>(k2));
-    validation::require_positive("second_task.radius", static_cast<double>(radius));
-    validation::require_fraction("second_task.radius", static_cast<double>(radius));
+    validation::require_non_negative("second_task.k1", k1);
+    validation::require_non_negative("second_task.k2", k2);
+    validation::require_positive("second_task.radius", radius);
+    validation::require_fraction("second_task.radius", radius);
   }
 
   /// Throws std::invalid_argument where a parameter is for another number of joints.

@@ -20,9 +20,9 @@ class Correction {
         error_bound_(options.error_bound),
         gain_(options.integral_gain),
         bound_(options.integral_bound) {
-    validation::require_positive("error_bound", static_cast<double>(error_bound_));
-    validation::require_non_negative("integral_gain", static_cast<double>(gain_));
-    validation::require_positive("integral_bound", static_cast<double>(bound_));
+    validation::require_positive("error_bound", error_bound_);
+    validation::require_non_negative("integral_gain", gain_);
+    validation::require_positive("integral_bound", bound_);
   }
 
   /// Call at the start of a tick, with its error and the arm's characteristic length.

@@ -27,7 +27,7 @@ class PathFollower {
   /// Throws std::invalid_argument unless ramp is positive.
   PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
       : path_(path), start_(start), ramp_(ramp), elapsed_(ramp) {
-    validation::require_positive("ramp", static_cast<double>(ramp));
+    validation::require_positive("ramp", ramp);
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
 

@@ -22,7 +22,7 @@ class StallDetector {
   /// stall_time: [s], infinite for never. Throws std::invalid_argument unless positive.
   StallDetector(Scalar stall_time, Scalar dt) : stall_time_(stall_time), dt_(dt) {
     if (!(stall_time > Scalar(0))) {
-      validation::fail("stall_time", static_cast<double>(stall_time), "positive, or infinite");
+      validation::fail("stall_time", stall_time, "positive, or infinite");
     }
   }
 

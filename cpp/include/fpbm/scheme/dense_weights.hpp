@@ -20,8 +20,7 @@ class DenseWeights {
     Cholesky<N, Scalar> cholesky;
     if (cholesky.factor(W) != Status::kOk) {
       const Eigen::Index i = cholesky.lost_pivot();
-      validation::fail(validation::element("weights", i, i), static_cast<double>(W(i, i)),
-                       "larger: W is not positive definite");
+      validation::fail(validation::element("weights", i, i), W(i, i), "larger: W is not positive definite");
     }
     root_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
     for (Eigen::Index j = 0; j < W.cols(); ++j) root_.col(j) = cholesky.inverse_root(root_.col(j));
@@ -69,7 +68,7 @@ class DenseWeights {
     validation::require_size("weights (columns)", W.cols(), W.rows());
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       for (Eigen::Index i = 0; i < W.rows(); ++i) {
-        validation::require_finite(validation::element("weights", i, j), static_cast<double>(W(i, j)));
+        validation::require_finite(validation::element("weights", i, j), W(i, j));
       }
     }
     using std::abs;
@@ -77,7 +76,7 @@ class DenseWeights {
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       for (Eigen::Index i = j + 1; i < W.rows(); ++i) {
         if (abs(W(i, j) - W(j, i)) > tolerance) {
-          validation::fail(validation::element("weights", i, j), static_cast<double>(W(i, j)),
+          validation::fail(validation::element("weights", i, j), W(i, j),
                            "equal to its mirror image, since W is symmetric");
         }
       }

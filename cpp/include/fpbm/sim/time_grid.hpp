@@ -15,9 +15,9 @@ class TimeGrid {
   /// duration, dt and hold in seconds. Throws std::invalid_argument unless dt is positive, finite, and divides both
   /// duration and hold (to 1e-9); the message names the nearest dt that does.
   TimeGrid(Scalar duration, Scalar dt, Scalar hold = Scalar(0)) : duration_(duration) {
-    validation::require_positive("duration", static_cast<double>(duration));
-    validation::require_positive("dt", static_cast<double>(dt));
-    validation::require_non_negative("hold", static_cast<double>(hold));
+    validation::require_positive("duration", duration);
+    validation::require_positive("dt", dt);
+    validation::require_non_negative("hold", hold);
     motion_steps_ = steps("duration", static_cast<double>(duration), static_cast<double>(dt));
     dt_ = duration / static_cast<Scalar>(motion_steps_);
     hold_steps_ = hold > Scalar(0) ? steps("hold", static_cast<double>(hold), static_cast<double>(dt)) : 0;

@@ -23,7 +23,7 @@ class InPlane {
     axes_.col(1) = v.normalized();
     const Scalar cosine = axes_.col(0).dot(axes_.col(1));
     if (!(cosine * cosine < Scalar(1e-12))) {
-      validation::fail("u v / |u| |v|", static_cast<double>(cosine), "0: u and v are at right angles");
+      validation::fail("u v / |u| |v|", cosine, "0: u and v are at right angles");
     }
   }
 

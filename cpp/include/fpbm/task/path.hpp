@@ -47,7 +47,7 @@ class Path {
   /// Throws std::invalid_argument unless duration [s] is positive and finite.
   Path(const Shape& shape, Scalar duration, const TimeLaw& time_law = {})
       : shape_(shape), duration_(duration), time_law_(time_law) {
-    validation::require_positive("duration", static_cast<double>(duration));
+    validation::require_positive("duration", duration);
   }
 
   [[nodiscard]] Scalar duration() const noexcept { return duration_; }

@@ -14,9 +14,7 @@ class Circle {
   using Scalar = Scalar_;
   using Space = Position<2>;
 
-  explicit Circle(Scalar radius) : radius_(radius) {
-    validation::require_positive("radius", static_cast<double>(radius));
-  }
+  explicit Circle(Scalar radius) : radius_(radius) { validation::require_positive("radius", radius); }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     constexpr auto kRate = static_cast<Scalar>(kTwoPi);
@@ -44,7 +42,7 @@ class Lissajous {
     start_ = {amplitudes(0) * origin.cos, amplitudes(1) * origin.sin};
     validation::require_positive("amplitudes", amplitudes);
     validation::require_positive("frequencies", frequencies);
-    validation::require_finite("phase", static_cast<double>(phase));
+    validation::require_finite("phase", phase);
   }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
@@ -69,7 +67,7 @@ class Tricuspid {
   using Scalar = Scalar_;
   using Space = Position<2>;
 
-  explicit Tricuspid(Scalar size) : size_(size) { validation::require_positive("size", static_cast<double>(size)); }
+  explicit Tricuspid(Scalar size) : size_(size) { validation::require_positive("size", size); }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
     constexpr auto kRate = static_cast<Scalar>(kTwoPi);

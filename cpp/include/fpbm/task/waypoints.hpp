@@ -38,7 +38,7 @@ class Waypoints {
   /// Throws std::invalid_argument where duration is not positive and finite, there are fewer than two points, or two
   /// successive points are equal.
   [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
-    validation::require_positive("duration", static_cast<double>(duration));
+    validation::require_positive("duration", duration);
     std::vector<Scalar> times = shares(points);
     for (Scalar& time : times) time *= duration;
     times.back() = duration;
@@ -111,28 +111,26 @@ class Waypoints {
 
   static void require_points(const std::vector<Point>& points) {
     if (points.size() < 2) {
-      validation::reject("points", " has " + std::to_string(points.size()) + " entries: must have 2 at least");
+      validation::reject("points", " has ", points.size(), " entries: must have 2 at least");
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       Scalar numbers[Space::kSize];
       Space::store(points[i], numbers);
       for (int k = 0; k < Space::kSize; ++k) {
-        validation::require_finite(
-            validation::element("points", static_cast<Eigen::Index>(i)) + "[" + std::to_string(k) + "]",
-            static_cast<double>(numbers[k]));
+        const validation::Argument point = validation::element("points", static_cast<Eigen::Index>(i));
+        validation::require_finite(validation::element(point, k), numbers[k]);
       }
     }
   }
 
   static const std::vector<Scalar>& required(const std::vector<Scalar>& times, std::size_t points) {
     if (times.size() != points) {
-      validation::reject("times", " has " + std::to_string(times.size()) + " entries: must have " +
-                                      std::to_string(points) + ", one per point");
+      validation::reject("times", " has ", times.size(), " entries: must have ", points, ", one per point");
     }
-    if (times[0] != Scalar(0)) validation::fail("times[0]", static_cast<double>(times[0]), "0");
+    if (times[0] != Scalar(0)) validation::fail("times[0]", times[0], "0");
     for (std::size_t i = 1; i < times.size(); ++i) {
       if (!(times[i] > times[i - 1]) || !std::isfinite(times[i])) {
-        validation::fail(validation::element("times", static_cast<Eigen::Index>(i)), static_cast<double>(times[i]),
+        validation::fail(validation::element("times", static_cast<Eigen::Index>(i)), times[i],
                          "finite and after the one before");
       }
     }
@@ -140,7 +138,7 @@ class Waypoints {
   }
 
   static void require_bound(const char* name, Scalar bound) {
-    if (!(bound > Scalar(0))) validation::fail(name, static_cast<double>(bound), "positive");
+    if (!(bound > Scalar(0))) validation::fail(name, bound, "positive");
   }
 
   /// Time of each point as a fraction of the whole.

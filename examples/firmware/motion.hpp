@@ -1,0 +1,58 @@
+#pragma once
+
+#include <fpbm/model/serial_arm.hpp>
+#include <fpbm/realtime/path_follower.hpp>
+#include <fpbm/realtime/tracker.hpp>
+#include <fpbm/scheme/schemes.hpp>
+#include <fpbm/task/in_plane.hpp>
+#include <fpbm/task/shapes.hpp>
+#include <fpbm/task/with_rotation.hpp>
+
+#include "panda.hpp"
+#include "ur5e.hpp"
+
+/// What the board computes, and a PC to compare with: circles of 10 s at 1 kHz in float, within the joints' limits.
+namespace firmware {
+
+constexpr int kTicks = 10000;
+
+/// An arm whose tip draws a circle, its orientation held, a tick a call.
+template <int N>
+class Motion {
+ public:
+  using Joints = fpbm::Vector<N, float>;
+
+  Motion(const fpbm::SerialArm<N, float>& arm, const Joints& q0)
+      : tracker_(arm, fpbm::Pose{}, scheme(q0), q0), follower_(path(), tracker_.tip()) {}
+
+  fpbm::Tick<fpbm::Pose, N, float> tick() { return tracker_.tick(follower_); }
+
+  [[nodiscard]] const Joints& q() const { return tracker_.state().q; }
+
+ private:
+  using Scheme = fpbm::AccelerationScheme<N, float>;
+  using Path = fpbm::WithRotation<fpbm::InPlane<fpbm::Path<fpbm::Circle<float>, fpbm::Quintic>>>;
+
+  static Scheme scheme(const Joints& rest) {
+    const auto homeward = fpbm::NullSpace<N, float>().with_damping(4.0F).with_rest_posture(rest, 4.0F);
+    return fpbm::FPBM<N, float>(0.6F, Joints::LinSpaced(8.0F, 1.0F), 20.0F, 100.0F, homeward);
+  }
+
+  static Path path() {
+    const fpbm::Path circle(fpbm::Circle<float>(0.1F), 10.0F, fpbm::Quintic{});
+    return Path(fpbm::InPlane(circle, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}));
+  }
+
+  fpbm::Tracker<fpbm::SerialArm<N, float>, fpbm::Pose, Scheme> tracker_;
+  fpbm::PathFollower<Path> follower_;
+};
+
+inline Motion<7> panda_motion() {
+  return {panda::arm(), {0.0F, -0.3F, 0.0F, -2.2F, 0.0F, 2.0F, 0.785F}};
+}
+
+inline Motion<6> ur5e_motion() {
+  return {ur5e::arm(), {0.0F, -1.5F, 1.8F, -0.4F, 1.5F, 0.0F}};
+}
+
+}  // namespace firmware

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "motion.hpp"
+
+/// A motion in words, the same on the board and on a PC: the joints every second, in hexadecimal to the last bit, then
+/// the worst status and the largest error.
+namespace firmware {
+
+/// A line of text, without the heap.
+class Line {
+ public:
+  Line& operator<<(const char* text) {
+    while (*text != '\0' && size_ + 1 < sizeof text_) text_[size_++] = *text++;
+    text_[size_] = '\0';
+    return *this;
+  }
+
+  Line& operator<<(std::uint32_t number) {
+    char digits[11] = {};
+    char* digit = digits + 10;
+    do {
+      *--digit = static_cast<char>('0' + number % 10);
+      number /= 10;
+    } while (number != 0);
+    return *this << digit;
+  }
+
+  /// The number's bits.
+  Line& operator<<(float number) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &number, sizeof bits);
+    char digits[9] = {};
+    for (int i = 0; i < 8; ++i) digits[i] = "0123456789abcdef"[bits >> (28 - 4 * i) & 15U];
+    return *this << digits;
+  }
+
+  [[nodiscard]] const char* text() const { return text_; }
+
+ private:
+  char text_[160] = {};
+  std::size_t size_ = 0;
+};
+
+/// print(text) writes a text; counter() counts instructions, or nothing.
+template <int N, typename Print, typename Counter>
+fpbm::Status report(const char* name, Motion<N>&& motion, const Print& print, Counter&& counter) {
+  fpbm::Status worst = fpbm::Status::kOk;
+  float error = 0.0F;
+  std::uint32_t most = 0;
+  std::uint32_t all = 0;
+  for (int i = 1; i <= kTicks; ++i) {
+    const std::uint32_t before = counter();
+    const auto tick = motion.tick();
+    const std::uint32_t count = counter() - before;
+    most = std::max(most, count);
+    all += count;
+    worst = worse(worst, tick.status);
+    error = std::max(error, tick.error.template head<3>().norm());
+    if (i % 1000 != 0) continue;
+    Line line;
+    line << name;
+    for (int joint = 0; joint < N; ++joint) line << " " << motion.q()(joint);
+    print((line << "\n").text());
+  }
+  Line line;
+  line << name << " " << message(worst) << ", off by " << static_cast<std::uint32_t>(error * 1e6F) << " um at most\n";
+  print(line.text());
+  if (all > 0) {
+    Line counted;
+    counted << "# " << name << ": " << all / kTicks << " instructions a tick, " << most << " at most\n";
+    print(counted.text());
+  }
+  return worst;
+}
+
+}  // namespace firmware
