@@ -14,13 +14,14 @@ GTEST := /usr/include/gtest/gtest.h:libgtest-dev
 # The part of clang++'s runtime for that sanitizer, which Debian has in a package of its own.
 clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):libclang-rt-dev
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
-CXX_SOURCES = $(shell find cpp python tests bench examples -name '*.[ch]pp')
+CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
-.PHONY: help demo test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross firmware fuzz soak lint \
+.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross firmware fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
+	@echo 'make page             a page to drag an arm in, with the library in WebAssembly: build/web/page.html'
 	@echo 'make test             build and run every test'
 	@echo 'make test-view        test the pages in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
@@ -44,8 +45,13 @@ demo: $(VENV)/package
 	$(BIN)/fpbm-cpp reproduce --out $(OUT)
 	@echo 'Report, tables and figures are in $(CURDIR)/$(OUT)'
 
+page:
+	tools/need.sh em++:emscripten npm $(EIGEN)
+	web/build.sh build/web/page.html
+
 test: test-cpp test-python
 
+# LAWS=OFF: only the rest, as after make sanitize for make clang, which is the same compiler.
 test-cpp: preset = release
 clang: preset = clang
 sanitize: preset = sanitize
@@ -53,7 +59,7 @@ nightly: preset = nightly
 test-cpp clang sanitize nightly:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang sanitize,$(preset)),clang++:clang)
 	$(if $(filter sanitize,$(preset)),tools/need.sh $(call clang_library,asan))
-	cmake --preset $(preset)
+	cmake --preset $(preset) $(if $(LAWS),-DFPBM_TEST_LAWS=$(LAWS))
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	ctest --preset $(preset) --parallel $(JOBS)
 
@@ -72,14 +78,20 @@ cross:
 	tools/need.sh g++ aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user \
 	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 $(EIGEN)
 	mkdir -p build/cross
-	for compiler in g++ aarch64-linux-gnu-g++ 'x86_64-w64-mingw32-g++-posix -static'; do \
-	  $$compiler -std=c++17 -O1 -Icpp/include -isystem /usr/include/eigen3 tests/cross/motions.cpp \
-	    -o build/cross/$${compiler%%-*} || exit 1; done
-	build/cross/g++ > build/cross/here.txt
-	$(QEMU_ARM64) build/cross/aarch64 > build/cross/arm64.txt
-	WINEDEBUG=-all wine build/cross/x86_64.exe | tr -d '\r' > build/cross/windows.txt
+	$(MAKE) --no-print-directory -j $(JOBS) build/cross/here.txt build/cross/arm64.txt build/cross/windows.txt
 	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/arm64.txt --double 1e-13 --float 1e-3
 	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/windows.txt --double 0 --float 1e-3
+
+motions = $(1) -std=c++17 -O1 -Icpp/include -isystem /usr/include/eigen3 tests/cross/motions.cpp -o $(@:.txt=.out)
+build/cross/here.txt: $(PACKAGE) tests/cross/motions.cpp
+	$(call motions,g++)
+	build/cross/here.out > $@
+build/cross/arm64.txt: $(PACKAGE) tests/cross/motions.cpp
+	$(call motions,aarch64-linux-gnu-g++)
+	$(QEMU_ARM64) build/cross/arm64.out > $@
+build/cross/windows.txt: $(PACKAGE) tests/cross/motions.cpp
+	$(call motions,x86_64-w64-mingw32-g++-posix -static)
+	WINEDEBUG=-all wine build/cross/windows.out | tr -d '\r' > $@
 
 # A bare Cortex-M7 in qemu, beside the same program here.
 firmware:
@@ -113,9 +125,9 @@ fuzz:
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest --numprocesses $(JOBS)
 
-test-view: $(VENV)/package $(VENV)/test $(VENV)/browser
+test-view: page $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium
-	$(BIN)/python -m pytest tests/python/test_view.py tests/python/test_servo.py
+	$(BIN)/python -m pytest tests/python/test_view.py tests/python/test_servo.py tests/python/test_page.py
 
 lint: $(VENV)/package $(VENV)/lint
 	tools/need.sh clang-format clang-tidy cmake ninja:ninja-build $(EIGEN) $(GTEST)
@@ -140,6 +152,7 @@ stubs: $(VENV)/package $(VENV)/lint
 
 docs: $(VENV)/package $(VENV)/docs
 	tools/need.sh doxygen
+	web/build.sh build/web/page.html
 	mkdir -p build/doxygen
 	doxygen docs/Doxyfile
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m sphinx --builder html --fresh-env --fail-on-warning --keep-going --doctree-dir build/doctrees docs build/docs

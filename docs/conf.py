@@ -28,6 +28,8 @@ html_theme = "furo"
 html_title = f"fpbm_cpp {release}"
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
+page = HERE.parent / "build" / "web" / "page.html"  # make page
+html_extra_path = [str(page)] if page.exists() else []
 
 highlight_language = "none"  # Unless a block says otherwise: what programs print is in no language.
 

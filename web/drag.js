@@ -1,0 +1,102 @@
+// Dragging the target: by mouse, finger or arrow keys. Elsewhere on the canvas the same turns the view.
+
+import { Plane, Raycaster, Vector2, Vector3 } from "three";
+
+const NEAR = { mouse: 36, touch: 56, pen: 44 }; // From the target's middle or the tip, on the screen.
+
+export class Drag {
+  /// goal(): where the target is; tip(): where the tip is; moved(point), began(), ended(): what is told.
+  constructor(stage, { goal, tip, moved, began, ended }) {
+    this.stage = stage;
+    this.asked = { goal, tip, moved, began, ended };
+    this.pointer = null;
+    this.ray = new Raycaster();
+    const canvas = stage.renderer.domElement;
+    // Before OrbitControls hears of it.
+    canvas.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
+    canvas.addEventListener("pointermove", (event) => this.move(event), { capture: true });
+    for (const end of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(end, (event) => this.up(event), { capture: true });
+    }
+    canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  get active() {
+    return this.pointer !== null;
+  }
+
+  down(event) {
+    if (this.active || event.button !== 0) return;
+    const reach = NEAR[event.pointerType] ?? NEAR.mouse;
+    const near = [this.asked.goal(), this.asked.tip()].find((point) => this.distance(event, point) < reach);
+    if (!near) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    this.stage.renderer.domElement.setPointerCapture(event.pointerId);
+    this.pointer = event.pointerId;
+    const at = this.inWorld(near);
+    const normal = this.stage.flat ? new Vector3(0, 0, 1) : this.stage.camera.getWorldDirection(new Vector3());
+    this.plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
+    const hit = this.hit(event);
+    this.grip = hit ? this.inWorld(this.asked.goal()).sub(hit) : new Vector3();
+    if (near === this.asked.tip()) this.grip.set(0, 0, 0);
+    this.asked.began();
+  }
+
+  move(event) {
+    const canvas = this.stage.renderer.domElement;
+    if (event.pointerId !== this.pointer) {
+      if (!this.active) canvas.classList.toggle("over", this.distance(event, this.asked.goal()) < NEAR.mouse);
+      return;
+    }
+    event.stopImmediatePropagation();
+    const hit = this.hit(event);
+    if (hit) this.asked.moved(this.stage.world.worldToLocal(hit.add(this.grip)).toArray());
+  }
+
+  up(event) {
+    if (event.pointerId !== this.pointer) return;
+    event.stopImmediatePropagation();
+    this.pointer = null;
+    this.asked.ended();
+  }
+
+  key(event) {
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!way) return;
+    event.preventDefault();
+    const step = 0.4 * this.stage.stage.size;
+    const right = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0);
+    const up = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 1);
+    const at = this.inWorld(this.asked.goal());
+    at.addScaledVector(right, step * way[0]).addScaledVector(up, step * way[1]);
+    this.asked.began();
+    this.asked.moved(this.stage.world.worldToLocal(at).toArray());
+    this.asked.ended();
+  }
+
+  inWorld(point) {
+    return this.stage.world.localToWorld(new Vector3(...point));
+  }
+
+  /// Where a point of the base frame is on the page.
+  onPage(point) {
+    const seen = this.inWorld(point).project(this.stage.camera);
+    const box = this.stage.renderer.domElement.getBoundingClientRect();
+    return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
+  }
+
+  /// Of a pointer from a point of the base frame, on the page.
+  distance(event, point) {
+    const [x, y] = this.onPage(point);
+    return Math.hypot(event.clientX - x, event.clientY - y);
+  }
+
+  hit(event) {
+    const box = this.stage.renderer.domElement.getBoundingClientRect();
+    const x = (2 * (event.clientX - box.left)) / box.width - 1;
+    const y = 1 - (2 * (event.clientY - box.top)) / box.height;
+    this.ray.setFromCamera(new Vector2(x, y), this.stage.camera);
+    return this.ray.ray.intersectPlane(this.plane, new Vector3());
+  }
+}

@@ -1,0 +1,54 @@
+// The three things to try, ticked off as they are done, and the hint at the target.
+
+import { Vector3 } from "three";
+
+import { element } from "./controls.js";
+
+const STEPS = ["drag", "rest", "damp"];
+const DEGREE = 180 / Math.PI;
+const ALMOST = 0.1; // At rest [°/s].
+
+export class Steps {
+  constructor() {
+    this.done = new Set();
+    this.mark();
+  }
+
+  /// Sees what a visitor has done so far.
+  watch({ dragging, resting, simulator }) {
+    const fastest = simulator.fastest * DEGREE;
+    const damped = simulator.settings.damping > 0 || simulator.settings.scheme < 2;
+    if (dragging) this.finish("drag");
+    if (resting && this.done.has("drag") && fastest > ALMOST && !damped) this.finish("rest");
+    if (resting && this.done.has("rest") && fastest < ALMOST && damped) this.finish("damp");
+  }
+
+  finish(step) {
+    if (this.done.has(step)) return;
+    this.done.add(step);
+    if (step === "drag") element("hint").classList.add("gone");
+    this.mark();
+  }
+
+  mark() {
+    const now = STEPS.find((step) => !this.done.has(step));
+    for (const step of STEPS) {
+      element(`step-${step}`).className = this.done.has(step) ? "done" : step === now ? "now" : "";
+    }
+    if (now) return;
+    element("step-damp").classList.add("last");
+    element("install").closest(".card").classList.add("next");
+  }
+
+  /// Keeps the hint beside the target.
+  place(stage, goal) {
+    if (this.done.has("drag")) return;
+    const canvas = stage.renderer.domElement;
+    const seen = stage.world.localToWorld(new Vector3(...goal)).project(stage.camera);
+    const x = ((seen.x + 1) / 2) * canvas.clientWidth;
+    const y = ((1 - seen.y) / 2) * canvas.clientHeight;
+    const hint = element("hint");
+    const left = Math.min(x + 24, canvas.clientWidth - hint.clientWidth - 6);
+    hint.style.transform = `translate(${left.toFixed(1)}px, ${(y + 16).toFixed(1)}px)`;
+  }
+}
