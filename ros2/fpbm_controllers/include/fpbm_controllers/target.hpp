@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <fpbm/core/rotation.hpp>
+#include <fpbm/core/space.hpp>
+#include <geometry_msgs/msg/pose_stamped.hpp>
+#include <geometry_msgs/msg/twist_stamped.hpp>
+#include <optional>
+
+namespace fpbm_controllers {
+
+/// What a message asks for, in the base frame: a pose to go to, or a twist to go at.
+struct Target {
+  std::uint64_t count = 0;                          ///< How many targets came before and with it: none yet at 0.
+  double stamp = 0.0;                               ///< When it was seen [s]; 0: when it came.
+  bool moves = false;                               ///< Whether it is a twist.
+  fpbm::Transform<> pose;                           ///< [m]
+  fpbm::Vector<6> twist = fpbm::Vector<6>::Zero();  ///< [m/s, rad/s]
+};
+
+/// Seconds of a stamp.
+template <typename Header>
+[[nodiscard]] double seconds(const Header& header) {
+  return static_cast<double>(header.stamp.sec) + 1e-9 * static_cast<double>(header.stamp.nanosec);
+}
+
+/// None where a number is not finite, or the quaternion's length not 1 but for errors of 0.01.
+[[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::PoseStamped& message) {
+  const auto& p = message.pose.position;
+  const auto& o = message.pose.orientation;
+  const fpbm::Vector<4> q(o.w, o.x, o.y, o.z);
+  Target target;
+  target.stamp = seconds(message.header);
+  target.pose.p = {p.x, p.y, p.z};
+  if (!target.pose.p.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) return std::nullopt;
+  target.pose.R = fpbm::rotation(fpbm::Vector<4>(q / q.norm()));
+  return target;
+}
+
+/// None where a number is not finite.
+[[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::TwistStamped& message) {
+  const auto& v = message.twist.linear;
+  const auto& w = message.twist.angular;
+  Target target;
+  target.stamp = seconds(message.header);
+  target.moves = true;
+  target.twist << v.x, v.y, v.z, w.x, w.y, w.z;
+  if (!target.twist.allFinite()) return std::nullopt;
+  return target;
+}
+
+/// A pose as a message.
+[[nodiscard]] inline geometry_msgs::msg::Pose message_of(const fpbm::Transform<>& pose) {
+  const fpbm::Vector<4> q = fpbm::quaternion(pose.R);
+  geometry_msgs::msg::Pose message;
+  message.position.x = pose.p(0);
+  message.position.y = pose.p(1);
+  message.position.z = pose.p(2);
+  message.orientation.w = q(0);
+  message.orientation.x = q(1);
+  message.orientation.y = q(2);
+  message.orientation.z = q(3);
+  return message;
+}
+
+}  // namespace fpbm_controllers
