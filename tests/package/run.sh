@@ -1,5 +1,6 @@
 #!/bin/sh
-# Uses fpbm as others do: installed into a prefix of its own and found there, then as a subdirectory.
+# Uses fpbm as others do: installed into a prefix of its own and found there by CMake and by pkg-config, as a subdirectory,
+# and fetched.
 # usage: run.sh <source dir> <scratch dir> [generator] [C++ compiler]
 set -eu
 source_dir=$1
@@ -7,9 +8,14 @@ scratch=$2
 generator=${3:-Ninja}
 compiler=${4:-c++}
 consumer=$source_dir/tests/package
+unset CXXFLAGS
 
 configure() {
   cmake -G "$generator" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release "$@" >/dev/null
+}
+fail() {
+  echo "$*" >&2
+  exit 1
 }
 
 rm -rf "$scratch"
@@ -21,18 +27,57 @@ cmake --build "$scratch/fpbm" >/dev/null
 cmake --install "$scratch/fpbm" >/dev/null
 
 # Moved: nothing installed may remember where it was.
-mv "$scratch/prefix" "$scratch/elsewhere"
+prefix=$scratch/elsewhere
+mv "$scratch/prefix" "$prefix"
 rm -rf "$scratch/fpbm"
-configure -S "$consumer" -B "$scratch/installed" -DCMAKE_PREFIX_PATH="$scratch/elsewhere"
+configure -S "$consumer" -B "$scratch/installed" -DCMAKE_PREFIX_PATH="$prefix"
 cmake --build "$scratch/installed"
-grep -q "fpbm_DIR:PATH=$scratch/elsewhere" "$scratch/installed/CMakeCache.txt"
+grep -q "fpbm_DIR:PATH=$prefix" "$scratch/installed/CMakeCache.txt"
 "$scratch/installed/consumer"
 
-# As a subdirectory, which brings the library alone: none of our tests, examples or warnings.
+# The same by pkg-config.
+flags=$(PKG_CONFIG_PATH="$prefix/share/pkgconfig" pkg-config --cflags fpbm)
+# shellcheck disable=SC2086 # Several words.
+"$compiler" -std=c++17 -O1 "$consumer/main.cpp" $flags -o "$scratch/by_pkg_config"
+"$scratch/by_pkg_config"
+
+# As a subdirectory, which brings the library alone: none of our tests, examples or flags.
 configure -S "$consumer" -B "$scratch/subdirectory" -DFPBM_SOURCE_DIR="$source_dir"
+test ! -e "$scratch/subdirectory/fpbm/tests" || fail "add_subdirectory brought our tests along"
+test ! -e "$scratch/subdirectory/fpbm/examples" || fail "add_subdirectory brought our examples along"
 cmake --build "$scratch/subdirectory"
 "$scratch/subdirectory/consumer"
-if [ -e "$scratch/subdirectory/fpbm/tests" ]; then
-  echo "add_subdirectory brought our tests along" >&2
-  exit 1
-fi
+
+# Fetched from a repository, and where the project says so, only if it is not installed.
+repository=$scratch/repository
+mkdir "$repository"
+cp -R "$source_dir/CMakeLists.txt" "$source_dir/cmake" "$source_dir/cpp" "$source_dir/examples" "$source_dir/tests" "$repository"
+git -C "$repository" init --quiet
+git -C "$repository" add .
+git -C "$repository" -c user.name=fpbm -c user.email=fpbm commit --quiet --message fpbm
+git -C "$repository" tag v0.1.0
+from="GIT_REPOSITORY;file://$repository;GIT_TAG;v0.1.0"
+fetch() {
+  name=$1
+  shift
+  configure -S "$consumer" -B "$scratch/$name" "$@"
+}
+fetch fetched -DFPBM_FETCH="$from"
+test ! -e "$scratch/fetched/_deps/fpbm-build/tests" || fail "FetchContent brought our tests along"
+test ! -e "$scratch/fetched/_deps/fpbm-build/examples" || fail "FetchContent brought our examples along"
+cmake --build "$scratch/fetched"
+"$scratch/fetched/consumer"
+
+fetch not_installed -DFPBM_FETCH="$from;FIND_PACKAGE_ARGS;0.1"
+test -e "$scratch/not_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS did not fetch what is not installed"
+fetch already_installed -DFPBM_FETCH="$from;FIND_PACKAGE_ARGS;0.1" -DCMAKE_PREFIX_PATH="$prefix"
+test ! -e "$scratch/already_installed/_deps/fpbm-src" || fail "FIND_PACKAGE_ARGS fetched what is installed"
+fetch overridden -DFPBM_FETCH="$from;OVERRIDE_FIND_PACKAGE" -DCMAKE_PREFIX_PATH="$prefix"
+test -e "$scratch/overridden/_deps/fpbm-src" || fail "OVERRIDE_FIND_PACKAGE took what is installed"
+
+# However it comes, only include paths and C++17.
+for way in installed subdirectory fetched; do
+  if grep -E '"command".* -[Wmf]' "$scratch/$way/compile_commands.json"; then
+    fail "Flags of ours reach the project: $way"
+  fi
+done
