@@ -16,7 +16,7 @@ clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):lib
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
-.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows cross firmware fuzz soak lint \
+.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows macos cross firmware packages fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -26,8 +26,10 @@ help:
 	@echo 'make test-view        test the pages in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
-	@echo 'make cross            only a few motions there, compared with those here'
+	@echo 'make macos            the C++ tests and the Python extension for macOS, compiled and linked only'
+	@echo 'make cross            a few motions on Arm and Windows, compared with those here'
 	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with one here'
+	@echo 'make packages         the recipes for Conan and, with VCPKG_ROOT, for vcpkg'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
@@ -57,7 +59,7 @@ clang: preset = clang
 sanitize: preset = sanitize
 nightly: preset = nightly
 test-cpp clang sanitize nightly:
-	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang sanitize,$(preset)),clang++:clang)
+	tools/need.sh g++ cmake git pkg-config ninja:ninja-build $(EIGEN) $(GTEST) $(if $(filter clang sanitize,$(preset)),clang++:clang)
 	$(if $(filter sanitize,$(preset)),tools/need.sh $(call clang_library,asan))
 	cmake --preset $(preset) $(if $(LAWS),-DFPBM_TEST_LAWS=$(LAWS))
 	cmake --build --preset $(preset) --parallel $(JOBS)
@@ -72,11 +74,20 @@ arm64 windows: cross
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	WINEDEBUG=-all ctest --preset $(preset) --parallel $(JOBS)
 
+# Zig carries what a Mac's programs are linked with; nothing here runs them.
+macos: $(VENV)/macos
+	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
+	for preset in macos-aarch64 macos-x86_64; do \
+	  export PATH="$(CURDIR)/$(BIN):$$PATH" && \
+	  cmake --preset $$preset -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$(python -m pybind11 --cmakedir) && \
+	  cmake --build --preset $$preset --parallel $(JOBS) || exit 1; done
+
 # The same digits on x86-64 under Windows, and to round-off on Arm, where a product and a sum are rounded once. In float
 # sines and cosines are each system's own.
 cross:
 	tools/need.sh g++ aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user \
-	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 $(EIGEN)
+	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 clang++:clang $(EIGEN)
+	tests/cross/visual.sh tests/cross/motions.cpp
 	mkdir -p build/cross
 	$(MAKE) --no-print-directory -j $(JOBS) build/cross/here.txt build/cross/arm64.txt build/cross/windows.txt
 	$(PYTHON) tests/cross/compare.py build/cross/here.txt build/cross/arm64.txt --double 1e-13 --float 1e-3
@@ -92,6 +103,10 @@ build/cross/arm64.txt: $(PACKAGE) tests/cross/motions.cpp
 build/cross/windows.txt: $(PACKAGE) tests/cross/motions.cpp
 	$(call motions,x86_64-w64-mingw32-g++-posix -static)
 	WINEDEBUG=-all wine build/cross/windows.out | tr -d '\r' > $@
+
+packages: $(VENV)/packages
+	tools/need.sh g++ cmake $(EIGEN)
+	PATH="$(CURDIR)/$(BIN):$$PATH" packaging/try.sh build/packages
 
 # A bare Cortex-M7 in qemu, beside the same program here.
 firmware:
@@ -209,8 +224,8 @@ $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 
-# What makes distributions needs no package installed.
-$(VENV)/wheel: pyproject.toml
+# What makes distributions and what cross-compiles need no package installed.
+$(VENV)/wheel $(VENV)/macos $(VENV)/packages: pyproject.toml
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
