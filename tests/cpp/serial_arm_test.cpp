@@ -313,8 +313,9 @@ TEST(SerialArm, what_is_refused_has_a_name_an_index_and_a_value) {
   EXPECT_EQ(refused([](auto& joints) { joints[0].bounds.jerk = -2.0; }),
             std::tuple("joint 'elbow'.jerk = -2: must be positive", "joint 'elbow'.jerk", -1, -2.0));
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refused([](auto& joints) { joints[0].placement.p(1) = kInfinite; }),
-            std::tuple("joint 'elbow'.placement.p[1] = inf: must be finite", "joint 'elbow'.placement.p", 1, kInfinite));
+  EXPECT_EQ(
+      refused([](auto& joints) { joints[0].placement.p(1) = kInfinite; }),
+      std::tuple("joint 'elbow'.placement.p[1] = inf: must be finite", "joint 'elbow'.placement.p", 1, kInfinite));
 }
 
 TEST(SerialArm, bad_chains_are_refused) {
