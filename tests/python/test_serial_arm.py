@@ -127,9 +127,7 @@ def test_followers_keep_their_bounds(seed):
 
 def test_a_joint_without_room_is_named():
     joints = [fp.Joint(name="a", lower=0, upper=1), fp.Joint(name="b", lower=3, upper=4, mimic=(0, 2.0, 0.5))]
-    with pytest.raises(
-        ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1 for its followers to keep"
-    ):
+    with pytest.raises(ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1 for its followers to keep"):
         fp.SerialArm(joints)
 
 
