@@ -92,4 +92,23 @@ def check_fpbm(arguments: list[str]) -> None:
         assert not option.startswith("-") or option in done.stdout, f"{option}: not an option of {' '.join(words)}"
 
 
-CHECKS = {"pip": check_pip, "python": check_python, "cmake": check_cmake, "make": check_make, "fpbm-cpp": check_fpbm}
+def check_colcon(arguments: list[str]) -> None:
+    folder = arguments[arguments.index("--base-paths") + 1].removeprefix("src/fpbm_cpp/")
+    assert (ROOT / folder / "package.xml").is_file(), f"{folder}: no ROS package"
+
+
+def check_ros2(arguments: list[str]) -> None:
+    verb, package, name = arguments
+    assert verb == "launch"
+    assert (ROOT / "ros2" / package / "launch" / name).is_file(), f"{name}: no such launch file of {package}"
+
+
+CHECKS = {
+    "pip": check_pip,
+    "python": check_python,
+    "cmake": check_cmake,
+    "make": check_make,
+    "fpbm-cpp": check_fpbm,
+    "colcon": check_colcon,
+    "ros2": check_ros2,
+}

@@ -20,9 +20,11 @@ inline constexpr int kNullity = N == Eigen::Dynamic ? Eigen::Dynamic : N - M;
 template <int M, int N, typename Scalar>
 class RowSpace {
  public:
-  explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.transpose()), beta_(A.rows()) {
+  explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.cols(), A.rows()), beta_(A.rows()) {
     const auto n = extent<N>(V_.rows());
     const auto m = extent<M>(V_.cols());
+    // By entries: g++ warns of Eigen's own look at a whole matrix that is yet to be set.
+    each(Constant<0>{}, m, [&](auto j) { each(Constant<0>{}, n, [&](auto i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
     Scalar round_off = kLeast;
     each(Constant<0>{}, m, [&](auto k) {
       using std::sqrt;
