@@ -26,6 +26,9 @@ else
     exit 1
 fi
 echo "Installing:$missing"
+# One at a time, where make runs several.
+exec 9> "${TMPDIR:-/tmp}/fpbm_need.$(id -u).lock"
+if command -v flock > /dev/null; then flock 9; fi
 export DEBIAN_FRONTEND=noninteractive
 # shellcheck disable=SC2086 # A list of packages and an empty or one-word command are meant to be split.
 $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends $missing > /dev/null

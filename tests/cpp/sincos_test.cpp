@@ -13,6 +13,22 @@ namespace {
 
 constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
 
+/// The angle less k quarter turns, by π/2 in three parts of which the first two times k are exact: the long double
+/// functions of some systems, as mingw-w64's, lose digits at large angles.
+SinCos<long double> reference(double angle) {
+  const auto k = static_cast<int>(std::lround(angle / static_cast<double>(kHalfPi)));
+  const long double r =
+      ((angle - k * 1.57079632673412561417e+00L) - k * 6.07710050630396597660e-11L) - k * 2.02226624879595063154e-21L;
+  const long double sine = std::sin(r);
+  const long double cosine = std::cos(r);
+  switch (k & 3) {
+    case 0: return {sine, cosine};
+    case 1: return {cosine, -sine};
+    case 2: return {-sine, -cosine};
+    default: return {-cosine, sine};
+  }
+}
+
 /// Largest absolute error of sine and cosine of an angle, by itself and as the first of a vector.
 double error_at(double angle) {
   const SinCos<double> alone = sincos(angle);
@@ -23,7 +39,10 @@ double error_at(double angle) {
   EXPECT_EQ(alone.sin, sines(0));
   EXPECT_EQ(alone.cos, cosines(0));
   const long double exact = angle;
-  return static_cast<double>(std::max(std::abs(std::sin(exact) - alone.sin), std::abs(std::cos(exact) - alone.cos)));
+  const auto [sine, cosine] = std::abs(angle) <= ReducedSinCos::kReach
+                                  ? reference(angle)
+                                  : SinCos<long double>{std::sin(exact), std::cos(exact)};
+  return static_cast<double>(std::max(std::abs(sine - alone.sin), std::abs(cosine - alone.cos)));
 }
 
 double worst_over(double range, int samples) {

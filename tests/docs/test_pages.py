@@ -32,7 +32,16 @@ SYBIL = Sybil(
 BLOCKS = [block for page in PAGES for block in SYBIL.parse(page).examples()]
 
 
-@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: f"{Path(block.path).name}:{block.line}")
+# A page stays in one process, where its blocks share their names.
+CASES = [
+    pytest.param(
+        block, id=f"{Path(block.path).name}:{block.line}", marks=pytest.mark.xdist_group(Path(block.path).name)
+    )
+    for block in BLOCKS
+]
+
+
+@pytest.mark.parametrize("block", CASES)
 def test_block(block: Example, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     block.evaluate()
