@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "fpbm/core/validation.hpp"
@@ -75,9 +76,46 @@ class TargetFilter {
 
   /// Some seconds into the coming tick.
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
-    if (seconds == Scalar(0)) return reference_;
-    Reference<Space, Scalar> next = reference_;
+    return seconds == Scalar(0) ? reference_ : step(seconds).to;
+  }
+
+  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
+
+  /// Goes one tick on.
+  void advance() noexcept {
+    const Step next = step(dt_);
+    owed_ += next.way - Space::template difference<Scalar>(next.to.x, reference_.x);
+    const Scalar most = Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(next.to.x);
+    owed_ = owed_.cwiseMax(-most).cwiseMin(most);
+    reference_ = next.to;
+    clock_.advance();
+    settle();
+  }
+
+  /// Starts anew, at rest at a point; a clock that was learnt is forgotten. Leaves all as it is where x is no point.
+  bool reset(const Point& x) noexcept {
+    if (!is_point(x)) return false;
+    reference_ = Reference<Space, Scalar>::hold(x);
+    owed_.setZero();
+    target_.rest_at(reference_.x);
+    clock_.forget();
+    free_ = false;
+    return true;
+  }
+
+ private:
+  using Axis = TimeOptimalAxis<Scalar>;
+  static constexpr int kLengths = Space::kRows - Space::kTurns;
+
+  /// Where some seconds lead, and the way there before it is rounded to a point.
+  struct Step {
+    Reference<Space, Scalar> to;
     Twist way;
+  };
+
+  [[nodiscard]] Step step(Scalar seconds) const noexcept {
+    Step result{reference_, Twist()};
+    auto& [next, way] = result;
     if (free_) {
       for (int i = 0; i < Space::kRows; ++i) {
         const AxisState<Scalar> state{Scalar(0), reference_.xd(i), reference_.xdd(i)};
@@ -87,9 +125,9 @@ class TargetFilter {
         next.xdd(i) = to.a;
       }
       next.x = displaced(way);
-      return next;
+      return result;
     }
-    const Twist error = Space::template difference<Scalar>(target_.at(age()), reference_.x);
+    const Twist error = way_to(target_.at(age()));
     const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
     bool there = true;
     for (int i = 0; i < Space::kRows; ++i) {
@@ -105,31 +143,8 @@ class TargetFilter {
     // To the last bit, but for an angle in the plane, which may be whole turns away.
     const bool exact = there && Space::kTurns != 1;
     next.x = exact ? target_.at(age() + clock_.rate() * seconds) : displaced(way);
-    return next;
+    return result;
   }
-
-  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
-
-  /// Goes one tick on.
-  void advance() noexcept {
-    reference_ = ahead(dt_);
-    clock_.advance();
-    settle();
-  }
-
-  /// Starts anew, at rest at a point; a clock that was learnt is forgotten. Leaves all as it is where x is no point.
-  bool reset(const Point& x) noexcept {
-    if (!is_point(x)) return false;
-    reference_ = Reference<Space, Scalar>::hold(x);
-    target_.rest_at(reference_.x);
-    clock_.forget();
-    free_ = false;
-    return true;
-  }
-
- private:
-  using Axis = TimeOptimalAxis<Scalar>;
-  static constexpr int kLengths = Space::kRows - Space::kTurns;
 
   [[nodiscard]] const Axis& axis(int i) const noexcept { return i < kLengths ? lengths_ : angles_; }
 
@@ -164,7 +179,7 @@ class TargetFilter {
     if (!target_.streams()) return;
     const Point x = target_.at(age());
     const Twist velocity = target_.velocity();
-    const Twist error = Space::template difference<Scalar>(x, reference_.x);
+    const Twist error = way_to(x);
     Twist way;
     bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
@@ -172,15 +187,21 @@ class TargetFilter {
       way(i) = std::copysign(stop.way(std::abs(velocity(i))), velocity(i));
       const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
       const Scalar change = stop.jerk * dt_ * dt_;
-      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= change * dt_;
+      const Scalar near = std::max(change * dt_, axis(i).tolerance(state, extent(x), dt_));
+      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= near;
     }
     target_.rest_at(Space::template displace<Scalar>(x, way));
     free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
   }
 
+  /// To a point, from where the reference is but for round-off.
+  [[nodiscard]] Twist way_to(const Point& x) const noexcept {
+    return Space::template difference<Scalar>(x, reference_.x) - owed_;
+  }
+
   [[nodiscard]] Point displaced(const Twist& way) const noexcept {
     if (way.isZero(Scalar(0))) return reference_.x;
-    return straightened(Space::template displace<Scalar>(reference_.x, way));
+    return straightened(Space::template displace<Scalar>(reference_.x, way + owed_));
   }
 
   Scalar dt_;
@@ -188,6 +209,7 @@ class TargetFilter {
   Axis lengths_;
   Axis angles_;
   Reference<Space, Scalar> reference_;
+  Twist owed_ = Twist::Zero();  ///< What the point lacks by round-off, without which a slow one would stand still.
   StampClock<Scalar> clock_;
   StreamedTarget<Space, Scalar> target_;
   bool free_ = false;  ///< Whether it goes at a velocity, to no point.
