@@ -28,8 +28,6 @@ html_theme = "furo"
 html_title = f"fpbm_cpp {release}"
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
-page = HERE.parent / "build" / "web" / "page.html"  # make page
-html_extra_path = [str(page)] if page.exists() else []
 
 highlight_language = "none"  # Unless a block says otherwise: what programs print is in no language.
 
@@ -61,3 +59,15 @@ breathe_show_include = False
 nitpicky = True
 suppress_warnings = ["duplicate_declaration.cpp"]  # A namespace may stand in more than one header.
 nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", r"\.\./README\.md")]
+
+
+def put_page(app, error):
+    """The page that moves, with a link to these pages; a plain word where it was not built."""
+    page = HERE.parent / "build" / "web" / "page.html"
+    words = page.read_text("utf-8") if page.exists() else "<p>This page was not built: make page.</p><!--DOCUMENTATION-->"
+    link = '<a href="index.html">Documentation</a>. '
+    (Path(app.outdir) / page.name).write_text(words.replace("<!--DOCUMENTATION-->", link), "utf-8")
+
+
+def setup(app):
+    app.connect("build-finished", put_page)
