@@ -16,7 +16,7 @@ clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):lib
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
-.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 windows macos cross firmware packages fuzz soak lint \
+.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -26,6 +26,7 @@ help:
 	@echo 'make test-view        test the pages in a browser'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
+	@echo 'make arm64-wheel      the Python package for 64-bit Arm, its TESTS run under qemu'
 	@echo 'make macos            the C++ tests and the Python extension for macOS, compiled and linked only'
 	@echo 'make cross            a few motions on Arm and Windows, compared with those here'
 	@echo 'make firmware         a program for a bare Cortex-M7, run by qemu and compared with one here'
@@ -73,6 +74,12 @@ arm64 windows: cross
 	cmake --preset $(preset)
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	WINEDEBUG=-all ctest --preset $(preset) --parallel $(JOBS)
+
+# In an emulated Python, so some twenty times slower than here: TESTS=tests/python for all.
+arm64-wheel: TESTS ?= $(addprefix tests/python/test_,resolver.py simulate.py model.py serial_arm.py track.py clearance.py)
+arm64-wheel:
+	tools/need.sh cmake ninja:ninja-build $(EIGEN) aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user
+	PYTHON=$(PYTHON) tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
 
 # Zig carries what a Mac's programs are linked with; nothing here runs them.
 macos: $(VENV)/macos
