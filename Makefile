@@ -187,7 +187,7 @@ notebooks: $(VENV)/package $(VENV)/docs
 
 test-docs: $(VENV)/package $(VENV)/test $(VENV)/docs
 	tools/need.sh g++ cmake $(EIGEN)
-	$(BIN)/python -m pytest tests/docs --numprocesses $(JOBS) --dist loadgroup
+	$(BIN)/python -m pytest tests/docs --numprocesses $(JOBS)
 
 # QUICK=1 takes a minute or two once all is built, and is rough. All of it: a quarter of an hour.
 bench: $(VENV)/package $(VENV)/test $(VENV)/bench

@@ -10,12 +10,13 @@ comment before it, which readers do not see.
 from __future__ import annotations
 
 from pathlib import Path
+from unittest import SkipTest
 
 import pytest
 from cmake_block import build_project
 from cpp_block import Compiler
 from shell_block import check_shell
-from sybil import Example, Sybil
+from sybil import Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
 ROOT = Path(__file__).parents[2]
@@ -29,19 +30,18 @@ SYBIL = Sybil(
         SkipParser(),
     ]
 )
-BLOCKS = [block for page in PAGES for block in SYBIL.parse(page).examples()]
 
 
-# A page stays in one process, where its blocks share their names.
-CASES = [
-    pytest.param(
-        block, id=f"{Path(block.path).name}:{block.line}", marks=pytest.mark.xdist_group(Path(block.path).name)
-    )
-    for block in BLOCKS
-]
-
-
-@pytest.mark.parametrize("block", CASES)
-def test_block(block: Example, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    block.evaluate()
+# A page is one test, since its blocks share their names.
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_page(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for block in SYBIL.parse(page).examples():
+        folder = tmp_path / str(block.line)
+        folder.mkdir()
+        monkeypatch.chdir(folder)
+        try:
+            block.evaluate()
+        except SkipTest:
+            continue
+        except Exception as error:
+            raise AssertionError(f"{page.name}, line {block.line}") from error
