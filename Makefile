@@ -93,7 +93,7 @@ macos: $(VENV)/macos
 # sines and cosines are each system's own.
 cross:
 	tools/need.sh g++ aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user \
-	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine64 clang++:clang $(EIGEN)
+	  x86_64-w64-mingw32-g++-posix:g++-mingw-w64-x86-64-posix wine:wine clang++:clang $(EIGEN)
 	tests/cross/visual.sh tests/cross/motions.cpp
 	mkdir -p build/cross
 	$(MAKE) --no-print-directory -j $(JOBS) build/cross/here.txt build/cross/arm64.txt build/cross/windows.txt
