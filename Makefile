@@ -16,6 +16,7 @@ clang_library = $$(clang++ -print-file-name=libclang_rt.$(1)-$$(uname -m).a):lib
 BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
+.DELETE_ON_ERROR:
 .PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
@@ -109,7 +110,7 @@ build/cross/arm64.txt: $(PACKAGE) tests/cross/motions.cpp
 	$(QEMU_ARM64) build/cross/arm64.out > $@
 build/cross/windows.txt: $(PACKAGE) tests/cross/motions.cpp
 	$(call motions,x86_64-w64-mingw32-g++-posix -static)
-	WINEDEBUG=-all wine build/cross/windows.out | tr -d '\r' > $@
+	WINEDEBUG=-all wine build/cross/windows.out > $@
 
 packages: $(VENV)/packages
 	tools/need.sh g++ cmake $(EIGEN)
