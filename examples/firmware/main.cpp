@@ -64,8 +64,7 @@ std::uint32_t used_stack() {
 int run() {
   mark_stack();
   Counter counter;
-  fpbm::Status worst = firmware::report("panda", firmware::panda_motion(), semihosting::write, counter);
-  worst = worse(worst, firmware::report("ur5e", firmware::ur5e_motion(), semihosting::write, counter));
+  const fpbm::Status worst = firmware::report_all(semihosting::write, counter);
   firmware::Line line;
   semihosting::write((line << "# stack: " << used_stack() << " bytes\n").text());
   return failed(worst) ? 1 : 0;

@@ -11,7 +11,7 @@
 #include "panda.hpp"
 #include "ur5e.hpp"
 
-/// What the board computes, and a PC to compare with: circles of 10 s at 1 kHz in float, within the joints' limits.
+/// What the board computes, and a PC to compare with: circles at 1 kHz in float, within the joints' limits.
 namespace firmware {
 
 constexpr int kTicks = 10000;
@@ -22,8 +22,9 @@ class Motion {
  public:
   using Joints = fpbm::Vector<N, float>;
 
-  Motion(const fpbm::SerialArm<N, float>& arm, const Joints& q0)
-      : tracker_(arm, fpbm::Pose{}, scheme(q0), q0), follower_(path(), tracker_.tip()) {}
+  /// seconds: how long a circle takes.
+  Motion(const fpbm::SerialArm<N, float>& arm, const Joints& q0, float radius, float seconds)
+      : tracker_(arm, fpbm::Pose{}, scheme(q0), q0), follower_(path(radius, seconds), tracker_.tip()) {}
 
   fpbm::Tick<fpbm::Pose, N, float> tick() { return tracker_.tick(follower_); }
 
@@ -38,8 +39,8 @@ class Motion {
     return fpbm::FPBM<N, float>(0.6F, Joints::LinSpaced(8.0F, 1.0F), 20.0F, 100.0F, homeward);
   }
 
-  static Path path() {
-    const fpbm::Path circle(fpbm::Circle<float>(0.1F), 10.0F, fpbm::Quintic{});
+  static Path path(float radius, float seconds) {
+    const fpbm::Path circle(fpbm::Circle<float>(radius), seconds, fpbm::Quintic{});
     return Path(fpbm::InPlane(circle, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}));
   }
 
@@ -47,12 +48,12 @@ class Motion {
   fpbm::PathFollower<Path> follower_;
 };
 
-inline Motion<7> panda_motion() {
-  return {panda::arm(), {0.0F, -0.3F, 0.0F, -2.2F, 0.0F, 2.0F, 0.785F}};
+inline Motion<7> panda_motion(float radius, float seconds) {
+  return {panda::arm(), {0.0F, -0.3F, 0.0F, -2.2F, 0.0F, 2.0F, 0.785F}, radius, seconds};
 }
 
-inline Motion<6> ur5e_motion() {
-  return {ur5e::arm(), {0.0F, -1.5F, 1.8F, -0.4F, 1.5F, 0.0F}};
+inline Motion<6> ur5e_motion(float radius, float seconds) {
+  return {ur5e::arm(), {0.0F, -1.5F, 1.8F, -0.4F, 1.5F, 0.0F}, radius, seconds};
 }
 
 }  // namespace firmware

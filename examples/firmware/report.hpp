@@ -77,4 +77,13 @@ fpbm::Status report(const char* name, Motion<N>&& motion, const Print& print, Co
   return worst;
 }
 
+/// Both arms on circles that they draw with ease, then on wide and quick ones, where joints meet their limits.
+template <typename Print, typename Counter>
+fpbm::Status report_all(const Print& print, Counter&& counter) {
+  fpbm::Status worst = report("panda", panda_motion(0.1F, 10.0F), print, counter);
+  worst = worse(worst, report("ur5e", ur5e_motion(0.1F, 10.0F), print, counter));
+  worst = worse(worst, report("panda_pressed", panda_motion(0.25F, 2.0F), print, counter));
+  return worse(worst, report("ur5e_pressed", ur5e_motion(0.25F, 2.0F), print, counter));
+}
+
 }  // namespace firmware

@@ -15,7 +15,12 @@ QEMU = (
 
 # Of joints [rad]: sines of the C library, and sums in another order, differ in float's last bits.
 TOLERANCE = 1e-6
-MOST = {"code and constants [bytes]": 225_000, "stack [bytes]": 9_000, "instructions a tick": 62_000}
+MOST = {
+    "code and constants [bytes]": 225_000,
+    "stack [bytes]": 9_000,
+    "instructions a tick": 62_000,
+    "instructions a tick, where limits are met": 275_000,
+}
 # The heap; texts and streams; arithmetic in double, which this processor would do in software.
 FORBIDDEN = re.compile(
     r"_?(malloc|calloc|realloc|free|sbrk)(_r)?|_Zn[wa].*|_Zd[la].*|.*printf.*|.*basic_stringIc.*|__aeabi_(d\w+|\w+2d)"
@@ -25,11 +30,12 @@ FORBIDDEN = re.compile(
 def main(board: str, host: str) -> None:
     expected, said = output([host]), output([*QEMU.split(), board])
     difference, ticks = compare(expected, said), instructions(said)
-    assert ticks, f"no count of instructions in:\n{said}"
+    assert len(ticks) == 4, f"not all instructions are counted in:\n{said}"
     figures = {
         "code and constants [bytes]": sum(map(int, output(["arm-none-eabi-size", board]).split("\n")[1].split()[:2])),
         "stack [bytes]": int(found(r"# stack: (\d+) bytes", said)),
-        "instructions a tick": max(most for _, most in ticks.values()),
+        "instructions a tick": worst(ticks, pressed=False),
+        "instructions a tick, where limits are met": worst(ticks, pressed=True),
     }
     for arm, (mean, most) in ticks.items():
         print(f"{arm}: {mean} instructions a tick, {most} at most: {1e3 * most / 400e6:.2f} ms at 400 MHz, one a cycle")
@@ -62,6 +68,10 @@ def compare(expected: str, said: str) -> float:
 def instructions(said: str) -> dict[str, tuple[int, int]]:
     found = re.findall(r"# (\w+): (\d+) instructions a tick, (\d+) at most", said)
     return {arm: (int(mean), int(most)) for arm, mean, most in found}
+
+
+def worst(ticks: dict[str, tuple[int, int]], pressed: bool) -> int:
+    return max(most for name, (_, most) in ticks.items() if name.endswith("pressed") == pressed)
 
 
 def number(bits: str) -> float:
