@@ -64,7 +64,9 @@ nitpick_ignore_regex = [("cpp:.*", ".*"), ("myst", r"\.\./README\.md")]
 def put_page(app, error):
     """The page that moves, with a link to these pages; a plain word where it was not built."""
     page = HERE.parent / "build" / "web" / "page.html"
-    words = page.read_text("utf-8") if page.exists() else "<p>This page was not built: make page.</p><!--DOCUMENTATION-->"
+    words = (
+        page.read_text("utf-8") if page.exists() else "<p>This page was not built: make page.</p><!--DOCUMENTATION-->"
+    )
     link = '<a href="index.html">Documentation</a>. '
     (Path(app.outdir) / page.name).write_text(words.replace("<!--DOCUMENTATION-->", link), "utf-8")
 
