@@ -13,15 +13,16 @@ namespace {
 
 constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
 
-/// The angle less k quarter turns, by π/2 in three parts of which the first two times k are exact: the long double
-/// functions of some systems, as mingw-w64's, lose digits at large angles.
+/// The angle less k quarter turns, by π/2 in three parts: the long double functions of some systems, as mingw-w64's,
+/// lose digits at large angles. The first two parts are doubles of 33 bits, which no long double takes for others, and
+/// exact times k.
 SinCos<long double> reference(double angle) {
-  const auto k = static_cast<int>(std::lround(angle / static_cast<double>(kHalfPi)));
+  const auto k = static_cast<long double>(std::lround(angle / static_cast<double>(kHalfPi)));
   const long double r =
-      ((angle - k * 1.57079632673412561417e+00L) - k * 6.07710050630396597660e-11L) - k * 2.02226624879595063154e-21L;
+      ((angle - k * 1.57079632673412561417e+00) - k * 6.07710050630396597660e-11) - k * 2.02226624879595063154e-21L;
   const long double sine = std::sin(r);
   const long double cosine = std::cos(r);
-  switch (k & 3) {
+  switch (static_cast<int>(k) & 3) {
     case 0: return {sine, cosine};
     case 1: return {cosine, -sine};
     case 2: return {-sine, -cosine};
