@@ -1,11 +1,8 @@
 // Sliders and buttons, and what they show.
 
-import { SCHEMES } from "./simulator.js";
+import { FPBM, MAN, MVN, SCHEMES, WMVN_ACCELERATION } from "./simulator.js";
 import { SCHEME_WORDS } from "./words.js";
 
-const MVN = 0;
-const MAN = 2;
-const FPBM = 4;
 const SLIDERS = {
   damping: (value) => (value === 0 ? "off" : `${value.toFixed(1)} /s`),
   alpha: (value) => value.toFixed(2),
@@ -44,10 +41,10 @@ export class Controls {
     element("scheme-words").textContent = SCHEME_WORDS[settings.scheme];
     element("limited").checked = settings.limited !== 0;
     element("alpha-row").hidden = settings.scheme !== FPBM;
-    element("feedback-row").hidden = settings.scheme === MAN || settings.scheme === MAN + 1;
+    element("feedback-row").hidden = settings.scheme === MAN || settings.scheme === WMVN_ACCELERATION;
     element("weights-row").hidden = settings.scheme === MVN || settings.scheme === MAN;
     element("damping").disabled = settings.scheme < MAN;
-    if (settings.scheme < MAN) element("damping-value").value = "not needed";
+    if (settings.scheme < MAN) element("damping-value").value = "none";
     const rows = element("weights");
     if (rows.childElementCount !== dof) rows.replaceChildren(...colors.slice(0, dof).map((_, i) => this.weight(i, dof)));
     [...rows.children].forEach((row, i) => {

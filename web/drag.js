@@ -3,6 +3,7 @@
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 
 const NEAR = { mouse: 36, touch: 56, pen: 44 }; // From the target's middle or the tip, on the screen.
+const EDGE = 16; // That the target keeps from the canvas' edge [pixels].
 
 export class Drag {
   /// goal(): where the target is; tip(): where the tip is; moved(point), began(), ended(): what is told.
@@ -19,6 +20,10 @@ export class Drag {
       canvas.addEventListener(end, (event) => this.up(event), { capture: true });
     }
     canvas.addEventListener("keydown", (event) => this.key(event));
+    // A finger on the target does not scroll the page.
+    const held = (event) => this.active && event.preventDefault();
+    canvas.addEventListener("touchstart", held, { passive: false });
+    canvas.addEventListener("touchmove", held, { passive: false });
   }
 
   get active() {
@@ -92,10 +97,12 @@ export class Drag {
     return Math.hypot(event.clientX - x, event.clientY - y);
   }
 
+  /// What a pointer points at, or where it left the canvas: a target is never lost from sight.
   hit(event) {
     const box = this.stage.renderer.domElement.getBoundingClientRect();
-    const x = (2 * (event.clientX - box.left)) / box.width - 1;
-    const y = 1 - (2 * (event.clientY - box.top)) / box.height;
+    const within = (value, size) => Math.min(Math.max(value, EDGE), size - EDGE);
+    const x = (2 * within(event.clientX - box.left, box.width)) / box.width - 1;
+    const y = 1 - (2 * within(event.clientY - box.top, box.height)) / box.height;
     this.ray.setFromCamera(new Vector2(x, y), this.stage.camera);
     return this.ray.ray.intersectPlane(this.plane, new Vector3());
   }

@@ -59,6 +59,7 @@ async function main() {
   function introduce() {
     element("spare").textContent = ARMS[simulator.arm].spare;
     element("story").textContent = ARMS[simulator.arm].story;
+    element("turn-words").hidden = simulator.arm === 0;
     for (const choice of document.getElementsByName("arm")) choice.checked = Number(choice.value) === simulator.arm;
   }
 

@@ -68,6 +68,9 @@ export class Stage {
     this.flat = simulator.arm === 0;
     const stage = this.flat ? STAGES.planar : STAGES.panda;
     this.stage = stage;
+    // An arm in the plane is seen from above only, and what is not its target scrolls the page.
+    this.orbit.enabled = !this.flat;
+    this.renderer.domElement.style.touchAction = this.flat ? "pan-y" : "none";
     this.arm?.dispose();
     this.ghost?.dispose();
     this.world.clear();

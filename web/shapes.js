@@ -28,7 +28,7 @@ const PANDA = [
 export class ArmShapes extends Group {
   constructor(simulator, look, ghost = false) {
     super();
-    const body = material(look.body, ghost);
+    const body = material(ghost ? look.soft : look.body, ghost);
     const dof = simulator.dof;
     this.links = Array.from({ length: dof + 1 }, () => new Group());
     this.add(...this.links);

@@ -2,7 +2,7 @@
 
 import { element } from "./controls.js";
 import { Strip, errorScale, shareScale, speedScale } from "./strips.js";
-import { TICK } from "./simulator.js";
+import { MAN, TICK, WMVN_ACCELERATION } from "./simulator.js";
 import { describe, length, speed } from "./words.js";
 
 const DEGREE = 180 / Math.PI;
@@ -118,15 +118,16 @@ export class Show {
     this.strips.scale.draw([look.target], look);
     say("speed", speed(simulator.fastest));
     say("error-value", length(simulator.error));
-    say("scale-value", `${Math.round(100 * simulator.scale)} %`);
+    const limited = simulator.settings.limited !== 0;
+    say("scale-value", limited ? `${Math.round(100 * simulator.scale)} %` : "off");
     const { resting, following, dragging } = this;
     say("speed-label", resting ? "the fastest joint, while the tip rests" : "the fastest joint");
     const still = simulator.fastest * DEGREE < 0.05;
     element("speed").closest(".meter").className = `meter ${resting ? (still ? "still" : "moving") : ""}`;
     const { status, fastest, error, settings } = simulator;
     const damped = settings.damping > 0;
-    const limited = settings.limited !== 0;
-    say("status", describe({ status, dragging, following, resting, damped, limited, fastest, error }));
+    const leads = settings.feedback > 0 && settings.scheme !== MAN && settings.scheme !== WMVN_ACCELERATION;
+    say("status", describe({ status, dragging, following, resting, damped, limited, leads, fastest, error }));
   }
 }
 

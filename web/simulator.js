@@ -18,6 +18,7 @@ const VIEW = [
 ];
 
 export const SCHEMES = ["MVN", "WMVN", "MAN", "WMVN acceleration", "FPBM"];
+export const [MVN, , MAN, WMVN_ACCELERATION, FPBM] = SCHEMES.keys();
 export const TICK = 1e-3; // [s]
 
 export async function load(bytes) {

@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 
 import { element } from "./controls.js";
+import { MAN } from "./simulator.js";
 
 const STEPS = ["drag", "rest", "damp"];
 const DEGREE = 180 / Math.PI;
@@ -11,16 +12,18 @@ const ALMOST = 0.1; // At rest [°/s].
 export class Steps {
   constructor() {
     this.done = new Set();
+    this.drifted = false; // Whether joints went on without damping, in this rest.
     this.mark();
   }
 
   /// Sees what a visitor has done so far.
-  watch({ dragging, resting, simulator }) {
+  watch({ pushing, resting, simulator }) {
     const fastest = simulator.fastest * DEGREE;
-    const damped = simulator.settings.damping > 0 || simulator.settings.scheme < 2;
-    if (dragging) this.finish("drag");
-    if (resting && this.done.has("drag") && fastest > ALMOST && !damped) this.finish("rest");
-    if (resting && this.done.has("rest") && fastest < ALMOST && damped) this.finish("damp");
+    const damped = simulator.settings.damping > 0 || simulator.settings.scheme < MAN;
+    this.drifted = resting && (this.drifted || (fastest > ALMOST && !damped));
+    if (pushing) this.finish("drag");
+    if (this.drifted && this.done.has("drag")) this.finish("rest");
+    if (this.drifted && this.done.has("rest") && fastest < ALMOST && damped) this.finish("damp");
   }
 
   finish(step) {

@@ -26,9 +26,9 @@ export const ARMS = [
 export const SCHEME_WORDS = [
   "The least joint speed for the motion of the tip.",
   "The least joint speed; joints with more weight move less.",
-  "The least joint acceleration. Nothing brakes a joint once it turns, nothing leads the tip back.",
+  "The least joint acceleration. Nothing leads the tip back once it is off its target.",
   "WMVN by accelerations. Nothing leads the tip back once it is off its target.",
-  "The paper’s: a balance of MAN and WMVN, with feedback that leads the tip back to its target.",
+  "Of Wang et al., 2019: a balance of MAN and WMVN, with feedback that leads the tip back to its target.",
 ];
 
 const OK = 0;
@@ -37,20 +37,26 @@ const SLOWED = 3;
 const STALLED = 5;
 const NOT_FINITE = 8;
 
-/// What the arm does now.
-export function describe({ status, dragging, following, resting, damped, limited, fastest, error }) {
-  if (status === STALLED) return "The arm cannot get there. It waits at rest until the target moves.";
+/// What the arm does now. leads: whether the scheme has feedback on the tip.
+export function describe({ status, dragging, following, resting, damped, limited, leads, fastest, error }) {
+  const turning = fastest * DEGREE;
+  const off = error > 0.01;
   if (status === NOT_FINITE) return "The motion has grown beyond all bounds. Press “Back to start”.";
+  if (off && !leads && !dragging && (status === STALLED || turning < 0.05)) {
+    return "The arm rests off its target: this scheme has no feedback that would lead it there.";
+  }
+  if (status === STALLED) return "The arm gets no nearer. It waits at rest until the target moves.";
   if (status > STALLED) return "The arm is stretched out, where it cannot move in every direction. It brakes.";
   if (dragging && status === SLOWED) return "A joint is at its limit: the others take over, or the tip slows down.";
   if (dragging && status === DAMPED) return "The arm is almost straight. It moves only where it still can.";
+  if (dragging && error > 0.1) return "The tip is on its way to you.";
   if (dragging && limited) return "The tip follows you, and every joint keeps within its limits.";
   if (dragging) return "The tip follows you, whatever that asks of the joints.";
   if (following) return "The tip draws its circle.";
-  if (error > 0.01 && !resting) return "The tip is on its way.";
-  if (fastest * DEGREE > 0.05 && damped) return "The damping brakes the joints. The tip stays where it is.";
-  if (fastest * DEGREE > 0.05) return "The tip rests, but the joints go on: nothing in this scheme brakes them.";
-  if (error > 0.01) return "The arm rests off its target: this scheme has no feedback that would lead it there.";
+  if (off && !resting) return "The tip is on its way.";
+  if (turning > 0.05 && damped) return "The damping brakes the joints. The tip stays where it is.";
+  if (turning > 1) return "The tip rests, but the joints go on: nothing in this scheme brakes them.";
+  if (turning > 0.05) return "The tip rests. The joints still turn, slowly.";
   return status === OK ? "All joints are at rest." : "The arm rests.";
 }
 

@@ -159,7 +159,7 @@ def test_the_steps_of_a_visitor(page):
 
 
 @pytest.mark.parametrize("which", [0, 1])
-def test_let_it_rest(page, which):
+def test_see_it_drift(page, which):
     begin(page, which, damping=3)
     page.locator("#restart").click()
     run(page, 0.1)
@@ -197,6 +197,8 @@ def test_every_control(page):
 
 
 def test_keys_move_the_target(page):
+    page.reload()
+    page.wait_for_function("window.fpbm")
     begin(page, 0)
     page.evaluate("fpbm.show.restart()")
     page.locator("#arm").focus()
@@ -205,6 +207,47 @@ def test_keys_move_the_target(page):
     after = page.evaluate("fpbm.show.goal")
     assert after[0] < before[0] - 0.02
     assert abs(after[1] - before[1]) < 0.01
+    run(page, 0.1)
+    assert page.locator("#step-drag").get_attribute("class") == "done"
+
+
+def test_the_target_stays_in_sight(page):
+    """Dragged out of the window, and where a miss would turn the view of an arm in the plane."""
+    begin(page, 0)
+    page.evaluate("fpbm.show.restart()")
+    box = page.locator("#arm").bounding_box()
+    view = page.evaluate("fpbm.stage.camera.position.toArray()")
+    page.mouse.move(box["x"] + 60, box["y"] + box["height"] - 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 200, box["y"] + 40, steps=5)
+    page.mouse.up()
+    run(page, 0.2)
+    np.testing.assert_allclose(page.evaluate("fpbm.stage.camera.position.toArray()"), view, rtol=0, atol=1e-9)
+    page.mouse.move(*page.evaluate("fpbm.onPage(fpbm.show.goal)"))
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] + 150, box["y"] - 30, steps=5)
+    page.mouse.up()
+    x, y = page.evaluate("fpbm.onPage(fpbm.show.goal)")
+    assert box["x"] < x < box["x"] + box["width"]
+    assert box["y"] < y < box["y"] + box["height"]
+
+
+@pytest.mark.parametrize(("kind", "seen"), [(0, "k"), (1, "kW"), (2, ""), (3, "W"), (4, "αkW")])
+def test_a_scheme_shows_what_it_takes(page, kind, seen):
+    begin(page, 0, scheme=kind)
+    rows = {"α": "#alpha-row", "k": "#feedback-row", "W": "#weights-row"}
+    assert {name for name, row in rows.items() if page.locator(row).is_visible()} == set(seen)
+
+
+def test_words_about_an_arm_off_its_target(page):
+    """Without feedback a tip that is led off stays off, which is no lack of reach."""
+    begin(page, 0, scheme=2, damping=5, limited=1)
+    page.evaluate("fpbm.show.restart()")
+    x, y, _ = page.evaluate("[...fpbm.simulator.tip]")
+    page.evaluate("x => { fpbm.show.take(); fpbm.show.move(x); fpbm.show.release(); }", [x - 2.5, y - 1.5, 0])
+    run(page, 20)
+    assert number(page, "error") > 0.01
+    assert "no feedback" in page.locator("#status").inner_text()
 
 
 def test_frames_have_time_to_spare(page):
