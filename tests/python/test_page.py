@@ -159,7 +159,7 @@ def test_the_steps_of_a_visitor(page):
 
 
 @pytest.mark.parametrize("which", [0, 1])
-def test_see_it_drift(page, which):
+def test_let_it_drift(page, which):
     begin(page, which, damping=3)
     page.locator("#restart").click()
     run(page, 0.1)
