@@ -80,7 +80,8 @@ arm64 windows: cross
 arm64-wheel: TESTS ?= $(addprefix tests/python/test_,resolver.py simulate.py model.py serial_arm.py track.py clearance.py)
 arm64-wheel:
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user
-	PYTHON=$(PYTHON) tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
+	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
+	PYTHON=$(BIN)/python tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
 
 # Zig carries what a Mac's programs are linked with; nothing here runs them.
 macos: $(VENV)/macos

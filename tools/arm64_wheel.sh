@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the package's wheel for 64-bit Arm into FOLDER/dist, and runs tests of it under qemu.
-#   arm64_wheel.sh FOLDER [arguments of pytest]
+#   PYTHON=… arm64_wheel.sh FOLDER [arguments of pytest], with a Python that has pip
 #
 # Debian's Python for Arm is unpacked into FOLDER/root, and run there by qemu: nothing of this system is changed. What it
 # starts itself, CMake and the cross compiler, runs at full speed.
@@ -35,7 +35,7 @@ fi
 
 export PIP_BREAK_SYSTEM_PACKAGES=1 PIP_ROOT_USER_ACTION=ignore PIP_NO_WARN_SCRIPT_LOCATION=0 PIP_DISABLE_PIP_VERSION_CHECK=1
 if ! "$python" -m pip --version > /dev/null 2>&1; then
-    "${PYTHON:-python3}" -m pip download --quiet --no-deps --only-binary :all: --dest "$folder" pip
+    "$PYTHON" -m pip download --quiet --no-deps --only-binary :all: --dest "$folder" pip
     pip=$(ls "$folder"/pip-*.whl)
     "$python" "$pip/pip" install --quiet "$pip"
 fi
