@@ -88,7 +88,8 @@ macos: $(VENV)/macos
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
 	for preset in macos-aarch64 macos-x86_64; do \
 	  export PATH="$(CURDIR)/$(BIN):$$PATH" && \
-	  cmake --preset $$preset -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$(python -m pybind11 --cmakedir) && \
+	  cmake --preset $$preset -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$(python -m pybind11 --cmakedir) \
+	    -DPython_INCLUDE_DIR=$$(python -c 'import sysconfig; print(sysconfig.get_path("include"))') && \
 	  cmake --build --preset $$preset --parallel $(JOBS) || exit 1; done
 
 # The same digits on x86-64 under Windows, and to round-off on Arm, where a product and a sum are rounded once. In float
