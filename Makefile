@@ -76,7 +76,7 @@ arm64 windows: cross
 	cmake --build --preset $(preset) --parallel $(JOBS)
 	WINEDEBUG=-all ctest --preset $(preset) --parallel $(JOBS)
 
-# In an emulated Python, so some twenty times slower than here: TESTS=tests/python for all.
+# In an emulated Python, which is slow; TESTS=tests/python for all.
 arm64-wheel: TESTS ?= $(addprefix tests/python/test_,resolver.py simulate.py model.py serial_arm.py track.py clearance.py)
 arm64-wheel:
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user

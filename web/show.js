@@ -14,6 +14,7 @@ export class Show {
     this.simulator = simulator;
     this.stage = stage;
     this.look = look;
+    this.moved = false; // Whether somebody ever moved the target.
     this.strips = {
       speed: new Strip(element("plot-speed"), { lines: 4, ...speedScale }),
       error: new Strip(element("plot-error"), { lines: 1, ...errorScale }),
@@ -57,6 +58,7 @@ export class Show {
     this.pace = 1;
   }
   move(point) {
+    this.moved = true;
     this.goal = this.simulator.arm === 0 ? [point[0], point[1], 0] : point;
   }
   release() {

@@ -17,11 +17,11 @@ export class Steps {
   }
 
   /// Sees what a visitor has done so far.
-  watch({ pushing, resting, simulator }) {
+  watch({ moved, resting, simulator }) {
     const fastest = simulator.fastest * DEGREE;
     const damped = simulator.settings.damping > 0 || simulator.settings.scheme < MAN;
     this.drifted = resting && (this.drifted || (fastest > ALMOST && !damped));
-    if (pushing) this.finish("drag");
+    if (moved) this.finish("drag");
     if (this.drifted && this.done.has("drag")) this.finish("rest");
     if (this.drifted && this.done.has("rest") && fastest < ALMOST && damped) this.finish("damp");
   }

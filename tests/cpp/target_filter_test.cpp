@@ -271,21 +271,23 @@ TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
   EXPECT_LT(watched.reach(x0, 10000), 10000);
 }
 
-/// A tick's way of less than the point's last bit adds up.
+/// A tick's way of less than the point's last bit adds up, but for a last bit a tick to either side: √ticks of them.
 TYPED_TEST(TargetFilters, go_slower_than_a_bit_a_tick) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   Random random(47);
-  const auto x0 = random_point<Space, Scalar>(random, 1.0);
-  TargetFilter<Space, Scalar> filter(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)});
-  const Scalar slow = std::numeric_limits<Scalar>::epsilon() * 100;
-  const auto v = (slow * random.uniform(Space::kRows, -1.0, 1.0)).template cast<Scalar>().eval();
-  for (int k = 0; k < 20000; ++k) {
-    ASSERT_TRUE(filter.push_twist(v));
-    filter.advance();
+  for (const double size : {1.0, 1.0, 1.0, 1.0, 7.0, 50.0}) {
+    const auto x0 = random_point<Space, Scalar>(random, size);
+    TargetFilter<Space, Scalar> filter(x0, {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)});
+    const Scalar slow = std::numeric_limits<Scalar>::epsilon() * static_cast<Scalar>(100 * size);
+    const auto v = (slow * random.uniform(Space::kRows, -1.0, 1.0).template cast<Scalar>()).eval();
+    for (int k = 0; k < 20000; ++k) {
+      ASSERT_TRUE(filter.push_twist(v));
+      filter.advance();
+    }
+    const auto way = Space::template difference<Scalar>(filter.reference().x, x0);
+    EXPECT_LE((way - 20 * v).cwiseAbs().maxCoeff(), slow / 100 * std::sqrt(Scalar(20000))) << size;
   }
-  const auto way = Space::template difference<Scalar>(filter.reference().x, x0);
-  EXPECT_LE((way - 20 * v).cwiseAbs().maxCoeff(), slow * Scalar(0.2));
 }
 
 /// A float's round-off does not add up to a matrix that is no rotation.

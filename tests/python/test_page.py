@@ -136,6 +136,9 @@ def test_the_steps_of_a_visitor(page):
     assert page.locator("#install").inner_text() == "pip install ."
     page.evaluate("fpbm.pause()")
     run(page, 1)
+    page.locator("#rest").click()
+    run(page, 1)
+    assert page.locator("#step-drag").get_attribute("class") == "now"  # Nobody has dragged yet.
     x, y = page.evaluate("fpbm.onPage(fpbm.show.goal)")
     page.mouse.move(x, y)
     page.mouse.down()

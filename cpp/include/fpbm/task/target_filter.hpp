@@ -107,7 +107,7 @@ class TargetFilter {
   using Axis = TimeOptimalAxis<Scalar>;
   static constexpr int kLengths = Space::kRows - Space::kTurns;
 
-  /// Where some seconds lead, and the way there before it is rounded to a point.
+  /// Where some seconds lead, and the way there [m, rad] before it is rounded to a point.
   struct Step {
     Reference<Space, Scalar> to;
     Twist way;
@@ -194,7 +194,7 @@ class TargetFilter {
     free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
   }
 
-  /// To a point, from where the reference is but for round-off.
+  /// Way to a point [m, rad], from where the reference is but for round-off.
   [[nodiscard]] Twist way_to(const Point& x) const noexcept {
     return Space::template difference<Scalar>(x, reference_.x) - owed_;
   }
@@ -209,7 +209,7 @@ class TargetFilter {
   Axis lengths_;
   Axis angles_;
   Reference<Space, Scalar> reference_;
-  Twist owed_ = Twist::Zero();  ///< What the point lacks by round-off, without which a slow one would stand still.
+  Twist owed_ = Twist::Zero();  ///< Way that the point lacks by round-off [m, rad]: else a slow one would stand still.
   StampClock<Scalar> clock_;
   StreamedTarget<Space, Scalar> target_;
   bool free_ = false;  ///< Whether it goes at a velocity, to no point.
