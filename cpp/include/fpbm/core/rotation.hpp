@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/sincos.hpp"
@@ -108,6 +109,27 @@ template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<4, Scalar> q = quaternion(R);
   return rotation(Vector<4, Scalar>(q / q.norm()));
+}
+
+/// The rotation nearest to a matrix (its orthogonal polar factor), accurate to round-off if no entry of RᵀR deviates
+/// from the identity by more than 1e-4. A matrix that is orthonormal to round-off is returned unchanged.
+///
+/// Two of Newton's steps X ← (X + X⁻ᵀ)/2: each squares and halves the singular values' deviation from 1 (N. J. Higham,
+/// Computing the polar decomposition, 1986).
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> nearest_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
+  const Matrix<3, 3, Scalar> excess = R.transpose().lazyProduct(R) - Matrix<3, 3, Scalar>::Identity();
+  if (excess.cwiseAbs().maxCoeff() <= Scalar(16) * std::numeric_limits<Scalar>::epsilon()) return R;
+  Matrix<3, 3, Scalar> X = R;
+  for (int step = 0; step < 2; ++step) {
+    const Vector<3, Scalar> x = X.col(0);
+    const Vector<3, Scalar> y = X.col(1);
+    const Vector<3, Scalar> z = X.col(2);
+    Matrix<3, 3, Scalar> cofactors;
+    cofactors << cross(y, z), cross(z, x), cross(x, y);
+    X = (X + cofactors / x.dot(cofactors.col(0))) / Scalar(2);
+  }
+  return X;
 }
 
 namespace rotation_detail {

@@ -8,7 +8,8 @@
 /// What to make of points that come from elsewhere.
 namespace fpbm {
 
-/// Whether it is finite, and its R a rotation but for errors of 1e-4.
+/// Whether a point is finite, and no entry of RᵀR deviates from the identity by more than 1e-4 (R with 5 decimals or
+/// more); a reflection is not a point.
 template <typename Derived>
 [[nodiscard]] bool is_point(const Eigen::MatrixBase<Derived>& x) noexcept {
   return x.allFinite();
@@ -18,6 +19,16 @@ template <typename Scalar>
   const Matrix<3, 3, Scalar> excess = x.R.transpose().lazyProduct(x.R) - Matrix<3, 3, Scalar>::Identity();
   const Scalar handed = x.R.col(0).dot(cross<Scalar>(x.R.col(1), x.R.col(2)));
   return x.p.allFinite() && excess.cwiseAbs().maxCoeff() <= Scalar(1e-4) && handed > Scalar(0);
+}
+
+/// The same point with the rotation nearest to its R.
+template <typename Derived>
+[[nodiscard]] typename Derived::PlainObject orthonormalised(const Eigen::MatrixBase<Derived>& x) noexcept {
+  return x;
+}
+template <typename Scalar>
+[[nodiscard]] Transform<Scalar> orthonormalised(const Transform<Scalar>& x) noexcept {
+  return {x.p, nearest_rotation(x.R)};
 }
 
 /// The same point, its R a rotation to round-off.

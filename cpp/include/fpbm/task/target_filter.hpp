@@ -35,9 +35,9 @@ class TargetFilter {
         timeout_(options.timeout),
         lengths_(bounds.lengths()),
         angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()),
-        reference_(Reference<Space, Scalar>::hold(x0)),
+        reference_(Reference<Space, Scalar>::hold(orthonormalised(x0))),
         clock_(options.dt, options.timeout, options.start),
-        target_(x0, options.dt / Scalar(2), options.timeout, fastest()) {
+        target_(reference_.x, options.dt / Scalar(2), options.timeout, fastest()) {
     options.require_good();
     if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
   }
@@ -47,14 +47,14 @@ class TargetFilter {
   bool push(const Point& x, double stamp) noexcept {
     if (!is_point(x)) return false;
     const std::optional<Scalar> elapsed = clock_.hear(stamp);
-    if (elapsed) take(x, *elapsed);
+    if (elapsed) take(orthonormalised(x), *elapsed);
     return elapsed.has_value();
   }
 
   /// A target seen now.
   bool push(const Point& x) noexcept {
     if (!is_point(x)) return false;
-    take(x, clock_.hear_now());
+    take(orthonormalised(x), clock_.hear_now());
     return true;
   }
 
@@ -95,7 +95,7 @@ class TargetFilter {
   /// Starts anew, at rest at a point; a clock that was learnt is forgotten. Leaves all as it is where x is no point.
   bool reset(const Point& x) noexcept {
     if (!is_point(x)) return false;
-    reference_ = Reference<Space, Scalar>::hold(x);
+    reference_ = Reference<Space, Scalar>::hold(orthonormalised(x));
     owed_.setZero();
     target_.rest_at(reference_.x);
     clock_.forget();
