@@ -117,6 +117,7 @@
 #include "fpbm/task/curve.hpp"
 #include "fpbm/task/feedback.hpp"
 #include "fpbm/task/in_plane.hpp"
+#include "fpbm/task/least_duration.hpp"
 #include "fpbm/task/path.hpp"
 #include "fpbm/task/point.hpp"
 #include "fpbm/task/reference.hpp"

@@ -81,7 +81,8 @@ class StampClock {
   }
 
  private:
-  static constexpr Scalar kHalf{5};  ///< Half the window [s]: 150 stamps at 30 Hz, the least of 20 ms jitter is 0.13 ms.
+  static constexpr Scalar kHalf{
+      5};  ///< Half the window [s]: 150 stamps at 30 Hz, the least of 20 ms jitter is 0.13 ms.
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
   static constexpr int kRun = 3;  ///< Fewest rejected stamps that stand for a clock that was set.
 

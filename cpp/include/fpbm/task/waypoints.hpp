@@ -10,6 +10,7 @@
 
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/task/least_duration.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/spline.hpp"
 #include "fpbm/task/tip_bounds.hpp"
@@ -45,18 +46,18 @@ class Waypoints {
     return Waypoints(points, times);
   }
 
-  /// As fast as the bounds allow (within 1 %, rounded up to 0.01 s, so that usual steps divide it), shared among the
-  /// pieces as in lasting(). Also throws std::invalid_argument where no bound limits the tip.
+  /// As fast as the bounds allow, which are never exceeded: at most 0.5 % longer than the shortest duration, rounded up
+  /// to 0.01 s, so that usual steps divide it; shared among the pieces as in lasting(). Also throws
+  /// std::invalid_argument where no bound limits the tip.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
     require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);
     require_bound("angular_velocity", bounds.angular_velocity);
     require_bound("angular_acceleration", bounds.angular_acceleration);
-    const TipBounds<Scalar> peak = lasting(points, Scalar(1)).peaks();
-    const Scalar duration =
-        std::max(std::max(peak.velocity / bounds.velocity, peak.angular_velocity / bounds.angular_velocity),
-                 std::max(std::sqrt(peak.acceleration / bounds.acceleration),
-                          std::sqrt(peak.angular_acceleration / bounds.angular_acceleration)));
+    const Waypoints unit = lasting(points, Scalar(1));
+    const Scalar duration = LeastDuration<Space, kCoordinates, Scalar>(unit.spline_, bounds).of([&unit](Scalar t) {
+      return unit.sample(t);
+    });
     if (!(duration > Scalar(0))) validation::reject("bounds", ": at least one must limit the tip");
     return lasting(points, std::ceil(Scalar(100.5) * duration) / Scalar(100));
   }
@@ -165,25 +166,6 @@ class Waypoints {
     const Scalar whole = times.back();
     for (Scalar& time : times) time /= whole;
     return times;
-  }
-
-  /// The largest speeds and accelerations on the way.
-  [[nodiscard]] TipBounds<Scalar> peaks() const {
-    constexpr int kSamples = 64;  // For each piece, whose polynomials are of fifth degree.
-    constexpr int kAngular = Space::kRows - kLinear;
-    TipBounds<Scalar> peak{0, 0, 0, 0};
-    const std::vector<Scalar>& times = spline_.times();
-    for (std::size_t i = 1; i < times.size(); ++i) {
-      for (int k = 0; k < kSamples; ++k) {
-        const Scalar fraction = Scalar(k) / Scalar(kSamples);
-        const auto at = sample(times[i - 1] + fraction * (times[i] - times[i - 1]));
-        peak.velocity = std::max(peak.velocity, at.xd.template head<kLinear>().norm());
-        peak.acceleration = std::max(peak.acceleration, at.xdd.template head<kLinear>().norm());
-        peak.angular_velocity = std::max(peak.angular_velocity, at.xd.template tail<kAngular>().norm());
-        peak.angular_acceleration = std::max(peak.angular_acceleration, at.xdd.template tail<kAngular>().norm());
-      }
-    }
-    return peak;
   }
 
   Spline<kCoordinates, Scalar> spline_;

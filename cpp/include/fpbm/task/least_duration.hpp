@@ -1,0 +1,139 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/task/spline.hpp"
+#include "fpbm/task/tip_bounds.hpp"
+
+namespace fpbm {
+
+/// Duration for which a path that lasts 1 s must be stretched to keep bounds on the tip's motion: velocities shrink
+/// with the duration, accelerations with its square.
+///
+/// The largest share of a bound is searched by branch and bound. A sample at the middle of an interval and bounds on
+/// the derivatives within limit the share on the whole interval; the interval is halved until the limit is low enough.
+/// So no peak between samples is missed, however narrow.
+template <typename Space, int M, typename Scalar>
+class LeastDuration {
+  static constexpr bool kQuaternion = M > Space::kRows;
+  static constexpr int kLinear = Space::kRows - Space::kTurns;
+
+ public:
+  /// spline: the path's positions [m], and its angles [rad] or quaternions, which are scaled to unit length.
+  LeastDuration(const Spline<M, Scalar>& spline, const TipBounds<Scalar>& bounds) : spline_(spline), bounds_(bounds) {}
+
+  /// A duration between 1 / kSlack of the shortest and the shortest; 0 if no bound limits the tip.
+  /// sample(t) gives the velocity xd and acceleration xdd of the tip.
+  template <typename Sample>
+  [[nodiscard]] Scalar of(const Sample& sample) const {
+    constexpr int kSamples = 64;  // For each piece; the search refines them.
+    const auto& times = spline_.times();
+    Scalar longest(0);
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      for (int k = 0; k < kSamples; ++k) {
+        const Scalar fraction = Scalar(k) / Scalar(kSamples);
+        longest = std::max(longest, share(peaks(sample(times[i - 1] + fraction * (times[i] - times[i - 1])))));
+      }
+    }
+    if (!(longest > Scalar(0))) return Scalar(0);
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+      const Scalar half = (times[i + 1] - times[i]) / Scalar(2 * kSamples);
+      for (int k = 0; k < kSamples; ++k) {
+        search(sample, i, times[i] + Scalar(2 * k + 1) * half, half, kHalvings, longest);
+      }
+    }
+    return longest;
+  }
+
+  static constexpr Scalar kSlack = Scalar(1.005);
+
+ private:
+  static constexpr int kHalvings = 20;  ///< At most: 1e-8 of a piece.
+
+  /// Norms of velocities and accelerations.
+  template <typename Reference>
+  [[nodiscard]] static TipBounds<Scalar> peaks(const Reference& at) {
+    return {at.xd.template head<kLinear>().norm(), at.xdd.template head<kLinear>().norm(),
+            at.xd.template tail<Space::kTurns>().norm(), at.xdd.template tail<Space::kTurns>().norm()};
+  }
+
+  /// Duration for which motions of 1 s with these peaks keep the bounds.
+  [[nodiscard]] Scalar share(const TipBounds<Scalar>& peak) const {
+    return std::max(std::max(peak.velocity / bounds_.velocity, peak.angular_velocity / bounds_.angular_velocity),
+                    std::max(std::sqrt(peak.acceleration / bounds_.acceleration),
+                             std::sqrt(peak.angular_acceleration / bounds_.angular_acceleration)));
+  }
+
+  /// Raises longest to the largest share within half seconds of the middle, unless that is within the slack.
+  template <typename Sample>
+  void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
+    constexpr Scalar kRaise = Scalar(1.004);  // Below the slack, so that the search ends.
+    const TipBounds<Scalar> here = peaks(sample(middle));
+    if (share(here) > kRaise * longest) longest = share(here);
+    if (halvings == 0 || share(limits(here, spline_.derivatives(i, middle), half)) <= kSlack * longest) return;
+    search(sample, i, middle - half / Scalar(2), half / Scalar(2), halvings - 1, longest);
+    search(sample, i, middle + half / Scalar(2), half / Scalar(2), halvings - 1, longest);
+  }
+
+  /// Upper bounds of some rows' derivatives within half seconds, by their Taylor polynomials.
+  class Rows {
+   public:
+    template <int First, int Count>
+    static Rows of(const std::array<Vector<M, Scalar>, 6>& derivatives, Scalar half) {
+      Rows rows;
+      for (std::size_t k = 0; k < 6; ++k) rows.norms_[k] = derivatives[k].template segment<Count>(First).norm();
+      rows.half_ = half;
+      return rows;
+    }
+    [[nodiscard]] Scalar most(std::size_t k) const {
+      Scalar sum(0);
+      for (std::size_t j = 6; j-- > k;) sum = norms_[j] + sum * half_ / static_cast<Scalar>(j - k + 1);
+      return sum;
+    }
+    [[nodiscard]] Scalar least_value() const { return Scalar(2) * norms_[0] - most(0); }
+
+   private:
+    std::array<Scalar, 6> norms_;
+    Scalar half_;
+  };
+
+  /// Upper bounds within half seconds of a middle with these peaks.
+  [[nodiscard]] static TipBounds<Scalar> limits(const TipBounds<Scalar>& here,
+                                                const std::array<Vector<M, Scalar>, 6>& derivatives, Scalar half) {
+    constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
+    const Rows linear = Rows::template of<0, kLinear>(derivatives, half);
+    TipBounds<Scalar> result{here.velocity + half * linear.most(2), here.acceleration + half * linear.most(3),
+                             Scalar(0), Scalar(0)};
+    if constexpr (kQuaternion) {
+      // With Q the spline's quaternion, s = |Q|²: ω = 2 vec(Q̇Q*)/s, ω̇ = 2 (vec(Q̈Q*) − (Q·Q̇) ω)/s.
+      const Rows turns = Rows::template of<kLinear, M - kLinear>(derivatives, half);
+      const Scalar least = std::max(turns.least_value(), Scalar(0));
+      const Scalar a = turns.most(1) / least;
+      const Scalar b = turns.most(2) / least;
+      const Scalar c = turns.most(3) / least;
+      const Scalar w = Scalar(2) * a;
+      const Scalar wd = Scalar(2) * (b + a * w);
+      const Scalar wdd = Scalar(2) * (c + a * b + (a * a + b) * w + Scalar(2) * a * wd);
+      result.angular_velocity = here.angular_velocity + half * wd;
+      result.angular_acceleration = here.angular_acceleration + half * wdd;
+    } else if constexpr (Space::kTurns > 0) {
+      const Rows turns = Rows::template of<kLinear, M - kLinear>(derivatives, half);
+      result.angular_velocity = here.angular_velocity + half * turns.most(2);
+      result.angular_acceleration = here.angular_acceleration + half * turns.most(3);
+    }
+    // Finite, also where |Q| may vanish: a bound may be infinite.
+    if (!(result.angular_velocity <= kMost)) result.angular_velocity = kMost;
+    if (!(result.angular_acceleration <= kMost)) result.angular_acceleration = kMost;
+    return result;
+  }
+
+  const Spline<M, Scalar>& spline_;
+  TipBounds<Scalar> bounds_;
+};
+
+}  // namespace fpbm
