@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "fpbm/core/validation.hpp"
+#include "fpbm/task/fixed_axis.hpp"
 #include "fpbm/task/point.hpp"
 #include "fpbm/task/reference.hpp"
+#include "fpbm/task/rounding_compensation.hpp"
 #include "fpbm/task/stamp_clock.hpp"
 #include "fpbm/task/streamed_target.hpp"
 #include "fpbm/task/target_bounds.hpp"
@@ -84,9 +86,7 @@ class TargetFilter {
   /// Goes one tick on.
   void advance() noexcept {
     const Step next = step(dt_);
-    owed_ += next.way - Space::template difference<Scalar>(next.to.x, reference_.x);
-    const Scalar most = Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(next.to.x);
-    owed_ = owed_.cwiseMax(-most).cwiseMin(most);
+    compensation_.add(next.way, next.to.x, reference_.x);
     reference_ = next.to;
     clock_.advance();
     settle();
@@ -96,7 +96,7 @@ class TargetFilter {
   bool reset(const Point& x) noexcept {
     if (!is_point(x)) return false;
     reference_ = Reference<Space, Scalar>::hold(orthonormalised(x));
-    owed_.setZero();
+    compensation_.clear();
     target_.rest_at(reference_.x);
     clock_.forget();
     free_ = false;
@@ -124,26 +124,48 @@ class TargetFilter {
         next.xd(i) = to.v;
         next.xdd(i) = to.a;
       }
-      next.x = displaced(way);
+      next.x = compensation_.displace(reference_.x, way);
       return result;
     }
-    const Twist error = way_to(target_.at(age()));
+    const Twist error = compensation_.difference(target_.at(age()), reference_.x);
     const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
     bool there = true;
-    for (int i = 0; i < Space::kRows; ++i) {
+    const auto approach = [&](int i) noexcept {
       const Scalar v = velocity(i);
       const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
       const Scalar tolerance = axis(i).tolerance(state, extent(reference_.x), dt_);
       const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance);
       there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
-      way(i) = to.q + seconds * v;
-      next.xd(i) = to.v + v;
+      return to;
+    };
+    const std::optional<FixedAxis<Scalar>> fixed = turns_about(error, velocity);
+    for (int i = 0; i < (fixed ? kLengths : Space::kRows); ++i) {
+      const AxisState<Scalar> to = approach(i);
+      way(i) = to.q + seconds * velocity(i);
+      next.xd(i) = to.v + velocity(i);
       next.xdd(i) = to.a;
+    }
+    if (fixed) {
+      const AxisState<Scalar> to = approach(kLengths + static_cast<int>(fixed->largest));
+      way.template tail<Space::kTurns>() = to.q * fixed->angles.template head<Space::kTurns>();
+      next.xd.template tail<Space::kTurns>() = to.v * fixed->motion.template head<Space::kTurns>();
+      next.xdd.template tail<Space::kTurns>() = to.a * fixed->motion.template head<Space::kTurns>();
     }
     // To the last bit, but for an angle in the plane, which may be whole turns away.
     const bool exact = there && Space::kTurns != 1;
-    next.x = exact ? target_.at(age() + clock_.rate() * seconds) : displaced(way);
+    next.x = exact ? target_.at(age() + clock_.rate() * seconds) : compensation_.displace(reference_.x, way);
     return result;
+  }
+
+  /// The fixed axis about which an orientation may turn to a target that does not turn.
+  [[nodiscard]] std::optional<FixedAxis<Scalar>> turns_about(const Twist& error, const Twist& velocity) const noexcept {
+    if constexpr (Space::kTurns == 3) {
+      if (!velocity.template tail<3>().isZero(Scalar(0))) return {};
+      return fixed_axis<Scalar>(error.template tail<3>(), reference_.xd.template tail<3>(),
+                                reference_.xdd.template tail<3>());
+    } else {
+      return {};
+    }
   }
 
   [[nodiscard]] const Axis& axis(int i) const noexcept { return i < kLengths ? lengths_ : angles_; }
@@ -179,7 +201,7 @@ class TargetFilter {
     if (!target_.streams()) return;
     const Point x = target_.at(age());
     const Twist velocity = target_.velocity();
-    const Twist error = way_to(x);
+    const Twist error = compensation_.difference(x, reference_.x);
     Twist way;
     bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
@@ -194,22 +216,12 @@ class TargetFilter {
     free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
   }
 
-  /// Way to a point [m, rad], from where the reference is but for round-off.
-  [[nodiscard]] Twist way_to(const Point& x) const noexcept {
-    return Space::template difference<Scalar>(x, reference_.x) - owed_;
-  }
-
-  [[nodiscard]] Point displaced(const Twist& way) const noexcept {
-    if (way.isZero(Scalar(0))) return reference_.x;
-    return straightened(Space::template displace<Scalar>(reference_.x, way + owed_));
-  }
-
   Scalar dt_;
   Scalar timeout_;
   Axis lengths_;
   Axis angles_;
   Reference<Space, Scalar> reference_;
-  Twist owed_ = Twist::Zero();  ///< Way that the point lacks by round-off [m, rad]: else a slow one would stand still.
+  RoundingCompensation<Space, Scalar> compensation_;
   StampClock<Scalar> clock_;
   StreamedTarget<Space, Scalar> target_;
   bool free_ = false;  ///< Whether it goes at a velocity, to no point.
