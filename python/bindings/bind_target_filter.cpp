@@ -78,8 +78,8 @@ void bind_target_filter(py::module_& m) {
 
 Each axis of the base frame goes to the target in the least time within its bounds, in the frame of a target that moves:
 without overshoot to one at rest, without lag behind one that moves evenly. The target's velocity is estimated from the
-points that come. One without news for a timeout comes to rest. An orientation takes the least time where it turns about
-one axis.
+points that come. One without news for a timeout comes to rest. From rest, an orientation turns about one axis, its largest
+angle in the least time.
 
 Parameters
 ----------
@@ -120,8 +120,9 @@ ParameterError
           py::arg("x"), py::arg("stamp") = none,
           R"(A target, seen at a stamp [s] on any clock, or now.
 
-Returns whether it is taken: not where x or the stamp is not finite, R is no rotation, or the stamp is not newer than all
-before. Raises ParameterError where x has another shape than x0.)")
+Returns False for a rejected message, which changes nothing: x or the stamp is not finite, R deviates from a rotation by
+more than 1e-4, or the stamp is not newer than all before or from the future. An accepted R becomes the nearest rotation.
+Raises ParameterError where x has another shape than x0.)")
       .def(
           "push_twist",
           [](PyTargetFilter& self, const ArrayLike& v, Number stamp) {

@@ -128,6 +128,7 @@
 #include "fpbm/task/spline.hpp"
 #include "fpbm/task/stamp_clock.hpp"
 #include "fpbm/task/streamed_target.hpp"
+#include "fpbm/task/target_axes.hpp"
 #include "fpbm/task/target_bounds.hpp"
 #include "fpbm/task/target_filter.hpp"
 #include "fpbm/task/time_law.hpp"

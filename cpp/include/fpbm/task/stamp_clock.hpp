@@ -61,7 +61,7 @@ class StampClock {
 
   void advance() noexcept {
     const Scalar back = correction();
-    age_ += dt_ * (Scalar(1) - slow_) - back;
+    age_ += rate() * dt_;
     shift(-back);
     rejected_for_ += dt_;
     half_ += dt_;

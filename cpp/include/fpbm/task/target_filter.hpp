@@ -2,27 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "fpbm/core/validation.hpp"
-#include "fpbm/task/fixed_axis.hpp"
 #include "fpbm/task/point.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/rounding_compensation.hpp"
 #include "fpbm/task/stamp_clock.hpp"
 #include "fpbm/task/streamed_target.hpp"
+#include "fpbm/task/target_axes.hpp"
 #include "fpbm/task/target_bounds.hpp"
-#include "fpbm/task/time_optimal_axis.hpp"
 
 namespace fpbm {
 
 /// Makes a smooth reference of targets that come at any rate, late, twice, out of order or not at all.
 ///
 /// Each axis of the base frame goes to the target in the least time within its bounds (TimeOptimalAxis), in the frame
-/// of a target that moves: it does not overshoot one at rest, and does not lag behind one that moves evenly. Of an
-/// orientation the axes are the rotation vector's from the target, and its way is the quickest where it turns about one
-/// axis. A target without news for a timeout stops as quickly as the bounds allow.
+/// of a target that moves: it does not overshoot one at rest, and does not lag behind one that moves evenly. The axes
+/// of an orientation are those of the rotation vector to the target. From rest, or from a rotation about that vector,
+/// the orientation turns about it (FixedAxis): its largest angle in the least time, the other two in proportion. A
+/// target without news for a timeout stops as quickly as the bounds allow.
 ///
 /// After construction nothing allocates, throws or loops without a bound, whatever is pushed, and no bound is exceeded.
 template <typename Space, typename Scalar = double>
@@ -35,17 +34,17 @@ class TargetFilter {
   TargetFilter(const Point& x0, const TargetBounds<Scalar>& bounds, const TargetFilterOptions<Scalar>& options = {})
       : dt_(options.dt),
         timeout_(options.timeout),
-        lengths_(bounds.lengths()),
-        angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()),
+        axes_(bounds),
         reference_(Reference<Space, Scalar>::hold(orthonormalised(x0))),
         clock_(options.dt, options.timeout, options.start),
-        target_(reference_.x, options.dt / Scalar(2), options.timeout, fastest()) {
+        target_(reference_.x, options.dt / Scalar(2), options.timeout, axes_.fastest()) {
     options.require_good();
     if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
   }
 
-  /// A target [m, rad], seen at a time [s] on any clock. Returns whether it is taken: it is not where it is no point,
-  /// or its stamp not finite or not newer than all before.
+  /// A target [m, rad], seen at a time [s] on any clock. Its R becomes the nearest rotation. Returns false for a
+  /// rejected message, which changes nothing: x is not a point (is_point), or the stamp is not finite, not newer than
+  /// all before, or too far ahead (StampClock).
   bool push(const Point& x, double stamp) noexcept {
     if (!is_point(x)) return false;
     const std::optional<Scalar> elapsed = clock_.hear(stamp);
@@ -86,7 +85,7 @@ class TargetFilter {
   /// Goes one tick on.
   void advance() noexcept {
     const Step next = step(dt_);
-    compensation_.add(next.way, next.to.x, reference_.x);
+    compensation_.add(next.displacement, next.to.x, reference_.x);
     reference_ = next.to;
     clock_.advance();
     settle();
@@ -104,79 +103,26 @@ class TargetFilter {
   }
 
  private:
-  using Axis = TimeOptimalAxis<Scalar>;
-  static constexpr int kLengths = Space::kRows - Space::kTurns;
-
-  /// Where some seconds lead, and the way there [m, rad] before it is rounded to a point.
+  /// The reference after some seconds, and the displacement to it [m, rad] before it is rounded.
   struct Step {
     Reference<Space, Scalar> to;
-    Twist way;
+    Twist displacement;
   };
 
   [[nodiscard]] Step step(Scalar seconds) const noexcept {
-    Step result{reference_, Twist()};
-    auto& [next, way] = result;
+    const auto& [x, xd, xdd] = reference_;
     if (free_) {
-      for (int i = 0; i < Space::kRows; ++i) {
-        const AxisState<Scalar> state{Scalar(0), reference_.xd(i), reference_.xdd(i)};
-        const AxisState<Scalar> to = axis(i).change(state, wanted_(i), seconds);
-        way(i) = to.q;
-        next.xd(i) = to.v;
-        next.xdd(i) = to.a;
-      }
-      next.x = compensation_.displace(reference_.x, way);
-      return result;
+      const auto motion = axes_.change(xd, xdd, wanted_, seconds);
+      return {{compensation_.displace(x, motion.displacement), motion.xd, motion.xdd}, motion.displacement};
     }
-    const Twist error = compensation_.difference(target_.at(age()), reference_.x);
-    const Twist velocity = within_bounds(clock_.rate() * target_.velocity());
-    bool there = true;
-    const auto approach = [&](int i) noexcept {
-      const Scalar v = velocity(i);
-      const AxisState<Scalar> state{Scalar(0), reference_.xd(i) - v, reference_.xdd(i)};
-      const Scalar tolerance = axis(i).tolerance(state, extent(reference_.x), dt_);
-      const AxisState<Scalar> to = axis(i).approach(state, error(i), v, seconds, tolerance);
-      there = there && to.q == error(i) && to.v == Scalar(0) && to.a == Scalar(0);
-      return to;
-    };
-    const std::optional<FixedAxis<Scalar>> fixed = turns_about(error, velocity);
-    for (int i = 0; i < (fixed ? kLengths : Space::kRows); ++i) {
-      const AxisState<Scalar> to = approach(i);
-      way(i) = to.q + seconds * velocity(i);
-      next.xd(i) = to.v + velocity(i);
-      next.xdd(i) = to.a;
-    }
-    if (fixed) {
-      const AxisState<Scalar> to = approach(kLengths + static_cast<int>(fixed->largest));
-      way.template tail<Space::kTurns>() = to.q * fixed->angles.template head<Space::kTurns>();
-      next.xd.template tail<Space::kTurns>() = to.v * fixed->motion.template head<Space::kTurns>();
-      next.xdd.template tail<Space::kTurns>() = to.a * fixed->motion.template head<Space::kTurns>();
-    }
+    const Twist error = compensation_.difference(target_.at(age()), x);
+    const Twist velocity = axes_.within_bounds(clock_.rate() * target_.velocity());
+    const auto motion = axes_.approach(xd, xdd, error, velocity, extent(x), seconds, dt_);
     // To the last bit, but for an angle in the plane, which may be whole turns away.
-    const bool exact = there && Space::kTurns != 1;
-    next.x = exact ? target_.at(age() + clock_.rate() * seconds) : compensation_.displace(reference_.x, way);
-    return result;
-  }
-
-  /// The fixed axis about which an orientation may turn to a target that does not turn.
-  [[nodiscard]] std::optional<FixedAxis<Scalar>> turns_about(const Twist& error, const Twist& velocity) const noexcept {
-    if constexpr (Space::kTurns == 3) {
-      if (!velocity.template tail<3>().isZero(Scalar(0))) return {};
-      return fixed_axis<Scalar>(error.template tail<3>(), reference_.xd.template tail<3>(),
-                                reference_.xdd.template tail<3>());
-    } else {
-      return {};
-    }
-  }
-
-  [[nodiscard]] const Axis& axis(int i) const noexcept { return i < kLengths ? lengths_ : angles_; }
-
-  [[nodiscard]] Twist fastest() const noexcept {
-    Twist result;
-    for (int i = 0; i < Space::kRows; ++i) result(i) = axis(i).velocity;
-    return result;
-  }
-  [[nodiscard]] Twist within_bounds(const Twist& v) const noexcept {
-    return v.cwiseMax(-fastest()).cwiseMin(fastest());
+    const bool exact = motion.arrived && Space::kTurns != 1;
+    return {{exact ? target_.at(age() + clock_.rate() * seconds) : compensation_.displace(x, motion.displacement),
+             motion.xd, motion.xdd},
+            motion.displacement};
   }
 
   void take(const Point& x, Scalar elapsed) noexcept {
@@ -187,7 +133,7 @@ class TargetFilter {
   }
   void take(const Twist& v) noexcept {
     free_ = true;
-    wanted_ = within_bounds(v);
+    wanted_ = axes_.within_bounds(v);
     settle();
   }
 
@@ -205,11 +151,11 @@ class TargetFilter {
     Twist way;
     bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
-      const auto& stop = axis(i).stop;
+      const auto& stop = axes_(i).stop;
       way(i) = std::copysign(stop.way(std::abs(velocity(i))), velocity(i));
       const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
       const Scalar change = stop.jerk * dt_ * dt_;
-      const Scalar near = std::max(change * dt_, axis(i).tolerance(state, extent(x), dt_));
+      const Scalar near = std::max(change * dt_, axes_(i).tolerance(state, extent(x), dt_));
       in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= near;
     }
     target_.rest_at(Space::template displace<Scalar>(x, way));
@@ -218,8 +164,7 @@ class TargetFilter {
 
   Scalar dt_;
   Scalar timeout_;
-  Axis lengths_;
-  Axis angles_;
+  TargetAxes<Space, Scalar> axes_;
   Reference<Space, Scalar> reference_;
   RoundingCompensation<Space, Scalar> compensation_;
   StampClock<Scalar> clock_;
