@@ -123,7 +123,7 @@ TEST(TargetStream, follows_a_clock_that_drifts) {
       Random random(7);
       TargetFilter<Position<2>> filter({0.0, 0.0}, kBounds);
       std::vector<std::array<double, 2>> seen;  // Arrival and time of each target [s].
-      for (int k = 0; k < trials(4500); ++k) {
+      for (int k = 0; k < trials(3000); ++k) {
         if (k > 0 && jitter > 0.0 && random.uniform(0.0, 1.0) < 0.1) continue;
         seen.push_back({k / 30.0 + (k > 0 ? random.uniform(0.0, jitter) : 0.0), k / 30.0});
       }
@@ -192,8 +192,8 @@ TYPED_TEST_SUITE(TargetStreams, Kinds, );
 /// A stamp from the future is rejected, and changes no bit of the motion.
 TYPED_TEST(TargetStreams, a_stamp_from_the_future_changes_nothing) {
   using S = Stream<typename TypeParam::Space, typename TypeParam::Scalar>;
-  for (const double ahead : {0.3, 1.0, 10.0, 3600.0, 1e9, 1e300}) {
-    for (const int strays : {1, 2, 5}) {
+  for (const double ahead : {0.3, 10.0, 1e300}) {
+    for (const int strays : {1, 5}) {
       S pure;
       S stray;
       for (int moment = 1; moment <= 5; ++moment) {
