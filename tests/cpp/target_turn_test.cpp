@@ -147,7 +147,7 @@ TEST(TargetTurn, from_a_motion) {
       }
       std::printf("%s, up to %.1f rad from a motion: at most %.3f of the slowest angle's time alone, mean %.3f\n",
                   c.name, most, largest, mean);
-      EXPECT_LE(largest, c.acceleration / c.jerk > 0.1 ? 1.4 : 1.15) << c.name;
+      EXPECT_LE(largest, c.acceleration / c.jerk > 0.1 ? 1.4 : 1.2) << c.name;
     }
   }
 }
