@@ -120,7 +120,6 @@ def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
     """The motion of a run under another scheme, if limited within the run's limits or the arm's. Raises ValueError."""
     q0 = run.q[0] if len(run.q) else run.status.q
     if limited:
-        options = {"null_damping": 0.0, **run.options}  # The damping of the sliders alone, as without limits.
-        return track(run.arm, run.path, scheme, q0, task=run.task, **options)
+        return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
     options = {name: run.options[name] for name in ("dt", "hold", "qd0") if name in run.options}
     return simulate(run.arm, run.path, scheme, q0, task=run.task, partial=True, **options)
