@@ -21,18 +21,22 @@ def main() -> int:
     files = [name for name in listed.splitlines() if (ROOT / name).exists()]
     ends = {name[start:] for name in files for start in _starts(name)}
     folders = {end[: slash + 1] for end in ends for slash in _slashes(end)}
-    tests = "\n".join((ROOT / name).read_text() for name in files if name.startswith("tests/") and name[-3:] in ("cpp", ".py"))
+    tests = "\n".join(
+        (ROOT / name).read_text() for name in files if name.startswith("tests/") and name[-3:] in ("cpp", ".py")
+    )
     laws = {f"{suite}.{name}" for suite, name in DECLARED.findall(tests)}
     suites = {law.partition(".")[0] for law in laws}
     functions = set(re.findall(r"^ *def (test_\w+)", tests, re.MULTILINE))
-    targets = set(re.findall(r"[\w-]+", " ".join(re.findall(r"^([\w -]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))))
+    targets = set(
+        re.findall(r"[\w-]+", " ".join(re.findall(r"^([\w -]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)))
+    )
 
     def missing(page: Path, code: str) -> str:
         """The first thing that a piece of code names and that is not there; empty where all is."""
         for word in code.split():
-            if FILE.match(word) and not word.startswith(MADE) and ("/" in word or word[-4:] in (".hpp", ".cpp")):
-                if word not in ends | USERS:
-                    return word
+            named = FILE.match(word) and ("/" in word or word.endswith((".hpp", ".cpp")))
+            if named and not word.startswith(MADE) and word not in ends | USERS:
+                return word
             if FOLDER.match(word) and not word.startswith(MADE) and word not in folders:
                 return word
             if word.startswith("test_") and re.match(r"^\w+$", word) and word not in functions:

@@ -132,7 +132,13 @@ def test_options_make_it_again(q0):
         "q0",
     }
     assert fp.track(arm, SMOOTH, scheme, q0, **run.options) == run
-    others = {"error_bound": 0.01, "integral_gain": 2.0, "singular_radius": 0.5, "null_damping": 0.0, "qd0": np.zeros(4)}
+    others = {
+        "error_bound": 0.01,
+        "integral_gain": 2.0,
+        "singular_radius": 0.5,
+        "null_damping": 0.0,
+        "qd0": np.zeros(4),
+    }
     for name, other in others.items():
         assert fp.track(arm, SMOOTH, scheme, q0, **{**given, name: other}) != run, name
 

@@ -191,10 +191,18 @@ def test_self_motion_comes_to_rest(panda, make):
     ("scheme", "options", "words"),
     [
         (fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=3000), {}, "null_damping = 3000: must be at most 2785"),
-        (fp.FPBM(0.6, np.ones(7), 10, 25), {"null_damping": 200, "dt": 0.02}, "null_damping = 200: must be at most 139"),
+        (
+            fp.FPBM(0.6, np.ones(7), 10, 25),
+            {"null_damping": 200, "dt": 0.02},
+            "null_damping = 200: must be at most 139",
+        ),
         (fp.WMVN(np.ones(7), k=3000), {}, "k = 3000: must be at most 2785"),
         (fp.FPBM(0.6, np.ones(7), 5000, 6.25e6), {}, "k1 = 5000: must be at most 3190 with k2 = "),
-        (fp.FPBM(0.6, np.ones(7), 10, 25, rest_posture=BENT, null_stiffness=1e6), {}, "null_stiffness = 1000000: must be"),
+        (
+            fp.FPBM(0.6, np.ones(7), 10, 25, rest_posture=BENT, null_stiffness=1e6),
+            {},
+            "null_stiffness = 1000000: must be",
+        ),
         (fp.FPBM(0.6, np.ones(7), 10, 25), {"integral_gain": 300}, "integral_gain = 300: must be at most 247"),
     ],
 )
