@@ -23,8 +23,8 @@ CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
 	@echo 'make page             a page to drag an arm in, with the library in WebAssembly: build/web/page.html'
-	@echo 'make test             build and run every test'
-	@echo 'make test-view        test the pages in a browser'
+	@echo 'make test             build and run the C++ tests and the Python tests'
+	@echo 'make test-view        the tests of the viewer and of the page in a browser, which make test skips without them'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
 	@echo 'make arm64-wheel      the Python package for 64-bit Arm, its TESTS run under qemu'
@@ -159,6 +159,7 @@ lint: $(VENV)/package $(VENV)/lint
 	clang-format --dry-run --Werror $(CXX_SOURCES)
 	clang-tidy --quiet tools/umbrella.cpp -- -std=c++17 -I$(CURDIR)/cpp/include -isystem /usr/include/eigen3
 	$(PYTHON) tools/headers.py --check
+	$(PYTHON) tools/documented.py
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports

@@ -17,8 +17,9 @@ int main() {
   arm.kinematics(start.q, kinematics);
   std::printf("tool at [m]: %.3f %.3f %.3f\n", kinematics.tip(0), kinematics.tip(1), kinematics.tip(2));
 
-  const fpbm::Path path(fpbm::Line<3>({0.1, 0.0, 0.05}), 2.0);                  // displacement [m], duration [s]
-  const auto scheme = fpbm::FPBM<kDof>(0.6, fpbm::UnitWeights{}, 20.0, 100.0);  // alpha, W, k1, k2
+  const fpbm::Path path(fpbm::Line<3>({0.1, 0.0, 0.05}), 2.0);     // displacement [m], duration [s]
+  const auto damping = fpbm::NullSpace<kDof>().with_damping(2.0);  // [1/s]: the joints come to rest with the tool
+  const auto scheme = fpbm::FPBM<kDof>(0.6, fpbm::UnitWeights{}, 20.0, 100.0, damping);  // alpha, W, k1, k2, z
   const fpbm::TimeGrid grid(path.duration(), 1e-3);
 
   double max_error = 0.0;

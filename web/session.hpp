@@ -169,7 +169,9 @@ class Session final : public Simulator {
     const double rate = kind == Scheme::kFpbm ? settings_.feedback : 0.0;
     const auto scheme = fpbm::FPBM<N>(alpha, weights(kind == Scheme::kMan), 2.0 * rate, rate * rate,
                                       fpbm::NullSpace<N>().with_damping(settings_.damping));
-    return AtAcceleration(arm_, Space{}, scheme, state, {}, limits<fpbm::Level::kAcceleration>(), qdd);
+    fpbm::TrackerOptions<> options;
+    options.null_damping = 0.0;  // The page shows the schemes without damping, too.
+    return AtAcceleration(arm_, Space{}, scheme, state, options, limits<fpbm::Level::kAcceleration>(), qdd);
   }
 
   void begin(const State& state, const JointVector& qdd) {

@@ -223,6 +223,9 @@ stall_time : float
     until its target moves, or until resume(). math.inf: it never gives up.
 singular_radius, singular_brake : float
     Damping near singular postures, where the scheme has none; 0 switches it off.
+null_damping : float
+    Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
+    rest; 0 switches it off.
 clearance : Clearance, optional
     What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
     obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
@@ -234,9 +237,9 @@ ParameterError
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
                        double error_bound, double gain, double bound, double stall_time, double radius, double brake,
-                       const py::object& clearance) {
+                       double null_damping, const py::object& clearance) {
              const SingularDamping<> singular(radius, brake);
-             const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular};
+             const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options, clearance);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
@@ -244,7 +247,8 @@ ParameterError
            py::arg("error_bound") = 0.1, py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
            py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
-           py::arg("singular_brake") = SingularDamping<>().brake(), py::arg("clearance") = none)
+           py::arg("singular_brake") = SingularDamping<>().brake(),
+           py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("clearance") = none)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),

@@ -67,21 +67,21 @@ struct MotionArrays {
   }
 };
 
-/// limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake and clearance of a
-/// motion that keeps limits.
-using LimitedOptions = std::tuple<py::object, double, double, double, double, double, double, py::object>;
+/// limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping and
+/// clearance of a motion that keeps limits.
+using LimitedOptions = std::tuple<py::object, double, double, double, double, double, double, double, py::object>;
 
 inline std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
   if (!given) return std::nullopt;
-  const auto& [limits, error_bound, gain, bound, stall_time, radius, brake, clearance] = *given;
+  const auto& [limits, error_bound, gain, bound, stall_time, radius, brake, damping, clearance] = *given;
   return Limited{limits.is_none() ? arm.limits() : joint_limits(limits),
-                 {1e-3, error_bound, gain, bound, stall_time, SingularDamping<>(radius, brake)},
+                 {1e-3, error_bound, gain, bound, stall_time, SingularDamping<>(radius, brake), damping},
                  clearance_of(arm, clearance)};
 }
 
 /// Whether a motion is asked to keep clear of shapes.
 inline bool keeps_clear(const std::optional<LimitedOptions>& given) {
-  return given && !std::get<7>(*given).is_none();
+  return given && !std::get<8>(*given).is_none();
 }
 
 }  // namespace fpbm::bindings

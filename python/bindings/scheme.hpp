@@ -61,13 +61,6 @@ struct Scheme {
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
 
-  /// This scheme, with that damping near singular postures where it has none of its own.
-  [[nodiscard]] Scheme with_default_damping(const SingularDamping<>& damping) const {
-    Scheme result = *this;
-    if (result.singular.radius() == 0.0) result.singular = damping;
-    return result;
-  }
-
   /// Whether all of it is in law(): no objective wraps it.
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
 

@@ -56,12 +56,16 @@ class Runner {
       TrackersInLanes<Space> trackers;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
-        const Scheme scheme = limited ? job.scheme->with_default_damping(limited->options.singular) : *job.scheme;
+        const Scheme& scheme = *job.scheme;
+        const auto damped = [&](auto law) {  // As its tracker is.
+          if (limited != nullptr) set_damping(law, limited->options.damping(kDof, Space::kRows));
+          return law;
+        };
         const DiagonalWeights<kDof> weights = scheme.template diagonal_weights<kDof>(kDof);
         if (scheme.level == Level::kVelocity) {
-          schemes.velocity.push_back(scheme.template law<Level::kVelocity>(weights, arm.limits()));
+          schemes.velocity.push_back(damped(scheme.template law<Level::kVelocity>(weights, arm.limits())));
         } else {
-          schemes.acceleration.push_back(scheme.template law<Level::kAcceleration>(weights, arm.limits()));
+          schemes.acceleration.push_back(damped(scheme.template law<Level::kAcceleration>(weights, arm.limits())));
         }
         starts.emplace_back(job.q0);
         if (limited != nullptr) trackers.push_back(motion(job).template tracker<kDof>(*limited));

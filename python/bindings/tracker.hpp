@@ -29,7 +29,7 @@ AnyTracker<Space> make_tracker(const AnyArmFor<Space>& arm, const Scheme& scheme
     return TrackerAt<kLevel, Space>(arm, Space{}, any, start, options, Limits<kLevel, kDynamic>(limits, options.dt),
                                     qdd0, Guard<kLevel, kDynamic>(clearance));
   };
-  return std::visit(make, scheme.with_default_damping(options.singular).make<Space>(arm));
+  return std::visit(make, scheme.make<Space>(arm));
 }
 
 }  // namespace fpbm::bindings

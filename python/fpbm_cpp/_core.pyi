@@ -554,6 +554,9 @@ class Tracker:
         until its target moves, or until resume(). math.inf: it never gives up.
     singular_radius, singular_brake : float
         Damping near singular postures, where the scheme has none; 0 switches it off.
+    null_damping : float
+        Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
+        rest; 0 switches it off.
     clearance : Clearance, optional
         What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
         obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
@@ -580,6 +583,7 @@ class Tracker:
         stall_time: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
+        null_damping: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         clearance: typing.Any = None,
     ) -> None: ...
     def follow(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
@@ -677,6 +681,7 @@ def check_sweep(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
         typing.Any,
     ]
     | None = None,
@@ -736,6 +741,7 @@ def rollout(
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
+        typing.SupportsFloat | typing.SupportsIndex,
         typing.Any,
     ]
     | None = None,
@@ -763,6 +769,7 @@ def sweep_chunk(
     motions: bool,
     limited: tuple[
         typing.Any,
+        typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,
         typing.SupportsFloat | typing.SupportsIndex,

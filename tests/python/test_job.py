@@ -210,6 +210,14 @@ def test_limits_are_kept() -> None:
     np.testing.assert_array_equal(motion.limits.upper, motion.arm.limits.upper)
 
 
+def test_a_scheme_has_the_damping_that_the_job_says() -> None:
+    table = {"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "limits": {}, "run": {"hold": 9.0}}
+    assert prepare(table).scheme.null_damping == 2.0
+    assert np.abs(prepare(table).run().qd[-1]).max() < 1e-6
+    undamped = prepare({**table, "scheme": {"kind": "fpbm", "null_damping": 0.0}})
+    assert np.abs(undamped.run().qd[-1]).max() > 1e-3
+
+
 # What is left out
 
 

@@ -97,6 +97,13 @@ def test_a_run_within_limits_comes_back_and_is_made_again(scheme, limits, tmp_pa
     assert back.replay() == run
 
 
+def test_a_run_from_before_null_damping_is_made_again(tmp_path, q0):
+    run = fp.track(FLAT, fp.Circle(0.45, 1.0), fp.MAN(), q0, dt=0.01, limits=LIMITS, null_damping=0)
+    options = {name: value for name, value in run.options.items() if name != "null_damping"}
+    replace(run, options=options).save(tmp_path / "run.npz")
+    assert bits(fp.load(tmp_path / "run.npz").replay()) == bits(run)
+
+
 def test_motions_of_a_sweep_are_made_again(q0):
     sweep = fp.sweep(FLAT, fp.Circle(0.2, 1.0), [fp.MVN(), fp.MAN()], [q0, q0 + 0.1], dt=0.01, hold=0.1, motions=True)
     for run in sweep.motions.ravel():

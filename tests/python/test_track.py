@@ -120,6 +120,7 @@ def test_options_make_it_again(q0):
         "stall_time": 0.3,
         "singular_radius": 0.03,
         "singular_brake": 5.0,
+        "null_damping": 3.0,
         "clearance": fp.Clearance([fp.Capsule(4, [0, 0, 0], [1, 0, 0], 0.1)], [fp.HalfSpace([0, 1, 0], -3)]),
     }
     run = fp.track(arm, SMOOTH, scheme, q0, **given)
@@ -131,7 +132,14 @@ def test_options_make_it_again(q0):
         "q0",
     }
     assert fp.track(arm, SMOOTH, scheme, q0, **run.options) == run
-    for name, other in (("error_bound", 0.01), ("integral_gain", 2.0), ("singular_radius", 0.5), ("qd0", np.zeros(4))):
+    others = {
+        "error_bound": 0.01,
+        "integral_gain": 2.0,
+        "singular_radius": 0.5,
+        "null_damping": 0.0,
+        "qd0": np.zeros(4),
+    }
+    for name, other in others.items():
         assert fp.track(arm, SMOOTH, scheme, q0, **{**given, name: other}) != run, name
 
 
@@ -147,6 +155,7 @@ def test_defaults_are_the_trackers(function):
         "stall_time",
         "singular_radius",
         "singular_brake",
+        "null_damping",
     } <= defaults.keys()
     assert {name: float(value) for name, value in defaults.items()} == {name: own[name] for name in defaults}
 
@@ -175,6 +184,8 @@ def test_it_goes_through_pickle_with_its_limits(q0):
         ({"error_bound": -1}, "error_bound = -1: must be positive"),
         ({"integral_gain": -1}, "integral_gain = -1"),
         ({"singular_radius": 2}, "singular_radius = 2"),
+        ({"null_damping": -1}, "null_damping = -1"),
+        ({"scheme": fp.FPBM(0.6, W, 500, 25)}, "k1 = 500: must be at most 27.* at a tick of 0.01 s"),
         ({"limits": fp.SerialArm.preset("panda").limits}, "limits has 7 entries"),
     ],
 )

@@ -171,6 +171,47 @@ def test_objectives_that_need_the_arm(panda):
     assert np.linalg.svd(panda.jacobian(tracker.q))[1].prod() > before
 
 
+@pytest.mark.parametrize("make", [fp.MAN, lambda **how: fp.FPBM(0.6, np.ones(7), 10, 25, **how)], ids=["MAN", "FPBM"])
+def test_self_motion_comes_to_rest(panda, make):
+    def speed(scheme, **options):
+        """Of the fastest joint after a motion and 10 s at rest."""
+        tracker = fp.Tracker(panda, scheme, BENT, task="pose", **options)
+        follower = tracker.follow(fp.Circle(0.1, 2.0, time_law="quintic").in_plane("yz"))
+        for _ in range(12_000):
+            tick = tracker.tick(follower)
+        return np.abs(tick.qd).max()
+
+    assert speed(make()) < 1e-6
+    assert speed(make(), null_damping=0) > 1e-3
+    own = make(null_damping=4)
+    assert speed(own) == speed(own, null_damping=0) == speed(make(), null_damping=4)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "options", "words"),
+    [
+        (fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=3000), {}, "null_damping = 3000: must be at most 2785"),
+        (
+            fp.FPBM(0.6, np.ones(7), 10, 25),
+            {"null_damping": 200, "dt": 0.02},
+            "null_damping = 200: must be at most 139",
+        ),
+        (fp.WMVN(np.ones(7), k=3000), {}, "k = 3000: must be at most 2785"),
+        (fp.FPBM(0.6, np.ones(7), 5000, 6.25e6), {}, "k1 = 5000: must be at most 3190 with k2 = "),
+        (
+            fp.FPBM(0.6, np.ones(7), 10, 25, rest_posture=BENT, null_stiffness=1e6),
+            {},
+            "null_stiffness = 1000000: must be",
+        ),
+        (fp.FPBM(0.6, np.ones(7), 10, 25), {"integral_gain": 300}, "integral_gain = 300: must be at most 247"),
+    ],
+)
+def test_gains_beyond_the_tick(panda, scheme, options, words):
+    with pytest.raises(fp.ParameterError, match=words) as refused:
+        fp.Tracker(panda, scheme, BENT, **options)
+    assert refused.value.name == words.partition(" ")[0]
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -179,6 +220,7 @@ def test_objectives_that_need_the_arm(panda):
         ({"integral_gain": -1}, "integral_gain = -1"),
         ({"stall_time": 0}, "stall_time = 0: must be positive, or infinite"),
         ({"singular_radius": 2}, "singular_radius = 2"),
+        ({"null_damping": -1}, "null_damping = -1"),
         ({"task": "dance"}, "task = 'dance'"),
         ({"limits": narrow_limits()}, "limits has 4 entries"),
         ({"qd0": [9] * 7}, r"qd0\[0\] = 9: must be slow enough"),

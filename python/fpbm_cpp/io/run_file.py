@@ -115,6 +115,8 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
             raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")
     status = meta["status"]
     options = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
+    if "scale" in arrays:
+        options.setdefault("null_damping", 0.0)  # Trackers before that option added none.
     for name in ("limits", "clearance"):
         if options.get(name) is not None:
             options[name] = from_table(options[name], name=name)

@@ -91,7 +91,9 @@ class Motion:
     def keywords(self) -> dict[str, Any]:
         """The keyword arguments of sweep() and tune() that say how it is run."""
         options = self.options
-        return {"dt": options.dt, "hold": options.hold, "task": options.task, "limits": self.limits}
+        keywords = {"dt": options.dt, "hold": options.hold, "task": options.task, "limits": self.limits}
+        # A job says the damping of its scheme: 0 is none.
+        return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
 
     def with_scheme(self, options: Mapping[str, Any]) -> Motion:
         """The motion with other options of its scheme. Raises JobError."""

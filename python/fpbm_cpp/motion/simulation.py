@@ -24,6 +24,7 @@ class LimitOptions(NamedTuple):
     stall_time: float = 2.0
     singular_radius: float = 0.02
     singular_brake: float = 10.0
+    null_damping: float = 2.0
     clearance: Clearance | None = None
 
 
@@ -89,6 +90,7 @@ def track(
     stall_time: float = 2.0,
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
+    null_damping: float = 2.0,
     clearance: Clearance | None = None,
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
@@ -104,12 +106,22 @@ def track(
     arm, path, scheme, q0, dt, hold, qd0, task
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
-    limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, clearance
+    limits, error_bound, integral_gain, integral_bound, stall_time
+        As for Tracker.
+    singular_radius, singular_brake, null_damping, clearance
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
     limited = LimitOptions(
-        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, clearance
+        limits,
+        error_bound,
+        integral_gain,
+        integral_bound,
+        stall_time,
+        singular_radius,
+        singular_brake,
+        null_damping,
+        clearance,
     )
     outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
     return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})

@@ -117,6 +117,7 @@ def sweep(
     stall_time: float = 2.0,
     singular_radius: float = 0.02,
     singular_brake: float = 10.0,
+    null_damping: float = 2.0,
     executor: Executor | None = None,
     workers: int | None = None,
     progress: Progress = None,
@@ -142,7 +143,7 @@ def sweep(
         Joint positions at the start [rad], one row a start; all begin at rest.
     limits : JointLimits, optional
         Limits that every motion keeps: arm.limits are the arm's own. None by default.
-    error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake : float
+    error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping : float
         As for Tracker; they need limits.
     executor : concurrent.futures.Executor, optional
         Runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
@@ -164,7 +165,7 @@ def sweep(
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be 1 at least")
     limited = LimitOptions(
-        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake
+        limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )
     if limits is None and limited != LimitOptions():
         raise wrong("limits", None, ": must be given where an option that needs them is")

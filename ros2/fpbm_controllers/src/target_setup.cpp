@@ -47,6 +47,7 @@ void TargetController::read_parameters() {
     throw std::invalid_argument("command_interfaces: the first must be position");
   }
   options_.dt = 1.0 / static_cast<double>(get_update_rate());
+  options_.null_damping = 0.0;  // scheme.null_damping alone decides.
   limits_.emplace(limits(), options_.dt);
 
   const auto& target = params_.target;
@@ -56,7 +57,7 @@ void TargetController::read_parameters() {
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
   filter_.emplace(fpbm::Transform<>{}, bounds, filter);
-  (void)scheme(Joints::Zero(dof));
+  fpbm::require_stable(scheme(Joints::Zero(dof)), fpbm::TickOfGains<>{options_.dt, options_.integral_gain});
 }
 
 TargetController::JointLimits TargetController::limits() const {

@@ -7,6 +7,8 @@
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/model/kinematics.hpp"
+#include "fpbm/realtime/require_stable.hpp"
+#include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/task/reference.hpp"
 
 namespace fpbm {
@@ -15,7 +17,7 @@ namespace fpbm {
 ///
 /// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size:
 /// every evaluation is one virtual call into the code of the scheme that it holds, which may be of fixed size.
-/// Immutable; copies share what they hold.
+/// Copies share what they hold, which never changes: set_damping() puts a changed copy of it in its place.
 template <Level kLevel_, typename Space>
 class AnyScheme {
  public:
@@ -36,6 +38,13 @@ class AnyScheme {
     return held_->resolve(kinematics, reference, state, u);
   }
 
+  friend void set_damping(AnyScheme& scheme, const DefaultDamping<>& damping) {
+    scheme.held_ = scheme.held_->with(damping);
+  }
+  friend void require_stable(const AnyScheme& scheme, const TickOfGains<>& tick) {
+    scheme.held_->require_stable_in(tick);
+  }
+
  private:
   struct Holder {
     Holder() = default;
@@ -43,6 +52,8 @@ class AnyScheme {
     Holder& operator=(const Holder&) = delete;
     virtual ~Holder() = default;
     virtual void require_dof(Eigen::Index dof) const = 0;
+    [[nodiscard]] virtual std::shared_ptr<const Holder> with(const DefaultDamping<>& damping) const = 0;
+    virtual void require_stable_in(const TickOfGains<>& tick) const = 0;
     [[nodiscard]] virtual Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
                                          const State<kDof>& state, Vector<kDof>& u) const noexcept = 0;
   };
@@ -52,6 +63,14 @@ class AnyScheme {
     explicit Held(const Scheme& scheme_) : scheme(scheme_) {}
 
     void require_dof(Eigen::Index dof) const override { scheme.require_dof(dof); }
+
+    [[nodiscard]] std::shared_ptr<const Holder> with(const DefaultDamping<>& damping) const override {
+      Scheme changed = scheme;
+      give_damping(changed, damping);
+      return std::make_shared<const Held>(changed);
+    }
+
+    void require_stable_in(const TickOfGains<>& tick) const override { require_stable(scheme, tick); }
 
     [[nodiscard]] Status resolve(const Kinematics<Space, kDof>& kinematics, const Reference<Space>& reference,
                                  const State<kDof>& state, Vector<kDof>& u) const noexcept override {

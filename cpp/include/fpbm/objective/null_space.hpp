@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
@@ -83,6 +84,16 @@ class NullSpace {
   /// Throws std::invalid_argument where z is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     if (has_constant_) validation::require_size("rest_posture, limits or c", constant_.size(), dof);
+  }
+
+  /// kₙ [1/s].
+  [[nodiscard]] const Scalar& damping() const noexcept { return damping_; }
+
+  /// The least and the largest stiffness of a joint, of the rest posture and of centring ([1/s²], or [1/s] at velocity
+  /// level).
+  [[nodiscard]] std::pair<Scalar, Scalar> stiffness_range() const noexcept {
+    if (stiffness_.size() == 0) return {Scalar(0), Scalar(0)};
+    return {stiffness_.minCoeff(), stiffness_.maxCoeff()};
   }
 
   /// False where z is zero in every state.

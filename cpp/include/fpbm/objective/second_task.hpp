@@ -39,9 +39,10 @@ template <int M, int K, typename Scalar>
 /// where the tasks conflict (an algorithmic singularity), y is damped and stays bounded.
 ///
 /// The second task is the tip of another arm: one made of the first joints of the chain, whose tip is the elbow, say,
-/// or a Gaze. SecondTask is a scheme itself, and may be wrapped again. The wrapped scheme's secondary motion z acts
-/// where neither task does. At acceleration level give that scheme NullSpace::with_damping: nothing else brakes motion
-/// there.
+/// or a Gaze. SecondTask is a scheme itself. A SecondTask round another one is not a third task of lower priority: the
+/// outer task acts in the null space of the first task alone, and disturbs the inner one. The wrapped scheme's
+/// secondary motion z acts where neither task does. At acceleration level give that scheme NullSpace::with_damping:
+/// nothing else brakes motion there (a Tracker gives its null_damping).
 template <typename Scheme, typename Arm, typename Space>
 struct SecondTask {
   using Scalar = typename Arm::Scalar;

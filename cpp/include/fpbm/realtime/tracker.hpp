@@ -2,6 +2,7 @@
 
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_references.hpp"
 #include "fpbm/scheme/set_damping.hpp"
@@ -40,7 +41,8 @@ class Tracker {
   using JointLimiter = Limiter<kLevel, N, Scalar>;
 
   /// Starts from a state, or at rest, within the arm's own limits or given ones. Throws std::invalid_argument where an
-  /// option is out of range, the scheme does not fit the arm, a limit is missing (Limits), or the state breaks one.
+  /// option is out of range, the scheme does not fit the arm, its gains are too high for the tick, a limit is missing
+  /// (Limits), or the state breaks one. The scheme gets the options' damping where the scheme has none.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, JointVector::Zero(start.q.size())) {}
@@ -58,7 +60,9 @@ class Tracker {
     validation::require_joint_vector("qd0", start.qd, arm.dof());
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
     limits.require_viable(start, qdd0);
-    set_damping(scheme_, options.singular);
+    validation::require_non_negative("null_damping", options.null_damping);
+    give_damping(scheme_, options.damping(arm.dof(), Space::kRows));
+    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
   }
 

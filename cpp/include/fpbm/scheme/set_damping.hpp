@@ -1,31 +1,73 @@
 #pragma once
 
 #include <type_traits>
+#include <utility>
 
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/mask.hpp"
 #include "fpbm/singular/damping.hpp"
 
 namespace fpbm {
 
-/// Whether a scheme wraps another, its member `scheme`.
-template <typename Scheme, typename = void>
-inline constexpr bool kIsWrapper = false;
-template <typename Scheme>
-inline constexpr bool kIsWrapper<Scheme, std::void_t<decltype(Scheme::scheme)>> = true;
+/// Damping for a scheme that has none of its own.
+template <typename Scalar = double>
+struct DefaultDamping {
+  SingularDamping<Scalar> singular;  ///< Near singular postures.
+  Scalar null_space;                 ///< kₙ of the null space, at acceleration level only [1/s]; 0: none.
+};
 
-/// Whether a scheme has a member `singular`, its damping near singular postures.
-template <typename Scheme, typename = void>
-inline constexpr bool kTakesDamping = false;
+/// Whether a scheme has the library's members for its damping: `singular`, and at acceleration level `null_space`.
+template <typename Scheme, Level = Scheme::kLevel, typename = void>
+inline constexpr bool kHasDamping = false;
 template <typename Scheme>
-inline constexpr bool kTakesDamping<Scheme, std::void_t<decltype(Scheme::singular)>> = true;
+inline constexpr bool kHasDamping<Scheme, Level::kVelocity, std::void_t<decltype(Scheme::singular)>> = true;
+template <typename Scheme>
+inline constexpr bool
+    kHasDamping<Scheme, Level::kAcceleration, std::void_t<decltype(Scheme::singular), decltype(Scheme::null_space)>> =
+        true;
 
-/// Sets the damping of a scheme, through its wrappers, unless the scheme has its own.
+/// Gives a scheme the damping that the scheme lacks: near singular postures if its own radius is 0, of the null space
+/// if its own damping is 0. A scheme with both keeps both. In lanes, call set_damping() for each lane's scheme.
+///
+/// A scheme type without these members needs an overload in its own namespace to be used in a Tracker or an AnyScheme:
+///
+///   void set_damping(MyScheme& scheme, const fpbm::DefaultDamping<>& damping);
+///
+/// An empty body states that the scheme has no damping.
 template <typename Scheme, typename Scalar>
-void set_damping(Scheme& scheme, const SingularDamping<Scalar>& damping) noexcept {
-  if constexpr (kIsWrapper<Scheme>) {
-    set_damping(scheme.scheme, damping);
-  } else if constexpr (kTakesDamping<Scheme>) {
-    if (scheme.singular.radius() == Scalar(0)) scheme.singular = damping;
+std::enable_if_t<kHasDamping<Scheme>> set_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping) {
+  static_assert(!kInLanes<Scalar>, "call set_damping() for each lane's scheme");
+  if (scheme.singular.radius() == Scalar(0)) scheme.singular = damping.singular;
+  if constexpr (Scheme::kLevel == Level::kAcceleration) {
+    if (scheme.null_space.damping() == Scalar(0)) {
+      scheme.null_space = scheme.null_space.with_damping(damping.null_space);
+    }
   }
+}
+
+/// The same for a wrapper, such as SecondTask: a scheme with another one, its member `scheme`.
+template <typename Scheme, typename Scalar>
+auto set_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping)
+    -> decltype(set_damping(scheme.scheme, damping)) {
+  set_damping(scheme.scheme, damping);
+}
+
+/// Whether there is a set_damping() for a scheme.
+template <typename Scheme, typename Scalar, typename = void>
+inline constexpr bool kTakesDamping = false;
+template <typename Scheme, typename Scalar>
+inline constexpr bool kTakesDamping<
+    Scheme, Scalar,
+    std::void_t<decltype(set_damping(std::declval<Scheme&>(), std::declval<const DefaultDamping<Scalar>&>()))>> = true;
+
+/// set_damping(), with a message for a scheme that has none.
+template <typename Scheme, typename Scalar>
+void give_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping) {
+  static_assert(
+      kTakesDamping<Scheme, Scalar>,
+      "this scheme cannot take the tracker's damping: give it members `singular` and `null_space`, or declare "
+      "set_damping(MyScheme&, const fpbm::DefaultDamping<>&) in its namespace; an empty body means no damping");
+  if constexpr (kTakesDamping<Scheme, Scalar>) set_damping(scheme, damping);
 }
 
 }  // namespace fpbm

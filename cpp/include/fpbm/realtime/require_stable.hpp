@@ -1,0 +1,116 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/validation.hpp"
+#include "fpbm/sim/stability.hpp"
+
+namespace fpbm {
+
+/// What the gains of a scheme meet in a tick.
+template <typename Scalar = double>
+struct TickOfGains {
+  Scalar dt;             ///< [s]
+  Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
+};
+
+/// The gains of one error, by name: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
+template <typename Scalar>
+struct NamedGains {
+  const char* name1;
+  Scalar k1;
+  const char* name2;
+  Scalar k2;
+};
+
+/// Throws std::invalid_argument where a tick does not damp an error with these gains.
+template <Level kLevel, typename Scalar>
+void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Scalar>& tick) {
+  const auto& [name1, k1, name2, k2] = gains;
+  const Scalar h = tick.dt;
+  const Scalar integral = tick.integral_gain;
+  // With time scaled by the share: an error that decays as much more slowly.
+  const auto stable = [&, k1 = k1, k2 = k2](Scalar share, Scalar ki) {
+    if constexpr (kLevel == Level::kVelocity) return is_stable_velocity(share * k2 * h, ki * h * h);
+    return is_stable_acceleration(share * k1 * h, share * share * k2 * h * h, ki * h * h * h);
+  };
+  if (!stable(Scalar(1), Scalar(0))) {
+    const Scalar share = largest_share<Scalar>([&](Scalar s) { return stable(s, Scalar(0)); });
+    const Scalar square = kLevel == Level::kVelocity ? share : share * share;
+    if (!(k1 > Scalar(0))) {
+      validation::fail(name2, k2, "at most ", square * k2, " at a tick of ", h, " s: lower it, or shorten the tick");
+    }
+    if (!(k2 > Scalar(0))) {
+      validation::fail(name1, k1, "at most ", share * k1, " at a tick of ", h, " s: lower it, or shorten the tick");
+    }
+    validation::fail(name1, k1, "at most ", share * k1, " with ", name2, " = ", square * k2, " at a tick of ", h,
+                     " s: lower both, or shorten the tick");
+  }
+  if (integral != Scalar(0) && !stable(Scalar(1), integral)) {
+    const Scalar most = integral * largest_share<Scalar>([&](Scalar s) { return stable(Scalar(1), s * integral); });
+    validation::fail("integral_gain", integral, "at most ", most, " with the scheme's feedback gains at a tick of ", h,
+                     " s: lower it, or raise ", kLevel == Level::kVelocity ? name2 : name1);
+  }
+}
+
+/// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6, but a spring that moves the
+/// joints far within a tick leaves the posture in which its acceleration does not disturb the task: of 18 rest postures
+/// 0.3 rad a joint away, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and five at 0.25
+/// (TickGains.a_stiff_rest_posture_leaves_the_task_alone).
+inline constexpr double kSpring = 0.1;
+
+/// Which of the library's parameters a scheme has.
+template <typename Scheme, typename = void>
+inline constexpr bool kWraps = false;
+template <typename Scheme>
+inline constexpr bool kWraps<Scheme, std::void_t<decltype(Scheme::scheme)>> = true;
+template <typename Scheme, typename = void>
+inline constexpr bool kHasGains = false;
+template <typename Scheme>
+inline constexpr bool kHasGains<Scheme, std::void_t<decltype(Scheme::k1), decltype(Scheme::k2)>> = true;
+template <typename Scheme, typename = void>
+inline constexpr bool kHasGain = false;
+template <typename Scheme>
+inline constexpr bool kHasGain<Scheme, std::void_t<decltype(Scheme::k)>> = true;
+template <typename Scheme, typename = void>
+inline constexpr bool kHasSprings = false;
+template <typename Scheme>
+inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_space.stiffness_range())>> = true;
+
+/// Throws std::invalid_argument where a tick does not damp the errors that a scheme feeds back: of the task, k₁ and k₂
+/// or k, with the tracker's integral; of a second task; of the null space, whose stiffness is between the joints' own.
+/// Accepts a scheme without these members. An overload for a scheme type of your own is found in its namespace.
+template <typename Scheme, typename Scalar>
+void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
+  constexpr Level kLevel = Scheme::kLevel;
+  const TickOfGains<Scalar> plain{tick.dt, Scalar(0)};
+  const Scalar none(0);
+  if constexpr (kWraps<Scheme>) {
+    if constexpr (kHasGains<Scheme>) {
+      const Scalar k1 = kLevel == Level::kVelocity ? none : scheme.k1;
+      require_stable_gains<kLevel, Scalar>({"second_task.k1", k1, "second_task.k2", scheme.k2}, plain);
+    }
+    require_stable(scheme.scheme, tick);
+  } else {
+    if constexpr (kLevel == Level::kAcceleration && kHasGains<Scheme>) {
+      require_stable_gains<kLevel, Scalar>({"k1", scheme.k1, "k2", scheme.k2}, tick);
+    }
+    if constexpr (kLevel == Level::kVelocity && kHasGain<Scheme>) {
+      require_stable_gains<kLevel, Scalar>({"", none, "k", scheme.k}, tick);
+    }
+    if constexpr (kHasSprings<Scheme>) {
+      const Scalar damping = kLevel == Level::kVelocity ? none : scheme.null_space.damping();
+      const auto [least, most] = scheme.null_space.stiffness_range();
+      if (const Scalar square = tick.dt * tick.dt;
+          kLevel == Level::kAcceleration && !(most * square <= Scalar(kSpring))) {
+        validation::fail("null_stiffness", most, "at most ", Scalar(kSpring) / square, " at a tick of ", tick.dt,
+                         " s: lower it, or shorten the tick");
+      }
+      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", most}, plain);
+      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", least}, plain);
+    }
+  }
+}
+
+}  // namespace fpbm

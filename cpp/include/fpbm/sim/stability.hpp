@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+/// Stability of a tick under feedback, with gains in units of the tick h: x₁ = k₁h, x₂ = k₂h², x₃ = kᵢh³ at
+/// acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
+namespace fpbm {
+
+/// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle: Routh's criterion for w, where
+/// z = (1+w)/(1−w). Powers of z−1 keep their digits where gains are small.
+template <typename Scalar>
+[[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c) noexcept {
+  const Scalar w3 = Scalar(8) - Scalar(4) * a + Scalar(2) * b - c;
+  const Scalar w2 = Scalar(4) * (a - b) + Scalar(3) * c;
+  const Scalar w1 = Scalar(2) * b - Scalar(3) * c;
+  const Scalar round_off =
+      Scalar(64) * std::numeric_limits<Scalar>::epsilon() * (std::abs(a) + std::abs(b) + std::abs(c));
+  const auto holds = [&](Scalar value) { return value >= -round_off; };
+  return holds(w3) && holds(w2) && holds(w1) && holds(c) && (w2 + round_off) * w1 >= w3 * c;
+}
+
+/// Whether a tick damps ë = −x₁ė − x₂e − x₃I, where I gains the e of a tick's start at its end. Asks it of both ends of
+/// a tick: RK4's own, and the one of RK4's mean acceleration, which bounds on jerk and other limits make of it.
+template <typename Scalar>
+[[nodiscard]] bool is_stable_acceleration(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
+  struct Change {
+    Scalar e;
+    Scalar v;
+  };
+  const auto rk4 = [&](Scalar e, Scalar v, Scalar integral) noexcept {
+    Change change{Scalar(0), Scalar(0)};
+    for (int stage = 4; stage > 0; --stage) {  // A + A²/2 + A³/6 + A⁴/24 by Horner's rule.
+      const Scalar at_v = v + change.v;
+      change = {at_v / Scalar(stage), -(x2 * (e + change.e) + x1 * at_v + x3 * integral) / Scalar(stage)};
+    }
+    return change;
+  };
+  const Change by_e = rk4(Scalar(1), Scalar(0), Scalar(0));
+  const Change by_v = rk4(Scalar(0), Scalar(1), Scalar(0));
+  const Change by_integral = rk4(Scalar(0), Scalar(0), Scalar(1));
+  const auto holds = [&](Scalar e_e, Scalar e_v, Scalar e_integral) noexcept {
+    return is_in_unit_circle(-(e_e + by_v.v), e_e * by_v.v - e_v * by_e.v - e_integral,
+                             e_integral * by_v.v - e_v * by_integral.v);
+  };
+  return holds(by_e.e, by_v.e, by_integral.e) &&
+         holds(by_e.v / Scalar(2), Scalar(1) + by_v.v / Scalar(2), by_integral.v / Scalar(2));
+}
+
+/// Whether a tick of RK4 damps ė = −x₁e − x₃I with such an I.
+template <typename Scalar>
+[[nodiscard]] bool is_stable_velocity(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
+  const auto rk4 = [&](Scalar e, Scalar integral) noexcept {
+    Scalar change(0);
+    for (int stage = 4; stage > 0; --stage) change = -(x1 * (e + change) + x3 * integral) / Scalar(stage);
+    return change;
+  };
+  return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
+}
+
+/// The largest share in [0, 1] for which holds(share) is true, rounded down to four digits, where smaller ones are.
+template <typename Scalar, typename Holds>
+[[nodiscard]] Scalar largest_share(const Holds& holds) {
+  Scalar low(0);
+  Scalar high(1);
+  for (int i = 0; i < 200 && high > Scalar(1.00001) * low; ++i) {
+    const Scalar middle = low > Scalar(0) ? std::sqrt(low * high) : high / Scalar(1024);
+    (holds(middle) ? low : high) = middle;
+  }
+  if (!(low > Scalar(0))) return Scalar(0);
+  const Scalar digit = std::pow(Scalar(10), std::floor(std::log10(low)) - Scalar(3));
+  return std::floor(low / digit) * digit;
+}
+
+}  // namespace fpbm
