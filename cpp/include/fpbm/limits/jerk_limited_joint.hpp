@@ -39,9 +39,10 @@ struct JerkLimitedJoint {
   VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
   Scalar tick;                             ///< h [s]
 
-  /// Up to a slack, in the unit of q.
-  [[nodiscard]] bool viable(Scalar q, Scalar qd, Scalar u, Scalar slack = Scalar(0)) const noexcept {
-    return viable(upper, q, qd, u, slack) && viable(lower, -q, -qd, -u, slack);
+  /// Whether a state within some errors of this one is viable. A velocity may be a difference of positions over a tick.
+  [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
+    return keeps(upper, {at.q - error.q, at.v - error.v, at.a - error.a}, error.q / tick) &&
+           keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
   }
 
   /// Accelerations within the bounds on acceleration and jerk after another one.
@@ -58,9 +59,7 @@ struct JerkLimitedJoint {
   [[nodiscard]] Interval<Scalar> viable(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
     const Scalar high = most(upper, q, qd, some);
     const Scalar low = -most(lower, -q, -qd, {-some.high, -some.low});
-    if (low <= high) return {low, high};
-    const Scalar between = (low + high) / Scalar(2);
-    return {between, between};
+    return low <= high ? Interval<Scalar>{low, high} : between(some, q, qd);
   }
 
   /// Greatest acceleration b from which steps of Jh to zero, h (b + (b − Jh) + (b − 2Jh) + …), change the velocity by
@@ -82,17 +81,16 @@ struct JerkLimitedJoint {
   }
 
  private:
-  [[nodiscard]] bool viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd, Scalar u,
-                            Scalar slack) const noexcept {
-    const Scalar rises = std::max(u, Scalar(0));
-    return qd + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack / tick &&
-           !(envelope.excess(stop.jerk, {q - envelope.rest, qd, u}) > slack);
+  [[nodiscard]] bool keeps(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
+                           Scalar slack) const noexcept {
+    const Scalar rises = std::max(at.a, Scalar(0));
+    return at.v + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack &&
+           !(envelope.excess(stop.jerk, {at.q - envelope.rest, at.v, at.a}) > Scalar(0));
   }
 
   /// Largest of some accelerations that keep the bounds of one side; the smallest where none does.
   [[nodiscard]] Scalar most(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
-                            Interval<Scalar> some) const noexcept {
-    using std::sqrt;
+                            Interval<Scalar> some, int rounds = 6) const noexcept {
     const Scalar room = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar gain = greatest * (tick + greatest / (Scalar(2) * stop.jerk));
@@ -102,24 +100,69 @@ struct JerkLimitedJoint {
     const Scalar longest = tick + (stop.acceleration + greatest) / stop.jerk;
     const Scalar excess = q - envelope.rest + top * (longest + envelope.delay + top * envelope.softness / Scalar(2));
     if (gain <= room && excess <= Scalar(0)) return some.high;
-    // Root of u h + u²/2J = room, or of u h = room where u falls; infinite where the velocity is not bounded.
-    const Scalar share = tick / room;
-    const Scalar fastest =
-        room > Scalar(0) ? Scalar(2) / (share + sqrt(share * share + Scalar(2) / (room * stop.jerk))) : room / tick;
-    const Scalar high = std::clamp(fastest, some.low, some.high);
+    const Scalar high = within_velocity(room, some);
     if (!(envelope.rest < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.rest;
     // Enough where the acceleration falls already: a little too much elsewhere.
     const Scalar falling = (envelope.furthest(q, qd, tick) - qd) / tick;
-    const auto beyond = [&](Scalar u) noexcept {
-      const Scalar next = qd + tick * u;
-      const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
-      if (from > Scalar(0)) return stop.rest({from + way, next, u});
-      const Scalar most = envelope.excess(stop.jerk, {from + way, next, u});
-      // Where the joint turns back within the tick.
-      return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
+    const auto beyond = [&](Scalar u) noexcept { return this->beyond(envelope, from, qd, u); };
+    const Scalar found =
+        largest_below_zero(beyond, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
+    if (found > some.low) return found;
+    // None, or the smallest: a joint that round-off brought to its end would leave it with all of its jerk.
+    const Scalar halts = std::clamp(-qd / tick, some.low, high);
+    return beyond(halts) <= round_off(envelope, q) ? halts : found;
+  }
+
+  /// Largest of some accelerations that can be let go before q̇ has risen by room: the root of u h + u²/2J = room, or of
+  /// u h = room where u falls. Infinite where the velocity is not bounded.
+  [[nodiscard]] Scalar within_velocity(Scalar room, Interval<Scalar> some) const noexcept {
+    using std::sqrt;
+    const Scalar share = tick / room;
+    const Scalar fastest =
+        room > Scalar(0) ? Scalar(2) / (share + sqrt(share * share + Scalar(2) / (room * stop.jerk))) : room / tick;
+    return std::clamp(fastest, some.low, some.high);
+  }
+
+  /// How far a joint that is `from` beyond an end's rest, at velocity qd, goes beyond its envelope after a tick of
+  /// acceleration u.
+  [[nodiscard]] Scalar beyond(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
+                              Scalar u) const noexcept {
+    const Scalar next = qd + tick * u;
+    const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
+    if (from > Scalar(0)) return stop.rest({from + way, next, u});
+    const Scalar most = envelope.excess(stop.jerk, {from + way, next, u});
+    // Where the joint turns back within the tick.
+    return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
+  }
+
+  /// viable() where a few rounds leave no acceleration that keeps both ends' envelopes: more rounds find some, except
+  /// for round-off. There the bound on velocity goes first, and the envelopes are exceeded alike.
+  [[nodiscard, gnu::noinline]] Interval<Scalar> between(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
+    constexpr int kRounds = 20;
+    const Interval<Scalar> mirrored{-some.high, -some.low};
+    const Scalar high = most(upper, q, qd, some, kRounds);
+    const Scalar low = -most(lower, -q, -qd, mirrored, kRounds);
+    if (low <= high) return {low, high};
+    const Scalar fastest = within_velocity(velocity - qd, some);
+    const Scalar slowest = -within_velocity(velocity + qd, mirrored);
+    if (!(slowest <= fastest)) return {(slowest + fastest) / Scalar(2), (slowest + fastest) / Scalar(2)};
+    const Scalar slack = std::max(round_off(upper, q), round_off(lower, -q));
+    const auto conflict = [&](Scalar u) noexcept {
+      const Scalar above = beyond(upper, q - upper.rest, qd, u);
+      const Scalar below = beyond(lower, -q - lower.rest, -qd, -u);
+      return std::max(above, below) <= slack ? Scalar(0) : above - below;
     };
-    return largest_below_zero(beyond, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high));
+    const Scalar u =
+        largest_below_zero(conflict, std::clamp(high, slowest, fastest), std::clamp(low, slowest, fastest), kRounds);
+    return {u, u};
+  }
+
+  /// Round-off of a distance to one end.
+  [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
+    return std::isfinite(envelope.rest)
+               ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.rest))
+               : Scalar(0);
   }
 };
 

@@ -77,12 +77,16 @@ class Limits {
                              : "within the joint's range");
       }
       const Scalar qd = state.qd(i);
-      const Scalar margin = slack / tick_ + Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::abs(qd);
+      const Scalar rounding =
+          Scalar(4) * std::numeric_limits<Scalar>::epsilon() * (std::abs(qd) + tick_ * std::abs(last(i)));
+      const Scalar margin = slack / tick_ + rounding;
       const Scalar slower = qd - std::clamp(qd, -margin, margin);
       if (!(std::abs(last(i)) <= bounds_.acceleration(i) + margin / tick_)) {
         validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound");
       }
-      if (!(bounds_jerk(i) ? jerk_limited(i).viable(q, qd, last(i), margin * tick_) : viable(i, q, slower))) {
+      // last is a difference of velocities over a tick.
+      const AxisState<Scalar> error{slack, rounding, rounding / tick_};
+      if (!(bounds_jerk(i) ? jerk_limited(i).viable({q, qd, last(i)}, error) : viable(i, q, slower))) {
         validation::fail(validation::element("qd0", i), qd, "slow enough for the joint to stop within its bounds");
       }
     }
@@ -100,7 +104,7 @@ class Limits {
       if (bounds_jerk(i)) {
         const auto joint = jerk_limited(i);
         const auto [low, high] = joint.after(last(i));
-        good = good && low <= u && u <= high && joint.viable(to.q(i), to.qd(i), u);
+        good = good && low <= u && u <= high && joint.viable({to.q(i), to.qd(i), u});
       } else {
         good = good && -bounds_.acceleration(i) <= u && u <= bounds_.acceleration(i) && viable(i, to.q(i), to.qd(i));
       }
