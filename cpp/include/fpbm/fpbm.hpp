@@ -41,6 +41,7 @@
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/limits/box.hpp"
+#include "fpbm/limits/box_in_time.hpp"
 #include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/held_joints.hpp"

@@ -21,6 +21,11 @@ double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::
   T.block(1, 0, rows, 1) = b.cast<long double>();
   T.block(1, 1, rows, free) = A.cast<long double>();
   T.block(1, 1 + free, rows, free) = -A.cast<long double>();
+  // Rows of joints that hardly move, in units of their own.
+  for (Eigen::Index i = 1; i <= rows; ++i) {
+    const long double size = T.row(i).segment(1, free).cwiseAbs().maxCoeff();
+    if (size > 0.0L) T.row(i) /= size;
+  }
   T.block(1, 1 + 2 * free, rows, rows).setIdentity();
   Eigen::VectorXi basic(rows);
   for (Eigen::Index i = 0; i < rows; ++i) basic(i) = static_cast<int>(1 + 2 * free + i);

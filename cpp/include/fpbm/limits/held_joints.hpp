@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace fpbm {
@@ -12,24 +15,34 @@ namespace fpbm {
 template <int kMost, typename Scalar>
 class HeldJoints {
  public:
+  static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
   /// A joint can be held too where the part of its row of Z outside the held joints' rows is longer than this: about
   /// √epsilon, below which the part is mostly round-off.
+  /// A shorter part serves a slow joint: round-off error in its direction, ε/part, times the motion, rate/part, is then
+  /// less than 1.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
+
+  /// Round-off error of Z: SelfMotion's is 5e-13 where J has a condition of 1e3.
+  static constexpr Scalar kRoundOff = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-12) : Scalar(3e-5);
+  /// The most that held joints may amplify a round-off error by, so that 1e-10 of the motion is off the task's line at
+  /// most.
+  static constexpr Scalar kAmplified = Scalar(100);
+  /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
+  static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
 
   struct Held {
     Eigen::Index joint;
     bool above;  ///< On its upper bound.
   };
 
-  void clear() noexcept { count_ = 0; }
+  void clear() noexcept {
+    count_ = 0;
+    fixed_ = 0;
+  }
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] const Held& operator[](int i) const noexcept { return held_[i]; }
-  [[nodiscard]] bool has(Eigen::Index joint) const noexcept {
-    for (int i = 0; i < count_; ++i) {
-      if (held_[i].joint == joint) return true;
-    }
-    return false;
-  }
+  /// Whether a joint is held, or rests because the held joints do.
+  [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return (fixed_ >> joint & 1U) != 0; }
 
   /// The goal plus the least motion Z y that keeps the held joints at rest.
   template <typename Basis, typename Motion>
@@ -50,24 +63,49 @@ class HeldJoints {
   }
 
   /// Holds one more joint on its bound, or holds it in place of one that may leave its own. False where neither works.
-  template <typename Basis>
-  [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above) noexcept {
+  ///
+  /// rate: of the joint; round_off(): of the rates of independent joints. A joint that depends on those held and whose
+  /// rate is round-off error needs no hold.
+  template <typename Basis, typename RoundOff>
+  [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above, Scalar rate, RoundOff&& round_off) noexcept {
     split(Z, joint, count_);
-    if (R_[count_][count_] > kIndependent) {
-      Q_[count_] /= R_[count_][count_];
-      held_[count_++] = {joint, above};
+    const Scalar outside = R_[count_][count_];
+    const bool spare = count_ < Z.cols();
+    if (spare && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
+    const Free share = shares();
+    if (rate <= round_off() * std::min(Scalar(1) + share.cwiseAbs().sum(), kAmplified)) {
+      fixed_ |= bit(joint);
       return true;
     }
-    Free share(count_);  // c in Z_joint = Σ c_i Z_held(i).
-    int leaving = -1;
-    Scalar most = kIndependent;
+    if (spare && outside <= kIndependent && rate <= outside * outside / kEpsilon) return add(joint, above);
+    // A smaller share would let the other joint leave at a rate beyond kSteepest.
+    return replace(Z, joint, above, share, std::max(kRoundOff, rate / kSteepest));
+  }
+
+ private:
+  using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
+
+  [[nodiscard]] static constexpr std::uint64_t bit(Eigen::Index joint) noexcept { return std::uint64_t(1) << joint; }
+
+  /// c in Z_joint = Σ c_i Z_held(i), of the joint that was split last.
+  [[nodiscard]] Free shares() const noexcept {
+    Free share(count_);
     for (int i = count_ - 1; i >= 0; --i) {
       share(i) = R_[i][count_];
       for (int j = i + 1; j < count_; ++j) share(i) -= R_[i][j] * share(j);
       share(i) /= R_[i][i];
+    }
+    return share;
+  }
+
+  /// Holds a joint in place of the one that leaves its bound fastest, if its share is more than a least one.
+  template <typename Basis>
+  [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& share, Scalar least) noexcept {
+    int leaving = -1;
+    for (int i = count_ - 1; i >= 0; --i) {
       const Scalar inward = held_[i].above == above ? share(i) : -share(i);
-      if (inward > most) {
-        most = inward;
+      if (inward > least) {
+        least = inward;
         leaving = i;
       }
     }
@@ -77,11 +115,22 @@ class HeldJoints {
       split(Z, held_[j].joint, j);
       Q_[j] /= R_[j][j];
     }
+    find_fixed();
     return true;
   }
 
- private:
-  using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
+  /// Holds the joint that was split last.
+  bool add(Eigen::Index joint, bool above) noexcept {
+    Q_[count_] /= R_[count_][count_];
+    held_[count_++] = {joint, above};
+    find_fixed();
+    return true;
+  }
+
+  void find_fixed() noexcept {
+    fixed_ = 0;
+    for (int i = 0; i < count_; ++i) fixed_ |= bit(held_[i].joint);
+  }
 
   /// Z_jointᵀ = Σ R_[i][k] Q_[i] + Q_[k], over i < k: column k, not yet of length 1. Gram and Schmidt, twice, so that Q
   /// is orthogonal where the rest is short.
@@ -100,6 +149,7 @@ class HeldJoints {
   }
 
   int count_ = 0;
+  std::uint64_t fixed_ = 0;  ///< Bit i is set where has(i).
   Held held_[kMost];
   Free Q_[kMost + 1];
   Scalar R_[kMost + 1][kMost + 1];

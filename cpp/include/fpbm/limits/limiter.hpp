@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/limits/box_in_time.hpp"
 #include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/limits.hpp"
@@ -93,7 +94,8 @@ class Limiter {
     if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
     NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, J, state, box, rows, desired);
-    const Saturated<N, Scalar> found = within(saturation, J, state, limits_.box_in_time(state), rows, desired);
+    const Saturated<N, Scalar> found =
+        within(saturation, J, state, box_in_time(limits_, state, last, box), rows, desired);
     return toward(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
   }
 

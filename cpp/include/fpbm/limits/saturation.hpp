@@ -89,7 +89,7 @@ class NullSpaceSaturation {
       ++result.passes;
       const All rate = held_.direction(Z_, goal);
       const Scalar fastest = rate.cwiseAbs().maxCoeff();
-      if (fastest > kSteepest) break;
+      if (fastest > Held::kSteepest) break;
       const Scalar still = kStill * fastest;
       Scalar step = Scalar(1) - result.scale;
       Eigen::Index hit = -1;
@@ -106,7 +106,11 @@ class NullSpaceSaturation {
       if (hit < 0) break;
       const bool above = rate(hit) > Scalar(0);
       u(hit) = above ? upper(hit) : lower(hit);
-      if (!held_.hold(Z_, hit, above)) {
+      const auto round_off = [&]() noexcept {
+        const Scalar given = (desired.cwiseAbs() + rest.cwiseAbs()).cwiseQuotient(unit_).maxCoeff();
+        return Held::kRoundOff * (fastest + goal.cwiseAbs().maxCoeff()) + kStill * given;
+      };
+      if (!held_.hold(Z_, hit, above, abs(rate(hit)), round_off)) {
         count(result, hit, joints);
         break;
       }
@@ -132,8 +136,6 @@ class NullSpaceSaturation {
   static constexpr int kPasses = 3;  ///< At most, for each joint.
   /// A joint is still where its share of the motion is round-off.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
-  /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
-  static constexpr Scalar kSteepest = Scalar(100) / Held::kIndependent;
 
   /// Z of one self-motion v, away from singular postures: v in each joint's unit, at length 1. False elsewhere.
   [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
