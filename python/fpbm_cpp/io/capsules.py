@@ -33,10 +33,10 @@ def capsules_of(
 
     Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
     or finer is False, a link may have one more where it would be taken to be too close to another link: see Gaps.
-    Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves belong to the base,
-    each other link to the last such joint before it: tools and fingers beyond the tip as well. Joints that are not
-    between base and tip are held at zero, so capsules of an open gripper or of another arm hold for that posture alone.
-    Visual geometry is not read: a link that has no other has no capsule.
+    Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
+    belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
+    Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for
+    that posture alone. Visual geometry is not read: a link that has no other has no capsule.
 
     Returns
     -------
