@@ -136,7 +136,7 @@ def test_the_message_names_both_remedies() -> None:
     with pytest.raises(fp.ParameterError) as caught:
         fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules))
     assert str(caught.value) == (
-        "q0: panda_link7 and panda_link5 are 0.0090 m apart, closer than margin=0.01; "
+        "q0: panda_link7 and panda_link5 are 0.0089 m apart, closer than margin=0.01; "
         "give margin=0.0089 or allowed=[('panda_link7', 'panda_link5')]"
     )
     assert caught.value.name == "q0"
