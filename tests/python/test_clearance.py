@@ -368,7 +368,7 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
         (lambda: fp.Tracker(PANDA, fp.MAN(), READY, clearance=3), "clearance: must be a Clearance"),
         (
             lambda: fp.track(PANDA, THROUGH, fp.MAN(), READY, clearance=fp.Clearance(CAPSULES, margin=0.3)),
-            "q0: hand and upper arm are 0.2372 m apart, closer than margin=0.3; give margin=0.2372 or allowed=[('hand', ",
+            "q0: hand and upper arm are 0.2372 m apart, closer than margin=0.3; give margin=0.2372 or ",
         ),
         (lambda: tracker().move("tabel", TABLE), "name = 'tabel': must be one of the obstacles: table"),
         (lambda: tracker().move("table", BALL), "shape: must be of the kind that it was"),
