@@ -179,7 +179,7 @@ def _read(name: str, urdf: Path, tip: str) -> Robot:
     turned = np.linalg.norm(every[:, :, :3, :3] - same[:, :3, :3], axis=(-2, -1)).max(axis=0)
     if max(off.max(), turned.max()) > MOST_OFF:
         raise ValueError(f"{name}: {urdf} is another arm, off by {off.max():g} m and {turned.max():g} rad")
-    capsules = [capsule for capsule in capsules_of(urdf, tip) if is_of_arm(capsule.name)]
+    capsules = [capsule for capsule in capsules_of(urdf, tip, finer=False) if is_of_arm(capsule.name)]
     return Robot(capsules, same, off, turned)
 
 

@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "fpbm/clearance/too_close.hpp"
 #include "fpbm/core/validation.hpp"
 
 namespace {
@@ -7,6 +8,11 @@ namespace {
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
+  } catch (const fpbm::TooClose& error) {  // With the remedies as Python writes them.
+    const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
+    const std::string pair = py::repr(py::make_tuple(error.names().first, error.names().second));
+    const std::string text = fpbm::TooClose::text(error.names(), error.value(), error.margin(), "[" + pair + "]");
+    py::set_error(type, type(error.name(), py::none(), error.value(), text));
   } catch (const fpbm::ParameterError& error) {
     const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
     const py::object index = error.index() < 0 ? py::object(py::none()) : py::int_(error.index());

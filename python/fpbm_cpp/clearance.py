@@ -115,9 +115,10 @@ class Clearance(Data):
     ) -> Clearance:
         """Clearance of SerialArm.from_urdf(path, tip, base), by capsules that contain the file's collision geometry.
 
-        Each link gets one capsule, or up to per_link where these take less room. srdf is a file of MoveIt's, whose
-        disabled pairs are allowed to meet, beside those in `allowed`. Needs the extra 'clearance', meshes a part of it
-        alone.
+        Each link gets one capsule, or up to per_link where these take less room, and one more, unless per_link is 1,
+        where capsules of two links would often be closer than the margin though the links are not. srdf is a file of
+        MoveIt's, whose disabled pairs are allowed to meet, beside those in `allowed`. Needs the extra 'clearance',
+        meshes a part of it alone.
 
         Raises ValueError where a file is not sound, OSError where one cannot be read.
         """

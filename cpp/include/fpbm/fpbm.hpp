@@ -25,6 +25,7 @@
 #include "fpbm/clearance/separation.hpp"
 #include "fpbm/clearance/shape.hpp"
 #include "fpbm/clearance/tip_speed.hpp"
+#include "fpbm/clearance/too_close.hpp"
 #include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/clearance/widest_gap.hpp"
 #include "fpbm/core/argument.hpp"

@@ -47,7 +47,7 @@ def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = Fals
     scale = float(np.max(np.linalg.norm(points - middle, axis=1) + radii))
     if scale == 0.0:
         return Fit(middle, middle, 0.0)
-    p, rho = _outermost((points - middle) / scale, radii / scale)
+    p, rho = outermost((points - middle) / scale, radii / scale)
     best = min(
         (_improved(start, p, rho, 1e-5 if rough else 1e-10) for start in _starts(p, rho, rough)),
         key=lambda fit: fit.volume,
@@ -81,7 +81,7 @@ def _nearest(points: Array, a: Array, b: Array) -> tuple[Array, Array]:
     return share, a + share * along
 
 
-def _outermost(points: Array, radii: Array) -> tuple[Array, Array]:
+def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
     """Without the points that others' convex hull contains."""
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     bare = points[radii == 0.0]

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import combinations, pairwise
 
 import numpy as np
 
 from .._types import Array
+from ..arms import Joint
 from ..capsule import Capsule
 from ..errors import wrong
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
+from .capsule_gaps import Gaps, Link, Part, link_frames, postures
 from .urdf import read_places
 from .urdf_shapes import Shape, read_shapes, together
 
@@ -19,16 +21,22 @@ FAIR = 0.85  # More capsules than one have at most this share of its volume.
 CUTS = 6  # A cut is tried at each of so many parts of a shape.
 ALIKE = 0.95  # Cosine of an angle between directions that are as good as one.
 MANY = 12  # So many shapes are not tried in groups.
+POSTURES = 64  # In which distances of links are compared.
+MORE = 1  # Capsules that a link may have above per_link, where it is taken to be too close to others.
+GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by.
 
 
-def capsules_of(path: str | os.PathLike[str], tip: str, base: str | None = None, *, per_link: int = 2) -> list[Capsule]:
+def capsules_of(
+    path: str | os.PathLike[str], tip: str, base: str | None = None, *, per_link: int = 2, finer: bool = True
+) -> list[Capsule]:
     """Capsules that contain the collision geometry of a URDF file's links: tight, and the same each time.
 
-    Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Chain and joints are
-    those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves belong to the base,
-    each other link to the last such joint before it: tools and fingers beyond the tip as well. Joints that are not
-    between base and tip are held at zero, so capsules of an open gripper or of another arm hold for that posture alone.
-    Visual geometry is not read: a link that has no other has no capsule.
+    Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
+    or finer is False, a link may have one more where it would be taken to be too close to another link: see Gaps.
+    Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
+    belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
+    Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for
+    that posture alone. Visual geometry is not read: a link that has no other has no capsule.
 
     Returns
     -------
@@ -40,32 +48,76 @@ def capsules_of(path: str | os.PathLike[str], tip: str, base: str | None = None,
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
-    places = read_places(path, tip, base)[2]
+    joints, _, places = read_places(path, tip, base)
     shapes = read_shapes(path)
     if not shapes:
         raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry")
-    found = []
-    for name in sorted(shapes, key=lambda link: places[link][0]):
-        link, frame = places[name]
-        for fit in _fits([shape.moved(frame) for shape in shapes[name]], per_link):
-            found.append(Capsule(link, fit.a, fit.b, fit.radius, name))
-    return found
+    names = sorted(shapes, key=lambda link: places[link][0])
+    links = [
+        Link(places[name][0], _parts_of([shape.moved(places[name][1]) for shape in shapes[name]], per_link))
+        for name in names
+    ]
+    if finer and per_link > 1:
+        refine(links, joints, per_link + MORE)
+    fits = [(link.number, part.fit, name) for link, name in zip(links, names) for part in link.parts]
+    return [Capsule(number, fit.a, fit.b, fit.radius, name) for number, fit, name in fits]
 
 
-def _fits(shapes: list[Shape], most: int) -> list[Fit]:
-    """The capsules of a link: one, or more where that saves a fair share of the volume."""
+def refine(links: list[Link], joints: list[Joint], most: int) -> None:
+    """Cuts links further, into at most so many parts, where capsules are close and the links' hulls are not: see Gaps.
+
+    Of all cuts of either link, the one is made after which the capsules are too close by least. A pair that is below
+    the margin in all postures is left out by Clearance: no cut brings such a pair back.
+    """
+    gaps = Gaps(links, link_frames(joints, postures(joints, POSTURES)))
+    given_up: set[tuple[int, int]] = set()
+    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its halves.
+    while pair := gaps.worst(given_up):
+        tried: list[tuple[float, int, list[Part]]] = []
+        for i in pair:
+            parts = links[i].parts
+            for k, part in enumerate(parts if len(parts) < most else []):
+                if id(part) not in known:
+                    known[id(part)] = part, list(_halves(part))
+                for halves in known[id(part)][1]:
+                    finer = [*parts[:k], *halves, *parts[k + 1 :]]
+                    tried.append((gaps.excess_with(i, finer, pair), i, finer))
+        excess, i, finer = min(tried, key=lambda each: each[0], default=(np.inf, 0, []))
+        if excess > GAIN * gaps.excess(*pair):
+            given_up.add(pair)
+        else:
+            links[i].parts = finer
+
+
+def _halves(part: Part) -> Iterator[list[Part]]:
+    """A part, cut in two."""
+    for u in _directions(*part):
+        s = part.shape.points @ u
+        for place in np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]:
+            halves = [part.shape.between(u, -np.inf, float(place)), part.shape.between(u, float(place), np.inf)]
+            if all(len(half.points) for half in halves):
+                yield [Part(half, _rough_fit(half)) for half in halves]
+
+
+def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
+    """The parts of a link with a capsule each: all of it, or more parts where that saves a fair share of the volume."""
     whole = together(shapes)
-    fits = [_fit(whole)]
-    ways: list[Callable[[], list[Fit]]] = [lambda: _cut(whole, fits[0], most)]
+    parts = [_part(whole)]
+    ways: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]
     if 1 < len(shapes) <= MANY:
-        ways.append(lambda: [_fit(group) for group in _grouped(shapes, most)])
+        ways.append(lambda: _grouped(shapes, most))
     if most > 1:
-        fits = min(fits, *(way() for way in ways), key=lambda some: _volume(some) * (FAIR if len(some) == 1 else 1.0))
-    return fits
+        tried = [[_part(shape) for shape in way()] for way in ways]
+        parts = min([parts, *tried], key=lambda some: _volume(some) * (FAIR if len(some) == 1 else 1.0))
+    return parts
 
 
-def _volume(fits: list[Fit]) -> float:
-    return sum(fit.volume for fit in fits)
+def _volume(parts: list[Part]) -> float:
+    return sum(part.fit.volume for part in parts)
+
+
+def _part(shape: Shape) -> Part:
+    return Part(shape, _fit(shape))
 
 
 def _fit(shape: Shape) -> Fit:
@@ -77,19 +129,24 @@ def _fit(shape: Shape) -> Fit:
     return fit_capsule(shape.points, shape.sizes)
 
 
-def _cut(whole: Shape, fit: Fit, most: int) -> list[Fit]:
-    """Up to so many capsules, of the parts between parallel planes: across the one capsule, or a principal axis."""
+def _cut(whole: Shape, fit: Fit, most: int) -> list[Shape]:
+    """Up to so many parts between parallel planes: across the one capsule, or a principal axis."""
+    cuts = [_slabs(whole, u, most) for u in _directions(whole, fit)]
+    return min(cuts, key=lambda parts: sum(map(_rough_volume, parts)))
+
+
+def _directions(shape: Shape, fit: Fit) -> list[Array]:
+    """Normals of planes to cut a shape by: its capsule's axis, and its principal axes, no two alike."""
     along = fit.b - fit.a
     length = float(np.linalg.norm(along))
     directions = [along / length] if length > 0.0 else []
-    for u in np.linalg.svd(whole.points - whole.points.mean(axis=0), full_matrices=False)[2]:
+    for u in np.linalg.svd(shape.points - shape.points.mean(axis=0), full_matrices=False)[2]:
         if all(abs(u @ other) < ALIKE for other in directions):
             directions.append(u)
-    cuts = [_parts(whole, u, most) for u in directions]
-    return [_fit(part) for part in min(cuts, key=lambda parts: sum(map(_rough_volume, parts)))]
+    return directions
 
 
-def _parts(whole: Shape, u: Array, most: int) -> list[Shape]:
+def _slabs(whole: Shape, u: Array, most: int) -> list[Shape]:
     """Cut by planes across u, each where the parts' capsules get least, while that helps."""
     s = whole.points @ u
     places = np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]
@@ -112,8 +169,12 @@ def _parts(whole: Shape, u: Array, most: int) -> list[Shape]:
     return best
 
 
+def _rough_fit(shape: Shape) -> Fit:
+    return fit_capsule(shape.points, shape.sizes, rough=True)
+
+
 def _rough_volume(shape: Shape) -> float:
-    return fit_capsule(shape.points, shape.sizes, rough=True).volume
+    return _rough_fit(shape).volume
 
 
 def _grouped(shapes: list[Shape], most: int) -> list[Shape]:

@@ -7,6 +7,7 @@
 #include "fpbm/clearance/advance.hpp"
 #include "fpbm/clearance/motion_away.hpp"
 #include "fpbm/clearance/tip_speed.hpp"
+#include "fpbm/clearance/too_close.hpp"
 #include "fpbm/limits/rows.hpp"
 
 namespace fpbm {
@@ -37,9 +38,8 @@ class Guard {
     clearance_.place(start.q);
     const auto [pair, distance] = clearance_.nearest_pair();
     if (!(distance >= clearance_.margin())) {
-      const auto [a, b] = clearance_.names(clearance_.pairs()[pair]);
-      validation::reject_value("q0", distance, ": the distance of '", a, "' and '", b, "' = ", distance,
-                               ": must be at least the margin");
+      reject_close(clearance_.names(clearance_.pairs()[pair]), static_cast<double>(distance),
+                   static_cast<double>(clearance_.margin()));
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);

@@ -1,0 +1,185 @@
+"""Distances of an arm's links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from math import isfinite
+from typing import NamedTuple
+
+import numpy as np
+
+from .._core import rotation
+from .._types import Array
+from ..arms import Joint
+from ..clearance import MARGIN
+from .capsule_fit import Fit, distances, outermost
+from .urdf_shapes import Shape, together
+
+PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
+CLOSE = 1.2 * MARGIN  # Capsules below this distance are close,
+APART = 1.5 * MARGIN  # and links whose hulls are above this distance are not.
+FIRST = 2  # Postures of which one is enough for a pair to count: joints at zero, and in the middle.
+OFTEN = 0.25  # Share of the postures that is enough.
+OPEN = 3.0  # [rad] or [m], the range of a joint without ends, to either side of zero.
+NORMALS = 200  # Directions in which a gap between hulls is looked for at first.
+SPREADS = 0.1 * 0.6 ** np.arange(8)  # Of directions about the best one, in each round of the search for a better one.
+
+
+class Part(NamedTuple):
+    """A part of a link, in the frame of its joint, and the capsule that contains it."""
+
+    shape: Shape
+    fit: Fit
+
+
+@dataclass
+class Link:
+    """A link by the number of joints that move it, and its parts."""
+
+    number: int
+    parts: list[Part]
+
+    @property
+    def fits(self) -> list[Fit]:
+        return [part.fit for part in self.parts]
+
+
+class Gaps:
+    """Pairs of links, not next to one another, that are too close: capsules below CLOSE, and hulls above APART.
+
+    A pair counts where it is too close in one of the first postures, or in a share OFTEN of all.
+    """
+
+    def __init__(self, links: list[Link], frames: Array) -> None:
+        self.links = links
+        inverse = np.linalg.inv(frames)
+        self._cases: dict[tuple[int, int], Array] = {}  # Poses of the second link, and how much each counts.
+        self._weights: dict[tuple[int, int], Array] = {}
+        self._left_out: dict[tuple[int, int], Array] = {}
+        hulls = [_outer(link) for link in links]
+        for i, j in combinations(range(len(links)), 2):
+            if links[j].number < links[i].number + 2:
+                continue
+            poses = inverse[:, links[i].number] @ frames[:, links[j].number]
+            gaps = capsules_apart(links[i].fits, links[j].fits, poses)
+            if np.max(gaps) < MARGIN:
+                self._left_out[i, j] = poses
+                continue
+            wrong = [k for k in np.flatnonzero(gaps < CLOSE) if hulls_apart(hulls[i], hulls[j], poses[k]) >= APART]
+            self._cases[i, j] = poses[wrong]
+            self._weights[i, j] = np.where(np.array(wrong) < FIRST, 1.0, 1.0 / len(poses))
+
+    def worst(self, but: Collection[tuple[int, int]]) -> tuple[int, int] | None:
+        """Of the pairs that are too close often, but for some, the one that is so by most; None where none is."""
+        pairs = [pair for pair in self._cases if pair not in but and self._often(*pair) >= OFTEN]
+        return max(pairs, key=lambda pair: self.excess(*pair), default=None)
+
+    def _often(self, i: int, j: int) -> float:
+        """In what share of the postures a pair is too close; at least 1 where it is so in one of the first."""
+        gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
+        return float((gaps < CLOSE) @ self._weights[i, j])
+
+    def excess(self, i: int, j: int) -> float:
+        """How much capsules of a pair are too close by, in all postures together [m]."""
+        gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
+        return float(np.maximum(CLOSE - gaps, 0.0) @ self._weights[i, j])
+
+    def excess_with(self, i: int, parts: list[Part], pair: tuple[int, int]) -> float:
+        """That of a pair with other parts of link i; infinite where a pair that is left out would not be any longer."""
+        kept, self.links[i].parts = self.links[i].parts, parts
+        try:
+            found = self.excess(*pair)
+            for (a, b), poses in self._left_out.items():
+                if i in (a, b) and np.max(capsules_apart(self.links[a].fits, self.links[b].fits, poses)) > MARGIN / 2:
+                    return np.inf
+            return found
+        finally:
+            self.links[i].parts = kept
+
+
+def _outer(link: Link) -> Shape:
+    """The points of a link that others' convex hull does not contain."""
+    whole = together([part.shape for part in link.parts])
+    points, sizes = outermost(whole.points, whole.sizes)
+    bare = np.repeat(points[sizes == 0.0][:, None], 2, axis=1)
+    return Shape(bare, points[sizes > 0.0], sizes[sizes > 0.0])
+
+
+def postures(joints: Sequence[Joint], count: int) -> Array:
+    """Positions of all joints (count, n): at zero, in the middle of their ranges, and spread as by spread_posture()."""
+    low = np.array([each.lower if isfinite(each.lower) else min(-OPEN, each.upper - OPEN) for each in joints])
+    high = np.array([each.upper if isfinite(each.upper) else max(OPEN, low[i] + OPEN) for i, each in enumerate(joints)])
+    roots = np.sqrt([PRIMES[i % len(PRIMES)] for i in range(len(joints))])
+    shares = np.outer(np.arange(1, count - 1), roots) % 1.0
+    q = np.vstack([np.clip(np.zeros(len(joints)), low, high), (low + high) / 2, low + shares * (high - low)])
+    for i, each in enumerate(joints):
+        if each.mimic is not None:
+            leader, ratio, offset = each.mimic
+            q[:, i] = ratio * q[:, leader] + offset
+    return q
+
+
+def link_frames(joints: Sequence[Joint], q: Array) -> Array:
+    """Frames (count, n + 1, 4, 4) of the base and of each joint after its motion, for positions (count, n)."""
+    frames = np.tile(np.eye(4), (len(q), len(joints) + 1, 1, 1))
+    for i, each in enumerate(joints):
+        step = np.tile(np.eye(4), (len(q), 1, 1))
+        axis = np.asarray(each.axis) / np.linalg.norm(each.axis)
+        if each.type == "prismatic":
+            step[:, :3, 3] = np.outer(q[:, i], axis)
+        else:
+            step[:, :3, :3] = [rotation(angle * axis) for angle in q[:, i]]
+        frames[:, i + 1] = frames[:, i] @ each.placement @ step
+    return frames
+
+
+def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) -> Array:
+    """Distances (count,) of two links' capsules; poses (count, 4, 4): of the second link in the first one's frame."""
+    found = np.full(len(poses), np.inf)
+    for one, two in product(first, second):
+        a, b = (poses[:, :3, :3] @ end + poses[:, :3, 3] for end in (two.a, two.b))
+        found = np.minimum(found, _segments_apart(one.a, one.b, a, b) - one.radius - two.radius)
+    return found
+
+
+def _segments_apart(p: Array, q: Array, a: Array, b: Array) -> Array:
+    """Distances (count,) of the segment from p to q from segments a to b (count, 3): of inner points, or of an end."""
+    d, e, w = q - p, b - a, p - a
+    dd, ee, de, dw, ew = d @ d, np.sum(e * e, axis=1), e @ d, w @ d, np.sum(e * w, axis=1)
+    det = dd * ee - de * de
+    inner = det > 1e-12 * dd * ee
+    s, t = ((x / np.where(inner, det, 1.0)) for x in (de * ew - dw * ee, dd * ew - de * dw))
+    inner &= (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0)
+    crossing = np.where(inner, np.linalg.norm(w + np.outer(s, d) - t[:, None] * e, axis=1), np.inf)
+    ends = [distances(a, p, q), distances(b, p, q)]
+    for end in (p, q):
+        share = np.clip(np.sum((end - a) * e, axis=1) / np.maximum(ee, 1e-300), 0.0, 1.0)
+        ends.append(np.linalg.norm(end - a - share[:, None] * e, axis=1))
+    return np.asarray(np.min([crossing, *ends], axis=0))
+
+
+def hulls_apart(first: Shape, second: Shape, pose: Array) -> float:
+    """A lower bound on the distance of two links' convex hulls: the widest gap between planes, of many directions."""
+    moved = second.points @ pose[:3, :3].T + pose[:3, 3]
+
+    def best(normals: Array) -> tuple[float, Array]:
+        normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        below = np.max(first.points @ normals.T + first.sizes[:, None], axis=0)
+        gaps = np.min(moved @ normals.T - second.sizes[:, None], axis=0) - below
+        return float(np.max(gaps)), np.asarray(normals[np.argmax(gaps)])
+
+    fan = _sphere(NORMALS)
+    found = best(fan)
+    for spread in SPREADS:
+        found = max(found, best(found[1] + spread * fan), key=lambda each: each[0])
+    return found[0]
+
+
+def _sphere(count: int) -> Array:
+    """Directions that fill the sphere evenly, on a spiral."""
+    i = np.arange(count)
+    z, turn = 1.0 - (2 * i + 1.0) / count, np.pi * (1.0 + np.sqrt(5.0)) * i
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])

@@ -1,0 +1,205 @@
+"""Clearance.from_urdf accepts robots' home postures with the default margin; what a start that is too close says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from test_capsules import ROBOTS, outside, with_robots
+from test_preset_capsules import load_tool, needs_clone, urdf_of
+
+import fpbm_cpp as fp
+from fpbm_cpp._core import PRESETS
+from fpbm_cpp._types import Array
+from fpbm_cpp.clearance import MARGIN
+from fpbm_cpp.io.capsule_fit import Fit
+from fpbm_cpp.io.capsule_gaps import capsules_apart, hulls_apart, link_frames, postures
+from fpbm_cpp.io.capsules import capsules_of
+from fpbm_cpp.io.urdf import read_places
+from fpbm_cpp.io.urdf_shapes import Shape
+
+pytest.importorskip("trimesh")
+
+PI = np.pi
+FRANKA = [[0, -PI / 4, 0, -3 * PI / 4, 0, PI / 2, PI / 4], [0, -0.3, 0, -2.2, 0, 2, 0.785]]
+UR = [[0] * 6, [0, -PI / 2, 0, -PI / 2, 0, 0], [0, -PI / 2, PI / 2, -PI / 2, -PI / 2, 0]]
+# All joints at zero, where a file's own home is that; and those that makers and planners start from.
+HOMES = {
+    "panda": FRANKA,
+    "fr3": FRANKA,
+    "iiwa14": [[0] * 7, [0, PI / 4, 0, -PI / 2, 0, PI / 4, 0]],
+    "gen3": [[0] * 7, np.radians([0, 15, 180, -130, 0, 55, 90]), np.radians([0, -20, 180, -145, 0, -60, 90])],
+    "ur5e": UR,
+    "ur10e": UR,
+}
+
+
+class Other(NamedTuple):
+    urdf: str
+    tip: str
+    base: str | None
+    homes: list[list[float]]
+
+
+OTHERS = {
+    "panda with its hand": Other("panda_description/urdf/panda.urdf", "panda_hand_tcp", None, FRANKA),
+    "xarm7": Other("xarm_description/urdf/xarm7.urdf", "link_eef", None, [[0] * 7]),
+    # Its file's posture "arm_up": at zero the arm is folded onto itself, see below.
+    "z1": Other("z1_description/urdf/z1.urdf", "gripperStator", None, [[0, 0.26178, -0.26178, 0, 0, 0]]),
+    # "arm_up" of its file, within the joints' ranges, and with all joints at half a turn.
+    "kinova": Other(
+        "kinova_description/robots/kinova.urdf",
+        "j2s6s200_end_effector",
+        None,
+        [[1.5707, 2.618, 4.7124, 3.1415, 2.618, 0], [PI] * 6],
+    ),
+}
+
+
+def expect_accepted(urdf: str | Path, tip: str, homes: list[list[float]]) -> None:
+    arm = fp.SerialArm.from_urdf(urdf, tip)
+    clearance = fp.Clearance.from_urdf(urdf, tip)
+    assert clearance.margin == MARGIN
+    for home in homes:
+        nearest = clearance.nearest(arm, home)
+        assert nearest is None or nearest.distance >= MARGIN, (home, nearest)
+
+
+@needs_clone
+@pytest.mark.parametrize("name", PRESETS)
+def test_home_of_a_preset_s_urdf(name: str) -> None:
+    tool = load_tool()
+    with urdf_of(tool, name) as urdf:
+        expect_accepted(urdf, tool.ARMS[name].tip, HOMES[name])
+
+
+@with_robots
+@pytest.mark.parametrize("name", OTHERS)
+def test_home_of_a_robot(name: str) -> None:
+    urdf, tip, base, homes = OTHERS[name]
+    assert base is None
+    expect_accepted(ROBOTS / urdf, tip, homes)
+
+
+@with_robots
+def test_pieces_of_cut_triangles_are_inside() -> None:
+    """Every triangle of a link's meshes is covered: points that fill it are each in some capsule."""
+    urdf, tip, _, _ = OTHERS["panda with its hand"]
+    found = capsules_of(ROBOTS / urdf, tip)
+    assert max(len([c for c in found if c.name == name]) for name in {c.name for c in found}) == 3
+    trimesh = pytest.importorskip("trimesh")
+    places = read_places(ROBOTS / urdf, tip)[2]
+    for k in (5, 7):
+        own = [c for c in found if c.name == f"panda_link{k}"]
+        assert len(own) > 1
+        mesh = trimesh.load(ROBOTS / f"panda_description/meshes/collision/link{k}.stl", force="mesh", process=False)
+        frame = places[f"panda_link{k}"][1]
+        shares = np.random.default_rng(k).dirichlet([1, 1, 1], 200)
+        points = np.einsum("ij,fjk->fik", shares, np.asarray(mesh.triangles)).reshape(-1, 3)
+        assert outside(points @ frame[:3, :3].T + frame[:3, 3], own) <= 1e-12
+
+
+@with_robots
+def test_the_same_each_time() -> None:
+    urdf, tip, _, _ = OTHERS["panda with its hand"]
+    assert capsules_of(ROBOTS / urdf, tip) == capsules_of(ROBOTS / urdf, tip)
+
+
+# Files whose arms, all joints at zero, have meshes closer than the margin: by Coal, 0.0 mm (links 6 and 2) and 1.0 mm
+# (4 and 2) in the z1, 0.3 mm (arm_2_link and torso_fixed_column_link) in TIAGo.
+CLOSE = {
+    "z1": (OTHERS["z1"], r"^q0: link0[46] and link02 overlap by 0\.\d{4} m, with margin=0\.01; give allowed="),
+    "tiago": (
+        Other("tiago_description/robots/tiago_no_hand.urdf", "arm_7_link", "torso_lift_link", []),
+        r"^q0: arm_2_link and torso_\w+ overlap by 0\.\d{4} m, with margin=0\.01; give allowed=",
+    ),
+}
+
+
+@with_robots
+@pytest.mark.parametrize("name", CLOSE)
+def test_links_that_touch_are_refused(name: str) -> None:
+    (urdf, tip, base, _), message = CLOSE[name]
+    arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
+    clearance = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base)
+    with pytest.raises(fp.ParameterError, match=message):
+        fp.Tracker(arm, fp.MVN(), np.zeros(arm.dof), clearance=clearance)
+
+
+def test_the_message_names_both_remedies() -> None:
+    arm = fp.SerialArm.preset("panda")
+    q = np.array([0, -PI / 4, 0, -3 * PI / 4, 0, PI / 2, PI / 4])
+    capsules = fp.Clearance.preset("panda").capsules
+    with pytest.raises(fp.ParameterError) as caught:
+        fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules))
+    assert str(caught.value) == (
+        "q0: panda_link7 and panda_link5 are 0.0089 m apart, closer than margin=0.01; "
+        "give margin=0.0089 or allowed=[('panda_link7', 'panda_link5')]"
+    )
+    assert caught.value.name == "q0"
+    (proposed,) = re.findall(r"give margin=(\S+) or allowed=(.*)", str(caught.value))
+    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, margin=float(proposed[0])))
+    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
+
+
+# What decides where capsules are cut
+
+
+def ball(*centre: float) -> Shape:
+    return Shape(centers=np.array([centre]), radii=np.array([0.1]))
+
+
+def placed(rng: np.random.Generator) -> Array:
+    frame = np.eye(4)
+    frame[:3, :3], frame[:3, 3] = fp.rotation(rng.normal(size=3)), rng.uniform(-1, 1, 3)
+    return frame
+
+
+def test_distances_of_capsules_are_those_of_the_compiled_part() -> None:
+    rng = np.random.default_rng(1)
+    arm = fp.SerialArm([fp.Joint(), fp.Joint(placement=placed(rng), axis=(0, 1, 0)), fp.Joint(placement=placed(rng))])
+    q = rng.uniform(-3, 3, (200, 3))
+    frames = link_frames(arm.joints, q)
+    poses = np.linalg.inv(frames[:, 0]) @ frames[:, 2]
+    for _ in range(10):
+        one, two = (Fit(*rng.uniform(-0.5, 0.5, (2, 3)), 0.01) for _ in range(2))
+        clearance = fp.Clearance([fp.Capsule(0, *one, name="a"), fp.Capsule(2, *two, name="b")], margin=0.0)
+        expected = [clearance.nearest(arm, each).distance for each in q]
+        found = capsules_apart([one], [two], poses)
+        apart = found > 1e-9
+        assert np.count_nonzero(apart) > 100
+        assert np.abs(found - expected)[apart].max() < 1e-9
+
+
+def test_hulls_are_at_least_that_far_apart() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        pose = placed(rng)
+        exact = float(np.linalg.norm(pose[:3, 3])) - 0.2
+        found = hulls_apart(ball(0, 0, 0), ball(0, 0, 0), pose)
+        assert exact - 1e-3 < found <= exact + 1e-12
+
+
+def test_postures_fill_the_ranges() -> None:
+    arm = fp.SerialArm.preset("panda")
+    q = postures(arm.joints, 64)
+    assert np.all((q >= arm.limits.lower) & (q <= arm.limits.upper))
+    assert np.array_equal(q[0], np.clip(np.zeros(7), arm.limits.lower, arm.limits.upper))
+    assert np.array_equal(q[1], (arm.limits.lower + arm.limits.upper) / 2)
+    assert np.all(np.ptp(q, axis=0) > 0.9 * (arm.limits.upper - arm.limits.lower))
+    assert np.all(np.isfinite(postures([fp.Joint(type="continuous", mimic=(1, 2.0, 0.5)), fp.Joint()], 8)))
+
+
+def test_one_capsule_a_link_if_asked(tmp_path: Path) -> None:
+    link = '<link name="{}"><collision><geometry><box size="0.1 0.1 0.3"/></geometry></collision></link>'
+    joint = (
+        '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="0 0 0.12"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1"/></joint>'
+    )
+    file = tmp_path / "arm.urdf"
+    joints = [joint.format(f"j{i}", f"l{i}", f"l{i + 1}") for i in range(3)]
+    file.write_text(f'<robot name="r">{"".join([*(link.format(f"l{i}") for i in range(4)), *joints])}</robot>')
+    assert len(capsules_of(file, "l3", per_link=1)) == 4
