@@ -37,6 +37,9 @@ struct TrackerOptions {
   /// until its target moves, or until resume(). Infinite: it never gives up.
   Scalar stall_time = Scalar(2);
   SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Used where the scheme has none.
+  /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
+  /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
+  int measured_delay = 3;
 };
 
 }  // namespace fpbm
