@@ -81,8 +81,9 @@ TEST(MeasuredLimiter, no_bound_is_exceeded_at_any_age) {
 /// A loop on a joint whose state is measured late: q̈ = α y − β q̇, where y = r − q is the distance to a bound, or β q̇
 /// alone.
 struct Loop {
-  double position;  // α h²
-  double velocity;  // β h
+  double position;      // α h²
+  double velocity;      // β h
+  double filter = 1.0;  // Share of a change of the answer that is made in a tick.
 
   struct Course {
     double last;    ///< Largest state of the last tenth.
@@ -95,10 +96,12 @@ struct Loop {
     std::vector<double> y(static_cast<std::size_t>(ticks + 1), bound ? 1.0 : 0.0);
     std::vector<double> w(static_cast<std::size_t>(ticks + 1), bound ? 0.0 : 1.0);
     Course course{0.0, 0.0};
+    double answer = 0.0;
     for (int i = 0; i < ticks; ++i) {
       const auto now = static_cast<std::size_t>(i);
       const auto old = static_cast<std::size_t>(std::max(i - age, 0));
-      const double u = gain * (position * y[old] - velocity * w[old]);
+      answer += filter * (position * y[old] - velocity * w[old] - answer);
+      const double u = gain * answer;
       w[now + 1] = w[now] + u;
       y[now + 1] = bound ? y[now] - (w[now] + w[now + 1]) / 2.0 : 0.0;
       course.beyond = std::max(course.beyond, bound ? -y[now + 1] : -w[now + 1]);
@@ -127,25 +130,32 @@ struct Loop {
   }
 };
 
-/// The table of docs/realtime.md: gain margins at the declared age, and the largest age.
+/// The table of docs/realtime.md: gain margins at the declared age, and the largest age. Up to the declared age no loop
+/// but the filtered one changes the sign of what it brings to zero, even where the robot accelerates 1.28 times as
+/// much.
 TEST(MeasuredLimiter, has_stability_margins) {
   constexpr double kMargin = 1.5;
   const double rest = 1.0 + std::sqrt(0.5);
-  std::printf("%3s %6s %6s %6s %6s   %-17s   %-17s   %-17s\n", "d", "g", "H/h", "D/h", "T/h", "brake", "velocity bound",
-              "position bound");
+  std::printf("%3s %6s %6s %6s %6s | %-17s | %-17s | %-17s | %-17s\n", "d", "g", "H/h", "D/h", "T/h", "brake",
+              "brake, filtered", "velocity bound", "position bound");
   for (const int d : {1, 2, 3, 5, 10}) {
     const double g = std::pow(d, d) / std::pow(d + 1, d + 1);
     const double H = kMargin / g;
     const double D = rest * H;
     const double T = (1.0 + std::sqrt(2.0)) * H;
-    const Loop loops[] = {{0.0, 1.0 / D}, {0.0, 1.0 / H}, {1.0 / (H * (T + H / 2.0)), (T + H) / (H * (T + H / 2.0))}};
+    const Loop loops[] = {{0.0, 1.0 / D},
+                          {0.0, 1.0 / D, 2.0 / D},
+                          {0.0, 1.0 / H},
+                          {1.0 / (H * (T + H / 2.0)), (T + H) / (H * (T + H / 2.0))}};
     std::printf("%3d %6.4f %6.2f %6.2f %6.2f", d, g, H, D, T);
     for (const Loop& loop : loops) {
-      std::printf("   gain %4.1f, age %3d", loop.gain_margin(d), loop.oldest());
+      std::printf(" | gain %4.1f, age %3d", loop.gain_margin(d), loop.oldest());
       EXPECT_GE(loop.gain_margin(d), 4.0);
       EXPECT_GE(loop.oldest(), 4 * d);
       for (int age = 0; age <= d; ++age) {
-        for (const double gain : {1.0, 1.28}) EXPECT_LE(loop.run(gain, age, 6000).beyond, 1e-12) << d << " " << age;
+        for (const double gain : {1.0, 1.28}) {
+          EXPECT_LE(loop.run(gain, age, 6000).beyond, loop.filter < 1.0 ? 0.2 : 1e-12) << d << " " << age;
+        }
       }
     }
     std::printf("\n");

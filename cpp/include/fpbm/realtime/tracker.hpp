@@ -155,7 +155,12 @@ class Tracker {
     watch(loop.kinematics, reference, result);
     auto rows = guard().rows(limits, measured);
     result.status = loop.resolve(kept_.correction()(reference), dx);
-    if constexpr (kGuarded) guard().bound_tip_speed(limits, measured, loop.qdd, rows);
+    if constexpr (kGuarded) {
+      // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
+      guard().bound_tip_speed(limits, measured, loop.qdd, rows);
+      const Scalar share = kept_.dt() / limits.tick();
+      if (share < Scalar(1)) guard().bound_tip_speed(limits, measured, share * loop.qdd, rows);
+    }
     const bool braking = kept_.stopping() || result.status >= Status::kStalled;
     const auto found = braking
                            ? measured_.brake(measured, answer_)
