@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
@@ -91,8 +93,11 @@ void expect_within(const JointLimits<kOpen>& bounds, const State<kOpen>& state, 
 }
 
 /// Moves fast toward targets that jump, until stop(): within a second no acceleration exceeds 1 % of its bound.
+///
+/// busiest: raised to the greatest of their shares.
 template <typename Space>
-void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age, const Sensor& sensor) {
+void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age, const Sensor& sensor,
+                    double& busiest) {
   const SerialArm<kOpen> arm(preset.chain());
   const JointLimits<kOpen> bounds = bounds_of(arm, kind);
   Random random(static_cast<std::uint32_t>(100 * kind + 10 * delay + age));
@@ -129,26 +134,33 @@ void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age,
     if (i >= 1000) busy = std::max(busy, share);
   }
   EXPECT_LE(busy, 0.01);
+  busiest = std::max(busiest, busy);
 }
 
 template <typename Space>
-void expect_every_preset_to_stop() {
+void expect_every_preset_to_stop(std::array<double, kSensors.size()>& busiest) {
   for (const presets::Preset& preset : presets::kAll) {
     for (int kind = 0; kind < 3; ++kind) {
       for (const int delay : {1, 3}) {
         for (int age = 0; age <= delay; ++age) {
-          const Sensor& sensor = kSensors[static_cast<std::size_t>(age + delay + kind) % kSensors.size()];
+          const auto which = static_cast<std::size_t>(age + delay + kind) % kSensors.size();
+          const Sensor& sensor = kSensors[which];
           SCOPED_TRACE(::testing::Message() << preset.name << ", bounds " << kind << ", declared " << delay << ", age "
                                             << age << ", step " << sensor.step);
-          expect_to_stop<Space>(preset, kind, delay, age, sensor);
+          expect_to_stop<Space>(preset, kind, delay, age, sensor, busiest[which]);
         }
       }
     }
   }
 }
 TEST(MeasuredDelay, every_preset_stops) {
-  expect_every_preset_to_stop<Pose>();
-  expect_every_preset_to_stop<Position<3>>();
+  std::array<double, kSensors.size()> busiest{};
+  expect_every_preset_to_stop<Pose>(busiest);
+  expect_every_preset_to_stop<Position<3>>(busiest);
+  for (std::size_t i = 0; i < kSensors.size(); ++i) {
+    std::printf("step %g rad, noise %g rad/s: 1 s after stop() at most %.2f %% of a bound\n", kSensors[i].step,
+                kSensors[i].noise, 100.0 * busiest[i]);
+  }
 }
 
 /// The null space presses a joint on its bound: it comes to rest there. Whether the joint came to its bound.
