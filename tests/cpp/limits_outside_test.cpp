@@ -98,7 +98,7 @@ TEST(Outside, joints_come_to_rest_when_told_to_stop) {
     Tracker tracker(panda, Position<3>{}, holding_scheme(kReady), kReady, options);
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     tracker.stop();
-    const double slow = delay == 0 ? kTick : 0.025;  // Of the speed's last decay.
+    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D, and the filter's time constant.
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
       Random random(seed);
       const auto joint = static_cast<Eigen::Index>(seed % 7);
