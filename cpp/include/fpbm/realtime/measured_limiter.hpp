@@ -24,8 +24,8 @@ inline void require_measured_delay(int delay) {
 ///
 /// The bounds on velocity and the braking envelopes are those of Limits with a longer tick H: each is approached with a
 /// feedback on the measured velocity of gain β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest for which
-/// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset that offset() gives them, the envelopes are approached
-/// without overshoot. docs/realtime.md derives H, the offset and their stability margins.
+/// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset that offset() gives them, the envelopes are
+/// approached without overshoot. docs/realtime.md derives H, the offset and their stability margins.
 ///
 /// A bound J on the jerk limits the steps from one answer to the next. Where H ≥ A/J, the accelerations that keep the
 /// other bounds never need a greater jerk.
