@@ -100,10 +100,18 @@ def simulate(
     limits: fp.JointLimits | None = None,
     inertia_error: float = 0.02,
     friction: float = 1.0,
+    delay: int = 0,  # The simulated state is exact and of this moment.
     end: float = END,
 ) -> Motion:
     tracker = fp.Tracker(
-        ARM, fp.FPBM(0.6, WEIGHTS, **scheme), HOME, task="pose", dt=DT, limits=limits or margins(), **integral
+        ARM,
+        fp.FPBM(0.6, WEIGHTS, **scheme),
+        HOME,
+        task="pose",
+        dt=DT,
+        limits=limits or margins(),
+        measured_delay=delay,
+        **integral,
     )
     arm = mujoco.MjModel.from_xml_string(panda_mjcf(friction=friction, timestep=DT / STEPS))
     belief = mujoco.MjModel.from_xml_string(panda_mjcf(friction=0.0, inertia_error=inertia_error))

@@ -194,7 +194,7 @@ void bind_realtime(py::module_& m) {
       R"(Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
 
 tick integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities.
-resolve_measured answers for a state measured just now, with the acceleration that a torque controller is to realise.
+resolve_measured answers for a measured state, with the acceleration that a torque controller is to realise.
 Never feed a measured state to tick. A scheme of velocity level is kept within the same limits.
 
 Parameters
@@ -226,6 +226,9 @@ singular_radius, singular_brake : float
 null_damping : float
     Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
     rest; 0 switches it off.
+measured_delay : int
+    Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
+    tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
 clearance : Clearance, optional
     What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
     obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
@@ -237,9 +240,10 @@ ParameterError
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
                        double error_bound, double gain, double bound, double stall_time, double radius, double brake,
-                       double null_damping, const py::object& clearance) {
+                       double null_damping, int measured_delay, const py::object& clearance) {
              const SingularDamping<> singular(radius, brake);
-             const TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
+             TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
+             options.measured_delay = measured_delay;
              return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options, clearance);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
@@ -248,7 +252,8 @@ ParameterError
            py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake(),
-           py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("clearance") = none)
+           py::arg("null_damping") = TrackerOptions<>().null_damping,
+           py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
@@ -261,7 +266,9 @@ x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows 
 where no motion can be found the arm brakes, and the tick's status says why.)")
       .def("resolve_measured", &PyTracker::resolve_measured, py::arg("q"), py::arg("qd"), py::arg("x"),
            py::arg("xd") = none, py::arg("xdd") = none,
-           "The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.")
+           R"(The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller to realise.
+
+The state may be up to measured_delay ticks old.)")
       .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5,
            "A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].")
       .def(

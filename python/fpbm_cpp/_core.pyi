@@ -525,7 +525,7 @@ class Tracker:
     Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
 
     tick integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities.
-    resolve_measured answers for a state measured just now, with the acceleration that a torque controller is to realise.
+    resolve_measured answers for a measured state, with the acceleration that a torque controller is to realise.
     Never feed a measured state to tick. A scheme of velocity level is kept within the same limits.
 
     Parameters
@@ -557,6 +557,9 @@ class Tracker:
     null_damping : float
         Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
         rest; 0 switches it off.
+    measured_delay : int
+        Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
+        tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
     clearance : Clearance, optional
         What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
         obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
@@ -584,6 +587,7 @@ class Tracker:
         singular_radius: typing.SupportsFloat | typing.SupportsIndex = 0.02,
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
         null_damping: typing.SupportsFloat | typing.SupportsIndex = 2.0,
+        measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
         clearance: typing.Any = None,
     ) -> None: ...
     def follow(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
@@ -606,7 +610,9 @@ class Tracker:
         xdd: numpy.typing.ArrayLike | None = None,
     ) -> Tick:
         """
-        The tick for a state measured now: its qdd [rad/s^2] is what a torque controller is to realise.
+        The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller to realise.
+
+        The state may be up to measured_delay ticks old.
         """
     def resume(self) -> None:
         """

@@ -307,10 +307,12 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   }
 }
 
-/// The answer for a measured state is the scheme's where no limit is near, and within the box elsewhere. The tracker's
-/// own state does not change.
+/// The answer for an exact measured state is the scheme's where no limit is near, and within the box elsewhere. The
+/// tracker's own state does not change.
 TEST(Tracker, answers_for_a_measured_state) {
-  auto tracker = panda_tracker(settling());
+  TrackerOptions<> exact;
+  exact.measured_delay = 0;
+  auto tracker = panda_tracker(settling(), exact);
   const auto home = Reference<Pose>::hold(tracker.tip());
   const Limits<Level::kAcceleration, 7> limits(panda().limits(), kTick);
   Random random(11);

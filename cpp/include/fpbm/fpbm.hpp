@@ -90,6 +90,7 @@
 #include "fpbm/objective/second_task.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/limited_state.hpp"
+#include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/slow_down.hpp"

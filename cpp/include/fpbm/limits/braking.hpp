@@ -6,12 +6,16 @@ namespace fpbm {
 
 /// All joints slow down in proportion, as fast as their accelerations allow; a joint that must brake harder, as a box
 /// of the limits says, does. At acceleration level a joint beyond its range stops there.
+///
+/// least: time in which a joint may come to rest, a tick unless given; the last of its speed then decays as
+/// exp(-t/least).
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
-                                                    const State<N, Scalar>& state, const Box<N, Scalar>& box) noexcept {
+                                                    const State<N, Scalar>& state, const Box<N, Scalar>& box,
+                                                    Scalar least) noexcept {
   using JointVector = Vector<N, Scalar>;
   const JointVector& most = limits.bounds().acceleration;
-  Scalar rate = Scalar(1) / limits.tick();
+  Scalar rate = Scalar(1) / least;
   for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
     const Scalar speed = std::abs(state.qd(i));
     const Scalar fastest = limits.bounds_jerk(i) ? limits.jerk_limited(i).change(speed) : most(i);
@@ -19,11 +23,16 @@ template <Level kLevel, int N, typename Scalar>
   }
   if constexpr (kLevel == Level::kAcceleration) {
     // In the box of every viable state; not where a joint beyond its range should return, which may wait.
-    const JointVector halt = (state.qd / -limits.tick()).cwiseMax(-most).cwiseMin(most);
+    const JointVector halt = (state.qd / -least).cwiseMax(-most).cwiseMin(most);
     const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
     return wider.nearest(-rate * state.qd);
   }
   return box.nearest((Scalar(1) - rate * limits.tick()) * state.qd);
+}
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
+                                                    const State<N, Scalar>& state, const Box<N, Scalar>& box) noexcept {
+  return brake_in_proportion(limits, state, box, limits.tick());
 }
 
 /// The motion to rest after a tick of acceleration last: as brake_in_proportion(), but each joint with a bound on its

@@ -42,6 +42,9 @@ struct TrackerOptions {
   /// self-motion of these schemes never comes to rest. 2 is the library's usual value: self-motion decays to 1 % in
   /// 2.3 s.
   Scalar null_damping = Scalar(2);
+  /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
+  /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
+  int measured_delay = 3;
 
   /// The damping for a scheme of an arm whose task has so many rows: without a null space, none of it.
   [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, int rows) const noexcept {

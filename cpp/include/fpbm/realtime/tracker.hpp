@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/realtime/limited_state.hpp"
+#include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -50,7 +51,11 @@ class Tracker {
   /// qdd0: acceleration of the tick before, for bounds on jerk. guard: what the arm keeps clear of.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
-      : arm_(arm), scheme_(scheme), kept_(options, limits, start, qdd0, guard), answer_(qdd0) {
+      : arm_(arm),
+        scheme_(scheme),
+        kept_(options, limits, start, qdd0, guard),
+        measured_(limits, options.measured_delay),
+        answer_(qdd0) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != options.dt) {
@@ -135,17 +140,17 @@ class Tracker {
     return result.status;
   }
 
-  /// The acceleration within the limits for a measured state; the tracker's own state does not change. It never stalls:
-  /// without feedback of the tip a measured arm would sag.
+  /// The acceleration within the limits for a measured state, up to options.measured_delay ticks old; the tracker's own
+  /// state does not change. It never stalls: without feedback of the tip a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
-    const auto& limits = kept_.limits();
+    const auto& limits = measured_.limits();
     Result result = kept_.idle(measured);
     if (!kept_.moderate(measured)) {
       result.status = Status::kNotFinite;
       result.scale = Scalar(0);
-      result.qdd = answer_ = fade(limits, answer_);
+      result.qdd = answer_ = fade(kept_.limits(), answer_);
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
@@ -154,8 +159,22 @@ class Tracker {
     watch(loop.kinematics, reference, result);
     auto rows = guard().rows(limits, measured);
     result.status = loop.resolve(kept_.correction()(reference), dx);
-    if constexpr (kGuarded) guard().bound_tip_speed(limits, measured, loop.qdd, rows);
-    result.qdd = answer_ = kept_.limited(loop.kinematics, measured, answer_, loop.qdd, rows, result);
+    if constexpr (kGuarded) {
+      // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
+      guard().bound_tip_speed(limits, measured, loop.qdd, rows);
+      const Scalar share = kept_.dt() / limits.tick();
+      if (share < Scalar(1)) guard().bound_tip_speed(limits, measured, share * loop.qdd, rows);
+    }
+    const bool braking = kept_.stopping() || result.status >= Status::kStalled;
+    const auto found = braking
+                           ? measured_.brake(measured, answer_)
+                           : measured_.motion(jacobian_in_metres(loop.kinematics), measured, loop.qdd, answer_, rows);
+    result.scale = found.scale;
+    result.saturated = found.joints;
+    if (found.scale < Scalar(1) && !braking) {
+      result.status = guard().is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
+    }
+    result.qdd = answer_ = found.u;
     if (result.status == Status::kOk) kept_.correction().integrate();
     return result;
   }
@@ -182,6 +201,7 @@ class Tracker {
 
  private:
   using Loop = ClosedLoop<Arm, Scheme, Space>;
+  using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
   using X = typename Loop::X;
 
   [[nodiscard]] static X packed(const JointState& state) noexcept {
@@ -200,6 +220,7 @@ class Tracker {
   Arm arm_;
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
+  Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };
 

@@ -1,0 +1,176 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fpbm/core/validation.hpp"
+#include "fpbm/limits/limiter.hpp"
+
+namespace fpbm {
+
+/// Largest age of a measured state [ticks].
+inline constexpr int kMaxMeasuredDelay = 100;
+
+/// Throws std::invalid_argument where a measured state cannot be so old [ticks].
+inline void require_measured_delay(int delay) {
+  if (delay < 0 || delay > kMaxMeasuredDelay) {
+    validation::fail("measured_delay", delay, "a number of ticks from 0 to ", kMaxMeasuredDelay,
+                     ": give the largest age of the measured states, divided by dt");
+  }
+}
+
+/// Keeps the joint limits of an arm whose measured state is up to d ticks old. The age need not be known or constant.
+///
+/// The bounds on velocity and the braking envelopes are those of Limits with a longer tick H: each is approached with a
+/// feedback on the measured velocity of gain β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest for which
+/// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset that offset() gives them, the envelopes are
+/// approached without overshoot. docs/realtime.md derives H, the offset and their stability margins.
+///
+/// A bound J on the jerk limits the steps from one answer to the next. Where H ≥ A/J, the accelerations that keep the
+/// other bounds never need a greater jerk.
+///
+/// d = 0: the state is exact, and Limits are used as they are.
+template <int N, typename Scalar = double>
+class MeasuredLimiter {
+ public:
+  static constexpr Level kLevel = Level::kAcceleration;
+  using JointVector = Vector<N, Scalar>;
+  using JointState = State<N, Scalar>;
+  using JointLimits = Limits<kLevel, N, Scalar>;
+
+  /// Throws std::invalid_argument where the delay d is not in [0, kMaxMeasuredDelay].
+  MeasuredLimiter(const JointLimits& limits, int delay)
+      : delayed_(delay > 0),
+        limiter_(delayed_ ? slower(limits, horizon(limits, delay)) : limits),
+        unit_(limits.bounds().acceleration),
+        step_(limits.tick() * limits.bounds().jerk),
+        filter_(std::min(Scalar(2) * limits.tick() / (kRest * limiter_.limits().tick()), Scalar(1))),
+        bounds_jerk_(delayed_ && limits.bounds_jerk()) {
+    require_measured_delay(delay);
+    for (Eigen::Index i = 0; i < unit_.size(); ++i) {
+      if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
+    }
+  }
+
+  /// The limits for measured states.
+  [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
+
+  /// As Limiter::motion().
+  template <int M, int P>
+  [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
+                                            const JointVector& desired, const JointVector& last,
+                                            const Rows<N, P, Scalar>& rows) const noexcept {
+    const Saturated<N, Scalar> found = limiter_.motion(J, state, desired, last, rows);
+    if (!bounds_jerk_) return found;
+    const Box<N, Scalar> box = in_reach(limits().box(state), last);
+    if (box.contains(found.u) && rows.admit(found.u)) return found;
+    const JointVector from = rows.near(box.nearest(last), box);
+    NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit_, rows);
+    Saturated<N, Scalar> next = saturation(box, from, found.u);
+    if (!next.u.allFinite()) return {from, Scalar(0), next.joints, next.passes, next.rows};
+    next.scale *= found.scale;
+    return next;
+  }
+
+  /// As Limiter::brake(). The last of the speed decays as exp(−t/D), with a low-pass filter of time constant D/2
+  /// against noise, which lets large changes through.
+  [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
+    if (!delayed_) return limiter_.brake(state, last);
+    const Scalar D = kRest * limits().tick();
+    const JointVector& most = limits().bounds().acceleration;
+    const Box<N, Scalar> box = limits().box(state);
+    const JointVector u = brake_in_proportion(limits(), state, box, D);
+    // Limits that still allow braking at rate 1/D, which keeps the envelopes.
+    const JointVector halt = (state.qd / -D).cwiseMax(-most).cwiseMin(most);
+    const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
+    JointVector smooth = u;
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      const Scalar change = u(i) - last(i);
+      const Scalar share = std::min(std::abs(change) / (kLarge * most(i)), Scalar(1));
+      smooth(i) = last(i) + std::max(filter_, share * share) * change;
+      if (std::abs(smooth(i)) < kZero) smooth(i) = Scalar(0);  // Denormal numbers are slow.
+    }
+    smooth = wider.nearest(smooth);
+    return {in_reach({smooth, smooth}, last).lower, Scalar(0), 0, 0};
+  }
+
+ private:
+  /// H. The feedback on the velocity is (T + H)/(T + H/2)/H at most, 1.172/H.
+  [[nodiscard]] static Scalar horizon(const JointLimits& limits, int delay) {
+    const Scalar d = static_cast<Scalar>(delay);
+    const Scalar gain = std::pow(d / (d + Scalar(1)), d) / (d + Scalar(1));  // g
+    Scalar longest = std::max(kMargin * limits.tick() / gain, kQuiet);
+    for (Eigen::Index i = 0; i < limits.bounds().jerk.size(); ++i) {
+      if (limits.bounds_jerk(i)) longest = std::max(longest, limits.bounds().acceleration(i) / limits.bounds().jerk(i));
+    }
+    return longest;
+  }
+
+  /// T, the offset over the deceleration of the envelopes of Limits with tick H, such that the arm keeps those of
+  /// offset D: T = D + H²/2(D − H).
+  [[nodiscard]] static Scalar offset(Scalar D, Scalar H) noexcept { return D + H * H / (Scalar(2) * (D - H)); }
+
+  /// Limits of tick H, without bounds on jerk, which keep the envelopes of given ones.
+  [[nodiscard]] static JointLimits slower(const JointLimits& limits, Scalar H) {
+    fpbm::JointLimits<N, Scalar> bounds = limits.bounds();
+    for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) {
+      JointBounds<Scalar> joint = bounds.joint(i);
+      joint.jerk = JointBounds<Scalar>::kNone;
+      const Scalar range = joint.upper - joint.lower;
+      const Scalar end = std::min(kEnd, kLeast * range);
+      Scalar D = kRest * H;
+      if (std::isfinite(joint.deceleration)) D = std::max(D, joint.velocity_offset / joint.deceleration);
+      const Scalar T = offset(D, H);
+      // Any greater deceleration brakes from all of the range within T.
+      const Scalar d = std::min({joint.deceleration, joint.acceleration, Scalar(16) * range / (T * T)});
+      joint.velocity_offset = std::isfinite(d) ? T * d : Scalar(0);
+      joint.deceleration = d;
+      // Where the envelopes' velocity would be −c, so that it is zero at the range's end.
+      const Scalar beyond = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
+      joint.upper += beyond - end;
+      joint.lower -= beyond - end;
+      bounds.set(i, joint);
+    }
+    return {bounds, H};
+  }
+
+  /// A box, or what bounds on acceleration and jerk admit nearest to it.
+  [[nodiscard]] Box<N, Scalar> in_reach(const Box<N, Scalar>& box, const JointVector& last) const noexcept {
+    if (!bounds_jerk_) return box;
+    const JointVector low = last - step_;
+    const JointVector high = last + step_;
+    return {box.lower.cwiseMax(low).cwiseMin(high), box.upper.cwiseMax(low).cwiseMin(high)};
+  }
+
+  /// H g/h: 1.172, the least possible (horizon()), times 1.28 for accelerations that exceed the commanded ones.
+  static constexpr Scalar kMargin = Scalar(1.5);
+  /// Least H [s]: noise of ±0.001 rad/s on q̇ then becomes at most 0.5 % of 5 rad/s² after stop()
+  /// (MeasuredDelay.every_preset_stops).
+  static constexpr Scalar kQuiet = Scalar(0.014);
+  static constexpr Scalar kLarge = Scalar(0.25);  ///< Changes of the brake that are not filtered, over the bound.
+  /// Least D/H, 1 + 1/√2, for which T is least.
+  static constexpr Scalar kRest = Scalar(1.70710678118654752440);
+  /// Envelopes end before the range does: twice the step of a coarse encoder of 1e-4 rad, and a share of the range.
+  static constexpr Scalar kEnd = Scalar(2e-4);
+  static constexpr Scalar kLeast = Scalar(1e-3);
+
+  static constexpr Scalar kZero = std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
+
+  bool delayed_;
+  Limiter<kLevel, N, Scalar> limiter_;
+  JointVector unit_;  ///< Unit of each joint's motion in the null space.
+  JointVector step_;  ///< Largest change of the acceleration in a tick.
+  Scalar filter_;     ///< Share of a small change of the brake that is made in a tick.
+  bool bounds_jerk_;
+};
+
+/// In its place where a scheme's answers are velocities.
+struct NoMeasuredLimiter {
+  template <typename JointLimits>
+  NoMeasuredLimiter(const JointLimits&, int delay) {
+    require_measured_delay(delay);
+  }
+};
+
+}  // namespace fpbm
