@@ -6,14 +6,15 @@ namespace fpbm {
 /// Up to kStalled there is a result; from kSingular on there is none.
 enum class Status : unsigned char {
   kOk = 0,
-  kCoarse,     ///< The steps are too long: they, and not the scheme, made a tip error that counts.
-  kDamped,     ///< Near a singular posture: motion in the directions that the tip loses there is damped.
-  kSlowed,     ///< The joint limits leave no room for the whole task: it is scaled down.
-  kBlocked,    ///< Shapes that the arm keeps clear of leave no room for the whole task: it is scaled down.
-  kStalled,    ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
-  kSingular,   ///< The task Jacobian has lost rank, to round-off.
-  kTaskLost,   ///< The tip left the motion that the scheme prescribes within one step.
-  kNotFinite,  ///< The state, the reference or the result is infinite or not a number.
+  kCoarse,      ///< The steps are too long: they, and not the scheme, made a tip error that counts.
+  kDamped,      ///< Near a singular posture: motion in the directions that the tip loses there is damped.
+  kSlowed,      ///< The joint limits leave no room for the whole task: it is scaled down.
+  kBlocked,     ///< Shapes that the arm keeps clear of leave no room for the whole task: it is scaled down.
+  kRecovering,  ///< The arm came no nearer to its target: it moves to a posture from which it can reach the target.
+  kStalled,     ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
+  kSingular,    ///< The task Jacobian has lost rank, to round-off.
+  kTaskLost,    ///< The tip left the motion that the scheme prescribes within one step.
+  kNotFinite,   ///< The state, the reference or the result is infinite or not a number.
 };
 
 /// Whether there is no result.
@@ -34,6 +35,8 @@ enum class Status : unsigned char {
     case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
     case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
     case Status::kBlocked: return "shapes that the arm keeps clear of leave no room for the whole task: it is slowed";
+    case Status::kRecovering:
+      return "the arm came no nearer to its target: it moves to a posture from which it can reach the target";
     case Status::kStalled: return "the arm comes no nearer to its target, which may be out of reach: it rests";
     case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
     case Status::kTaskLost:
@@ -52,6 +55,7 @@ enum class Status : unsigned char {
     case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
     case Status::kBlocked:
       return "Lead the target around the nearest shape, or expect a tip error while it is in the way.";
+    case Status::kRecovering: return "Expect a tip error until the arm has reached that posture.";
     case Status::kStalled: return "Move the target into reach, or call resume() to try again.";
     case Status::kSingular:
       return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";

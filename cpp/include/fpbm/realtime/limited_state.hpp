@@ -6,6 +6,7 @@
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
+#include "fpbm/realtime/recovery.hpp"
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -32,7 +33,13 @@ class LimitedState {
         limiter_(limits),
         guard_(guard),
         state_(start),
-        last_(qdd0) {}
+        last_(qdd0),
+        recovery_(start.q, options.stall_time, options.dt) {}
+
+  /// The tip of the start posture, and the arm's characteristic length [m]: the first posture to recover to.
+  void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
+    recovery_.remember(state_.q, tip, length);
+  }
 
   [[nodiscard]] Scalar dt() const noexcept { return dt_; }
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
@@ -48,7 +55,7 @@ class LimitedState {
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept {
     stopping_ = false;
-    stall_.reset();
+    try_again();
   }
 
   /// The result of a tick in which nothing has happened yet.
@@ -69,7 +76,8 @@ class LimitedState {
   void take(Loop& loop, const Target& now, JointState next, const JointVector& field, Result& result) noexcept {
     auto rows = guard_.rows(limits(), state_);
     if constexpr (kGuarded) {
-      if (stall_.stalled()) stall_.wait(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
+      const bool at_rest = state_.qd.isZero(Scalar(0));
+      if (stall_.stalled() && stall_.wait(at_rest, guard_.room(), correction_.length())) try_again();
     }
     if constexpr (kSecondOrder) {
       if (limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
@@ -83,9 +91,15 @@ class LimitedState {
       guard_.bound_tip_speed(limits(), state_, motion_to(next), rows);
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
-    if (stall_.stalled()) result.status = worse(result.status, Status::kStalled);
-    if (stopping_ || result.status >= Status::kStalled || !limits().admits(state_, next, last_) ||
-        !rows.admit(motion_to(next))) {
+    const bool recovering = recovery_.active() && !stopping_ && !failed(result.status);
+    if (stall_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
+    if (recovering) {
+      const Box<N, Scalar> box = limits().box(state_, last_);
+      next = after(rows.near(box.nearest(recovery_.motion(limits(), state_)), box));
+      result.status = Status::kRecovering;
+      result.scale = Scalar(0);
+    } else if (stopping_ || result.status >= Status::kStalled || !limits().admits(state_, next, last_) ||
+               !rows.admit(motion_to(next))) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
@@ -116,10 +130,14 @@ class LimitedState {
     result.q = next.q;
     result.qd = next.qd;
     result.qdd = last_ = (next.qd - state_.qd) / dt_;
+    const JointVector q = state_.q;
     state_ = next;
     if (stopping_ || failed(result.status)) return;
-    if (result.status == Status::kOk) correction_.integrate();
-    if (result.scale < Scalar(1) || correction_.far()) stall_.update(now.x, result.error, correction_.length());
+    if (recovering) return recover(now.x);
+    if (result.status != Status::kOk || correction_.far()) return watch_progress(now.x, result);
+    correction_.integrate();
+    recovery_.settle();
+    if (recovery_.is_new(q)) remember(q, now.x, result);
   }
 
   /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
@@ -143,6 +161,35 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+  using Distance = TaskDistance<Space, Scalar>;
+  using Point = typename Space::template Point<Scalar>;
+
+  void try_again() noexcept {
+    stall_.reset();
+    recovery_.renew();
+  }
+
+  /// After a tick that did not do the whole task.
+  void watch_progress(const Point& target, const Result& result) noexcept {
+    const Scalar length = correction_.length();
+    const Scalar error = Distance::norm(result.error, length);
+    if (stall_.has_moved(target, length)) recovery_.renew();
+    stall_.update(target, error, length);
+    recovery_.follow(target, length);
+    if (result.status == Status::kStalled && stall_.stalled()) recovery_.begin(state_.q, target, error, length);
+  }
+
+  /// After a tick of a recovery.
+  void recover(const Point& target) noexcept {
+    if (stall_.has_moved(target, correction_.length())) return try_again();
+    if (recovery_.advance(state_.q)) stall_.reset();
+  }
+
+  /// After a tick that began in a posture q and did the whole task.
+  void remember(const JointVector& q, const Point& target, const Result& result) noexcept {
+    const Scalar length = correction_.length();
+    if (Distance::norm(result.error, length) < Distance::kProgress) recovery_.remember(q, target, length);
+  }
 
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
   template <typename Arm>
@@ -177,6 +224,7 @@ class LimitedState {
   Guard_ guard_;
   JointState state_;
   JointVector last_;  ///< Acceleration of the last tick.
+  Recovery<Space, N, Scalar> recovery_;
   bool stopping_ = false;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 #include "fpbm/core/types.hpp"
@@ -12,143 +11,163 @@
 
 namespace fpbm {
 
-/// Leads an arm out of a posture in which it stands still away from its target, a local minimum of the error: a singular
-/// posture with Jᵀe = 0, or joints at the ends of their ranges.
+/// Leads a stalled arm to a posture from which its target can be reached.
 ///
-/// The arm remembers postures in which it did its task whole, kPostures of them, as far apart as possible. Where it has
-/// stalled and one of them is nearer to the target than the arm ever came, the joints move straight to that posture, and
-/// the scheme goes on from there. Each recovery lowers the least error by more than a step, so that there are finitely
-/// many for a target at rest, and none for a target that is out of reach and whose nearest point the arm has come to.
+/// An arm that follows a target out of reach and back may stand still away from a reachable target: in a singular
+/// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave such a minimum of
+/// the error. So the arm remembers up to kPostures postures in which it did the whole task, with tips as far apart as
+/// possible. If the arm has stalled and a remembered tip is nearer to the target than the arm's own tip, the joints
+/// move to that posture in a straight line, and the scheme continues from there.
+///
+/// Each recovery starts toward a tip that is nearer to the target than the one before by more than a step of progress.
+/// A target at rest therefore causes at most kPostures recoveries. A target out of reach causes none if the arm has
+/// stalled nearer to the target than any remembered tip.
 template <typename Space, int N, typename Scalar = double>
 class Recovery {
  public:
   using JointVector = Vector<N, Scalar>;
-  using JointState = State<N, Scalar>;
   using Point = typename Space::template Point<Scalar>;
   using Distance = TaskDistance<Space, Scalar>;
 
-  /// start, tip: a posture that the arm is in, and its tip there. patience: how long the joints may come no nearer to
-  /// the posture that they move to [s].
-  explicit Recovery(const JointVector& start, Scalar patience, Scalar dt) noexcept
-      : goal_(start), last_(start), patience_(patience), dt_(dt) {}
+  static constexpr int kPostures = 8;  ///< 1.3 kB of memory for seven joints and a pose.
 
+  /// patience: time without progress toward the posture after which the arm gives up [s]. dt: tick [s].
+  Recovery(const JointVector& q, Scalar patience, Scalar dt) noexcept : patience_(patience), dt_(dt), goal_(q) {}
+
+  /// Whether the joints are moving to a remembered posture.
   [[nodiscard]] bool active() const noexcept { return active_; }
-  void end() noexcept { active_ = false; }
 
-  /// Whether a posture is far enough from the last one that was remembered to be worth a look.
+  /// Whether a posture differs from the last one passed to remember() by more than kApart in some joint.
   [[nodiscard]] bool is_new(const JointVector& q) const noexcept {
-    return count_ == 0 || (q - last_).cwiseAbs().maxCoeff() > kApart;
+    return count_ == 0 || (q - seen_).cwiseAbs().maxCoeff() > kApart;
   }
 
-  /// A posture in which the task is done whole. tip: the tip there. Where all places are taken, the nearest two of all
-  /// become one: the newer.
+  /// Remembers a posture in which the task is done whole, and its tip, unless a remembered tip is within kSpread. If
+  /// the memory is full, the posture replaces the older one of the two whose tips are nearest to each other. length:
+  /// the arm's characteristic length [m].
   void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
-    last_ = q;
+    seen_ = q;
     for (int i = 0; i < count_; ++i) {
-      if (Distance::of(known_[i].tip, tip, length) < kSpread) return;
+      if (Distance::between(known_[i].tip, tip, length) < kSpread) return;
     }
-    int place = count_;
-    Scalar least = std::numeric_limits<Scalar>::infinity();
-    for (int i = 0; count_ == kPostures && i < count_; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const Scalar gap = Distance::of(known_[i].tip, known_[j].tip, length);
-        if (gap < least) least = gap, place = known_[i].since < known_[j].since ? i : j;
-      }
-    }
-    if (place == count_) ++count_;
-    known_[place] = {q, tip, ++clock_};
+    known_[count_ < kPostures ? count_++ : most_crowded(length)] = {q, tip, ++age_};
   }
 
-  /// The target has moved: all postures may be tried again.
-  void forget_tries() noexcept {
-    near_tried_ = false;
-    bar_ = std::numeric_limits<Scalar>::infinity();
+  /// Call after a tick that does not do the whole task: notes how far the target has gone from the remembered tips.
+  void follow(const Point& target, Scalar length) noexcept {
+    farthest_ = std::max(farthest_, nearest(target, length).distance);
   }
+  /// The task is done whole.
+  void settle() noexcept { farthest_ = Scalar(0); }
 
-  /// Starts toward the remembered posture whose tip is nearest to a target, where the arm has stalled with some error.
-  bool begin(const JointVector& q, const Point& target, Scalar length, Scalar error) noexcept {
-    int best = -1;
-    Scalar least = std::numeric_limits<Scalar>::infinity();
-    for (int i = 0; i < count_; ++i) {
-      const Scalar gap = Distance::of(target, known_[i].tip, length);
-      if (!(gap < least)) continue;
-      least = gap;
-      best = i;
-    }
-    if (best < 0) return false;
-    const bool nearer = least < std::min(error, bar_) - kStep;
-    if (!nearer && (near_tried_ || least > kNear)) return false;
-    if (!nearer) near_tried_ = true;
-    bar_ = least;
+  /// Starts toward the remembered posture whose tip is nearest to the target. error: distance of the arm's own tip.
+  /// False if that posture promises nothing: its tip is not nearer to the target than the arm's own tip and the tip of
+  /// the last recovery, and the target has not come back, or was tried already.
+  bool begin(const JointVector& q, const Point& target, Scalar error, Scalar length) noexcept {
+    const auto [distance, best] = nearest(target, length);
+    const Scalar bound = std::min(error, tried_);
+    const bool nearer = distance < bound - Distance::step(bound);
+    if (!nearer && (returned_ || !(distance < kReturned * farthest_))) return false;
+    returned_ = returned_ || !nearer;
+    tried_ = distance;
     goal_ = known_[best].q;
-    first_ = least_ = (goal_ - q).norm();
+    whole_ = left_ = (goal_ - q).norm();
     waited_ = Scalar(0);
-    arrived_ = false;
-    active_ = first_ > Scalar(0.01);
-    return active_;
+    active_ = true;
+    return true;
   }
 
-  /// One more tick toward the goal, at the end of which the arm is at q. False where it has arrived, or comes no nearer.
+  /// Call after a tick of the recovery. True if the arm has arrived. Without progress for the patience, the recovery
+  /// ends as well.
   bool advance(const JointVector& q) noexcept {
     const Scalar left = (goal_ - q).norm();
-    if (left < least_ - kShare * first_) {
-      least_ = left;
-      waited_ = Scalar(0);
-    } else {
-      waited_ += dt_;
-    }
-    arrived_ = left <= kArrived * first_;
-    active_ = !arrived_ && waited_ <= patience_;
-    return active_;
+    waited_ = left < left_ - kArrived * whole_ ? Scalar(0) : waited_ + dt_;
+    if (waited_ == Scalar(0)) left_ = left;
+    const bool arrived = left <= kArrived * whole_;
+    active_ = !arrived && waited_ <= patience_;
+    return arrived;
   }
-  [[nodiscard]] bool arrived() const noexcept { return arrived_; }
 
-  /// Motion of the joints toward the goal, in a straight line: velocities v = r (goal − q), at a rate r at which each
-  /// joint keeps its bound on velocity and can stop; or accelerations toward v.
+  /// The target has moved, or the caller asks for another attempt: every remembered posture counts again.
+  void renew() noexcept {
+    active_ = returned_ = false;
+    tried_ = std::numeric_limits<Scalar>::infinity();
+  }
+
+  /// Joint motion toward the posture: velocities v = r (goal − q), or accelerations 4 kRate (v − q̇). The rate r ≤ kRate
+  /// is common to all joints, so that they move in a straight line. Each joint keeps its bound on velocity, and
+  /// decelerates at half of its bound on acceleration: v²/(2|goal − q|) = A/2.
   template <Level kLevel>
-  [[nodiscard]] JointVector motion(const Limits<kLevel, N, Scalar>& limits, const JointState& state) const noexcept {
+  [[nodiscard]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
+                                   const State<N, Scalar>& state) const noexcept {
     const auto& bounds = limits.bounds();
-    const JointVector way = goal_ - state.q;
+    const JointVector left = goal_ - state.q;
     Scalar rate = kRate;
-    for (Eigen::Index i = 0; i < way.size(); ++i) {
-      const Scalar length = std::abs(way(i));
-      if (rate * length > bounds.velocity(i)) rate = bounds.velocity(i) / length;
-      if (rate * rate * length > bounds.acceleration(i)) rate = std::sqrt(bounds.acceleration(i) / length);
+    for (Eigen::Index i = 0; i < left.size(); ++i) {
+      const Scalar distance = std::abs(left(i));
+      if (rate * distance > bounds.velocity(i)) rate = bounds.velocity(i) / distance;
+      if (rate * rate * distance > bounds.acceleration(i)) rate = std::sqrt(bounds.acceleration(i) / distance);
     }
-    if constexpr (kLevel == Level::kVelocity) return rate * way;
-    return Scalar(4) * kRate * (rate * way - state.qd);
+    if constexpr (kLevel == Level::kVelocity) return rate * left;
+    return Scalar(4) * kRate * (rate * left - state.qd);
   }
 
  private:
-  static constexpr int kPostures = 8;
-  static constexpr Scalar kApart = Scalar(0.1);
-  static constexpr Scalar kSpread = Scalar(0.05);
-  static constexpr Scalar kNear = Scalar(0.3);
-  static constexpr Scalar kStep = Scalar(2e-3);
-  static constexpr Scalar kRate = Scalar(2);
-  static constexpr Scalar kShare = Scalar(0.01);
-  static constexpr Scalar kArrived = Scalar(0.02);
+  static constexpr Scalar kApart = Scalar(0.1);    ///< Change of a joint that may move the tip by kSpread [rad] or [m].
+  static constexpr Scalar kSpread = Scalar(0.05);  ///< Least distance of two tips, as TaskDistance.
+  /// Share of its farthest distance within which a target has come back.
+  static constexpr Scalar kReturned = Scalar(0.5);
+  static constexpr Scalar kRate = Scalar(2);  ///< Rate of the approach [1/s]; the acceleration's poles are −4 kRate/2.
+  static constexpr Scalar kArrived = Scalar(0.02);  ///< Share of the whole displacement that counts as arrived.
 
   struct Known {
     JointVector q;
     Point tip;
-    long since;
+    std::int64_t age;
   };
 
-  std::array<Known, kPostures> known_;
-  int count_ = 0;
-  long clock_ = 0;
-  JointVector goal_;
-  JointVector last_;
+  struct Nearest {
+    Scalar distance;
+    int place;
+  };
+  [[nodiscard]] Nearest nearest(const Point& target, Scalar length) const noexcept {
+    Nearest found{std::numeric_limits<Scalar>::infinity(), 0};
+    for (int i = 0; i < count_; ++i) {
+      const Scalar distance = Distance::between(target, known_[i].tip, length);
+      if (distance < found.distance) found = {distance, i};
+    }
+    return found;
+  }
+
+  /// The older one of the two postures whose tips are nearest to each other.
+  [[nodiscard]] int most_crowded(Scalar length) const noexcept {
+    int place = 0;
+    Scalar least = std::numeric_limits<Scalar>::infinity();
+    for (int i = 1; i < count_; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const Scalar distance = Distance::between(known_[i].tip, known_[j].tip, length);
+        if (!(distance < least)) continue;
+        least = distance;
+        place = known_[i].age < known_[j].age ? i : j;
+      }
+    }
+    return place;
+  }
+
   Scalar patience_;
   Scalar dt_;
-  Scalar first_ = Scalar(0);
-  Scalar least_ = Scalar(0);
-  Scalar waited_ = Scalar(0);
+  std::array<Known, kPostures> known_{};
+  int count_ = 0;
+  std::int64_t age_ = 0;
+  JointVector seen_;  ///< Last posture passed to remember().
+  JointVector goal_;
+  Scalar tried_ = std::numeric_limits<Scalar>::infinity();  ///< Distance of the last recovery's tip to this target.
+  Scalar farthest_ = Scalar(0);  ///< Distance of the target from the remembered tips, since the task was lost.
+  bool returned_ = false;        ///< A recovery was made because this target had come back.
+  Scalar whole_ = Scalar(0);     ///< Distance to the posture at the start of the recovery,
+  Scalar left_ = Scalar(0);      ///< and the least since then.
+  Scalar waited_ = Scalar(0);    ///< Without progress [s].
   bool active_ = false;
-  bool arrived_ = false;
-  bool near_tried_ = false;
-  Scalar bar_ = std::numeric_limits<Scalar>::infinity();
 };
 
 }  // namespace fpbm

@@ -1,22 +1,23 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/realtime/task_distance.hpp"
 
 namespace fpbm {
 
-/// Notices an arm that comes no nearer to its target, which may be out of reach.
+/// Detects an arm that comes no nearer to its target.
 ///
-/// Progress is an error that is smaller than any before by 0.002, or a target that has moved by 0.002, in the arm's
-/// characteristic lengths and in radians. The arm has stalled where there is none for stall_time. It goes on once its
-/// target has moved, or shapes beside it.
+/// Progress is an error below the least one so far by a step, or a target that has moved by 0.002 (TaskDistance). A
+/// step is 0.002, or a quarter of the least error where that is smaller. The arm has stalled if there is no progress
+/// for stall_time. Errors below 0.0001 do not count. The arm continues when its target moves, or a shape near it.
 template <typename Space, typename Scalar = double>
 class StallDetector {
  public:
-  using Twist = Vector<Space::kRows, Scalar>;
   using Point = typename Space::template Point<Scalar>;
 
   /// stall_time: [s], infinite for never. Throws std::invalid_argument unless positive.
@@ -28,26 +29,31 @@ class StallDetector {
 
   [[nodiscard]] bool stalled() const noexcept { return waited_ > stall_time_; }
 
-  /// One more tick that does not do its whole task. length: the arm's characteristic length.
-  void update(const Point& target, const Twist& error, Scalar length) noexcept {
-    const Scalar size = norm(error, length);
-    if (size < kStep || size < least_ - kStep ||
-        norm(Space::template difference<Scalar>(target, target_), length) > kStep) {
+  /// Whether a target has moved since the last progress.
+  [[nodiscard]] bool has_moved(const Point& target, Scalar length) const noexcept {
+    return Distance::between(target, target_, length) > Distance::kProgress;
+  }
+
+  /// One more tick that does not do the whole task. error: distance to the target. length: the arm's characteristic
+  /// length [m].
+  void update(const Point& target, Scalar error, Scalar length) noexcept {
+    if (error < kSmall || error < least_ - Distance::step(least_) || has_moved(target, length)) {
       target_ = target;
-      least_ = size;
+      least_ = error;
       waited_ = Scalar(0);
     } else {
       waited_ += dt_;
     }
   }
 
-  /// One more tick of an arm that has stalled: once it has come to rest, it is to try again where shapes near it have
-  /// moved. room: a measure of how far they are from it.
-  void wait(bool at_rest, Scalar room, Scalar length) noexcept {
+  /// One more tick of an arm that has stalled. True if shapes near the arm have moved since it came to rest, so that
+  /// the arm is to try again. room: a measure of their distances [m].
+  [[nodiscard]] bool wait(bool at_rest, Scalar room, Scalar length) noexcept {
     using std::abs;
-    if (rests_ && abs(room - room_) > kStep * length) return reset();
+    if (rests_ && abs(room - room_) > Distance::kProgress * length) return true;
     if (at_rest && !rests_) room_ = room;
     rests_ = rests_ || at_rest;
+    return false;
   }
 
   /// The arm is to try again.
@@ -58,12 +64,9 @@ class StallDetector {
   }
 
  private:
-  [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
-    twist.template head<Space::kRows - Space::kTurns>() /= length;
-    return twist.norm();
-  }
+  using Distance = TaskDistance<Space, Scalar>;
 
-  static constexpr Scalar kStep = Scalar(2e-3);  ///< Of progress. Smaller errors do not count.
+  static constexpr Scalar kSmall = Scalar(1e-4);  ///< 0.1 mm for an arm of 1 m: below what feedback of the tip leaves.
 
   Scalar stall_time_;
   Scalar dt_;

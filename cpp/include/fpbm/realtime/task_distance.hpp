@@ -1,22 +1,30 @@
 #pragma once
 
+#include <algorithm>
+
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
 
-/// Distance in a task space that adds lengths and angles: ‖(Δp/length, Δφ)‖, with the arm's characteristic length [m]
+/// Distance in a task space that has lengths and angles: ‖(Δp/length, Δφ)‖, with the arm's characteristic length [m]
 /// and angles in radians.
 template <typename Space, typename Scalar>
 struct TaskDistance {
   using Twist = Vector<Space::kRows, Scalar>;
   using Point = typename Space::template Point<Scalar>;
 
+  /// Least displacement of a target that counts as a motion, and most of a step of progress.
+  static constexpr Scalar kProgress = Scalar(2e-3);
+
+  /// What a distance must fall by to count as progress.
+  [[nodiscard]] static Scalar step(Scalar distance) noexcept { return std::min(kProgress, distance / Scalar(4)); }
+
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
     twist.template head<Space::kRows - Space::kTurns>() /= length;
     return twist.norm();
   }
 
-  [[nodiscard]] static Scalar of(const Point& x, const Point& y, Scalar length) noexcept {
+  [[nodiscard]] static Scalar between(const Point& x, const Point& y, Scalar length) noexcept {
     return norm(Space::template difference<Scalar>(x, y), length);
   }
 };

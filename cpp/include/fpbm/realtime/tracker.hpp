@@ -69,6 +69,9 @@ class Tracker {
     give_damping(scheme_, options.damping(arm.dof(), Space::kRows));
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
+    Kinematics<Space, N, Scalar> kinematics;
+    arm_.kinematics(start.q, kinematics);
+    kept_.begin_at(kinematics.tip, kinematics.length);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
