@@ -12,6 +12,7 @@
 #include "fpbm/any/convert_path.hpp"
 #include "fpbm/any/make_arm.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
@@ -136,7 +137,7 @@ void expect_same_answers(const Arm& arm, const Scheme& scheme) {
 }
 
 TEST(AnyScheme, is_the_scheme_that_it_holds) {
-  for_every_scheme<4>([](const std::string& name, const Takes& takes, const auto& make) {
+  for_every_scheme<4, double, Kinds::kDiagonal>([](const std::string& name, const Takes& takes, const auto& make) {
     SCOPED_TRACE(name);
     Random random(5);
     Law law;
@@ -252,9 +253,9 @@ TEST(Any, motions_are_those_of_fixed_size) {
   EXPECT_EQ(found.samples, expected.samples);
   EXPECT_LE((found.last.q - expected.last.q).norm() + (found.last.qd - expected.last.qd).norm(), 1e-13);
 
-  Tracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
+  CompiledTracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
   Tracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
-  PathFollower fixed_follower(circle, fixed.tip());
+  PathFollower fixed_follower(path, fixed.tip());
   PathFollower any_follower(path, any.tip());
   for (int i = 0; i < 2000; ++i) {
     const auto a = fixed.tick(fixed_follower);

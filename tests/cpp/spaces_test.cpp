@@ -6,6 +6,7 @@
 
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
+#include "support/recording.hpp"
 
 /// Task spaces, with arms and rollouts in each.
 namespace fpbm::test {
@@ -129,11 +130,12 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
   const auto expect_tracked = [&](const auto& path, const auto& scheme) {
     double position = 0.0;
     double turn = 0.0;
-    const auto run = rollout(arm, path, scheme, start, TimeGrid<>(10.0, 1e-3), [&](const auto& sample) noexcept {
+    const auto run = recorded(arm, AnyPath<Pose>(path), scheme, start, TimeGrid<>(10.0, 1e-3));
+    for (const auto& sample : run.samples) {
       position = std::max(position, sample.error.template head<3>().norm());
       turn = std::max(turn, sample.error.template tail<3>().norm());
-    });
-    EXPECT_EQ(run.status, Status::kOk);
+    }
+    EXPECT_EQ(run.result.status, Status::kOk);
     EXPECT_LE(position, 1e-9);
     EXPECT_LE(turn, 1e-9);
   };
@@ -159,16 +161,18 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
     double worst = 0.0;
     bool finite = true;
     double away = 0.0;
-    const auto run = rollout(arm, path, scheme, start, TimeGrid<>(4.0, kStep), [&](const auto& sample) noexcept {
+    using Space = typename std::decay_t<decltype(path)>::Space;
+    const auto run = recorded(arm, AnyPath<Space>(path), scheme, start, TimeGrid<>(4.0, kStep));
+    for (const auto& sample : run.samples) {
       finite = finite && sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite();
       worst = std::max(worst, sample.error.template head<3>().norm());
-      if constexpr (std::decay_t<decltype(path)>::Space::kRows == 6) {
+      if constexpr (std::is_same_v<Space, Pose>) {
         away = (sample.reference.x.p - Vector<3>(0, 0, 0.333)).norm();
       } else {
         away = (sample.reference.x - Vector<3>(0, 0, 0.333)).norm();
       }
-    });
-    EXPECT_NE(run.status, Status::kOk);
+    }
+    EXPECT_NE(run.result.status, Status::kOk);
     EXPECT_TRUE(finite);
     EXPECT_LE(away, kReach);
     EXPECT_LE(worst, kStep * speed);

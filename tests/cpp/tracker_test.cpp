@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
+#include "support/recording.hpp"
 
 /// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
 namespace fpbm::test {
@@ -30,8 +31,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto z = NullSpace<7>{}.with_damping(4.0).with_rest_posture(bent(), 4.0);
   return FPBM<7>(0.6, weights, k1, k2, z);
 }
-[[nodiscard]] VelocityScheme<7, double, UnitWeights> settling_velocity() {
-  return MVN<7>(5.0, NullSpace<7>{}.with_rest_posture(bent(), 1.0));
+[[nodiscard]] VelocityScheme<7> settling_velocity() {
+  return WMVN<7>(Vector<7>(Vector<7>::Ones()), 5.0, NullSpace<7>{}.with_rest_posture(bent(), 1.0));
 }
 
 [[nodiscard]] SerialArm<7> panda() {
@@ -40,14 +41,14 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Space = Pose, typename Scheme>
 [[nodiscard]] auto panda_tracker(const Scheme& scheme, const TrackerOptions<>& options = {}) {
-  return Tracker(panda(), Space{}, scheme, bent(), options);
+  return CompiledTracker(panda(), Space{}, scheme, bent(), options);
 }
 
-[[nodiscard]] auto circle(double duration = 4.0) {
-  return InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ());
+[[nodiscard]] AnyPath<Position<3>> circle(double duration = 4.0) {
+  return AnyPath<Position<3>>(InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ()));
 }
-[[nodiscard]] auto turning_circle(double duration = 4.0) {
-  return WithRotation(circle(duration), Vector<3>(0.1, 0.2, 0.3));
+[[nodiscard]] AnyPath<Pose> turning_circle(double duration = 4.0) {
+  return AnyPath<Pose>(WithRotation(circle(duration), Vector<3>(0.1, 0.2, 0.3)));
 }
 
 template <typename Space>
@@ -82,25 +83,29 @@ template <typename Result>
          a.saturated == b.saturated && a.sigma == b.sigma;
 }
 
+/// Of the library's own class, whose members are looked up here and not called.
 TEST(Tracker, promises_not_to_throw) {
-  auto tracker = panda_tracker(settling());
-  auto reference = Reference<Pose>::hold(tracker.tip());
-  auto follower = PathFollower(turning_circle(), tracker.tip());
-  const Vector<7> q = bent();
-  static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(follower)));
-  static_assert(noexcept(tracker.resolve_measured(q, q, reference)));
-  static_assert(noexcept(tracker.stop())&& noexcept(tracker.resume())&& noexcept(tracker.state()));
-  static_assert(noexcept(tracker.tip()));
-  static_assert(noexcept(follower.pause())&& noexcept(follower.resume())&& noexcept(follower.ahead(0.0)));
-  static_assert(noexcept(follower.advance(0.0))&& noexcept(follower.done())&& noexcept(follower.time()));
+  using Own = Tracker<SerialArm<7>, Pose, AccelerationScheme<7>>;
+  using Follower = PathFollower<AnyPath<Pose>>;
+  const auto look = [](Own* tracker, Follower* follower, const Reference<Pose>& reference, const Vector<7>& q) {
+    static_assert(noexcept(tracker->tick(reference))&& noexcept(tracker->tick(*follower)));
+    static_assert(noexcept(tracker->resolve_measured(q, q, reference)));
+    static_assert(noexcept(tracker->stop())&& noexcept(tracker->resume())&& noexcept(tracker->state()));
+    static_assert(noexcept(tracker->tip()));
+    static_assert(noexcept(follower->pause())&& noexcept(follower->resume())&& noexcept(follower->ahead(0.0)));
+    static_assert(noexcept(follower->advance(0.0))&& noexcept(follower->done())&& noexcept(follower->time()));
+  };
+  look(nullptr, nullptr, Reference<Pose>::hold({}), bent());
 }
 
 /// Far from every limit a tick is a step of RK4, to the last bit.
 TEST(Tracker, takes_the_steps_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
-  (void)rollout(panda(), path, settling(), State<7>{bent(), Vector<7>::Zero()}, TimeGrid<>(4.0, kTick),
-                [&](const auto& sample) { q.push_back(sample.q); });
+  const State<7> start{bent(), Vector<7>::Zero()};
+  for (const auto& sample : recorded(panda(), path, settling(), start, TimeGrid<>(4.0, kTick)).samples) {
+    q.push_back(sample.q);
+  }
   ASSERT_EQ(q.size(), 4001U);
   auto tracker = panda_tracker(settling());
   PathFollower follower(path, tracker.tip());
@@ -283,7 +288,7 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
   for (const Vector<3>& leap : {Vector<3>(0.5, 0, 0), Vector<3>(0.5, 0.1, 0), Vector<3>(-0.4, 0, -0.3),
                                 Vector<3>(-0.4, 0.1, -0.3), Vector<3>(0, 0, 0.6)}) {
-    Tracker tracker(panda(), Pose{}, stiff, {bent(), Vector<7>::Zero()}, {}, limits);
+    CompiledTracker tracker(panda(), Pose{}, stiff, {bent(), Vector<7>::Zero()}, {}, limits);
     const auto home = Reference<Pose>::hold(tracker.tip());
     auto away = home;
     away.x.p += leap;
@@ -409,8 +414,8 @@ TEST(Tracker, brakes_where_the_reference_is_not_finite) {
 TEST(Tracker, holds_at_rest_for_an_hour) {
   const auto z = NullSpace<4>{}.with_damping(2.0);
   const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
-  Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
-  PathFollower follower(Path(Circle(0.3), 5.0), tracker.tip());
+  CompiledTracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
+  PathFollower follower(AnyPath<Position<2>>(Path(Circle(0.3), 5.0)), tracker.tip());
   for (int i = 0; i < 65000; ++i) tracker.tick(follower);
   const Vector<4> start = tracker.state().q;
   double fastest = 0.0;
@@ -431,20 +436,21 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   EXPECT_EQ(make({kTick, 0.1, 1.0, 0.0}), "integral_bound = 0: must be positive and finite");
   Vector<7> q0 = bent();
   q0(3) = 0.5;
-  EXPECT_EQ(complaint([&] { Tracker(panda(), Pose{}, settling(), q0); }),
+  EXPECT_EQ(complaint([&] { CompiledTracker(panda(), Pose{}, settling(), q0); }),
             "q0[3] = 0.5: must be within the joint's range");
   Chain<> chain = panda_without_jerk();
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);
-  EXPECT_EQ(complaint([&] { Tracker(unbounded, Pose{}, settling(), bent()); }),
+  EXPECT_EQ(complaint([&] { CompiledTracker(unbounded, Pose{}, settling(), bent()); }),
             "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
   EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }),
             "ramp = 0: must be positive and finite");
   const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);
-  EXPECT_EQ(complaint([&] {
-              Tracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
-            }),
-            "limits' tick = 0.002: must be the tracker's dt");
+  EXPECT_EQ(
+      complaint([&] {
+        CompiledTracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
+      }),
+      "limits' tick = 0.002: must be the tracker's dt");
 }
 
 }  // namespace
