@@ -151,8 +151,15 @@ TEST(Limits, hold_on_a_rail) {
   roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
 }
 TEST(Limits, hold_on_arms_without_redundancy) {
-  const SerialArm<6> ur5e(presets::ur5e());
+  const AnyArm<Position<3>> ur5e = any_arm(presets::ur5e());
   roll_every_scheme<Pose>("UR5e, pose", ur5e, ur5e.limits(), trials(125));
+  const SerialArm<6> fixed(presets::ur5e());
+  const auto fpbm = [](Random& random, Eigen::Index dof) {
+    return FPBM<6>(random.uniform(0.0, 1.0), random_weights<6>(random, dof), 20.0, 100.0,
+                   NullSpace<6>{}.with_damping(2.0));
+  };
+  Tally tally;
+  roll<Pose>(fixed, fixed.limits(), fpbm, trials(125), tally);
   Random random(2);
   roll_every_scheme<Position<2>>("planar, 2 joints", any_planar_arm(Vector<Eigen::Dynamic>::Ones(2)),
                                  narrow_limits<Eigen::Dynamic>(2, random), trials(125));
