@@ -9,6 +9,7 @@
 
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
+#include "support/panda_answers.hpp"
 #include "support/recording.hpp"
 
 /// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
@@ -334,8 +335,7 @@ TEST(Tracker, answers_for_a_measured_state) {
     const State<7> state{bent() + random.uniform(7, -0.2, 0.2), random.uniform(7, -1.5, 1.5)};
     const auto target = moved(home, random.uniform(-0.1, 0.1));
     const auto tick = tracker.resolve_measured(state.q, state.qd, target);
-    Kinematics<Pose, 7> kinematics;
-    panda().kinematics(state.q, state.qd, kinematics);
+    const Kinematics<Pose, 7> kinematics = kinematics_of(panda(), state);
     Vector<7> qdd = Vector<7>::Zero();
     auto scheme = settling();
     scheme.singular = SingularDamping<>();
@@ -345,7 +345,7 @@ TEST(Tracker, answers_for_a_measured_state) {
     seen.head<3>() *= std::min(1.0, 0.1 * kinematics.length / error.head<3>().norm());
     seen.tail<3>() *= std::min(1.0, 0.1 / error.tail<3>().norm());
     near.x = Pose::displace<double>(kinematics.tip, seen);
-    ASSERT_FALSE(failed(scheme.resolve(kinematics, near, state, qdd)));
+    ASSERT_FALSE(failed(resolve(scheme, kinematics, near, state, qdd)));
     const auto box = limits.box(state);
     ASSERT_TRUE(box.contains(tick.qdd));
     if (box.contains(qdd)) {
