@@ -64,14 +64,15 @@ std::pair<RealMatrix, RealMatrix> qr(const RealMatrix& A) {
 /// Jacobi's rotations: makes rows of A orthogonal, pair by pair, and turns U's columns along, so that UA stays. Small
 /// singular values are as good as large ones.
 void make_rows_orthogonal(RealMatrix& A, RealMatrix& U) {
-  for (bool turned = true; turned;) {
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < 40; ++sweep) {  // Rows of round-off alone never become orthogonal.
     turned = false;
     for (Eigen::Index i = 0; i + 1 < A.rows(); ++i) {
       for (Eigen::Index j = i + 1; j < A.rows(); ++j) {
         const Real ii = A.row(i).squaredNorm();
         const Real jj = A.row(j).squaredNorm();
         const Real ij = A.row(i).dot(A.row(j));
-        if (!(std::abs(ij) > 4 * std::numeric_limits<Real>::epsilon() * std::sqrt(ii * jj))) continue;
+        if (!(std::abs(ij) > 16 * std::numeric_limits<Real>::epsilon() * std::sqrt(ii * jj))) continue;
         turned = true;
         const Real zeta = (jj - ii) / (2 * ij);
         const Real t = (zeta < 0 ? -1 : 1) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
