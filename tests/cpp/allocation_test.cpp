@@ -79,7 +79,7 @@ void expect_none_in_any_scheme() {
   law.k = law.k1 = law.k2 = 1.0;
   law.damping = law.stiffness = 1.0;
   law.q_rest = law.c = Vector<4>::Zero();
-  for_every_scheme<N, double, N == 4>([&](const std::string& name, const Takes& takes, const auto& make) {
+  for_every_scheme<N>([&](const std::string& name, const Takes& takes, const auto& make) {
     law.W = Vector<4>(1, 2, 3, 4).asDiagonal();
     if (takes.dense) law.W += 0.2 * Matrix<4, 4>::Ones();
     for (const bool with_z : {false, true}) {

@@ -10,8 +10,8 @@
 #include "fpbm/any/any_time_law.hpp"
 #include "fpbm/any/any_weights.hpp"
 #include "fpbm/any/convert_path.hpp"
-#include "fpbm/any/make_arm.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
@@ -73,17 +73,18 @@ TEST(AnyArm, is_the_arm_that_it_holds) {
   check(Position<3>{}, CoupledArm<kOpen>(coupled_panda()));
 }
 
+/// By make_arm() and make_planar_arm(), which any_arm() and any_planar_arm() of arms.hpp call.
 TEST(AnyArm, is_made_of_a_chain_or_of_lengths) {
   for (const int dof : {2, 4, 9}) {
     const Vector<kOpen> lengths = Random(1).uniform(dof, 0.5, 1.5);
-    expect_same_arm(make_planar_arm(lengths), PlanarArm<kOpen>(lengths));
+    expect_same_arm(any_planar_arm(lengths), PlanarArm<kOpen>(lengths));
   }
-  expect_same_arm(make_arm(presets::panda()), SerialArm<7>(presets::panda()));
-  expect_same_arm(make_arm(panda_on_rail()), SerialArm<kOpen>(panda_on_rail()));
-  expect_same_arm(make_arm(coupled_panda()), CoupledArm<kOpen>(coupled_panda()));
-  EXPECT_NE(complaint([] { (void)make_planar_arm(Vector<kOpen>::Constant(4, -1.0)); }).find("lengths[0] = -1"),
+  expect_same_arm(any_arm(presets::panda()), SerialArm<7>(presets::panda()));
+  expect_same_arm(any_arm(panda_on_rail()), SerialArm<kOpen>(panda_on_rail()));
+  expect_same_arm(any_arm(coupled_panda()), CoupledArm<kOpen>(coupled_panda()));
+  EXPECT_NE(complaint([] { (void)any_planar_arm(Vector<kOpen>::Constant(4, -1.0)); }).find("lengths[0] = -1"),
             std::string::npos);
-  EXPECT_NE(complaint([] { (void)make_arm({}); }).find("joints has 0 entries"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)any_arm({}); }).find("joints has 0 entries"), std::string::npos);
 }
 
 /// Counts how often it is copied.
@@ -136,7 +137,7 @@ void expect_same_answers(const Arm& arm, const Scheme& scheme) {
 }
 
 TEST(AnyScheme, is_the_scheme_that_it_holds) {
-  for_every_scheme<4>([](const std::string& name, const Takes& takes, const auto& make) {
+  for_every_scheme<4, double, Kinds::kDiagonal>([](const std::string& name, const Takes& takes, const auto& make) {
     SCOPED_TRACE(name);
     Random random(5);
     Law law;
@@ -148,8 +149,8 @@ TEST(AnyScheme, is_the_scheme_that_it_holds) {
     law.q_rest = law.c = random.uniform(4, -1.0, 1.0);
     expect_same_answers<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), make(law));
   });
-  const auto fpbm = FPBM<7>(0.6, Vector<7>(Vector<7>::LinSpaced(1.0, 2.0)), 10.0, 25.0);
-  expect_same_answers<Pose>(SerialArm<7>(presets::panda()), fpbm);
+  const auto wmvn = WMVN<7>(Vector<7>(Vector<7>::LinSpaced(1.0, 2.0)), 10.0);
+  expect_same_answers<Pose>(SerialArm<7>(presets::panda()), wmvn);
   expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()), MVN<kOpen>(1.0));
 }
 
@@ -252,9 +253,9 @@ TEST(Any, motions_are_those_of_fixed_size) {
   EXPECT_EQ(found.samples, expected.samples);
   EXPECT_LE((found.last.q - expected.last.q).norm() + (found.last.qd - expected.last.qd).norm(), 1e-13);
 
-  Tracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
+  CompiledTracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
   Tracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
-  PathFollower fixed_follower(circle, fixed.tip());
+  PathFollower fixed_follower(path, fixed.tip());
   PathFollower any_follower(path, any.tip());
   for (int i = 0; i < 2000; ++i) {
     const auto a = fixed.tick(fixed_follower);

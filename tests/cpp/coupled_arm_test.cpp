@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Joints that follow others keep their own bounds.
 namespace fpbm::test {
@@ -78,7 +78,7 @@ template <typename Scheme>
 void expect_followers_within_bounds(const Chain<>& chain, const Scheme& scheme, Random& random, double& worst) {
   using Space = Position<3>;
   const AnyArm<Space> arm = any_arm(chain);
-  Tracker tracker(arm, Space{}, scheme, Vector<kOpen>((arm.limits().lower + arm.limits().upper) / 2.0));
+  CompiledTracker tracker(arm, Space{}, scheme, Vector<kOpen>((arm.limits().lower + arm.limits().upper) / 2.0));
   auto reference = Reference<Space>::hold(tracker.tip());
   for (int i = 0; i < 200; ++i) {
     if (i % 20 == 0) {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Toward targets that it cannot reach an arm comes as near as it can, and rests there.
 namespace fpbm::test {
@@ -41,7 +41,7 @@ template <typename Space, typename Arm, typename Scheme>
     const double share = random.uniform(0.2, 0.8);
     q0(i) += share * (bounds.upper(i) - bounds.lower(i));
   }
-  Tracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, {}, limits);
+  CompiledTracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, {}, limits);
   Kinematics<Space, N> kinematics;
   arm.kinematics(q0, kinematics);
   constexpr int kLengths = Space::kRows - Space::kTurns;
@@ -103,7 +103,7 @@ template <typename Space, typename Arm, typename Scheme>
   TrackerOptions<> options;
   options.stall_time = stall_time;
   const Limits<Scheme::kLevel, N> limits(bounds, options.dt);
-  Tracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
+  CompiledTracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
   for (int i = 0; i < 1000 * kSeconds; ++i) {
     if (tracker.tick(Reference<Space>::hold(x)).error.norm() < 1e-6) return true;
   }
@@ -149,12 +149,13 @@ struct Stall : ::testing::Test {
   static constexpr double kTick = 1e-3;
 
   [[nodiscard]] static auto loop(const TrackerOptions<>& options = {}) {
-    auto bounds = JointLimits<2>::none(2);
+    auto bounds = JointLimits<N>::none(2);
     for (int i = 0; i < 2; ++i) bounds.set(i, {-2.5, 2.5, 2.0, 10.0});
-    const auto scheme = FPBM<2>(0.6, UnitWeights{}, 10.0, 25.0, NullSpace<2>{}.with_damping(2.0));
-    const State<2> start{Vector<2>(0.5, 1.0), Vector<2>::Zero()};
-    const Limits<Level::kAcceleration, 2> limits(bounds, kTick);
-    return Tracker(PlanarArm<2>(Vector<2>::Ones()), Position<2>{}, scheme, start, options, limits);
+    const Vector<N> ones = Vector<N>::Ones(2);
+    const auto scheme = FPBM<N>(0.6, ones, 10.0, 25.0, NullSpace<N>{}.with_damping(2.0));
+    const State<N> start{Vector<2>(0.5, 1.0), Vector<2>::Zero()};
+    const Limits<Level::kAcceleration, N> limits(bounds, kTick);
+    return CompiledTracker(any_planar_arm(ones), Position<2>{}, scheme, start, options, limits);
   }
 
   template <typename Loop>
@@ -214,12 +215,12 @@ TEST_F(Stall, begins_after_its_time_without_progress) {
 TEST_F(Stall, is_not_a_slow_approach) {
   for (const double k : {0.01, 0.5, 5.0}) {
     for (const double reach : {1.9, 1.999, 2.0}) {
-      const auto scheme = WMVN<3>(Vector<3>(1.0, 2.0, 3.0), k);
-      auto bounds = JointLimits<3>::none(3);
+      const auto scheme = WMVN<N>(Vector<N>(Vector<3>(1.0, 2.0, 3.0)), k);
+      auto bounds = JointLimits<N>::none(3);
       for (int i = 0; i < 3; ++i) bounds.set(i, {-3.0, 3.0, 0.1, 2.0});
-      Tracker tracker(PlanarArm<3>(Vector<3>::Constant(2.0 / 3.0)), Position<2>{}, scheme,
-                      State<3>{Vector<3>(0.4, 0.5, 0.6), Vector<3>::Zero()}, {},
-                      Limits<Level::kVelocity, 3>(bounds, kTick));
+      CompiledTracker tracker(any_planar_arm(Vector<N>::Constant(3, 2.0 / 3.0)), Position<2>{}, scheme,
+                              State<N>{Vector<3>(0.4, 0.5, 0.6), Vector<3>::Zero()}, {},
+                              Limits<Level::kVelocity, N>(bounds, kTick));
       const Vector<2> x(reach * std::cos(0.2), reach * std::sin(0.2));
       for (int i = 0; i < 60000; ++i)
         ASSERT_NE(tracker.tick(Reference<Position<2>>::hold(x)).status, Status::kStalled) << i;

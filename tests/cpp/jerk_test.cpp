@@ -6,8 +6,8 @@
 #include <deque>
 #include <limits>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Bounds on position, velocity, acceleration and jerk hold together, at every tick and between ticks.
 #include "support/wild_reference.hpp"
@@ -256,7 +256,7 @@ void roll(const Arm& arm, JointLimits<Arm::kDof> given, MakeScheme&& make_scheme
       start.q(i) = std::clamp(random.uniform(low, high), low, high);
       if (seed % 4 == 0 && i % 2 == 0) start.q(i) = i % 4 == 0 ? high : low;
     }
-    Tracker tracker(arm, Space{}, scheme, start, {}, limits);
+    CompiledTracker tracker(arm, Space{}, scheme, start, {}, limits);
     Commands<N> commands(start.q);
     auto reference = Reference<Space>::hold(tracker.tip());
     int ticks = 0;
@@ -270,7 +270,7 @@ void roll(const Arm& arm, JointLimits<Arm::kDof> given, MakeScheme&& make_scheme
           std::max({beyond, excess<N>(result.qd, bounds.velocity), excess<N>(result.qdd, bounds.acceleration),
                     excess<N>(jump, bounds.jerk), commands.excess_after(result.q, bounds)});
       ASSERT_LE(worst, kSlack) << "tick " << ticks;
-      ASSERT_EQ(complaint([&] { limits.require_viable(tracker.state(), tracker.acceleration()); }), "");
+      ASSERT_EQ(complaint([&] { tracker.require_viable(limits); }), "");
     };
     while (ticks < 400) {
       if (ticks % 40 == 0) reference = wild_reference<Space>(random, tracker.tip());
@@ -290,7 +290,9 @@ void roll_schemes(const Arm& arm, const JointLimits<Arm::kDof>& bounds, int moti
     return FPBM<N>(random.uniform(0.0, 1.0), Vector<N>(random.uniform(n, 0.5, 5.0)), 20.0, 100.0,
                    NullSpace<N>{}.with_damping(2.0));
   };
-  const auto least_velocity = [](Random& random, Eigen::Index) { return MVN<N>(random.uniform(0.0, 30.0)); };
+  const auto least_velocity = [](Random& random, Eigen::Index n) {
+    return WMVN<N>(Vector<N>(Vector<N>::Ones(n)), random.uniform(0.0, 30.0));
+  };
   roll<Space>(arm, bounds, balanced, motions);
   roll<Space>(arm, bounds, least_velocity, motions);
 }
@@ -317,8 +319,8 @@ TEST(Jerk, a_step_is_followed_along_its_line) {
     Chain<> chain = presets::panda();
     for (Joint<>& joint : chain.joints) joint.bounds.jerk = jerk * joint.bounds.acceleration;
     const SerialArm<7> arm(chain);
-    const auto scheme = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
-    Tracker tracker(arm, Pose{}, scheme, Vector<7>{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8});
+    const auto scheme = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+    CompiledTracker tracker(arm, Pose{}, scheme, Vector<7>{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8});
     auto reference = Reference<Pose>::hold(tracker.tip());
     const Vector<3> way{0.2, 0.1, -0.05};
     reference.x.p += way;
@@ -346,8 +348,8 @@ TEST(Jerk, without_a_bound_every_bit_stays) {
     Chain<> chain = presets::panda();
     for (Joint<>& joint : chain.joints) joint.bounds.jerk = jerk;
     const SerialArm<7> arm(chain);
-    const auto scheme = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
-    Tracker tracker(arm, Pose{}, scheme, Vector<7>{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8});
+    const auto scheme = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+    CompiledTracker tracker(arm, Pose{}, scheme, Vector<7>{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8});
     Random random(1);
     for (int i = 0; i < 300; ++i) tracker.tick(wild_reference<Pose>(random, tracker.tip()));
     return tracker.state();
@@ -387,9 +389,9 @@ TEST(Jerk, answers_for_measured_states_do_not_jump) {
   JointLimits<7> bounds = arm.limits();
   bounds.jerk = 100.0 * bounds.acceleration;
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
-  const auto scheme = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+  const auto scheme = FPBM<7>(0.6, Vector<7>(Vector<7>::Ones()), 20.0, 100.0, NullSpace<7>().with_damping(2.0));
   const Vector<7> ready{0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8};
-  Tracker tracker(arm, Pose{}, scheme, {ready, Vector<7>::Zero()}, {}, limits);
+  CompiledTracker tracker(arm, Pose{}, scheme, {ready, Vector<7>::Zero()}, {}, limits);
   Random random(3);
   const auto tip = tracker.tip();
   Vector<7> last = Vector<7>::Zero();

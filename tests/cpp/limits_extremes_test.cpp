@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Bounds hold whatever numbers they are given as: an acceleration or a velocity far beyond what a tick can use,
 /// DBL_MAX say, is as good as none.
@@ -153,7 +153,7 @@ void expect_arm_to_keep_positions(const Scheme& scheme, Scalar velocity, Scalar 
   const Limits<Scheme::kLevel, 4, Scalar> limits(bounds, options.dt);
   const State<4, Scalar> start{Vector<4, Scalar>(Scalar(0.3), Scalar(0.4), Scalar(0.5), Scalar(0.6)),
                                Vector<4, Scalar>::Zero()};
-  Tracker tracker(arm, Position<2>{}, scheme, start, options, limits);
+  CompiledTracker tracker(arm, Position<2>{}, scheme, start, options, limits);
   const Vector<2, Scalar> within = tracker.tip() + Vector<2, Scalar>(Scalar(0.3), Scalar(0.2));
   for (const Vector<2, Scalar>& target : {Vector<2, Scalar>(Scalar(-1), Scalar(0.2)), within}) {
     const auto reference = Reference<Position<2>, Scalar>::hold(target);
@@ -170,8 +170,9 @@ template <typename Scalar>
 void expect_arms_to_keep_positions() {
   constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
   const auto z = NullSpace<4, Scalar>().with_damping(Scalar(2));
-  const auto fpbm = FPBM<4, Scalar>(Scalar(0.6), UnitWeights{}, Scalar(10), Scalar(25), z);
-  const auto mvn = WMVN<4, Scalar>(UnitWeights{}, Scalar(5));
+  const Vector<4, Scalar> ones = Vector<4, Scalar>::Ones();
+  const auto fpbm = FPBM<4, Scalar>(Scalar(0.6), ones, Scalar(10), Scalar(25), z);
+  const auto mvn = WMVN<4, Scalar>(ones, Scalar(5));
   for (const Scalar huge : {Scalar(1e6), Scalar(1e12), Scalar(1e23), std::sqrt(kMost), kMost / Scalar(1e3), kMost}) {
     expect_arm_to_keep_positions(fpbm, Scalar(2), huge);
     expect_arm_to_keep_positions(fpbm, huge, huge);

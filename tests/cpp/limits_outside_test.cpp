@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// A measured state may lie beyond a bound: the joint comes back as fast as its bounds on velocity and acceleration
 /// allow, and comes to rest there, or goes on inside. The other joints go on with the task.
@@ -32,7 +32,9 @@ constexpr double kTick = 1e-3;
 }
 
 [[nodiscard]] auto holding_scheme(const Vector<7>& rest) {
-  return FPBM<7>(0.6, UnitWeights{}, 10.0, 25.0, NullSpace<7>().with_damping(4.0).with_rest_posture(rest, 4.0));
+  constexpr int N = Eigen::Dynamic;
+  const auto z = NullSpace<N>().with_damping(4.0).with_rest_posture(rest, 4.0);
+  return FPBM<N>(0.6, Vector<N>(Vector<7>::Ones()), 10.0, 25.0, z);
 }
 
 const Vector<7> kReady{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
@@ -51,7 +53,7 @@ TEST(Outside, joints_return_as_fast_as_they_may) {
   double scale = 0.0;
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(3000)); ++seed) {
     Random random(seed);
-    Tracker tracker(panda, Position<3>{}, scheme, kReady);
+    CompiledTracker tracker(any_arm(panda_without_jerk()), Position<3>{}, scheme, Vector<Eigen::Dynamic>(kReady));
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     State<7> state{kReady, Vector<7>::Zero()};
     const auto joint = static_cast<Eigen::Index>(seed % 7);
@@ -95,7 +97,8 @@ TEST(Outside, joints_come_to_rest_when_told_to_stop) {
   for (const int delay : {0, 3}) {
     TrackerOptions<> options;
     options.measured_delay = delay;
-    Tracker tracker(panda, Position<3>{}, holding_scheme(kReady), kReady, options);
+    CompiledTracker tracker(any_arm(panda_without_jerk()), Position<3>{}, holding_scheme(kReady),
+                            Vector<Eigen::Dynamic>(kReady), options);
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     tracker.stop();
     const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D, and the filter's time constant.
@@ -156,7 +159,8 @@ TEST(Outside, noise_about_a_bound_does_no_harm) {
   for (Eigen::Index joint = 0; joint < 7; ++joint) {
     Vector<7> rest = kReady;
     rest(joint) = bounds.upper(joint) + 0.5;
-    Tracker tracker(panda, Position<3>{}, holding_scheme(rest), kReady);
+    CompiledTracker tracker(any_arm(panda_without_jerk()), Position<3>{}, holding_scheme(rest),
+                            Vector<Eigen::Dynamic>(kReady));
     State<7> state{kReady, Vector<7>::Zero()};
     state.q(joint) = bounds.upper(joint);
     Kinematics<Position<3>, 7> kinematics;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Bounds on positions, velocities and accelerations hold at every tick, and there is always a motion that keeps them.
 #include "support/wild_reference.hpp"
@@ -76,7 +76,7 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
     Random random(static_cast<std::uint32_t>(seed));
     const auto scheme = make_scheme(random, arm.dof());
     const Limits<std::decay_t<decltype(scheme)>::kLevel, N> limits(bounds, kTick);
-    Tracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
+    CompiledTracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
     auto reference = Reference<Space>::hold(tracker.tip());
     for (int i = 0; i < 200; ++i) {
       if (i % 20 == 0) reference = wild_reference<Space>(random, tracker.tip());
@@ -86,8 +86,7 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
       const double broken = violation(bounds, before, tick);
       ASSERT_LE(broken, kSlack) << "seed " << seed << ", tick " << i;
       ASSERT_FALSE(failed(tick.status));
-      ASSERT_EQ(complaint([&] { limits.require_viable(tracker.state(), tracker.acceleration()); }), "")
-          << "seed " << seed << ", tick " << i;
+      ASSERT_EQ(complaint([&] { tracker.require_viable(limits); }), "") << "seed " << seed << ", tick " << i;
       ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);
       tally.worst = std::max(tally.worst, broken);
       tally.limited += tick.saturated != 0 ? 1 : 0;
@@ -152,8 +151,15 @@ TEST(Limits, hold_on_a_rail) {
   roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
 }
 TEST(Limits, hold_on_arms_without_redundancy) {
-  const SerialArm<6> ur5e(presets::ur5e());
+  const AnyArm<Position<3>> ur5e = any_arm(presets::ur5e());
   roll_every_scheme<Pose>("UR5e, pose", ur5e, ur5e.limits(), trials(125));
+  const SerialArm<6> fixed(presets::ur5e());
+  const auto fpbm = [](Random& random, Eigen::Index dof) {
+    return FPBM<6>(random.uniform(0.0, 1.0), random_weights<6>(random, dof), 20.0, 100.0,
+                   NullSpace<6>{}.with_damping(2.0));
+  };
+  Tally tally;
+  roll<Pose>(fixed, fixed.limits(), fpbm, trials(125), tally);
   Random random(2);
   roll_every_scheme<Position<2>>("planar, 2 joints", any_planar_arm(Vector<Eigen::Dynamic>::Ones(2)),
                                  narrow_limits<Eigen::Dynamic>(2, random), trials(125));
@@ -171,7 +177,7 @@ TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   for (int seed = 349; seed < 349 + trials(100); ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
     const Vector<N> q0 = arm.limits().lower + random.uniform(7, 0.3, 0.7).cwiseProduct(range);
-    Tracker tracker(arm, Position<3>{}, scheme, q0);
+    CompiledTracker tracker(arm, Position<3>{}, scheme, q0);
     auto reference = Reference<Position<3>>::hold(tracker.tip());
     reference.x += random.uniform(3, -0.3, 0.3);
     for (int i = 0; i < 3000; ++i) fastest = std::max(fastest, std::abs(tracker.tick(reference).qdd(6)));

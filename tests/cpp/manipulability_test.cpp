@@ -100,7 +100,11 @@ TEST(ManipulabilityAscent, equals_the_textbook) {
       EXPECT_LE((kinematics.J * (u - own)).norm(), 1e-12 * (1.0 + own.norm()));
     };
     check(MVN<N>(1.0));
-    check(FPBM<N>(0.6, Joints(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
+    // What is added depends on the space and the arm, not on the level: of fixed size in the plane alone, and not with
+    // three rows.
+    if constexpr (Space::kRows == 2 || (Space::kRows == 6 && N == Eigen::Dynamic)) {
+      check(FPBM<N>(0.6, Joints(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
+    }
   });
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fpbm/model/serial_arm.hpp"
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// The arms of presets.hpp against models from other sources and in a control loop as they come, and
 /// Denavit-Hartenberg tables against products of their factors.
@@ -253,7 +253,7 @@ Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
 
 template <typename Space, typename Scheme>
 void expect_to_reach_a_near_target(const AnyArm<Position<3>>& arm, const Scheme& scheme) {
-  Tracker tracker(arm, Space{}, scheme, open_posture(arm));
+  CompiledTracker tracker(arm, Space{}, scheme, open_posture(arm));
   Vector<Space::kRows> way = Vector<Space::kRows>::Zero();
   way.template head<3>() = Vector<3>(0.02, -0.03, 0.01);
   const auto target = Reference<Space>::hold(Space::template displace<double>(tracker.tip(), way));

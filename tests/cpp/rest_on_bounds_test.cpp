@@ -2,9 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// An arm that starts at rest with a joint exactly on its bound stays there: round-off neither pushes the joint off nor
 /// shakes the arm.
@@ -49,13 +50,22 @@ template <typename Scalar>
   return q;
 }
 
-template <typename Scalar, typename Scheme>
-void expect_to_stay(const SerialArm<kOpen, Scalar>& arm, const Scheme& scheme, const Vector<kOpen, Scalar>& q0,
-                    Scalar dt) {
+/// In double behind one type, whose trackers other tests have, too.
+template <typename Scalar>
+[[nodiscard]] auto arm_of(const Chain<>& chain) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    return any_arm(cast<double>(chain));
+  } else {
+    return SerialArm<kOpen, Scalar>(cast<Scalar>(chain));
+  }
+}
+
+template <typename Scalar, typename Arm, typename Scheme>
+void expect_to_stay(const Arm& arm, const Scheme& scheme, const Vector<kOpen, Scalar>& q0, Scalar dt) {
   const JointLimits<kOpen, Scalar>& bounds = arm.limits();
   TrackerOptions<Scalar> options;
   options.dt = dt;
-  Tracker tracker(arm, Position<3>{}, scheme, q0, options);
+  CompiledTracker tracker(arm, Position<3>{}, scheme, q0, options);
   const auto hold = Reference<Position<3>, Scalar>::hold(tracker.tip());
   const Scalar slack = Scalar(4) * kEpsilon<Scalar> * q0.cwiseAbs().maxCoeff();
   // At velocity level the least motion is a digit of q within a tick.
@@ -72,13 +82,13 @@ void expect_to_stay(const SerialArm<kOpen, Scalar>& arm, const Scheme& scheme, c
 }
 
 /// The null space drives one joint against its bound, and other joints as they come: that one stays where it is.
-template <typename Scalar>
-void expect_not_to_be_pressed_off(const SerialArm<kOpen, Scalar>& arm, const Vector<kOpen, Scalar>& q0,
-                                  Eigen::Index joint, Scalar way) {
+template <typename Scalar, typename Arm>
+void expect_not_to_be_pressed_off(const Arm& arm, const Vector<kOpen, Scalar>& q0, Eigen::Index joint, Scalar way) {
+  const Vector<kOpen, Scalar> ones = Vector<kOpen, Scalar>::Ones(q0.size());
   auto beyond = q0;
   beyond(joint) += way;
   const auto z = NullSpace<kOpen, Scalar>{}.with_damping(Scalar(4)).with_rest_posture(beyond, Scalar(4));
-  Tracker tracker(arm, Position<3>{}, FPBM<kOpen, Scalar>(Scalar(0.6), UnitWeights{}, Scalar(20), Scalar(100), z), q0);
+  CompiledTracker tracker(arm, Position<3>{}, FPBM<kOpen, Scalar>(Scalar(0.6), ones, Scalar(20), Scalar(100), z), q0);
   const auto hold = Reference<Position<3>, Scalar>::hold(tracker.tip());
   const Scalar slack = Scalar(4) * kEpsilon<Scalar> * std::abs(q0(joint));
   for (int i = 0; i < trials(200); ++i) {
@@ -92,10 +102,11 @@ void expect_not_to_be_pressed_off(const SerialArm<kOpen, Scalar>& arm, const Vec
 template <typename Scalar>
 void expect_every_preset_to_stay() {
   for (const presets::Preset& known : presets::kAll) {
-    const SerialArm<kOpen, Scalar> arm(cast<Scalar>(known.chain()));
+    const auto arm = arm_of<Scalar>(known.chain());
+    const Vector<kOpen, Scalar> ones = Vector<kOpen, Scalar>::Ones(arm.dof());
     const auto z = NullSpace<kOpen, Scalar>{}.with_damping(Scalar(2));
-    const auto fpbm = FPBM<kOpen, Scalar>(Scalar(0.6), UnitWeights{}, Scalar(20), Scalar(100), z);
-    const auto mvn = WMVN<kOpen, Scalar>(UnitWeights{}, Scalar(10));
+    const auto fpbm = FPBM<kOpen, Scalar>(Scalar(0.6), ones, Scalar(20), Scalar(100), z);
+    const auto mvn = WMVN<kOpen, Scalar>(ones, Scalar(10));
     for (Eigen::Index joint = 0; joint < arm.dof(); ++joint) {
       for (const bool upper : {false, true}) {
         if (!std::isfinite(arm.limits().upper(joint))) continue;

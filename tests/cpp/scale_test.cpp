@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <string>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// A tick that says kOk with scale 1 has done the whole task, and one that says less has not.
 namespace fpbm::test {
@@ -30,7 +30,7 @@ void expect_ok_to_be_ok(const std::string& name, const Arm& arm, const Vector<N>
       const auto scheme = WMVN<N>(random.uniform(q0.size(), 0.5, 3.0), k);
       TrackerOptions<> options;
       options.integral_gain = 1.0;
-      Tracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
+      CompiledTracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, options, limits);
       Vector<Space::kRows> step = Vector<Space::kRows>::Zero();
       constexpr int kLengths = Space::kRows - Space::kTurns;
       step.template head<kLengths>() = random.uniform(kLengths, -1.0, 1.0).normalized() * random.uniform(0.01, 0.08);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// An arm of another size, or in other units, does the same in proportion.
 namespace fpbm::test {
@@ -26,7 +26,7 @@ template <typename Space, typename Arm, typename Scheme>
   auto bounds = arm.limits();
   for (Eigen::Index i = 0; i < q0.size(); ++i) bounds.set(i, {-2.9, 2.9, 2.0, 10.0});
   const Limits<Scheme::kLevel, N> limits(bounds, 1e-3);
-  Tracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, {}, limits);
+  CompiledTracker tracker(arm, Space{}, scheme, State<N>{q0, Vector<N>::Zero(q0.size())}, {}, limits);
   const auto home = Reference<Space>::hold(tracker.tip());
   Course course;
   for (int i = 0; i < 6000; ++i) {

@@ -6,6 +6,7 @@
 
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
+#include "support/recording.hpp"
 
 /// Task spaces, with arms and rollouts in each.
 namespace fpbm::test {
@@ -126,23 +127,25 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
   const State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, Vector<7>::Zero()};
   const DiagonalWeights<7> weights({1, 1, 1, 1, 2, 2, 2});
   const auto fpbm = FPBM<7>(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0));
+  const Vector<7> ones = Vector<7>::Ones();  // MVN and MAN are WMVN and the balance with equal weights.
   const auto expect_tracked = [&](const auto& path, const auto& scheme) {
     double position = 0.0;
     double turn = 0.0;
-    const auto run = rollout(arm, path, scheme, start, TimeGrid<>(10.0, 1e-3), [&](const auto& sample) noexcept {
+    const auto run = recorded(arm, AnyPath<Pose>(path), scheme, start, TimeGrid<>(10.0, 1e-3));
+    for (const auto& sample : run.samples) {
       position = std::max(position, sample.error.template head<3>().norm());
       turn = std::max(turn, sample.error.template tail<3>().norm());
-    });
-    EXPECT_EQ(run.status, Status::kOk);
+    }
+    EXPECT_EQ(run.result.status, Status::kOk);
     EXPECT_LE(position, 1e-9);
     EXPECT_LE(turn, 1e-9);
   };
   const InPlane circle(Path(Circle(0.1), 10.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
   expect_tracked(WithRotation(circle), fpbm);
   expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), fpbm);
-  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), MVN<7>());
+  expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(ones));
   expect_tracked(WithRotation(circle, Vector<3>(0.2, -0.3, 0.8)), WMVN<7>(weights));
-  expect_tracked(WithRotation(circle), MAN<7>());
+  expect_tracked(WithRotation(circle), Balanced<7>(0.0, ones));
 }
 
 /// From any start, a path out of reach ends before it leaves the ball that the flange cannot leave. The tip is never
@@ -159,16 +162,18 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
     double worst = 0.0;
     bool finite = true;
     double away = 0.0;
-    const auto run = rollout(arm, path, scheme, start, TimeGrid<>(4.0, kStep), [&](const auto& sample) noexcept {
+    using Space = typename std::decay_t<decltype(path)>::Space;
+    const auto run = recorded(arm, AnyPath<Space>(path), scheme, start, TimeGrid<>(4.0, kStep));
+    for (const auto& sample : run.samples) {
       finite = finite && sample.q.allFinite() && sample.qd.allFinite() && sample.qdd.allFinite();
       worst = std::max(worst, sample.error.template head<3>().norm());
-      if constexpr (std::decay_t<decltype(path)>::Space::kRows == 6) {
+      if constexpr (std::is_same_v<Space, Pose>) {
         away = (sample.reference.x.p - Vector<3>(0, 0, 0.333)).norm();
       } else {
         away = (sample.reference.x - Vector<3>(0, 0, 0.333)).norm();
       }
-    });
-    EXPECT_NE(run.status, Status::kOk);
+    }
+    EXPECT_NE(run.result.status, Status::kOk);
     EXPECT_TRUE(finite);
     EXPECT_LE(away, kReach);
     EXPECT_LE(worst, kStep * speed);
@@ -180,10 +185,11 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
     const double speed = kPi / 2 * way.norm() / 4.0;
     const DiagonalWeights<7> weights(Vector<7>(random.uniform(7, 1, 4)));
     const WithRotation turned(line, Vector<3>(random.uniform(3, -1, 1)));
-    expect_end(MVN<7>(), line, speed);
-    expect_end(MAN<7>(), line, speed);
+    const Vector<7> ones = Vector<7>::Ones();
+    expect_end(WMVN<7>(ones), line, speed);
+    expect_end(Balanced<7>(0.0, ones), line, speed);
     expect_end(WMVN<7>(weights, 5.0), turned, speed);
-    expect_end(MAN<7>(), turned, speed);
+    expect_end(Balanced<7>(0.0, ones), turned, speed);
     expect_end(FPBM<7>(0.6, weights, 10.0, 25.0, NullSpace<7>{}.with_damping(2.0)), turned, speed);
   }
 }

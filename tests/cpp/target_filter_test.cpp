@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "fpbm/model/planar_arm.hpp"
-#include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
+#include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
 
 /// What a filter makes of targets keeps every bound whatever they are, and arrives where they are.
@@ -489,8 +489,8 @@ TEST(TargetFilter, refuses_bad_numbers_by_name) {
 /// An arm follows what the filter makes of a jump.
 TEST(TargetFilter, leads_a_tracker) {
   const PlanarArm<4> arm({1, 1, 1, 1});
-  const auto scheme = FPBM<4>(0.6, UnitWeights{}, 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
-  Tracker tracker(arm, Position<2>{}, scheme, Vector<4>(0.26, 0.26, 0.21, 0.21));
+  const auto scheme = FPBM<4>(0.6, Vector<4>(Vector<4>::Ones()), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
+  CompiledTracker tracker(arm, Position<2>{}, scheme, Vector<4>(0.26, 0.26, 0.21, 0.21));
   const Vector<2> start = tracker.tip();
   TargetFilter<Position<2>> filter(start, kBounds);
   const Vector<2> target = start - Vector<2>(0.3, 0.2);

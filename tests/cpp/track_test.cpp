@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"
+#include "support/recording.hpp"
 
 /// A whole motion of a tracker is its ticks, one after another.
 namespace fpbm::test {
@@ -17,11 +19,11 @@ constexpr double kTick = 1e-3;
   for (int i = 0; i < 4; ++i) bounds.set(i, {-3.0, 3.0, velocity, 100.0});
   const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
   const Limits<Level::kAcceleration, 4> limits(bounds, kTick);
-  return Tracker(paper_arm(), Position<2>{}, scheme, paper_start(), TrackerOptions<>{}, limits);
+  return CompiledTracker(paper_arm(), Position<2>{}, scheme, paper_start(), TrackerOptions<>{}, limits);
 }
 
-[[nodiscard]] Path<Circle<>> circle() {
-  return {Circle<>(0.45), 2.0};
+[[nodiscard]] AnyPath<Position<2>> circle() {
+  return AnyPath<Position<2>>(Path(Circle<>(0.45), 2.0));
 }
 
 using Samples = std::vector<Sample<Position<2>, 4>>;
@@ -69,9 +71,7 @@ TEST(Track, keeps_the_limits_and_is_a_rollout_far_from_them) {
     return samples;
   };
   const auto scheme = paper_fpbm(NullSpace<4>{}.with_damping(2.0));
-  Samples expected;
-  (void)rollout(paper_arm(), circle(), scheme, paper_start(), TimeGrid<>(2.0, kTick, 0.5),
-                [&](const auto& sample) { expected.push_back(sample); });
+  const Samples expected = recorded(paper_arm(), circle(), scheme, paper_start(), TimeGrid<>(2.0, kTick, 0.5)).samples;
   const Samples wide = record(3.0);
   ASSERT_EQ(wide.size(), expected.size());
   for (std::size_t i = 0; i < wide.size(); ++i) {

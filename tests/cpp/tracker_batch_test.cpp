@@ -168,10 +168,9 @@ class TrackerBatchLaws : public testing::Test {};
 #ifdef FPBM_FEW_TYPES
 using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
 #else
-using Subjects =
-    testing::Types<Subject<Planar, Level::kVelocity>, Subject<Planar, Level::kAcceleration>,
-                   Subject<Panda<Position<3>>, Level::kVelocity>, Subject<Panda<Position<3>>, Level::kAcceleration>,
-                   Subject<Panda<Pose>, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
+// Both levels, every kind of J's factor (two rows, several joints to spare, one to spare), each once.
+using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda<Position<3>>, Level::kAcceleration>,
+                                Subject<Panda<Pose>, Level::kAcceleration>>;
 #endif
 TYPED_TEST_SUITE(TrackerBatchLaws, Subjects, );
 

@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
+#include "support/panda_answers.hpp"
+#include "support/recording.hpp"
 
 /// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
 namespace fpbm::test {
 namespace {
 
+constexpr int kOpen = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -23,15 +26,17 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return q;
 }
 
-/// Usual settings: damped self-motion and a rest posture.
-[[nodiscard]] AccelerationScheme<7> settling(double k1 = 10.0, double k2 = 25.0) {
+/// Usual settings: damped self-motion and a rest posture. Of fixed size for poses, of run-time size for positions.
+template <int N = 7>
+[[nodiscard]] AccelerationScheme<N> settling(double k1 = 10.0, double k2 = 25.0) {
   Vector<7> weights;
   weights << 1, 2, 3, 4, 1, 1, 1;
-  const auto z = NullSpace<7>{}.with_damping(4.0).with_rest_posture(bent(), 4.0);
-  return FPBM<7>(0.6, weights, k1, k2, z);
+  const auto z = NullSpace<N>{}.with_damping(4.0).with_rest_posture(bent(), 4.0);
+  return FPBM<N>(0.6, Vector<N>(weights), k1, k2, z);
 }
-[[nodiscard]] VelocityScheme<7, double, UnitWeights> settling_velocity() {
-  return MVN<7>(5.0, NullSpace<7>{}.with_rest_posture(bent(), 1.0));
+template <int N = 7>
+[[nodiscard]] VelocityScheme<N> settling_velocity() {
+  return WMVN<N>(Vector<N>(Vector<7>::Ones()), 5.0, NullSpace<N>{}.with_rest_posture(bent(), 1.0));
 }
 
 [[nodiscard]] SerialArm<7> panda() {
@@ -40,14 +45,21 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Space = Pose, typename Scheme>
 [[nodiscard]] auto panda_tracker(const Scheme& scheme, const TrackerOptions<>& options = {}) {
-  return Tracker(panda(), Space{}, scheme, bent(), options);
+  const auto arm = [] {
+    if constexpr (Scheme::kDof == kOpen) {
+      return any_arm(panda_without_jerk());
+    } else {
+      return panda();
+    }
+  }();
+  return CompiledTracker(arm, Space{}, scheme, Vector<Scheme::kDof>(bent()), options);
 }
 
-[[nodiscard]] auto circle(double duration = 4.0) {
-  return InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ());
+[[nodiscard]] AnyPath<Position<3>> circle(double duration = 4.0) {
+  return AnyPath<Position<3>>(InPlane(Path(Circle(0.05), duration), Vector<3>::UnitY(), Vector<3>::UnitZ()));
 }
-[[nodiscard]] auto turning_circle(double duration = 4.0) {
-  return WithRotation(circle(duration), Vector<3>(0.1, 0.2, 0.3));
+[[nodiscard]] AnyPath<Pose> turning_circle(double duration = 4.0) {
+  return AnyPath<Pose>(WithRotation(circle(duration), Vector<3>(0.1, 0.2, 0.3)));
 }
 
 template <typename Space>
@@ -82,25 +94,29 @@ template <typename Result>
          a.saturated == b.saturated && a.sigma == b.sigma;
 }
 
+/// Of the library's own class, whose members are looked up here and not called.
 TEST(Tracker, promises_not_to_throw) {
-  auto tracker = panda_tracker(settling());
-  auto reference = Reference<Pose>::hold(tracker.tip());
-  auto follower = PathFollower(turning_circle(), tracker.tip());
-  const Vector<7> q = bent();
-  static_assert(noexcept(tracker.tick(reference))&& noexcept(tracker.tick(follower)));
-  static_assert(noexcept(tracker.resolve_measured(q, q, reference)));
-  static_assert(noexcept(tracker.stop())&& noexcept(tracker.resume())&& noexcept(tracker.state()));
-  static_assert(noexcept(tracker.tip()));
-  static_assert(noexcept(follower.pause())&& noexcept(follower.resume())&& noexcept(follower.ahead(0.0)));
-  static_assert(noexcept(follower.advance(0.0))&& noexcept(follower.done())&& noexcept(follower.time()));
+  using Own = Tracker<SerialArm<7>, Pose, AccelerationScheme<7>>;
+  using Follower = PathFollower<AnyPath<Pose>>;
+  const auto look = [](Own* tracker, Follower* follower, const Reference<Pose>& reference, const Vector<7>& q) {
+    static_assert(noexcept(tracker->tick(reference))&& noexcept(tracker->tick(*follower)));
+    static_assert(noexcept(tracker->resolve_measured(q, q, reference)));
+    static_assert(noexcept(tracker->stop())&& noexcept(tracker->resume())&& noexcept(tracker->state()));
+    static_assert(noexcept(tracker->tip()));
+    static_assert(noexcept(follower->pause())&& noexcept(follower->resume())&& noexcept(follower->ahead(0.0)));
+    static_assert(noexcept(follower->advance(0.0))&& noexcept(follower->done())&& noexcept(follower->time()));
+  };
+  look(nullptr, nullptr, Reference<Pose>::hold({}), bent());
 }
 
 /// Far from every limit a tick is a step of RK4, to the last bit.
 TEST(Tracker, takes_the_steps_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
-  (void)rollout(panda(), path, settling(), State<7>{bent(), Vector<7>::Zero()}, TimeGrid<>(4.0, kTick),
-                [&](const auto& sample) { q.push_back(sample.q); });
+  const State<7> start{bent(), Vector<7>::Zero()};
+  for (const auto& sample : recorded(panda(), path, settling(), start, TimeGrid<>(4.0, kTick)).samples) {
+    q.push_back(sample.q);
+  }
   ASSERT_EQ(q.size(), 4001U);
   auto tracker = panda_tracker(settling());
   PathFollower follower(path, tracker.tip());
@@ -147,9 +163,9 @@ void expect_to_reach_changing_targets(const Scheme& scheme) {
 }
 TEST(Tracker, reaches_targets_that_change) {
   expect_to_reach_changing_targets<Pose>(settling());
-  expect_to_reach_changing_targets<Position<3>>(settling());
+  expect_to_reach_changing_targets<Position<3>>(settling<kOpen>());
   expect_to_reach_changing_targets<Pose>(settling_velocity());
-  expect_to_reach_changing_targets<Position<3>>(settling_velocity());
+  expect_to_reach_changing_targets<Position<3>>(settling_velocity<kOpen>());
 }
 
 /// The tip stays on its path while the clock pauses and resumes, also when it resumes before it has paused.
@@ -267,9 +283,9 @@ void expect_to_come_back(const char* name, const Scheme& scheme) {
 }
 TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
   expect_to_come_back<Pose>("FPBM, pose", settling());
-  expect_to_come_back<Position<3>>("FPBM, position", settling());
+  expect_to_come_back<Position<3>>("FPBM, position", settling<kOpen>());
   expect_to_come_back<Pose>("MVN, pose", settling_velocity());
-  expect_to_come_back<Position<3>>("MVN, position", settling_velocity());
+  expect_to_come_back<Position<3>>("MVN, position", settling_velocity<kOpen>());
 }
 
 /// Where limits allow only a small part of what a stiff feedback asks for, the answer for a measured state still
@@ -283,7 +299,7 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
   for (const Vector<3>& leap : {Vector<3>(0.5, 0, 0), Vector<3>(0.5, 0.1, 0), Vector<3>(-0.4, 0, -0.3),
                                 Vector<3>(-0.4, 0.1, -0.3), Vector<3>(0, 0, 0.6)}) {
-    Tracker tracker(panda(), Pose{}, stiff, {bent(), Vector<7>::Zero()}, {}, limits);
+    CompiledTracker tracker(panda(), Pose{}, stiff, {bent(), Vector<7>::Zero()}, {}, limits);
     const auto home = Reference<Pose>::hold(tracker.tip());
     auto away = home;
     away.x.p += leap;
@@ -321,8 +337,7 @@ TEST(Tracker, answers_for_a_measured_state) {
     const State<7> state{bent() + random.uniform(7, -0.2, 0.2), random.uniform(7, -1.5, 1.5)};
     const auto target = moved(home, random.uniform(-0.1, 0.1));
     const auto tick = tracker.resolve_measured(state.q, state.qd, target);
-    Kinematics<Pose, 7> kinematics;
-    panda().kinematics(state.q, state.qd, kinematics);
+    const Kinematics<Pose, 7> kinematics = kinematics_of(panda(), state);
     Vector<7> qdd = Vector<7>::Zero();
     auto scheme = settling();
     scheme.singular = SingularDamping<>();
@@ -332,7 +347,7 @@ TEST(Tracker, answers_for_a_measured_state) {
     seen.head<3>() *= std::min(1.0, 0.1 * kinematics.length / error.head<3>().norm());
     seen.tail<3>() *= std::min(1.0, 0.1 / error.tail<3>().norm());
     near.x = Pose::displace<double>(kinematics.tip, seen);
-    ASSERT_FALSE(failed(scheme.resolve(kinematics, near, state, qdd)));
+    ASSERT_FALSE(failed(resolve(scheme, kinematics, near, state, qdd)));
     const auto box = limits.box(state);
     ASSERT_TRUE(box.contains(tick.qdd));
     if (box.contains(qdd)) {
@@ -411,8 +426,8 @@ TEST(Tracker, brakes_where_the_reference_is_not_finite) {
 TEST(Tracker, holds_at_rest_for_an_hour) {
   const auto z = NullSpace<4>{}.with_damping(2.0);
   const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>(1, 2, 3, 4)), 4.0, 4.0, z);
-  Tracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
-  PathFollower follower(Path(Circle(0.3), 5.0), tracker.tip());
+  CompiledTracker tracker(PlanarArm<4>(Vector<4>::Ones()), Position<2>{}, scheme, Vector<4>(0.3, 0.8, -0.5, 0.6));
+  PathFollower follower(AnyPath<Position<2>>(Path(Circle(0.3), 5.0)), tracker.tip());
   for (int i = 0; i < 65000; ++i) tracker.tick(follower);
   const Vector<4> start = tracker.state().q;
   double fastest = 0.0;
@@ -433,20 +448,21 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   EXPECT_EQ(make({kTick, 0.1, 1.0, 0.0}), "integral_bound = 0: must be positive and finite");
   Vector<7> q0 = bent();
   q0(3) = 0.5;
-  EXPECT_EQ(complaint([&] { Tracker(panda(), Pose{}, settling(), q0); }),
+  EXPECT_EQ(complaint([&] { CompiledTracker(panda(), Pose{}, settling(), q0); }),
             "q0[3] = 0.5: must be within the joint's range");
   Chain<> chain = panda_without_jerk();
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);
-  EXPECT_EQ(complaint([&] { Tracker(unbounded, Pose{}, settling(), bent()); }),
+  EXPECT_EQ(complaint([&] { CompiledTracker(unbounded, Pose{}, settling(), bent()); }),
             "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
   EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }),
             "ramp = 0: must be positive and finite");
   const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);
-  EXPECT_EQ(complaint([&] {
-              Tracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
-            }),
-            "limits' tick = 0.002: must be the tracker's dt");
+  EXPECT_EQ(
+      complaint([&] {
+        CompiledTracker(panda(), Pose{}, settling(), State<7>{bent(), Vector<7>::Zero()}, TrackerOptions<>{}, slower);
+      }),
+      "limits' tick = 0.002: must be the tracker's dt");
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "support/schemes.hpp"
@@ -87,22 +89,32 @@ template <typename Space, typename Arm>
   return result;
 }
 
+/// How schemes of one type answer, whatever the paper calls them: compiled once for all of them.
+template <typename Arm, typename Space, typename Scheme>
+[[nodiscard]] std::function<Outcome(const Law&, const Scene&)> resolver(Arm (*make_arm)(const Eigen::VectorXd&),
+                                                                        std::function<Scheme(const Law&)> make_scheme) {
+  using Scalar = typename Arm::Scalar;
+  return [make_arm, make_scheme = std::move(make_scheme)](const Law& law, const Scene& scene) {
+    const auto staged = stage<Space>(make_arm(scene.lengths), scene);
+    Vector<Arm::kDof, Scalar> u =
+        Vector<Arm::kDof, Scalar>::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
+    const Status status = make_scheme(law).resolve(staged.kinematics, staged.reference, staged.state, u);
+    return Outcome{status, real(u), staged.at};
+  };
+}
+
 /// Every scheme on one kind of arm, of dof joints, with one kind of task.
-template <typename Arm, typename Space, bool kDense = true>
+template <typename Arm, typename Space, Kinds kKinds = Kinds::kAll>
 [[nodiscard]] std::vector<Subject> make_subjects(const std::string& name, int dof,
                                                  Arm (*make_arm)(const Eigen::VectorXd&) = &arm_of<Arm>) {
   constexpr int N = Arm::kDof;
   using Scalar = typename Arm::Scalar;
   std::vector<Subject> all;
-  for_every_scheme<N, Scalar, kDense>([&](const std::string& scheme, const Takes& takes, const auto& make_scheme) {
-    const auto resolve = [make_arm, make_scheme](const Law& law, const Scene& scene) {
-      const auto staged = stage<Space>(make_arm(scene.lengths), scene);
-      Vector<N, Scalar> u = Vector<N, Scalar>::Constant(scene.q.size(), static_cast<Scalar>(Outcome::kSentinel));
-      const Status status = make_scheme(law).resolve(staged.kinematics, staged.reference, staged.state, u);
-      return Outcome{status, real(u), staged.at};
-    };
+  for_every_scheme<N, Scalar, kKinds>([&](const std::string& scheme, const Takes& takes, const auto& make_scheme) {
+    using Scheme = decltype(make_scheme(std::declval<const Law&>()));
     const auto epsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
-    all.push_back({scheme + "_" + name, dof, Space::kRows, epsilon, takes, resolve});
+    all.push_back(
+        {scheme + "_" + name, dof, Space::kRows, epsilon, takes, resolver<Arm, Space, Scheme>(make_arm, make_scheme)});
   });
   return all;
 }

@@ -10,9 +10,9 @@
 namespace fpbm::test {
 
 /// A rollout with every sample kept.
-template <int N, typename Scalar = double>
+template <int N, typename Scalar = double, typename Space = Position<2>>
 struct Recording {
-  std::vector<Sample<Position<2>, N, Scalar>> samples;
+  std::vector<Sample<Space, N, Scalar>> samples;
   RolloutResult<N, Scalar> result;
 
   /// Largest tip error [m] at or after t.
@@ -26,10 +26,9 @@ struct Recording {
 };
 
 template <typename Arm, typename Path, typename Scheme>
-[[nodiscard]] Recording<Arm::kDof, typename Arm::Scalar> recorded(const Arm& arm, const Path& path,
-                                                                  const Scheme& scheme,
-                                                                  const State<Arm::kDof, typename Arm::Scalar>& start,
-                                                                  const TimeGrid<typename Arm::Scalar>& grid) {
+[[nodiscard]] Recording<Arm::kDof, typename Arm::Scalar, typename Path::Space> recorded(
+    const Arm& arm, const Path& path, const Scheme& scheme, const State<Arm::kDof, typename Arm::Scalar>& start,
+    const TimeGrid<typename Arm::Scalar>& grid) {
   std::vector<Sample<typename Path::Space, Arm::kDof, typename Arm::Scalar>> samples;
   samples.reserve(static_cast<std::size_t>(grid.samples()));
   const auto result = rollout(arm, path, scheme, start, grid, [&](const auto& sample) { samples.push_back(sample); });
@@ -47,5 +46,9 @@ extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Positio
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
                                       const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
                                       const TimeGrid<>&);
+
+// The Panda's poses.
+extern template Recording<7, double, Pose> recorded(const SerialArm<7>&, const AnyPath<Pose>&,
+                                                    const AccelerationScheme<7>&, const State<7>&, const TimeGrid<>&);
 
 }  // namespace fpbm::test

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "fpbm/fpbm.hpp"
 #include "support/textbook.hpp"
@@ -32,19 +33,44 @@ template <typename S>
   return SingularDamping<S>(static_cast<S>(law.singular_radius), static_cast<S>(law.singular_brake));
 }
 
-/// Calls visit(name, takes, make) for every scheme, where make(law) is the library's scheme of that law; with dense
-/// weights besides diagonal ones only where kDense says so.
-template <int N, typename S = double, bool kDense = true, typename Visit>
+/// Which weights a list of schemes has.
+enum class Kinds { kAll, kUnitAndDiagonal, kDiagonal };
+
+/// Weights of run-time size behind one type, so that a scheme is compiled once for all kinds of them; others as they
+/// are.
+template <int N, typename S, typename Weights>
+[[nodiscard]] auto any_kind(const Weights& weights) {
+  if constexpr (N == Eigen::Dynamic && std::is_same_v<S, double>) {
+    return AnyWeights(weights);
+  } else {
+    return weights;
+  }
+}
+
+/// Calls visit(name, takes, make) for every scheme with weights of these kinds, where make(law) is the library's scheme
+/// of that law.
+template <int N, typename S = double, Kinds kKinds = Kinds::kAll, typename Visit>
 void for_every_scheme(Visit&& visit) {
-  const auto diagonal = [](const Law& law) { return Vector<N, S>(law.W.diagonal().cast<S>()); };
-  [[maybe_unused]] const auto dense = [](const Law& law) { return Matrix<N, N, S>(law.W.cast<S>()); };
+  const auto diagonal = [](const Law& law) {
+    return any_kind<N, S>(DiagonalWeights<N, S>(Vector<N, S>(law.W.diagonal().cast<S>())));
+  };
+  [[maybe_unused]] const auto dense = [](const Law& law) {
+    return any_kind<N, S>(DenseWeights<N, S>(Matrix<N, N, S>(law.W.cast<S>())));
+  };
   const auto z = [](const Law& law) { return make_null_space<N, S>(law); };
   const auto damping = [](const Law& law) { return make_damping<S>(law); };
   const auto number = [](double value) { return static_cast<S>(value); };
 
-  visit("MVN", Takes{false, 0.0, true, false, false},
-        [=](const Law& law) { return MVN<N, S>(number(law.k), z(law), damping(law)); });
-  visit("MAN", Takes{true, 0.0, false, false, false}, [=](const Law& law) { return MAN<N, S>(z(law), damping(law)); });
+  constexpr Takes kMvn{false, 0.0, true, false, false};
+  constexpr Takes kMan{true, 0.0, false, false, false};
+  if constexpr (N == Eigen::Dynamic && std::is_same_v<S, double>) {
+    const auto unit = any_kind<N, S>(UnitWeights{});
+    visit("MVN", kMvn, [=](const Law& law) { return WMVN<N, S>(unit, number(law.k), z(law), damping(law)); });
+    visit("MAN", kMan, [=](const Law& law) { return Balanced<N, S>(S(0), unit, z(law), damping(law)); });
+  } else if constexpr (kKinds != Kinds::kDiagonal) {
+    visit("MVN", kMvn, [=](const Law& law) { return MVN<N, S>(number(law.k), z(law), damping(law)); });
+    visit("MAN", kMan, [=](const Law& law) { return MAN<N, S>(z(law), damping(law)); });
+  }
   const auto visit_weighted = [&](const std::string& suffix, bool is_dense, const auto& W) {
     visit("WMVN" + suffix, Takes{false, 1.0, true, true, is_dense},
           [=](const Law& law) { return WMVN<N, S>(W(law), number(law.k), z(law), damping(law)); });
@@ -57,7 +83,7 @@ void for_every_scheme(Visit&& visit) {
     });
   };
   visit_weighted("", false, diagonal);
-  if constexpr (kDense) visit_weighted("_dense", true, dense);
+  if constexpr (kKinds == Kinds::kAll) visit_weighted("_dense", true, dense);
 }
 
 }  // namespace fpbm::test

@@ -48,10 +48,11 @@ inline void PrintTo(const Subject& subject, std::ostream* out) {
   *out << subject.name;
 }
 
-/// Planar arms of 4 joints, in double and in float, and of 2, 7 and 12 joints at run-time size; of 4 joints with the
-/// task space PlanarPose.
+/// Planar arms of 4 joints and of 2, 7 and 12 joints at run-time size; with diagonal weights of 4 joints in float, and
+/// of 4 joints with the task space PlanarPose.
 [[nodiscard]] std::vector<Subject> planar_subjects();
-/// Arms in space of 7 joints, with the task spaces Position<3> and Pose; of 9 joints at run-time size, on a rail.
+/// Arms in space of 7 joints with the task space Pose and, with diagonal weights, Position<3>; of 9 joints at run-time
+/// size, on a rail.
 [[nodiscard]] std::vector<Subject> spatial_subjects();
 /// Both.
 [[nodiscard]] std::vector<Subject> subjects();

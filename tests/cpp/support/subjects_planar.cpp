@@ -10,8 +10,8 @@ std::vector<Subject> planar_subjects() {
     add(make_subjects<PlanarArm<Eigen::Dynamic>, Position<2>>("dynamic_n" + std::to_string(dof), dof));
   }
 #ifndef FPBM_FEW_TYPES
-  add(make_subjects<PlanarArm<4, float>, Position<2>>("n4_float", 4));
-  add(make_subjects<PlanarArm<4>, PlanarPose, false>("planar_pose_n4", 4));
+  add(make_subjects<PlanarArm<4, float>, Position<2>, Kinds::kDiagonal>("n4_float", 4));
+  add(make_subjects<PlanarArm<4>, PlanarPose, Kinds::kDiagonal>("planar_pose_n4", 4));
 #endif
   return all;
 }

@@ -1,17 +1,91 @@
 #include "support/textbook.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace fpbm::test {
 namespace {
 
 RealMatrix identity(const RealMatrix& J) {
   return RealMatrix::Identity(J.cols(), J.cols());
+}
+
+// The decompositions are short and by hand: Eigen's, in extended precision, take ten times as long to compile.
+
+/// Gauss-Jordan elimination with the largest pivots of each column: turns A into I and B into A⁻¹B. Returns det A.
+Real eliminate(RealMatrix A, RealMatrix& B) {
+  Real product = 1;
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < A.rows(); ++i) {
+      if (std::abs(A(i, k)) > std::abs(A(pivot, k))) pivot = i;
+    }
+    if (pivot != k) {
+      product = -product;
+      A.row(k).swap(A.row(pivot));
+      B.row(k).swap(B.row(pivot));
+    }
+    product *= A(k, k);
+    const Real scale = 1 / A(k, k);
+    A.row(k) *= scale;
+    B.row(k) *= scale;
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      const Real factor = i == k ? 0 : A(i, k);
+      if (factor == 0) continue;
+      A.row(i) -= factor * A.row(k);
+      B.row(i) -= factor * B.row(k);
+    }
+  }
+  return product;
+}
+
+/// A = QR by Gram-Schmidt, each column made orthogonal twice, for a Q good to round-off.
+std::pair<RealMatrix, RealMatrix> qr(const RealMatrix& A) {
+  RealMatrix Q = A;
+  RealMatrix R = RealMatrix::Zero(A.cols(), A.cols());
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Eigen::Index i = 0; i < k; ++i) {
+        const Real along = Q.col(i).dot(Q.col(k));
+        Q.col(k) -= along * Q.col(i);
+        R(i, k) += along;
+      }
+    }
+    R(k, k) = Q.col(k).norm();
+    Q.col(k) /= R(k, k);
+  }
+  return {Q, R};
+}
+
+/// Jacobi's rotations: makes rows of A orthogonal, pair by pair, and turns U's columns along, so that UA stays. Small
+/// singular values are as good as large ones.
+void make_rows_orthogonal(RealMatrix& A, RealMatrix& U) {
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < 40; ++sweep) {  // Rows of round-off alone never become orthogonal.
+    turned = false;
+    for (Eigen::Index i = 0; i + 1 < A.rows(); ++i) {
+      for (Eigen::Index j = i + 1; j < A.rows(); ++j) {
+        const Real ii = A.row(i).squaredNorm();
+        const Real jj = A.row(j).squaredNorm();
+        const Real ij = A.row(i).dot(A.row(j));
+        if (!(std::abs(ij) > 16 * std::numeric_limits<Real>::epsilon() * std::sqrt(ii * jj))) continue;
+        turned = true;
+        const Real zeta = (jj - ii) / (2 * ij);
+        const Real t = (zeta < 0 ? -1 : 1) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
+        const Real c = 1 / std::sqrt(1 + t * t);
+        const RealMatrix row = c * A.row(i) - c * t * A.row(j);
+        A.row(j) = c * t * A.row(i) + c * A.row(j);
+        A.row(i) = row;
+        const RealMatrix column = c * U.col(i) - c * t * U.col(j);
+        U.col(j) = c * t * U.col(i) + c * U.col(j);
+        U.col(i) = column;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -39,28 +113,43 @@ Situation planar_arm(const RealVector& lengths, const RealVector& q, const RealV
 }
 
 Spectrum spectrum(const RealMatrix& J) {
-  const Eigen::JacobiSVD<RealMatrix, Eigen::HouseholderQRPreconditioner> svd(J, Eigen::ComputeFullU);
-  return {svd.singularValues(), svd.matrixU()};
+  RealMatrix A = J;
+  RealMatrix U = RealMatrix::Identity(J.rows(), J.rows());
+  make_rows_orthogonal(A, U);
+  std::vector<std::pair<Real, Eigen::Index>> order;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) order.emplace_back(A.row(i).norm(), i);
+  std::sort(order.begin(), order.end(), std::greater<>());
+  Spectrum found{RealVector(J.rows()), U};
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    const auto& [sigma, from] = order[static_cast<std::size_t>(i)];
+    found.sigma(i) = sigma;
+    found.U.col(i) = U.col(from);
+  }
+  return found;
 }
 
 RealVector singular_values(const RealMatrix& J) {
+  if (J.rows() > J.cols()) return spectrum(J.transpose()).sigma;
   return spectrum(J).sigma;
 }
 
 RealMatrix orthogonal(const RealMatrix& A) {
-  return Eigen::HouseholderQR<RealMatrix>(A).householderQ();
+  return qr(A).first;
 }
 
 RealMatrix inverse(const RealMatrix& A) {
-  return A.inverse();
+  RealMatrix result = identity(A);
+  eliminate(A, result);
+  return result;
 }
 
 Real determinant(const RealMatrix& A) {
-  return A.determinant();
+  RealMatrix nothing(A.rows(), 0);
+  return eliminate(A, nothing);
 }
 
 RealVector eigenvalues(const RealMatrix& A) {
-  return Eigen::SelfAdjointEigenSolver<RealMatrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
+  return sorted(singular_values(A));
 }
 
 RealVector sorted(RealVector values) {
@@ -69,9 +158,7 @@ RealVector sorted(RealVector values) {
 }
 
 RealMatrix pseudoinverse(const RealMatrix& J) {
-  const Eigen::HouseholderQR<RealMatrix> qr(J.transpose());  // Jᵀ = QR: J⁺ = Q R⁻ᵀ.
-  const RealMatrix Q = qr.householderQ() * RealMatrix::Identity(J.cols(), J.rows());
-  const RealMatrix R = qr.matrixQR().topRows(J.rows()).triangularView<Eigen::Upper>();
+  const auto [Q, R] = qr(J.transpose());  // Jᵀ = QR: J⁺ = Q R⁻ᵀ.
   return Q * inverse(R.transpose());
 }
 

@@ -59,7 +59,7 @@ struct Spectrum {
 [[nodiscard]] RealMatrix inverse(const RealMatrix& A);
 [[nodiscard]] Real determinant(const RealMatrix& A);
 
-/// Eigenvalues of a symmetric matrix, the least first.
+/// Eigenvalues of a symmetric matrix that has no negative ones, the least first.
 [[nodiscard]] RealVector eigenvalues(const RealMatrix& A);
 
 /// The same numbers, the least first.
