@@ -16,7 +16,8 @@ mkdir -p "$house"
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test
 
 "$python" tools/cost.py 90 1200 \
-    tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel dist/*.tar.gz
+    tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel \
+    --config-settings=cmake.define.FPBM_LANES=all dist/*.tar.gz
 
 "$python" -m auditwheel show build/wheel/*.whl
 "$python" -m auditwheel repair --wheel-dir dist build/wheel/*.whl

@@ -52,7 +52,9 @@ template <typename Derived>
     return true;
   } else {
     using Scalar = typename Derived::Scalar;
-    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
+    Scalar sum(0);
+    for (Eigen::Index i = 0; i < values.size(); ++i) sum += values.derived().coeff(i) * Scalar(0);
+    return sum == Scalar(0);  // Inf and NaN make NaN of it.
   }
 }
 

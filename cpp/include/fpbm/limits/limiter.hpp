@@ -107,7 +107,7 @@ class Limiter {
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
     auto found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) yield(J, state, box, rows, desired, found);
-    if (!found.u.allFinite()) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
+    if (!is_finite(found.u)) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
     return found;
   }
 
@@ -120,7 +120,7 @@ class Limiter {
     if (box.contains(goal) && rows.admit(goal)) return {goal, found.scale, found.joints, found.passes, found.rows};
     const JointVector from = rows.near(steady, box);
     Saturated<N, Scalar> next = saturation(box, from, goal);
-    if (!next.u.allFinite()) return {from, Scalar(0), next.joints, next.passes, next.rows};
+    if (!is_finite(next.u)) return {from, Scalar(0), next.joints, next.passes, next.rows};
     next.scale *= found.scale;
     return next;
   }
@@ -159,11 +159,15 @@ class Limiter {
     const Scalar yields = Scalar(1) - left * left;
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
     JointVector rest = JointVector::Zero(state.q.size());
-    if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
+    if constexpr (kLevel == Level::kAcceleration) {
+      rest = entrywise(rest, [&](Eigen::Index i) { return -kDamping * state.qd(i); });
+    }
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
-    const JointVector to =
-        box.nearest(found.u + yields * yields * (yielded - found.u));  // Round-off may leave the box.
-    found.u += rows.share(found.u, to) * (to - found.u);
+    const JointVector blended = entrywise(
+        yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
+    const JointVector to = box.nearest(blended);  // Round-off may leave the box.
+    const Scalar share = rows.share(found.u, to);
+    found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });
   }
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.

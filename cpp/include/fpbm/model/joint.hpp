@@ -63,7 +63,7 @@ struct JointLimits {
   /// No bounds at all, for dof joints.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
     const Vector<N, Scalar> infinite = unbounded(dof);
-    return {-infinite, infinite, infinite, infinite};
+    return {Vector<N, Scalar>::Constant(dof, -JointBounds<Scalar>::kNone), infinite, infinite, infinite};
   }
 
   template <typename Other>

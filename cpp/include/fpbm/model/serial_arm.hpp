@@ -35,17 +35,17 @@ class SerialArm {
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
     turns_.setOnes(dof_);
     offsets_.setZero(dof_);
-    Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
+    Transform<Scalar> turned_back;
     for (Eigen::Index i = 0; i < dof_; ++i) {
       const auto& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
-      const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
-      const Vector3 p = turned_back * joint.placement.p;
-      turned_back = to_axis.transpose();
+      Transform<Scalar> step = turned_back * joint.placement;
+      step.R = Matrix<3, 3, Scalar>(step.R.lazyProduct(to_axis));
+      for (int k = 0; k < 9; ++k) turned_back.R(k / 3, k % 3) = to_axis(k % 3, k / 3);
       if (i == 0) {
-        base_ = {p, R};
+        base_ = step;
       } else {
-        const DecomposedLink<Scalar> between({p, R});
+        const DecomposedLink<Scalar> between(step);
         links_[static_cast<std::size_t>(i - 1)] = LinkPassage<Scalar>(between.link);
         offsets_(i - 1) += between.before;
         offsets_(i) = between.after;
@@ -61,7 +61,7 @@ class SerialArm {
     }
     length_ += chain.tip.p.norm();
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
-    const DecomposedLink<Scalar> last({turned_back * chain.tip.p, turned_back * chain.tip.R});
+    const DecomposedLink<Scalar> last(turned_back * chain.tip);
     links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);
     offsets_(dof_ - 1) += last.before;
     using std::cos;

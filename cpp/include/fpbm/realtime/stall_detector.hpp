@@ -59,7 +59,7 @@ class StallDetector {
 
  private:
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
-    twist.template head<Space::kRows - Space::kTurns>() /= length;
+    for (int i = 0; i < Space::kRows - Space::kTurns; ++i) twist(i) /= length;
     return twist.norm();
   }
 

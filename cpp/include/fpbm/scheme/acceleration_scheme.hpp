@@ -107,7 +107,8 @@ struct AccelerationScheme {
         if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
       }
       const auto force = [&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-        return alpha * Jd.transpose().lazyProduct(solutions.force(solutions.shares(xd)));
+        const Vector<N, Scalar> force_at_one = Jd.transpose().lazyProduct(solutions.force(solutions.shares(xd)));
+        return entrywise(force_at_one, [&](Eigen::Index i) { return alpha * force_at_one.coeff(i); });
       };
       return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd);
     }

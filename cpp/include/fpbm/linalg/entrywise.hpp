@@ -1,0 +1,28 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// The matrix, of the size of another one, whose entry i is f(i), counted along the columns.
+///
+/// For sums and products entry by entry. An expression of Eigen's has the same entries, but a type of its own, of which
+/// a compiler makes some thirty classes and functions.
+template <int Rows, int Cols, typename Scalar, typename F>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
+  Matrix<Rows, Cols, Scalar> result;
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic) {
+    constexpr Eigen::Index kSize = Rows * Cols;
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 16
+#endif
+    for (Eigen::Index i = 0; i < kSize; ++i) result.coeffRef(i) = f(i);
+  } else {
+    result.resize(size.rows(), size.cols());
+    const Eigen::Index n = size.size();
+    for (Eigen::Index i = 0; i < n; ++i) result.coeffRef(i) = f(i);
+  }
+  return result;
+}
+
+}  // namespace fpbm
