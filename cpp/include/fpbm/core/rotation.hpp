@@ -34,6 +34,11 @@ template <typename Scalar>
 }
 
 template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> transposed(const Matrix<3, 3, Scalar>& R) noexcept {
+  return entrywise(R, [&](Eigen::Index i) { return R.coeff(i / 3, i % 3); });
+}
+
+template <typename Scalar>
 [[nodiscard]] Scalar trace_of(const Matrix<3, 3, Scalar>& R) noexcept {
   return R.coeff(0, 0) + (R.coeff(1, 1) + R.coeff(2, 2));
 }
@@ -203,7 +208,7 @@ template <typename Scalar>
   const Split c = column(2);
   const Vector<3, Scalar> s(b.z - c.xy.second(), c.xy.first() - a.z, a.xy.second() - b.xy.first());
   return rotation_detail::rotation_vector<Scalar>(
-      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(y.transpose()); });
+      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(transposed(y)); });
 }
 
 }  // namespace fpbm

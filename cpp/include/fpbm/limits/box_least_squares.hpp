@@ -26,14 +26,14 @@ template <int M, int N, typename Scalar>
     const Vector<M, Scalar> done = J.lazyProduct(of);
     return entrywise(v, [&](Eigen::Index i) { return v.coeff(i) - done.coeff(i); });
   };
-  const Vector<N, Scalar> change = J.transpose().lazyProduct(cholesky.solve(missing(rest)));
+  const Vector<N, Scalar> change = transpose_times(J, cholesky.solve(missing(rest)));
   Vector<N, Scalar> u =
       box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + change.coeff(i); }));
   Vector<M, Scalar> left = missing(u);
-  const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) { return J.col(i).squaredNorm() + mu; });
+  const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) { return column(J, i).squaredNorm() + mu; });
   for (Eigen::Index round = 0; round < J.cols(); ++round) {
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const Scalar slope = J.col(i).dot(left) + mu * (rest(i) - u(i));
+      const Scalar slope = column(J, i).cwiseProduct(left).sum() + mu * (rest(i) - u(i));
       const Scalar to = std::clamp(u(i) + slope / curvature(i), box.lower(i), box.upper(i));
       for (Eigen::Index k = 0; k < J.rows(); ++k) left(k) -= (to - u(i)) * J(k, i);
       u(i) = to;

@@ -25,4 +25,28 @@ template <int Rows, int Cols, typename Scalar, typename F>
   return result;
 }
 
+/// Column j of a matrix.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Vector<Rows, Scalar> column(const Matrix<Rows, Cols, Scalar>& A, Eigen::Index j) noexcept {
+  Vector<Rows, Scalar> result;
+  result.resize(A.rows());
+  const Scalar* const from = A.data() + j * A.rows();
+  return entrywise(result, [&](Eigen::Index i) { return from[i]; });
+}
+template <int Rows, int Cols, typename Scalar>
+void set_column(Matrix<Rows, Cols, Scalar>& A, Eigen::Index j, const Vector<Rows, Scalar>& values) noexcept {
+  Scalar* const to = A.data() + j * A.rows();
+  for (Eigen::Index i = 0; i < A.rows(); ++i) to[i] = values.coeff(i);
+}
+
+/// Aᵀb.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Vector<Cols, Scalar> transpose_times(const Matrix<Rows, Cols, Scalar>& A,
+                                                   const Vector<Rows, Scalar>& b) noexcept {
+  Vector<Cols, Scalar> result;
+  result.resize(A.cols());
+  for (Eigen::Index j = 0; j < A.cols(); ++j) result.coeffRef(j) = column(A, j).cwiseProduct(b).sum();
+  return result;
+}
+
 }  // namespace fpbm

@@ -40,8 +40,9 @@ struct DecomposedLink {
     const Scalar c = cos(before);
     const Scalar s = sin(before);
     Transform<Scalar> back;
-    back.R.col(0) = Vector<3, Scalar>(c, -s, Scalar(0));
-    back.R.col(1) = Vector<3, Scalar>(s, c, Scalar(0));
+    back.R(0, 0) = back.R(1, 1) = c;
+    back.R(0, 1) = s;
+    back.R(1, 0) = -s;
     const auto [step, rest] = back * transform;
     link = {step, rest(2, 2), -rest(1, 2)};
     after = atan2(-rest(0, 1), rest(0, 0));
@@ -63,9 +64,9 @@ template <typename Scalar>
   across(least) = Scalar(1);
   const Vector3 x = cross(across, z).normalized();
   Matrix<3, 3, Scalar> R;
-  R.col(0) = x;
-  R.col(1) = cross(z, x);
-  R.col(2) = z;
+  set_column(R, 0, x);
+  set_column(R, 1, cross(z, x));
+  set_column(R, 2, z);
   return R;
 }
 

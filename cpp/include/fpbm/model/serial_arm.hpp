@@ -41,7 +41,7 @@ class SerialArm {
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       Transform<Scalar> step = turned_back * joint.placement;
       step.R = Matrix<3, 3, Scalar>(step.R.lazyProduct(to_axis));
-      for (int k = 0; k < 9; ++k) turned_back.R(k / 3, k % 3) = to_axis(k % 3, k / 3);
+      turned_back.R = transposed(to_axis);
       if (i == 0) {
         base_ = step;
       } else {
@@ -126,10 +126,11 @@ class SerialArm {
                   "a serial arm has tasks Position<3> and Pose");
     using Two = Pair<Scalar>;
     using Joint = typename Screws<N, Scalar>::Joint;
-    const auto n = extent<N>(dof_);
+    // Of an arm with joints that slide in a loop: unrolled, it would take as long to compile as that of all others.
+    const auto n = extent<kSlides ? Eigen::Dynamic : N>(dof_);
     const auto pairs = pairs_of(n);
 
-    Angles<N, Scalar> angles = angles_of<N, Scalar>(n);
+    Angles<N, Scalar> angles = angles_of<N, Scalar>(extent<N>(dof_));
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
       const Two turned = kSlides ? two_of(turns_, i) * two_of(q, i) : two_of(q, i);

@@ -106,12 +106,12 @@ class Tracker {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
     result.status = loop.resolve(references.stages[0], dx);
-    const JointVector field = Loop::column(dx, 0);
+    const JointVector field = column(dx, 0);
     if (!failed(result.status)) {
       result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
     }
-    JointState next{Loop::column(x, 0), state.qd};
-    if constexpr (Loop::kSecondOrder) next.qd = Loop::column(x, 1);
+    JointState next{column(x, 0), state.qd};
+    if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
     return result;
   }

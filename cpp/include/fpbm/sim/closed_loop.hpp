@@ -31,18 +31,6 @@ struct ClosedLoop {
     return x;
   }
 
-  /// Column j of X or of dX/dt. By entries: a column of Eigen's is one more type of matrix to compile.
-  [[nodiscard]] static Vector<N, Scalar> column(const X& x, Eigen::Index j) noexcept {
-    Vector<N, Scalar> result;
-    result.resize(x.rows());
-    const Scalar* const from = x.data() + j * x.rows();
-    return entrywise(result, [&](Eigen::Index i) { return from[i]; });
-  }
-  static void set_column(X& x, Eigen::Index j, const Vector<N, Scalar>& values) noexcept {
-    Scalar* const to = x.data() + j * x.rows();
-    for (Eigen::Index i = 0; i < values.size(); ++i) to[i] = values.coeff(i);
-  }
-
   /// dX/dt at X. Afterwards kinematics, state and qdd are those of this evaluation; at velocity level state.qd is the
   /// scheme's answer, and qdd is not used.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {

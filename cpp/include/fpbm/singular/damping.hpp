@@ -63,8 +63,13 @@ template <int kTurns, int M, int N, typename Scalar>
     column += M;
     for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
   }
-  Scalar sum = squares.template head<M - kTurns>().sum();
-  if constexpr (kTurns > 0) sum += length * length * squares.template tail<kTurns>().sum();
+  Scalar sum = squares.coeff(0);
+  for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
+  if constexpr (kTurns > 0) {
+    Scalar turns = squares.coeff(M - kTurns);
+    for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
+    sum += length * length * turns;
+  }
   return sum;
 }
 
@@ -118,8 +123,7 @@ class DampedGram {
     /// a − motion(shares(J C a)), of a motion itself.
     [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
-        const Vector<M, Value> done = of.rows_.transpose().lazyProduct(a);
-        const Vector<N, Value> taken = motion(of.damped_.solve(done));
+        const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
         return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
       return of.factor_.without(a);
@@ -165,7 +169,7 @@ class DampedGram {
     return scaled;
   }
 
-  [[nodiscard, gnu::noinline, gnu::cold]] Status damped(Scalar threshold, Status undamped) noexcept {
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
     Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());
     for (int i = kLengths; i < M; ++i) {
       for (int j = 0; j < M; ++j) even(j, i) *= length_;
@@ -176,9 +180,10 @@ class DampedGram {
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram = rows_.transpose().lazyProduct(rows_);
-    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
+    Matrix<M, M, Value> gram;  // Its lower triangle.
+    for (int i = 0; i < M; ++i) {
+      const Vector<N, Value> row = column(rows_, i);
+      for (int j = 0; j <= i; ++j) gram(i, j) = row.cwiseProduct(column(rows_, j)).sum() + Value(lost.delta(i, j));
     }
     const Status status = damped_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;
