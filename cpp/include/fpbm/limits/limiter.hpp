@@ -127,22 +127,28 @@ class Limiter {
 
   /// The motions of a tick of some accelerations.
   [[nodiscard]] JointVector motions(const JointVector& qd, const JointVector& accelerations) const noexcept {
-    if constexpr (kLevel == Level::kVelocity) return qd + limits_.tick() * accelerations;
-    return accelerations;
+    if constexpr (kLevel == Level::kVelocity) {
+      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + limits_.tick() * accelerations(i); });
+    } else {
+      return accelerations;
+    }
   }
 
   /// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its
   /// end: the same for all joints, so that the change keeps its direction.
   [[nodiscard]] JointVector approach(const JointVector& qd, const JointVector& goal) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) return goal;
-    Scalar share(1);
-    for (Eigen::Index i = 0; i < goal.size(); ++i) {
-      if (!limits_.bounds_jerk(i)) continue;
-      const Scalar change = std::abs(goal(i) - qd(i));
-      const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
-      if (share * change > most) share = most / change;
+    if constexpr (kLevel == Level::kAcceleration) {
+      return goal;
+    } else {
+      Scalar share(1);
+      for (Eigen::Index i = 0; i < goal.size(); ++i) {
+        if (!limits_.bounds_jerk(i)) continue;
+        const Scalar change = std::abs(goal(i) - qd(i));
+        const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
+        if (share * change > most) share = most / change;
+      }
+      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
     }
-    return qd + share * (goal - qd);
   }
 
   /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), where s is the scale and s₀ =
@@ -158,10 +164,9 @@ class Limiter {
     if (!(left < Scalar(1))) return;
     const Scalar yields = Scalar(1) - left * left;
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
-    JointVector rest = JointVector::Zero(state.q.size());
-    if constexpr (kLevel == Level::kAcceleration) {
-      rest = entrywise(rest, [&](Eigen::Index i) { return -kDamping * state.qd(i); });
-    }
+    const JointVector rest = entrywise(state.qd, [&](Eigen::Index i) {
+      return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0);
+    });
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
     const JointVector blended = entrywise(
         yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });

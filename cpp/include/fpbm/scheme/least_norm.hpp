@@ -25,7 +25,11 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     const Weights& weights, const Vector<M, Scalar>& v, const Force& force, const NullSpace<N, Scalar>& null_space,
     const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J, const Scalar& length,
     const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& u) noexcept {
-  const Matrix<N, M, Scalar> Jt = J.transpose();
+  Matrix<N, M, Scalar> Jt;
+  Jt.resize(J.cols(), J.rows());
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    for (Eigen::Index j = 0; j < J.cols(); ++j) Jt.coeffRef(j, i) = J.coeff(i, j);
+  }
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
