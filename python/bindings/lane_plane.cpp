@@ -3,6 +3,8 @@
 
 namespace fpbm::bindings {
 
-RunInLanes<Position<2>> plane_in_lanes() noexcept { return &run_in_lanes<Position<2>>; }
+RunInLanes<Position<2>> plane_in_lanes() noexcept {
+  return &run_in_lanes<Position<2>>;
+}
 
 }  // namespace fpbm::bindings

@@ -3,6 +3,8 @@
 
 namespace fpbm::bindings {
 
-RunInLanes<Pose> pose_in_lanes() noexcept { return &run_in_lanes<Pose>; }
+RunInLanes<Pose> pose_in_lanes() noexcept {
+  return &run_in_lanes<Pose>;
+}
 
 }  // namespace fpbm::bindings

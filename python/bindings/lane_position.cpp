@@ -3,6 +3,8 @@
 
 namespace fpbm::bindings {
 
-RunInLanes<Position<3>> position_in_lanes() noexcept { return &run_in_lanes<Position<3>>; }
+RunInLanes<Position<3>> position_in_lanes() noexcept {
+  return &run_in_lanes<Position<3>>;
+}
 
 }  // namespace fpbm::bindings

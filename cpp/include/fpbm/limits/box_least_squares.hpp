@@ -27,8 +27,7 @@ template <int M, int N, typename Scalar>
     return entrywise(v, [&](Eigen::Index i) { return v.coeff(i) - done.coeff(i); });
   };
   const Vector<N, Scalar> change = transpose_times(J, cholesky.solve(missing(rest)));
-  Vector<N, Scalar> u =
-      box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + change.coeff(i); }));
+  Vector<N, Scalar> u = box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + change.coeff(i); }));
   Vector<M, Scalar> left = missing(u);
   const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) { return column(J, i).squaredNorm() + mu; });
   for (Eigen::Index round = 0; round < J.cols(); ++round) {

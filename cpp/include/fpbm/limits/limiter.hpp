@@ -164,12 +164,11 @@ class Limiter {
     if (!(left < Scalar(1))) return;
     const Scalar yields = Scalar(1) - left * left;
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
-    const JointVector rest = entrywise(state.qd, [&](Eigen::Index i) {
-      return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0);
-    });
+    const JointVector rest = entrywise(
+        state.qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0); });
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
-    const JointVector blended = entrywise(
-        yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
+    const JointVector blended =
+        entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
     const JointVector to = box.nearest(blended);  // Round-off may leave the box.
     const Scalar share = rows.share(found.u, to);
     found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });

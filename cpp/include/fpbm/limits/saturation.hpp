@@ -123,8 +123,8 @@ class NullSpaceSaturation {
         break;
       }
     }
-    result.u = box.nearest(
-        entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
+    result.u =
+        box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
     for (int i = 0; i < held_.count(); ++i) {
       const auto [joint, above] = held_[i];
       count(result, joint, joints);

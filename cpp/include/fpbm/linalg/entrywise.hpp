@@ -11,7 +11,8 @@ namespace fpbm {
 template <int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
   Matrix<Rows, Cols, Scalar> result;
-  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic) {
+  constexpr Eigen::Index kMost = 16;
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kMost) {
     constexpr Eigen::Index kSize = Rows * Cols;
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 16

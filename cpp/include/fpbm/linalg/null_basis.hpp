@@ -24,7 +24,8 @@ class RowSpace {
     const auto n = extent<kN>(V_.rows());
     const auto m = extent<kM>(V_.cols());
     // By entries: g++ warns of Eigen's own look at a whole matrix that is yet to be set.
-    each(Constant<0>{}, m, [&](auto j) { each(Constant<0>{}, n, [&](auto i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
+    each(Constant<0>{}, m,
+         [&](auto j) { each(Constant<0>{}, n, [&](Eigen::Index i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
     Scalar round_off = kLeast;
     each(Constant<0>{}, m, [&](auto k) {
       using std::sqrt;
@@ -33,7 +34,7 @@ class RowSpace {
       Scalar square = Scalar(0);
       each(k, m, [&](auto j) {
         Scalar left = Scalar(0);
-        each(k, n, [&](auto i) { left += V_.coeff(i, j) * V_.coeff(i, j); });
+        each(k, n, [&](Eigen::Index i) { left += V_.coeff(i, j) * V_.coeff(i, j); });
         if (!(left > square)) return;
         square = left;
         largest = j;
@@ -80,9 +81,9 @@ class RowSpace {
   void reflect(Index k, Column&& x) const noexcept {
     const auto n = extent<kN>(V_.rows());
     Scalar along = Scalar(0);
-    each(k, n, [&](auto i) { along += V_.coeff(i, k) * x.coeff(i); });
+    each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x.coeff(i); });
     along *= beta_.coeff(k);
-    each(k, n, [&](auto i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
+    each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
   }
 
   Matrix<N, M, Scalar> V_;  ///< Column k becomes the k-th reflection's vector, below row k − 1.

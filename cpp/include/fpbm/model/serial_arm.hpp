@@ -127,7 +127,7 @@ class SerialArm {
     using Two = Pair<Scalar>;
     using Joint = typename Screws<N, Scalar>::Joint;
     // Of an arm with joints that slide in a loop: unrolled, it would take as long to compile as that of all others.
-    const auto n = extent<kSlides ? Eigen::Dynamic : N>(dof_);
+    const auto n = extent < kSlides ? Eigen::Dynamic : N > (dof_);
     const auto pairs = pairs_of(n);
 
     Angles<N, Scalar> angles = angles_of<N, Scalar>(extent<N>(dof_));

@@ -95,12 +95,16 @@ class NullSpace {
   /// z in this state.
   template <Level kLevel>
   [[nodiscard]] Vector<N, Scalar> at(const State<N, Scalar>& state) const noexcept {
-    return entrywise(state.q, [&](Eigen::Index i) {
-      Scalar z(0);
-      if (has_constant_) z += constant_.coeff(i) - stiffness_.coeff(i) * state.q.coeff(i);
-      if constexpr (kLevel == Level::kAcceleration) z -= damping_ * state.qd.coeff(i);
-      return z;
-    });
+    Vector<N, Scalar> z = entrywise(state.q, [](Eigen::Index) { return Scalar(0); });
+    if (has_constant_) {
+      z = entrywise(z, [&](Eigen::Index i) {
+        return z.coeff(i) + (constant_.coeff(i) - stiffness_.coeff(i) * state.q.coeff(i));
+      });
+    }
+    if constexpr (kLevel == Level::kAcceleration) {
+      z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - damping_ * state.qd.coeff(i); });
+    }
+    return z;
   }
 
  private:

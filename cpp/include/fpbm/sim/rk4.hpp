@@ -61,9 +61,8 @@ struct RK4 {
                                                       const Matrix<Rows, Cols, Scalar>& k2,
                                                       const Matrix<Rows, Cols, Scalar>& k3,
                                                       const Matrix<Rows, Cols, Scalar>& k4) noexcept {
-    return entrywise(k1, [&](Eigen::Index i) {
-      return k1.coeff(i) + Scalar(2) * (k2.coeff(i) + k3.coeff(i)) + k4.coeff(i);
-    });
+    return entrywise(
+        k1, [&](Eigen::Index i) { return k1.coeff(i) + Scalar(2) * (k2.coeff(i) + k3.coeff(i)) + k4.coeff(i); });
   }
 };
 
