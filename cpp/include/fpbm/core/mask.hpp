@@ -52,9 +52,7 @@ template <typename Derived>
     return true;
   } else {
     using Scalar = typename Derived::Scalar;
-    Scalar sum(0);
-    for (Eigen::Index i = 0; i < values.size(); ++i) sum += values.derived().coeff(i) * Scalar(0);
-    return sum == Scalar(0);  // Inf and NaN make NaN of it.
+    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
   }
 }
 

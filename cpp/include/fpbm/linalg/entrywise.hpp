@@ -44,6 +44,10 @@ void set_column(Matrix<Rows, Cols, Scalar>& A, Eigen::Index j, const Vector<Rows
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Vector<Cols, Scalar> transpose_times(const Matrix<Rows, Cols, Scalar>& A,
                                                    const Vector<Rows, Scalar>& b) noexcept {
+  // Small ones by Eigen, which leaves no loop; larger ones by columns, of which a compiler makes fewer types.
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= 21) {
+    return A.transpose().lazyProduct(b);
+  }
   Vector<Cols, Scalar> result;
   result.resize(A.cols());
   for (Eigen::Index j = 0; j < A.cols(); ++j) result.coeffRef(j) = column(A, j).cwiseProduct(b).sum();

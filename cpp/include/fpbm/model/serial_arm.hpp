@@ -119,8 +119,9 @@ class SerialArm {
   /// A pass along the chain finds the joints' axes; J and Jd follow from these. With a code of its own for chains of
   /// which no joint slides.
   template <bool kWithRate, bool kSlides, typename Space>
-  [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                                     Kinematics<Space, N, Scalar>& out) const noexcept {
+  [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
+                                                    [[maybe_unused]] const Vector<N, Scalar>& qd,
+                                                    Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");

@@ -19,17 +19,15 @@ struct NoForce {};
 ///
 /// u: velocities or accelerations by level. force(gram) is f, which needs the factorised Gram matrix JW⁻¹Jᵀ, or
 /// NoForce. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
-/// Returns kDamped where damping acts. Leaves u unchanged where it fails.
+/// Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large translation unit may
+/// not inline small calls.
 template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
-[[nodiscard, gnu::always_inline]] inline Status least_norm_of(
-    const Weights& weights, const Vector<M, Scalar>& v, const Force& force, const NullSpace<N, Scalar>& null_space,
-    const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J, const Scalar& length,
-    const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& u) noexcept {
-  Matrix<N, M, Scalar> Jt;
-  Jt.resize(J.cols(), J.rows());
-  for (Eigen::Index i = 0; i < J.rows(); ++i) {
-    for (Eigen::Index j = 0; j < J.cols(); ++j) Jt.coeffRef(j, i) = J.coeff(i, j);
-  }
+[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
+                                              const NullSpace<N, Scalar>& null_space,
+                                              const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
+                                              const Scalar& length, const State<N, Scalar>& state,
+                                              const Known& foreseen, Vector<N, Scalar>& u) noexcept {
+  const Matrix<N, M, Scalar> Jt = J.transpose();
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
@@ -53,25 +51,6 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   if (!is_finite(result)) return Status::kNotFinite;
   u = result;
   return status;
-}
-
-/// The same, compiled for how it is called: for every posture it is flattened, since a large translation unit may not
-/// inline small calls; for the few postures of an arm with one self-motion that damping may act in, calls cost nothing.
-template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force>
-[[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
-                                              const NullSpace<N, Scalar>& null_space,
-                                              const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
-                                              const Scalar& length, const State<N, Scalar>& state,
-                                              const Unforeseen& unforeseen, Vector<N, Scalar>& u) noexcept {
-  return least_norm_of<kLevel, kTurns>(weights, v, force, null_space, damping, J, length, state, unforeseen, u);
-}
-template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force>
-[[nodiscard, gnu::noinline]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
-                                               const NullSpace<N, Scalar>& null_space,
-                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
-                                               const Scalar& length, const State<N, Scalar>& state,
-                                               const Foreseen<N, Scalar>& foreseen, Vector<N, Scalar>& u) noexcept {
-  return least_norm_of<kLevel, kTurns>(weights, v, force, null_space, damping, J, length, state, foreseen, u);
 }
 
 }  // namespace fpbm

@@ -2,7 +2,6 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/task/reference.hpp"
 
@@ -13,10 +12,7 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_velocity(
     Scalar k, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference) noexcept {
   Vector<Space::kRows, Scalar> v = reference.xd;
-  if (!all_of(k == Scalar(0))) {
-    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-    return entrywise(v, [&](Eigen::Index i) { return v.coeff(i) + k * error.coeff(i); });
-  }
+  if (!all_of(k == Scalar(0))) v += k * Space::template difference<Scalar>(reference.x, kinematics.tip);
   return v;
 }
 
@@ -25,17 +21,12 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
     const State<N, Scalar>& state) noexcept {
-  using Twist = Vector<Space::kRows, Scalar>;
-  const Twist drift = kinematics.Jd.lazyProduct(state.qd);
-  if (all_of(k1 + k2 == Scalar(0))) {
-    return entrywise(drift, [&](Eigen::Index i) { return reference.xdd.coeff(i) - drift.coeff(i); });
+  Vector<Space::kRows, Scalar> b = reference.xdd - kinematics.Jd.lazyProduct(state.qd);
+  if (!all_of(k1 + k2 == Scalar(0))) {
+    b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
+    b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
   }
-  const Twist velocity = kinematics.J.lazyProduct(state.qd);
-  const Twist error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-  return entrywise(drift, [&](Eigen::Index i) {
-    const Scalar b = reference.xdd.coeff(i) - drift.coeff(i);
-    return b + k1 * (reference.xd.coeff(i) - velocity.coeff(i)) + k2 * error.coeff(i);
-  });
+  return b;
 }
 
 }  // namespace fpbm
