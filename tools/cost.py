@@ -1,10 +1,14 @@
 """Runs a command, and prints the time and the memory that it takes beside what is promised.
 
-    cost.py SECONDS MEGABYTES COMMAND ...
+    cost.py [--seconds S] [--processor S] [--megabytes MB] [--largest MB] COMMAND ...
 
-Linux only: memory is what all processes of the command together hold, looked at five times a second.
+--seconds is the time by the clock, and --megabytes what all processes of the command together hold, looked at five times a
+second (Linux only): both depend on what else the machine does, and are only printed. --processor is the processor time
+of all processes, and --largest the memory of the largest one: cost.py fails where they are above what is promised.
 """
 
+import argparse
+import resource
 import subprocess
 import sys
 import time
@@ -31,15 +35,32 @@ def memory(root: int) -> float:
 
 
 def main() -> int:
-    seconds, megabytes, *command = sys.argv[1:]
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    for promise in ("seconds", "processor", "megabytes", "largest"):
+        parser.add_argument(f"--{promise}", type=float)
+    parser.add_argument("command", nargs=argparse.REMAINDER)
+    options = parser.parse_args()
+
     begin, peak = time.monotonic(), 0.0
-    with subprocess.Popen(command) as running:
+    with subprocess.Popen(options.command) as running:
         while running.poll() is None:
             peak = max(peak, memory(running.pid))
             time.sleep(0.2)
-    print(f"took {time.monotonic() - begin:.0f} s (promised: at most {seconds})", flush=True)
-    print(f"and {peak:.0f} MB of memory (promised: at most {megabytes})", flush=True)
-    return running.returncode
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    taken = {
+        "seconds": (time.monotonic() - begin, "s by the clock"),
+        "processor": (usage.ru_utime + usage.ru_stime, "s of processor time"),
+        "megabytes": (peak, "MB in all processes together"),
+        "largest": (usage.ru_maxrss * 1024 / 1e6, "MB in the largest process"),
+    }
+    kept = True
+    for promise, (value, unit) in taken.items():
+        most = getattr(options, promise)
+        if most is None:
+            continue
+        print(f"took {value:.1f} {unit} (promised: at most {most:g})", flush=True)
+        kept = kept and (value <= most or promise in ("seconds", "megabytes"))
+    return running.returncode if running.returncode != 0 or kept else 1
 
 
 if __name__ == "__main__":

@@ -15,8 +15,9 @@ mkdir -p "$house"
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: -r build/requires.txt cmake ninja numpy pip
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test
 
-"$python" tools/cost.py 90 1200 \
-    tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel dist/*.tar.gz
+"$python" tools/cost.py --seconds 90 --processor 180 --megabytes 2600 --largest 2050 \
+    tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel \
+    --config-settings=cmake.define.FPBM_LANES=all dist/*.tar.gz
 
 "$python" -m auditwheel show build/wheel/*.whl
 "$python" -m auditwheel repair --wheel-dir dist build/wheel/*.whl

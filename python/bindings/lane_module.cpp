@@ -1,12 +1,13 @@
 #include <Python.h>
 
-#include "lane_run.hpp"
+#include "fpbm/core/lanes.hpp"
+#include "lane_code.hpp"
 
 // Python's own interface: pybind11's headers would take a quarter of the time that this takes to compile.
 PyMODINIT_FUNC FPBM_LANE_INIT() {
   using namespace fpbm::bindings;
-  static LaneCode code{kLanes,
-                       {&run_in_lanes<fpbm::Position<2>>, &run_in_lanes<fpbm::Position<3>>, &run_in_lanes<fpbm::Pose>}};
+  constexpr auto kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
+  static LaneCode code{kLanes, {plane_in_lanes(), position_in_lanes(), pose_in_lanes()}};
   static PyModuleDef definition = {PyModuleDef_HEAD_INIT,
                                    FPBM_LANE_MODULE,
                                    "Motions side by side in the lanes of one kind of processor.",

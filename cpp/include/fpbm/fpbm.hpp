@@ -58,6 +58,7 @@
 #include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/inverse_trace.hpp"
 #include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/null_basis.hpp"

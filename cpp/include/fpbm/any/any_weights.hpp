@@ -26,12 +26,15 @@ class AnyWeights {
     return std::visit([](const auto& weights) { return weights.template inverse_bound<Scalar>(); }, weights_);
   }
 
-  // Calls, so that the large functions that use them stay small. The variant is never empty, so no visit throws.
+  // Calls, so that the large functions that use them stay small. Templates, so that they compile only where they are
+  // called. The variant is never empty, so no visit throws.
   // NOLINTBEGIN(bugprone-exception-escape)
+  template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
     return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); }, weights_);
   }
 
+  template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> unroot(const Vector<Eigen::Dynamic>& a) const noexcept {
     return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.unroot(a); }, weights_);
   }

@@ -25,7 +25,7 @@ template <typename To, typename From>
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
     validation::reject("path", ": it lies in space, and the arm in a plane");
   } else if constexpr (std::is_same_v<To, Position<3>>) {
-    return AnyPath<To>(InPlane(path, Vector<3>::UnitX(), Vector<3>::UnitY()));
+    return AnyPath<To>(InPlane(path, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
   } else if constexpr (std::is_same_v<typename PoseOver<From>::type, To>) {
     return AnyPath<To>(WithRotation(path));
   } else {

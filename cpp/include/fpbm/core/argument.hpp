@@ -10,18 +10,19 @@
 
 namespace fpbm::validation {
 
-/// A number or a text as messages show it.
-template <typename Word>
-[[nodiscard]] std::string text_of(const Word& word) {
-  if constexpr (std::is_floating_point_v<Word>) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.9g", static_cast<double>(word));
-    return number;
-  } else if constexpr (std::is_arithmetic_v<Word>) {
-    return std::to_string(word);
-  } else {
-    return std::string(word);
-  }
+// A number or a text as messages show it, after what they say before. Never inlined: messages are for arguments that
+// are rejected.
+[[gnu::noinline, gnu::cold]] inline void append_text(std::string& message, std::string_view text) {
+  message += text;
+}
+[[gnu::noinline, gnu::cold]] inline void append_text(std::string& message, double value) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%.9g", value);
+  message += number;
+}
+template <typename Whole>
+[[gnu::cold]] std::enable_if_t<std::is_integral_v<Whole>> append_text(std::string& message, Whole value) {
+  message += std::to_string(value);
 }
 
 /// An argument of a constructor, or a part of it, for messages: element("joints", 2) + ".axis" is "joints[2].axis".
@@ -31,11 +32,11 @@ class Argument {
  public:
   Argument(const char* name) : Argument(std::string_view(name)) {}
   Argument(const std::string& name) : Argument(std::string_view(name)) {}
-  Argument(std::string_view name) { append({name}); }
+  [[gnu::noinline]] Argument(std::string_view name) { append({name}); }
   Argument(std::string&& name) = delete;
 
   /// A part of it, by name.
-  [[nodiscard]] friend Argument operator+(Argument argument, std::string_view part) {
+  [[nodiscard, gnu::noinline]] friend Argument operator+(Argument argument, std::string_view part) {
     argument.append({part});
     return argument;
   }
@@ -91,7 +92,7 @@ class Argument {
 };
 
 /// Entry i of an argument; of a matrix, entry (i, j).
-[[nodiscard]] inline Argument element(Argument argument, Eigen::Index i, Eigen::Index j = -1) {
+[[nodiscard, gnu::noinline]] inline Argument element(Argument argument, Eigen::Index i, Eigen::Index j = -1) {
   argument.append({{}, i, j});
   return argument;
 }

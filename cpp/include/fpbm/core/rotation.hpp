@@ -6,6 +6,7 @@
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/sincos.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/split_vector.hpp"
 
 namespace fpbm {
@@ -23,13 +24,24 @@ struct Transform {
 
   /// Composition: T_ac = T_ab T_bc.
   [[nodiscard]] friend Transform operator*(const Transform& a, const Transform& b) noexcept {
-    return {a.p + a.R.lazyProduct(b.p), a.R.lazyProduct(b.R)};
+    const Vector<3, Scalar> turned = a.R.lazyProduct(b.p);
+    return {entrywise(turned, [&](Eigen::Index i) { return a.p.coeff(i) + turned.coeff(i); }), a.R.lazyProduct(b.R)};
   }
 };
 
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> cross(const Vector<3, Scalar>& a, const Vector<3, Scalar>& b) noexcept {
   return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
+}
+
+template <typename Scalar>
+[[nodiscard]] Matrix<3, 3, Scalar> transposed(const Matrix<3, 3, Scalar>& R) noexcept {
+  return entrywise(R, [&](Eigen::Index i) { return R.coeff(i / 3, i % 3); });
+}
+
+template <typename Scalar>
+[[nodiscard]] Scalar trace_of(const Matrix<3, 3, Scalar>& R) noexcept {
+  return R.coeff(0, 0) + (R.coeff(1, 1) + R.coeff(2, 2));
 }
 
 /// Unit quaternion (w, v) of a rotation vector r [rad], w = cos(|r|/2).
@@ -40,10 +52,8 @@ template <typename Scalar>
   const Scalar half = sqrt(r.squaredNorm()) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
-  Vector<4, Scalar> q;
-  q(0) = angle.cos;
-  q.template tail<3>() = sinc / Scalar(2) * r;
-  return q;
+  const Scalar scale = sinc / Scalar(2);
+  return {angle.cos, scale * r.coeff(0), scale * r.coeff(1), scale * r.coeff(2)};
 }
 
 /// Unit quaternion (w, v) of a rotation matrix, w ≥ 0.
@@ -53,15 +63,16 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::sqrt;
-  const Scalar trace = R.trace();
+  const Scalar trace = trace_of(R);
   Vector<4, Scalar> q;
   Eigen::Index i = 0;
-  if (trace >= R.diagonal().maxCoeff(&i)) {
+  for (Eigen::Index other = 1; other < 3; ++other) {
+    if (R(other, other) > R(i, i)) i = other;
+  }
+  if (trace >= R(i, i)) {
     const Scalar root = sqrt(Scalar(1) + trace);
-    q(0) = root / Scalar(2);
-    q.template tail<3>() =
-        Vector<3, Scalar>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)) / (Scalar(2) * root);
-    return q;
+    const Scalar twice = Scalar(2) * root;
+    return {root / Scalar(2), (R(2, 1) - R(1, 2)) / twice, (R(0, 2) - R(2, 0)) / twice, (R(1, 0) - R(0, 1)) / twice};
   }
   const Eigen::Index j = (i + 1) % 3;
   const Eigen::Index k = (i + 2) % 3;
@@ -70,25 +81,33 @@ template <typename Scalar>
   q(1 + j) = (R(i, j) + R(j, i)) / (Scalar(2) * root);
   q(1 + k) = (R(i, k) + R(k, i)) / (Scalar(2) * root);
   q(0) = (R(k, j) - R(j, k)) / (Scalar(2) * root);
-  return q(0) < Scalar(0) ? Vector<4, Scalar>(-q) : q;
+  if (q(0) < Scalar(0)) {
+    for (int e = 0; e < 4; ++e) q(e) = -q(e);
+  }
+  return q;
 }
 
 /// Vector part of a b*, where b* is the conjugate of b. For q̇ q* it is half the angular velocity.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> vector_of_quotient(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
-  const Vector<3, Scalar> v = a.template tail<3>();
-  const Vector<3, Scalar> w = b.template tail<3>();
-  return b(0) * v - a(0) * w - cross(v, w);
+  const Vector<3, Scalar> v(a(1), a(2), a(3));
+  const Vector<3, Scalar> w(b(1), b(2), b(3));
+  const Vector<3, Scalar> across = cross(v, w);
+  return entrywise(v, [&](Eigen::Index i) { return b(0) * v(i) - a(0) * w(i) - across(i); });
 }
 
 /// Rotation matrix of a unit quaternion (w, v): (w² − |v|²) I + 2 v vᵀ + 2 w [v]×.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> rotation(const Vector<4, Scalar>& q) noexcept {
   const Scalar w = q(0);
-  const Vector<3, Scalar> v = q.template tail<3>();
-  Matrix<3, 3, Scalar> R = Scalar(2) * v * v.transpose();
-  R.diagonal().array() += w * w - v.squaredNorm();
-  const Vector<3, Scalar> u = Scalar(2) * w * v;
+  const Vector<3, Scalar> v(q(1), q(2), q(3));
+  Matrix<3, 3, Scalar> R;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    for (Eigen::Index i = 0; i < 3; ++i) R(i, j) = Scalar(2) * v(i) * v(j);
+  }
+  const Scalar even = w * w - v.squaredNorm();
+  for (Eigen::Index i = 0; i < 3; ++i) R(i, i) += even;
+  const Vector<3, Scalar> u = entrywise(v, [&](Eigen::Index i) { return Scalar(2) * w * v(i); });
   R(0, 1) -= u(2);
   R(1, 0) += u(2);
   R(2, 0) -= u(1);
@@ -108,7 +127,8 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<4, Scalar> q = quaternion(R);
-  return rotation(Vector<4, Scalar>(q / q.norm()));
+  const Scalar norm = q.norm();
+  return rotation(entrywise(q, [&](Eigen::Index i) { return q(i) / norm; }));
 }
 
 /// The rotation nearest to a matrix (its orthogonal polar factor), accurate to round-off if no entry of RᵀR deviates
@@ -149,10 +169,10 @@ template <typename Scalar>
     using std::atan2;
     using std::sqrt;
     const Vector<4, Scalar> q = quaternion(R);
-    const Vector<3, Scalar> v = q.template tail<3>();
+    const Vector<3, Scalar> v(q(1), q(2), q(3));
     const Scalar sine = sqrt(v.squaredNorm());
     const Scalar scale = sine > Scalar(0) ? atan2(sine, q(0)) / sine : Scalar(1);
-    return Scalar(2) * scale * v;
+    return entrywise(v, [&](Eigen::Index i) { return Scalar(2) * scale * v(i); });
   }
 }
 
@@ -175,7 +195,8 @@ template <typename Scalar, typename Whole>
   odd = (odd * y + Scalar(5.0 / 112.0)) * y + Scalar(1.0 / 6.0);
   const Scalar sum = even + z * odd;
   const Mask<Scalar> small = trace > Scalar(2) && z < Scalar(1.0 / 64.0);
-  Vector<3, Scalar> r = sum / Scalar(2) * s;
+  const Scalar half = sum / Scalar(2);
+  Vector<3, Scalar> r(half * s.coeff(0), half * s.coeff(1), half * s.coeff(2));
   if (all_of(small)) return r;
   const Vector<3, Scalar> large = large_rotation_vector<Scalar>(whole());
   if constexpr (kInLanes<Scalar>) {
@@ -192,7 +213,7 @@ template <typename Scalar, typename Whole>
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<3, Scalar> s(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  return rotation_detail::rotation_vector<Scalar>(s, R.trace(), [&R] { return R; });
+  return rotation_detail::rotation_vector<Scalar>(s, trace_of(R), [&R] { return R; });
 }
 
 /// Rotation vector of R_x R_yᵀ, |r| ≤ π [rad]. Where it is small that product is never in memory.
@@ -209,7 +230,7 @@ template <typename Scalar>
   const Split c = column(2);
   const Vector<3, Scalar> s(b.z - c.xy.second(), c.xy.first() - a.z, a.xy.second() - b.xy.first());
   return rotation_detail::rotation_vector<Scalar>(
-      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(y.transpose()); });
+      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(transposed(y)); });
 }
 
 }  // namespace fpbm

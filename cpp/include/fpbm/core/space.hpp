@@ -5,6 +5,7 @@
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -98,8 +99,8 @@ struct Pose {
   /// y ⊕ d: y moved by d's first three rows and turned by the rotation vector in its last three.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
-    const Vector<3, Scalar> turned = d.template tail<3>();
-    const Vector<3, Scalar> p = y.p + d.template head<3>();
+    const Vector<3, Scalar> turned(d.coeff(3), d.coeff(4), d.coeff(5));
+    const Vector<3, Scalar> p = entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + d.coeff(i); });
     const Scalar none(0);
     if (all_of(turned(0) == none && turned(1) == none && turned(2) == none)) return {p, y.R};
     return {p, rotation(turned).lazyProduct(y.R)};
@@ -108,7 +109,7 @@ struct Pose {
   /// y moved by x.p and turned by x.R, both along the base frame's axes.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
-    return {y.p + x.p, x.R.lazyProduct(y.R)};
+    return {entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + x.p.coeff(i); }), x.R.lazyProduct(y.R)};
   }
 
   /// As a homogeneous 4×4 matrix, row by row.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 
 namespace fpbm {
 
@@ -45,13 +46,16 @@ void each(Eigen::Index first, Eigen::Index last, const F& f) noexcept {
   for (Eigen::Index i = first; i < last; ++i) f(i);
 }
 
+template <Eigen::Index First, typename F, Eigen::Index... I>
+[[gnu::always_inline]] inline void each_of(std::integer_sequence<Eigen::Index, I...>,
+                                           [[maybe_unused]] const F& f) noexcept {
+  (f(Constant<First + I>{}), ...);
+}
+
 /// The same with each call written out and i a Constant: nothing is left of the loop.
 template <Eigen::Index First, Eigen::Index Last, typename F>
 [[gnu::always_inline]] inline void each(Constant<First>, Constant<Last>, const F& f) noexcept {
-  if constexpr (First < Last) {
-    f(Constant<First>{});
-    each(Constant<First + 1>{}, Constant<Last>{}, f);
-  }
+  each_of<First>(std::make_integer_sequence<Eigen::Index, (First < Last ? Last - First : 0)>{}, f);
 }
 
 }  // namespace fpbm

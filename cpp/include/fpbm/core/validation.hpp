@@ -40,30 +40,37 @@ class ParameterError : public std::invalid_argument {
 /// nothing to print on, without.
 namespace fpbm::validation {
 
-/// Throws a ParameterError of that value, which says "<argument><words>".
-template <typename Scalar, typename... Words>
-[[noreturn]] void reject_value([[maybe_unused]] const Argument& argument, [[maybe_unused]] Scalar value,
-                               [[maybe_unused]] const Words&... words) {
+/// Throws a ParameterError of that value, with a message.
+[[noreturn, gnu::noinline, gnu::cold]] inline void reject_with([[maybe_unused]] const Argument& argument,
+                                                               [[maybe_unused]] double value,
+                                                               [[maybe_unused]] const std::string& message) {
 #if defined(__cpp_exceptions)
-  throw ParameterError(argument.name(), argument.index(), static_cast<double>(value),
-                       (argument.text() + ... + text_of(words)));
+  throw ParameterError(argument.name(), argument.index(), value, message);
 #else
 #if !defined(EIGEN_NO_IO)
-  std::fprintf(stderr, "fpbm: %s\n", (argument.text() + ... + text_of(words)).c_str());
+  std::fprintf(stderr, "fpbm: %s\n", message.c_str());
 #endif
   std::abort();
 #endif
 }
 
+/// Throws a ParameterError of that value, which says "<argument><words>".
+template <typename Scalar, typename... Words>
+[[noreturn, gnu::noinline, gnu::cold]] void reject_value(const Argument& argument, Scalar value, Words... words) {
+  std::string message = argument.text();
+  (append_text(message, words), ...);
+  reject_with(argument, static_cast<double>(value), message);
+}
+
 /// The same of an argument that is no number.
 template <typename... Words>
-[[noreturn]] void reject(const Argument& argument, const Words&... words) {
+[[noreturn]] void reject(const Argument& argument, Words... words) {
   reject_value(argument, std::numeric_limits<float>::quiet_NaN(), words...);
 }
 
 /// Throws a ParameterError that says "<argument> = <value>: must be <demand>".
 template <typename Scalar, typename... Demand>
-[[noreturn]] void fail(const Argument& argument, Scalar value, const Demand&... demand) {
+[[noreturn]] void fail(const Argument& argument, Scalar value, Demand... demand) {
   reject_value(argument, value, " = ", value, ": must be ", demand...);
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -11,11 +14,14 @@ struct Box {
   Vector<N, Scalar> upper;
 
   [[nodiscard]] bool contains(const Vector<N, Scalar>& u) const noexcept {
-    return (lower.array() <= u.array()).all() && (u.array() <= upper.array()).all();
+    bool inside = true;
+    for (Eigen::Index i = 0; i < u.size(); ++i)
+      inside = inside && lower.coeff(i) <= u.coeff(i) && u.coeff(i) <= upper.coeff(i);
+    return inside;
   }
 
   [[nodiscard]] Vector<N, Scalar> nearest(const Vector<N, Scalar>& u) const noexcept {
-    return u.cwiseMin(upper).cwiseMax(lower);
+    return entrywise(u, [&](Eigen::Index i) { return std::max(std::min(u.coeff(i), upper.coeff(i)), lower.coeff(i)); });
   }
 };
 

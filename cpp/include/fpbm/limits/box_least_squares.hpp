@@ -4,6 +4,7 @@
 
 #include "fpbm/limits/box.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -18,18 +19,22 @@ template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                                   const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {
   Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
-  gram.diagonal().array() += mu;
+  for (Eigen::Index i = 0; i < gram.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return box.nearest(rest);
-  const Vector<M, Scalar> missing = v - J.lazyProduct(rest);
-  Vector<N, Scalar> u = box.nearest(rest + J.transpose().lazyProduct(cholesky.solve(missing)));
-  Vector<M, Scalar> left = v - J.lazyProduct(u);
-  const Vector<N, Scalar> curvature = J.colwise().squaredNorm().transpose().array() + mu;
+  const auto missing = [&](const Vector<N, Scalar>& of) -> Vector<M, Scalar> {
+    const Vector<M, Scalar> done = J.lazyProduct(of);
+    return entrywise(v, [&](Eigen::Index i) { return v.coeff(i) - done.coeff(i); });
+  };
+  const Vector<N, Scalar> change = transpose_times(J, cholesky.solve(missing(rest)));
+  Vector<N, Scalar> u = box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + change.coeff(i); }));
+  Vector<M, Scalar> left = missing(u);
+  const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) { return column(J, i).squaredNorm() + mu; });
   for (Eigen::Index round = 0; round < J.cols(); ++round) {
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const Scalar slope = J.col(i).dot(left) + mu * (rest(i) - u(i));
+      const Scalar slope = column(J, i).cwiseProduct(left).sum() + mu * (rest(i) - u(i));
       const Scalar to = std::clamp(u(i) + slope / curvature(i), box.lower(i), box.upper(i));
-      left -= (to - u(i)) * J.col(i);
+      for (Eigen::Index k = 0; k < J.rows(); ++k) left(k) -= (to - u(i)) * J(k, i);
       u(i) = to;
     }
   }

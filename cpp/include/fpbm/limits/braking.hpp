@@ -13,8 +13,7 @@ template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
                                                     const State<N, Scalar>& state, const Box<N, Scalar>& box,
                                                     Scalar least) noexcept {
-  using JointVector = Vector<N, Scalar>;
-  const JointVector& most = limits.bounds().acceleration;
+  const Vector<N, Scalar>& most = limits.bounds().acceleration;
   Scalar rate = Scalar(1) / least;
   for (Eigen::Index i = 0; i < state.qd.size(); ++i) {
     const Scalar speed = std::abs(state.qd(i));
@@ -23,11 +22,15 @@ template <Level kLevel, int N, typename Scalar>
   }
   if constexpr (kLevel == Level::kAcceleration) {
     // In the box of every viable state; not where a joint beyond its range should return, which may wait.
-    const JointVector halt = (state.qd / -least).cwiseMax(-most).cwiseMin(most);
-    const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
-    return wider.nearest(-rate * state.qd);
+    return entrywise(state.qd, [&](Eigen::Index i) {
+      const Scalar halt = std::min(std::max(state.qd(i) / -least, -most(i)), most(i));
+      const Scalar lower = std::min(box.lower(i), halt);
+      const Scalar upper = std::max(box.upper(i), halt);
+      return std::max(std::min(-rate * state.qd(i), upper), lower);
+    });
   }
-  return box.nearest((Scalar(1) - rate * limits.tick()) * state.qd);
+  const Scalar left = Scalar(1) - rate * limits.tick();
+  return box.nearest(entrywise(state.qd, [&](Eigen::Index i) { return left * state.qd(i); }));
 }
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
@@ -55,8 +58,11 @@ template <Level kLevel, int N, typename Scalar>
 /// The acceleration of a joint whose state is not known: toward zero, within the bound on its jerk.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> fade(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& last) noexcept {
-  const Vector<N, Scalar> step = limits.tick() * limits.bounds().jerk;
-  return last - last.cwiseMin(step).cwiseMax(-step);
+  const Vector<N, Scalar>& jerk = limits.bounds().jerk;
+  return entrywise(last, [&](Eigen::Index i) {
+    const Scalar step = limits.tick() * jerk(i);
+    return last(i) - std::max(std::min(last(i), step), -step);
+  });
 }
 
 }  // namespace fpbm

@@ -49,15 +49,20 @@ class HeldJoints {
   [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) const noexcept {
     Motion rate = goal;
     if (count_ == 0) return rate;
-    Free change = Free::Zero(Z.cols());
+    Free change(Z.cols());
+    for (Eigen::Index k = 0; k < Z.cols(); ++k) change.coeffRef(k) = Scalar(0);
     Free y(count_);
     for (int j = 0; j < count_; ++j) {
       y(j) = -goal(held_[j].joint);
       for (int i = 0; i < j; ++i) y(j) -= R_[i][j] * y(i);
       y(j) /= R_[j][j];
-      change += y(j) * Q_[j];
+      for (Eigen::Index k = 0; k < Z.cols(); ++k) change.coeffRef(k) += y(j) * Q_[j].coeff(k);
     }
-    rate += Z.lazyProduct(change);
+    for (Eigen::Index i = 0; i < Z.rows(); ++i) {
+      Scalar sum = Z.coeff(i, 0) * change.coeff(0);
+      for (Eigen::Index k = 1; k < Z.cols(); ++k) sum += Z.coeff(i, k) * change.coeff(k);
+      rate(i) += sum;
+    }
     for (int j = 0; j < count_; ++j) rate(held_[j].joint) = Scalar(0);
     return rate;
   }
@@ -113,7 +118,7 @@ class HeldJoints {
     held_[leaving] = {joint, above};
     for (int j = leaving; j < count_; ++j) {
       split(Z, held_[j].joint, j);
-      Q_[j] /= R_[j][j];
+      shorten(Q_[j], R_[j][j]);
     }
     find_fixed();
     return true;
@@ -121,7 +126,7 @@ class HeldJoints {
 
   /// Holds the joint that was split last.
   bool add(Eigen::Index joint, bool above) noexcept {
-    Q_[count_] /= R_[count_][count_];
+    shorten(Q_[count_], R_[count_][count_]);
     held_[count_++] = {joint, above};
     find_fixed();
     return true;
@@ -136,16 +141,21 @@ class HeldJoints {
   /// is orthogonal where the rest is short.
   template <typename Basis>
   void split(const Basis& Z, Eigen::Index joint, int k) noexcept {
-    Q_[k] = Z.row(joint).transpose();
+    Q_[k].resize(Z.cols());
+    for (Eigen::Index j = 0; j < Z.cols(); ++j) Q_[k].coeffRef(j) = Z.coeff(joint, j);
     for (int i = 0; i < k; ++i) R_[i][k] = Scalar(0);
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < k; ++i) {
         const Scalar along = Q_[i].dot(Q_[k]);
         R_[i][k] += along;
-        Q_[k] -= along * Q_[i];
+        for (Eigen::Index j = 0; j < Z.cols(); ++j) Q_[k].coeffRef(j) -= along * Q_[i].coeff(j);
       }
     }
     R_[k][k] = Q_[k].norm();
+  }
+
+  static void shorten(Free& vector, Scalar length) noexcept {
+    for (Eigen::Index k = 0; k < vector.size(); ++k) vector.coeffRef(k) /= length;
   }
 
   int count_ = 0;

@@ -109,7 +109,7 @@ class Limiter {
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
     auto found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) yield(J, state, box, rows, desired, found);
-    if (!found.u.allFinite()) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
+    if (!is_finite(found.u)) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
     return found;
   }
 
@@ -122,29 +122,35 @@ class Limiter {
     if (box.contains(goal) && rows.admit(goal)) return {goal, found.scale, found.joints, found.passes, found.rows};
     const JointVector from = rows.near(steady, box);
     Saturated<N, Scalar> next = saturation(box, from, goal);
-    if (!next.u.allFinite()) return {from, Scalar(0), next.joints, next.passes, next.rows};
+    if (!is_finite(next.u)) return {from, Scalar(0), next.joints, next.passes, next.rows};
     next.scale *= found.scale;
     return next;
   }
 
   /// The motions of a tick of some accelerations.
   [[nodiscard]] JointVector motions(const JointVector& qd, const JointVector& accelerations) const noexcept {
-    if constexpr (kLevel == Level::kVelocity) return qd + limits_.tick() * accelerations;
-    return accelerations;
+    if constexpr (kLevel == Level::kVelocity) {
+      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + limits_.tick() * accelerations(i); });
+    } else {
+      return accelerations;
+    }
   }
 
   /// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its
   /// end: the same for all joints, so that the change keeps its direction.
   [[nodiscard]] JointVector approach(const JointVector& qd, const JointVector& goal) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) return goal;
-    Scalar share(1);
-    for (Eigen::Index i = 0; i < goal.size(); ++i) {
-      if (!limits_.bounds_jerk(i)) continue;
-      const Scalar change = std::abs(goal(i) - qd(i));
-      const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
-      if (share * change > most) share = most / change;
+    if constexpr (kLevel == Level::kAcceleration) {
+      return goal;
+    } else {
+      Scalar share(1);
+      for (Eigen::Index i = 0; i < goal.size(); ++i) {
+        if (!limits_.bounds_jerk(i)) continue;
+        const Scalar change = std::abs(goal(i) - qd(i));
+        const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
+        if (share * change > most) share = most / change;
+      }
+      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
     }
-    return qd + share * (goal - qd);
   }
 
   /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), where s is the scale and s₀ =
@@ -160,12 +166,14 @@ class Limiter {
     if (!(left < Scalar(1))) return;
     const Scalar yields = Scalar(1) - left * left;
     const Scalar mu = kRadius * kRadius * J.squaredNorm();
-    JointVector rest = JointVector::Zero(state.q.size());
-    if constexpr (kLevel == Level::kAcceleration) rest = -kDamping * state.qd;
+    const JointVector rest = entrywise(
+        state.qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0); });
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
-    const JointVector to =
-        box.nearest(found.u + yields * yields * (yielded - found.u));  // Round-off may leave the box.
-    found.u += rows.share(found.u, to) * (to - found.u);
+    const JointVector blended =
+        entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
+    const JointVector to = box.nearest(blended);  // Round-off may leave the box.
+    const Scalar share = rows.share(found.u, to);
+    found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });
   }
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.

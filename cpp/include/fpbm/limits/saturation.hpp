@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -47,9 +48,17 @@ class NullSpaceSaturation {
     Eigen::Index all = n;
     if constexpr (P > 0) all += rows.count;
     if (!set_self_motion(J, all)) {
-      const RowSpace<M, N, Scalar> space(J * unit.asDiagonal());
+      Matrix<M, N, Scalar> scaled = J;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit.coeff(j);
+      }
+      const RowSpace<M, N, Scalar> space(scaled);
       Z_.resize(all, n - space.rank());
-      for (Eigen::Index j = 0; j < Z_.cols(); ++j) space.column(space.rank() + j, Z_.col(j).head(n));
+      JointVector column = unit;
+      for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+        space.column(space.rank() + j, column);
+        for (Eigen::Index i = 0; i < n; ++i) Z_.coeffRef(i, j) = column.coeff(i);
+      }
     }
     if constexpr (P > 0) {
       // Each row in a unit of its own, so that its length is 1.
@@ -71,9 +80,11 @@ class NullSpaceSaturation {
     All goal(n);
     All upper(n);
     All lower(n);
-    goal.head(joints) = (desired - rest).cwiseQuotient(unit_);
-    upper.head(joints) = (box.upper - rest).cwiseQuotient(unit_);
-    lower.head(joints) = (box.lower - rest).cwiseQuotient(unit_);
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      goal.coeffRef(i) = (desired.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+      upper.coeffRef(i) = (box.upper.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+      lower.coeffRef(i) = (box.lower.coeff(i) - rest.coeff(i)) / unit_.coeff(i);
+    }
     if constexpr (P > 0) {
       const Eigen::Index count = n - joints;
       const auto g = rows_.g.leftCols(count).transpose();
@@ -88,7 +99,8 @@ class NullSpaceSaturation {
     while (result.passes < most) {
       ++result.passes;
       const All rate = held_.direction(Z_, goal);
-      const Scalar fastest = rate.cwiseAbs().maxCoeff();
+      Scalar fastest = Scalar(0);
+      for (Eigen::Index i = 0; i < n; ++i) fastest = std::max(fastest, abs(rate(i)));
       if (fastest > Held::kSteepest) break;
       const Scalar still = kStill * fastest;
       Scalar step = Scalar(1) - result.scale;
@@ -101,7 +113,7 @@ class NullSpaceSaturation {
           hit = i;
         }
       }
-      u += step * rate;
+      for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) += step * rate.coeff(i);
       result.scale = hit < 0 ? Scalar(1) : result.scale + step;
       if (hit < 0) break;
       const bool above = rate(hit) > Scalar(0);
@@ -115,7 +127,8 @@ class NullSpaceSaturation {
         break;
       }
     }
-    result.u = box.nearest(rest + unit_.cwiseProduct(u.head(joints)));
+    result.u =
+        box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + unit_.coeff(i) * u.coeff(i); }));
     for (int i = 0; i < held_.count(); ++i) {
       const auto [joint, above] = held_[i];
       count(result, joint, joints);
@@ -145,7 +158,10 @@ class NullSpaceSaturation {
       for (int kind = 0; kind < motion.kKinds; ++kind) {
         if (!motion.factor(J, kind, kRegular)) continue;
         Z_.resize(rows, 1);
-        Z_.col(0).template head<N>() = motion.null().cwiseQuotient(unit_).normalized();
+        const JointVector v = motion.null();
+        const JointVector in_units = entrywise(v, [&](Eigen::Index i) { return v.coeff(i) / unit_.coeff(i); });
+        const JointVector z = in_units.normalized();
+        for (Eigen::Index i = 0; i < N; ++i) Z_.coeffRef(i, 0) = z.coeff(i);
         return true;
       }
     }

@@ -83,7 +83,7 @@ class VelocityEnvelopes {
   }
 
   [[nodiscard]] VelocityEnvelope<kLevel, Scalar> operator[](Eigen::Index i) const noexcept {
-    return {rest_(i), delay_(i), softness_(i)};
+    return {rest_.coeff(i), delay_.coeff(i), softness_.coeff(i)};
   }
 
   /// delay: c/d [s]. Infinite d: as hard as need be.

@@ -30,7 +30,7 @@ class Cholesky {
     Value largest = A(0, 0);
     each(kFirst, m, [&](auto i) {
       largest = max(largest, A.coeff(i, i));
-      each(kFirst, next(i), [&](auto j) { L_[i][j] = A.coeff(i, j); });
+      each(kFirst, next(i), [&](Eigen::Index j) { L_[i][j] = A.coeff(i, j); });
     });
     const Value smallest = Value(Scalar(kPivotTolerance)) * largest;
     Mask<Scalar> regular(true);
@@ -40,9 +40,9 @@ class Cholesky {
       reciprocal_[j] = Value(Scalar(1)) / pivot;
       each(next(j), m, [&](auto i) {
         const Value l = L_[i][j] * reciprocal_[j];
-        each(next(j), next(i), [&](auto k) { L_[i][k] -= l * L_[k][j]; });
+        each(next(j), next(i), [&](Eigen::Index k) { L_[i][k] -= l * L_[k][j]; });
       });
-      each(next(j), m, [&](auto i) { L_[i][j] *= reciprocal_[j]; });
+      each(next(j), m, [&](Eigen::Index i) { L_[i][j] *= reciprocal_[j]; });
     });
     if constexpr (kInLanes<Scalar>) {
       set_nan_unless(regular);
@@ -62,7 +62,7 @@ class Cholesky {
   [[nodiscard]] Vector<M, Value> solve(const Vector<M, Value>& b) const noexcept {
     const auto m = extent<M>(size_);
     Vector<M, Value> x = b;
-    each(kFirst, m, [&](auto i) { each(kFirst, i, [&](auto j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
+    each(kFirst, m, [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
     for (Eigen::Index i = m - 1; i >= 0; --i) {
       x(i) *= reciprocal_[i];
       for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.

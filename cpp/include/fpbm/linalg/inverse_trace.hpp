@@ -16,7 +16,7 @@ template <int kMost, typename Value, typename Size>
     Value row = reciprocal[i];
     each(kFirst, i, [&](auto j) {
       Value entry = L[i][j];
-      each(next(j), i, [&](auto k) { entry -= L[i][k] * inverse[k][j]; });
+      each(next(j), i, [&](Eigen::Index k) { entry -= L[i][k] * inverse[k][j]; });
       inverse[i][j] = entry;
       row += entry * entry * reciprocal[i];
     });

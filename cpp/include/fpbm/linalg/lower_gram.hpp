@@ -18,17 +18,17 @@ template <int M, int N, typename Scalar>
   const auto each_sum = [&](auto i, const auto& f) {
     each(kFirst, Constant<std::min<Eigen::Index>(2 * decltype(i)::kIndex + 2, M)>{}, f);
   };
-  each(kFirst, kPairs, [&](auto i) { each_sum(i, [&](auto j) { sums[i][j] = Two(Scalar(0)); }); });
-  each(kFirst, extent<N>(J.cols()), [&](auto k) {
+  each(kFirst, kPairs, [&](auto i) { each_sum(i, [&](Eigen::Index j) { sums[i][j] = Two(Scalar(0)); }); });
+  for (Eigen::Index k = 0; k < J.cols(); ++k) {
     const Scalar* const column = J.data() + M * k;
     each(kFirst, kPairs, [&](auto i) {
       const Two two = 2 * i + 1 < M ? Two::load(column + 2 * i) : Two(column[M - 1], Scalar(0));
-      each_sum(i, [&](auto j) { sums[i][j] += two * Two(column[j]); });
+      each_sum(i, [&](Eigen::Index j) { sums[i][j] += two * Two(column[j]); });
     });
-  });
+  }
   Matrix<M, M, Scalar> gram;
   each(kFirst, kPairs, [&](auto i) {
-    each_sum(i, [&](auto j) {
+    each_sum(i, [&](Eigen::Index j) {
       gram.coeffRef(2 * i, j) = sums[i][j].first();
       if (2 * i + 1 < M) gram.coeffRef(2 * i + 1, j) = sums[i][j].second();
     });

@@ -21,10 +21,11 @@ template <int M, int N, typename Scalar>
 class RowSpace {
  public:
   explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.cols(), A.rows()), beta_(A.rows()) {
-    const auto n = extent<N>(V_.rows());
-    const auto m = extent<M>(V_.cols());
+    const auto n = extent<kN>(V_.rows());
+    const auto m = extent<kM>(V_.cols());
     // By entries: g++ warns of Eigen's own look at a whole matrix that is yet to be set.
-    each(Constant<0>{}, m, [&](auto j) { each(Constant<0>{}, n, [&](auto i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
+    each(Constant<0>{}, m,
+         [&](auto j) { each(Constant<0>{}, n, [&](Eigen::Index i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
     Scalar round_off = kLeast;
     each(Constant<0>{}, m, [&](auto k) {
       using std::sqrt;
@@ -33,7 +34,7 @@ class RowSpace {
       Scalar square = Scalar(0);
       each(k, m, [&](auto j) {
         Scalar left = Scalar(0);
-        each(k, n, [&](auto i) { left += V_.coeff(i, j) * V_.coeff(i, j); });
+        each(k, n, [&](Eigen::Index i) { left += V_.coeff(i, j) * V_.coeff(i, j); });
         if (!(left > square)) return;
         square = left;
         largest = j;
@@ -56,7 +57,7 @@ class RowSpace {
   void column(Eigen::Index j, Column&& out) const noexcept {
     out.setZero();
     out(j) = Scalar(1);
-    const auto m = extent<M>(V_.cols());
+    const auto m = extent<kM>(V_.cols());
     each(Constant<0>{}, m, [&](auto from_last) {
       const Eigen::Index k = m - 1 - from_last;
       if (k < rank_) reflect(k, out);
@@ -64,6 +65,11 @@ class RowSpace {
   }
 
  private:
+  // Unrolled up to three rows of seven: six would make two hundred loops.
+  static constexpr bool kUnrolls = M * N <= 21;
+  static constexpr int kM = kUnrolls ? M : Eigen::Dynamic;
+  static constexpr int kN = kUnrolls ? N : Eigen::Dynamic;
+
   // A smaller square underflows and has no finite inverse.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
   /// Square of a row that counts as round-off, for a largest row of 1.
@@ -73,11 +79,11 @@ class RowSpace {
   /// Applies the k-th reflection.
   template <typename Index, typename Column>
   void reflect(Index k, Column&& x) const noexcept {
-    const auto n = extent<N>(V_.rows());
+    const auto n = extent<kN>(V_.rows());
     Scalar along = Scalar(0);
-    each(k, n, [&](auto i) { along += V_.coeff(i, k) * x.coeff(i); });
+    each(k, n, [&](Eigen::Index i) { along += V_.coeff(i, k) * x.coeff(i); });
     along *= beta_.coeff(k);
-    each(k, n, [&](auto i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
+    each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
   }
 
   Matrix<N, M, Scalar> V_;  ///< Column k becomes the k-th reflection's vector, below row k − 1.

@@ -32,20 +32,20 @@ class RowFactor {
     Value whole(Scalar(0));  // Σ|a_j|², by Pythagoras.
     Value squares[M];
     each(kFirst, kLast, [&](auto j) {
-      const Value square = dot(n, [&](auto k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
+      const Value square = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
       squares[j] = square;
       reciprocal_[j] = Value(Scalar(1)) / square;
       whole += square;
-      each(kFirst, j, [&](auto k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
+      each(kFirst, j, [&](Eigen::Index k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
       each(next(j), kLast, [&](auto i) {
-        const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
+        const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
         L_[i][j] = share;
-        each(kFirst, n, [&](auto k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
+        each(kFirst, n, [&](Eigen::Index k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
       });
     });
     const Value smallest = Value(Scalar(kPivotTolerance)) * whole;
     Mask<Scalar> regular(true);
-    each(kFirst, kLast, [&](auto j) { regular = regular && squares[j] > smallest; });
+    each(kFirst, kLast, [&](Eigen::Index j) { regular = regular && squares[j] > smallest; });
     if constexpr (kInLanes<Scalar>) {
       set_nan_unless(regular);
       return Status::kOk;
@@ -63,8 +63,9 @@ class RowFactor {
   /// D⁻¹L⁻¹b: what A⁺b takes of each column of Q.
   [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
     Vector<M, Value> s = b;
-    each(kFirst, kLast, [&](auto i) { each(kFirst, i, [&](auto j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
-    each(kFirst, kLast, [&](auto i) { s.coeffRef(i) *= reciprocal_[i]; });
+    each(kFirst, kLast,
+         [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
+    each(kFirst, kLast, [&](Eigen::Index i) { s.coeffRef(i) *= reciprocal_[i]; });
     return s;
   }
 
@@ -73,9 +74,9 @@ class RowFactor {
   [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
     Vector<N, Value> left = a;
-    each(kFirst, kLast, [&](auto i) {
-      const Value share = dot(n, [&](auto k) { return Q_.coeff(k, i) * left.coeff(k); }) * reciprocal_[i];
-      each(kFirst, n, [&](auto k) { left.coeffRef(k) -= share * Q_.coeff(k, i); });
+    each(kFirst, kLast, [&](Eigen::Index i) {
+      const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * left.coeff(k); }) * reciprocal_[i];
+      each(kFirst, n, [&](Eigen::Index k) { left.coeffRef(k) -= share * Q_.coeff(k, i); });
     });
     return left;
   }
@@ -84,9 +85,9 @@ class RowFactor {
   [[nodiscard]] Vector<N, Value> sum(const Vector<M, Value>& s) const noexcept {
     Vector<N, Value> y;
     y.resize(Q_.rows());
-    each(kFirst, extent<N>(Q_.rows()), [&](auto k) {
+    each(kFirst, extent<N>(Q_.rows()), [&](Eigen::Index k) {
       Value at = s.coeff(0) * Q_.coeff(k, 0);
-      each(next(kFirst), kLast, [&](auto i) { at += s.coeff(i) * Q_.coeff(k, i); });
+      each(next(kFirst), kLast, [&](Eigen::Index i) { at += s.coeff(i) * Q_.coeff(k, i); });
       y.coeffRef(k) = at;
     });
     return y;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,7 +22,9 @@ struct SymmetricEigen {
   explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(Matrix<M, M, Scalar>::Identity()) {
     using std::abs;
     Matrix<M, M, Scalar> D = A;
-    const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * A.cwiseAbs().maxCoeff();
+    Scalar largest = abs(A(0));
+    for (int i = 1; i < M * M; ++i) largest = std::max(largest, abs(A(i)));
+    const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * largest;
     for (int pass = 0; pass < kPasses; ++pass) {
       bool done = true;
       for (int p = 0; p < M; ++p) {
@@ -33,7 +36,7 @@ struct SymmetricEigen {
       }
       if (done) break;
     }
-    values = D.diagonal();
+    for (int i = 0; i < M; ++i) values(i) = D(i, i);
   }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/three.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {
@@ -48,19 +49,20 @@ validation::Argument name_of(const Chain<Scalar, Length>& chain, Eigen::Index i)
 /// Whether a matrix is a rotation, to half of the digits.
 template <typename Scalar>
 [[nodiscard]] bool is_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
-  const Matrix<3, 3, Scalar> gram = R.transpose() * R;
   const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
-  const Vector<3, Scalar> x = R.col(0);
-  const Vector<3, Scalar> y = R.col(1);
-  const Vector<3, Scalar> z = R.col(2);
-  return (gram - Matrix<3, 3, Scalar>::Identity()).cwiseAbs().maxCoeff() <= tolerance &&
-         cross(x, y).dot(z) >= Scalar(0);
+  const Three<Scalar> axes[3] = {three(R.data()), three(R.data() + 3), three(R.data() + 6)};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (!(std::abs(dot(axes[i], axes[j]) - (i == j ? Scalar(1) : Scalar(0))) <= tolerance)) return false;
+    }
+  }
+  return dot(cross(axes[0], axes[1]), axes[2]) >= Scalar(0);
 }
 
 template <typename Scalar>
 void require_transform(const validation::Argument& name, const Transform<Scalar>& transform) {
   validation::require_finite(name + ".p", transform.p);
-  validation::require_finite(name + ".R", transform.R.reshaped());
+  for (int i = 0; i < 9; ++i) validation::require_finite(element(name + ".R", i), transform.R.data()[i]);
   if (!is_rotation(transform.R)) validation::reject(name + ".R", ": must be a rotation matrix");
 }
 

@@ -42,7 +42,7 @@ template <typename Scalar = double, typename Name = std::string>
 struct Joint {
   JointType type = JointType::kRevolute;
   Transform<Scalar> placement = {};  ///< The joint's frame in that of the joint before, both at zero.
-  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the joint's frame; its length does not matter.
+  Vector<3, Scalar> axis = {Scalar(0), Scalar(0), Scalar(1)};  ///< In the joint's frame; its length does not matter.
   JointBounds<Scalar> bounds = {};
   Name name = {};
   Mimic<Scalar> mimic = {};
@@ -63,7 +63,7 @@ struct JointLimits {
   /// No bounds at all, for dof joints.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
     const Vector<N, Scalar> infinite = unbounded(dof);
-    return {-infinite, infinite, infinite, infinite};
+    return {Vector<N, Scalar>::Constant(dof, -JointBounds<Scalar>::kNone), infinite, infinite, infinite};
   }
 
   template <typename Other>

@@ -24,7 +24,9 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<Space::kRows, N, Scalar> jacobian_in_metres(
     const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   Matrix<Space::kRows, N, Scalar> J = kinematics.J;
-  if constexpr (Space::kTurns > 0) J.template bottomRows<Space::kTurns>() *= kinematics.length;
+  for (Eigen::Index j = 0; Space::kTurns > 0 && j < J.cols(); ++j) {
+    for (int i = Space::kRows - Space::kTurns; i < Space::kRows; ++i) J.coeffRef(i, j) *= kinematics.length;
+  }
   return J;
 }
 

@@ -37,10 +37,14 @@ struct DecomposedLink {
     const bool tilted = R(0, 2) != Scalar(0) || R(1, 2) != Scalar(0);
     const bool backward = R(1, 2) > Scalar(0);  // Then by a negative tilt: |before| ≤ π/2.
     before = tilted ? (backward ? atan2(-R(0, 2), R(1, 2)) : atan2(R(0, 2), -R(1, 2))) : Scalar(0);
-    Matrix<3, 3, Scalar> back;
-    back << cos(before), sin(before), 0, -sin(before), cos(before), 0, 0, 0, 1;
-    const Matrix<3, 3, Scalar> rest = back * R;
-    link = {back * p, rest(2, 2), -rest(1, 2)};
+    const Scalar c = cos(before);
+    const Scalar s = sin(before);
+    Transform<Scalar> back;
+    back.R(0, 0) = back.R(1, 1) = c;
+    back.R(0, 1) = s;
+    back.R(1, 0) = -s;
+    const auto [step, rest] = back * transform;
+    link = {step, rest(2, 2), -rest(1, 2)};
     after = atan2(-rest(0, 1), rest(0, 0));
   }
 };
@@ -49,15 +53,20 @@ struct DecomposedLink {
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
   using Vector3 = Vector<3, Scalar>;
+  using std::abs;
   const Vector3 z = axis.normalized();
-  if (z == Vector3::UnitZ()) return Matrix<3, 3, Scalar>::Identity();
+  if (z(0) == Scalar(0) && z(1) == Scalar(0) && z(2) == Scalar(1)) return Matrix<3, 3, Scalar>::Identity();
   Eigen::Index least = 0;
-  z.cwiseAbs().minCoeff(&least);
-  const Vector3 across = Vector3::Unit(least);
+  for (Eigen::Index i = 1; i < 3; ++i) {
+    if (abs(z(i)) < abs(z(least))) least = i;
+  }
+  Vector3 across(Scalar(0), Scalar(0), Scalar(0));
+  across(least) = Scalar(1);
+  const Vector3 x = cross(across, z).normalized();
   Matrix<3, 3, Scalar> R;
-  R.col(0) = cross(across, z).normalized();
-  R.col(1) = cross<Scalar>(z, R.col(0));
-  R.col(2) = z;
+  set_column(R, 0, x);
+  set_column(R, 1, cross(z, x));
+  set_column(R, 2, z);
   return R;
 }
 

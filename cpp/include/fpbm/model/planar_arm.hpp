@@ -64,8 +64,9 @@ class PlanarArm {
   /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
   /// The tip's angle is θₙ.
   template <bool kWithRate, typename Space>
-  [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                                     Kinematics<Space, N, Scalar>& out) const noexcept {
+  [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
+                                                    [[maybe_unused]] const Vector<N, Scalar>& qd,
+                                                    Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, PlanarPose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<2>>,
                   "a planar arm has tasks Position<2> and PlanarPose");

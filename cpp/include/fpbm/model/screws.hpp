@@ -5,6 +5,7 @@
 
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/split_vector.hpp"
 
@@ -41,18 +42,27 @@ class Screws {
   [[gnu::always_inline]] void columns(Eigen::Index i, [[maybe_unused]] const Vector<N, Scalar>& turns,
                                       [[maybe_unused]] const Vector<N, Scalar>& qd, Matrix<M, N, Scalar>& J,
                                       [[maybe_unused]] Matrix<M, N, Scalar>& Jd) noexcept {
-    const auto& [axis, point, w] = joints_[static_cast<std::size_t>(i / 2)];
-    Columns columns{cross<Two>(axis, tip_ - point), axis};
+    const Joints& joints = joints_[static_cast<std::size_t>(i / 2)];
+    const Two3 &axis = joints.axis, &point = joints.point, &w = joints.w;
+    const Two3 lever = entrywise(tip_, [&](Eigen::Index k) { return tip_.coeff(k) - point.coeff(k); });
+    Columns columns{cross<Two>(axis, lever), axis};
     if constexpr (kSlides) {
       const Two turn = two_of(turns, i);
-      columns = {turn * columns.linear + (Two(Scalar(1)) - turn) * axis, turn * axis};
+      const Two slide = Two(Scalar(1)) - turn;
+      const Two3 turned = columns.linear;
+      columns = {entrywise(axis, [&](Eigen::Index k) { return turn * turned.coeff(k) + slide * axis.coeff(k); }),
+                 entrywise(axis, [&](Eigen::Index k) { return turn * axis.coeff(k); })};
     }
     columns.store(J, i);
     if constexpr (kWithRate) {
-      const auto& [l, a] = columns;
-      const Two3 moved = two_of(qd, i) * l;
+      const Two3 &l = columns.linear, &a = columns.angular;
+      const Two rate = two_of(qd, i);
+      const Two3 moved = entrywise(l, [&](Eigen::Index k) { return rate * l.coeff(k); });
       for (int row = 0; row < 3; ++row) u_(row) += Two(moved(row).second(), Scalar(0));
-      Columns{cross<Two>(w, l) + cross<Two>(a, u_), cross<Two>(w, a)}.store(Jd, i);
+      const Two3 turning = cross<Two>(w, l);
+      const Two3 carried = cross<Two>(a, u_);
+      Columns{entrywise(turning, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }), cross<Two>(w, a)}
+          .store(Jd, i);
       for (int row = 0; row < 3; ++row) u_(row) = Two(u_(row).first() + moved(row).first());
     }
   }

@@ -35,17 +35,17 @@ class SerialArm {
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
     turns_.setOnes(dof_);
     offsets_.setZero(dof_);
-    Matrix<3, 3, Scalar> turned_back = Matrix<3, 3, Scalar>::Identity();
+    Transform<Scalar> turned_back;
     for (Eigen::Index i = 0; i < dof_; ++i) {
       const auto& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
-      const Matrix<3, 3, Scalar> R = turned_back * joint.placement.R * to_axis;
-      const Vector3 p = turned_back * joint.placement.p;
-      turned_back = to_axis.transpose();
+      Transform<Scalar> step = turned_back * joint.placement;
+      step.R = Matrix<3, 3, Scalar>(step.R.lazyProduct(to_axis));
+      turned_back.R = transposed(to_axis);
       if (i == 0) {
-        base_ = {p, R};
+        base_ = step;
       } else {
-        const DecomposedLink<Scalar> between({p, R});
+        const DecomposedLink<Scalar> between(step);
         links_[static_cast<std::size_t>(i - 1)] = LinkPassage<Scalar>(between.link);
         offsets_(i - 1) += between.before;
         offsets_(i) = between.after;
@@ -61,7 +61,7 @@ class SerialArm {
     }
     length_ += chain.tip.p.norm();
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
-    const DecomposedLink<Scalar> last({turned_back * chain.tip.p, turned_back * chain.tip.R});
+    const DecomposedLink<Scalar> last(turned_back * chain.tip);
     links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);
     offsets_(dof_ - 1) += last.before;
     using std::cos;
@@ -119,17 +119,19 @@ class SerialArm {
   /// A pass along the chain finds the joints' axes; J and Jd follow from these. With a code of its own for chains of
   /// which no joint slides.
   template <bool kWithRate, bool kSlides, typename Space>
-  [[gnu::flatten]] void forward_pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                                     Kinematics<Space, N, Scalar>& out) const noexcept {
+  [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
+                                                    [[maybe_unused]] const Vector<N, Scalar>& qd,
+                                                    Kinematics<Space, N, Scalar>& out) const noexcept {
     constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");
     using Two = Pair<Scalar>;
     using Joint = typename Screws<N, Scalar>::Joint;
-    const auto n = extent<N>(dof_);
+    // Of an arm with joints that slide in a loop: unrolled, it would take as long to compile as that of all others.
+    const auto n = extent < kSlides ? Eigen::Dynamic : N > (dof_);
     const auto pairs = pairs_of(n);
 
-    Angles<N, Scalar> angles = angles_of<N, Scalar>(n);
+    Angles<N, Scalar> angles = angles_of<N, Scalar>(extent<N>(dof_));
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
       const Two turned = kSlides ? two_of(turns_, i) * two_of(q, i) : two_of(q, i);

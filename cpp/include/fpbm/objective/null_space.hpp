@@ -5,6 +5,7 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/model/joint.hpp"
 
 namespace fpbm {
@@ -105,9 +106,15 @@ class NullSpace {
   /// z in this state.
   template <Level kLevel>
   [[nodiscard]] Vector<N, Scalar> at(const State<N, Scalar>& state) const noexcept {
-    Vector<N, Scalar> z = Vector<N, Scalar>::Zero(state.q.size());
-    if (has_constant_) z += constant_ - stiffness_.cwiseProduct(state.q);
-    if constexpr (kLevel == Level::kAcceleration) z -= damping_ * state.qd;
+    Vector<N, Scalar> z = entrywise(state.q, [](Eigen::Index) { return Scalar(0); });
+    if (has_constant_) {
+      z = entrywise(z, [&](Eigen::Index i) {
+        return z.coeff(i) + (constant_.coeff(i) - stiffness_.coeff(i) * state.q.coeff(i));
+      });
+    }
+    if constexpr (kLevel == Level::kAcceleration) {
+      z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - damping_ * state.qd.coeff(i); });
+    }
     return z;
   }
 

@@ -30,10 +30,9 @@ class Correction {
     error_ = error;
     excess_.setZero();
     length_ = length;
-    far_ = bring_near(excess_.template head<kLengths>(), error.template head<kLengths>(), error_bound_ * length);
+    far_ = bring_near<kLengths>(error.data(), error_bound_ * length, excess_.data());
     if constexpr (Space::kTurns > 0) {
-      constexpr int kTurns = Space::kTurns;
-      far_ = bring_near(excess_.template tail<kTurns>(), error.template tail<kTurns>(), error_bound_) || far_;
+      far_ = bring_near<Space::kTurns>(error.data() + kLengths, error_bound_, excess_.data() + kLengths) || far_;
     }
   }
 
@@ -46,30 +45,39 @@ class Correction {
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
-    if (far_) reference.x = Space::template displace<Scalar>(reference.x, -excess_);
-    if (gain_ != Scalar(0)) (kLevel == Level::kAcceleration ? reference.xdd : reference.xd) += gain_ * integral_;
+    if (far_) {
+      const Twist back = entrywise(excess_, [&](Eigen::Index i) { return -excess_.coeff(i); });
+      reference.x = Space::template displace<Scalar>(reference.x, back);
+    }
+    if (gain_ != Scalar(0)) {
+      Twist& corrected = kLevel == Level::kAcceleration ? reference.xdd : reference.xd;
+      for (int i = 0; i < Space::kRows; ++i) corrected(i) += gain_ * integral_(i);
+    }
     return reference;
   }
 
   /// Call at the end of a tick that did the whole task.
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
-    integral_ += dt_ * error_;
+    for (int i = 0; i < Space::kRows; ++i) integral_(i) += dt_ * error_(i);
     Twist even = integral_;  // In arm lengths and radians.
-    even.template head<kLengths>() /= length_;
+    for (int i = 0; i < kLengths; ++i) even(i) /= length_;
     const Scalar size = gain_ * even.norm();
-    if (size > bound_) integral_ *= bound_ / size;
+    if (!(size > bound_)) return;
+    for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;
   }
 
  private:
   static constexpr int kLengths = Space::kRows - Space::kTurns;
 
-  /// The part of an error beyond a bound; whether there is one, or the error is not a number.
-  template <typename Excess, typename Error>
-  [[nodiscard]] static bool bring_near(Excess&& excess, const Error& error, Scalar bound) noexcept {
-    const Scalar length = error.norm();
+  /// The part of an error of some rows beyond a bound; whether there is one, or the error is not a number.
+  template <int kRows>
+  [[nodiscard]] static bool bring_near(const Scalar* error, Scalar bound, Scalar* excess) noexcept {
+    Vector<kRows, Scalar> part;
+    for (int i = 0; i < kRows; ++i) part(i) = error[i];
+    const Scalar length = part.norm();
     if (length <= bound) return false;
-    excess = (Scalar(1) - bound / length) * error;
+    for (int i = 0; i < kRows; ++i) excess[i] = (Scalar(1) - bound / length) * error[i];
     return true;
   }
 

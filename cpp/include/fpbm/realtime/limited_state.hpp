@@ -66,7 +66,9 @@ class LimitedState {
 
   /// Whether a state is finite and far enough from overflow to brake from.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
-    return state.q.allFinite() && JointVector(state.qd * (Scalar(4) / dt_)).allFinite();
+    const Scalar rate = Scalar(4) / dt_;
+    return is_finite(state.q) &&
+           is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
   /// Ends a tick whose step of RK4 led to next, of which velocity level reads q alone, and began with joint velocities
@@ -80,9 +82,9 @@ class LimitedState {
       if (stall_.stalled() && stall_.wait(at_rest, guard_.room(), correction_.length())) try_again();
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk()) next.q = moved(JointVector((next.qd - state_.qd) / dt_));
+      if (limits().bounds_jerk()) next.q = moved(rate(state_.qd, next.qd));
     } else {
-      next.qd = (next.q - state_.q) / dt_;
+      next.qd = rate(state_.q, next.q);
     }
     if constexpr (kGuarded) {
       if (guard_.draws_away() && !failed(result.status)) {
@@ -103,13 +105,14 @@ class LimitedState {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
-        desired = (next.qd - state_.qd) / dt_;
+        desired = rate(state_.qd, next.qd);
       } else if (!failed(result.status)) {
         share = slow_down(loop, limits(), correction_(now), state_.q, field);
-        if (share < Scalar(1)) desired = share * field;
+        if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
-      const JointVector middle = (state_.q + next.q) / Scalar(2);
+      const JointVector middle =
+          entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });
       loop.arm.kinematics(middle, loop.kinematics);
       const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
       if (share < Scalar(1)) {
@@ -129,7 +132,7 @@ class LimitedState {
     }
     result.q = next.q;
     result.qd = next.qd;
-    result.qdd = last_ = (next.qd - state_.qd) / dt_;
+    result.qdd = last_ = rate(state_.qd, next.qd);
     const JointVector q = state_.q;
     state_ = next;
     if (stopping_ || failed(result.status)) return;
@@ -203,18 +206,28 @@ class LimitedState {
 
   /// The motion of a tick: its mean acceleration, or its velocity at velocity level.
   [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept {
-    return kSecondOrder ? JointVector((next.qd - state_.qd) / dt_) : next.qd;
+    return kSecondOrder ? rate(state_.qd, next.qd) : next.qd;
   }
 
   /// The state after a tick of some motion.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept {
-    if constexpr (kSecondOrder) return {moved(u), state_.qd + dt_ * u};
-    return {state_.q + dt_ * u, u};
+    if constexpr (kSecondOrder) return {moved(u), plus(state_.qd, u)};
+    return {plus(state_.q, u), u};
   }
 
   /// The position after a tick of constant acceleration.
   [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
-    return state_.q + dt_ * (state_.qd + dt_ / Scalar(2) * qdd);
+    const Scalar half = dt_ / Scalar(2);
+    return plus(state_.q, entrywise(qdd, [&](Eigen::Index i) { return state_.qd.coeff(i) + half * qdd.coeff(i); }));
+  }
+
+  /// from + dt change.
+  [[nodiscard]] JointVector plus(const JointVector& from, const JointVector& change) const noexcept {
+    return entrywise(from, [&](Eigen::Index i) { return from.coeff(i) + dt_ * change.coeff(i); });
+  }
+  /// (to − from)/dt.
+  [[nodiscard]] JointVector rate(const JointVector& from, const JointVector& to) const noexcept {
+    return entrywise(from, [&](Eigen::Index i) { return (to.coeff(i) - from.coeff(i)) / dt_; });
   }
 
   Scalar dt_;

@@ -46,8 +46,12 @@ class PathFollower {
     Reference<Space, Scalar> reference = sample_within(path_, p, time_);
     const auto [r, rd] = rate(elapsed_ + seconds);
     reference.x = Space::template compose<Scalar>(start_, reference.x);
-    reference.xdd = reference.xdd * (r * r) + reference.xd * rd;
-    reference.xd *= r;
+    Vector<Space::kRows, Scalar>& xd = reference.xd;
+    Vector<Space::kRows, Scalar>& xdd = reference.xdd;
+    for (int i = 0; i < Space::kRows; ++i) {
+      xdd.coeffRef(i) = xdd.coeff(i) * (r * r) + xd.coeff(i) * rd;
+      xd.coeffRef(i) *= r;
+    }
     return reference;
   }
 

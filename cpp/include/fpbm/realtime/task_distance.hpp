@@ -20,7 +20,7 @@ struct TaskDistance {
   [[nodiscard]] static Scalar step(Scalar distance) noexcept { return std::min(kProgress, distance / Scalar(4)); }
 
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
-    twist.template head<Space::kRows - Space::kTurns>() /= length;
+    for (int i = 0; i < Space::kRows - Space::kTurns; ++i) twist(i) /= length;
     return twist.norm();
   }
 

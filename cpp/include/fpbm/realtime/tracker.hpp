@@ -106,7 +106,7 @@ class Tracker {
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
     Loop loop{arm_, scheme_, {}, state, JointVector::Zero(state.q.size())};
-    X x = packed(state);
+    X x = Loop::packed(state);
     X dx = x;
     loop.update(x);
     const Target now = references.stages[0];
@@ -118,12 +118,12 @@ class Tracker {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
     result.status = loop.resolve(references.stages[0], dx);
-    const JointVector field = dx.col(0);
+    const JointVector field = column(dx, 0);
     if (!failed(result.status)) {
       result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
     }
-    JointState next{x.col(0), state.qd};
-    if constexpr (Loop::kSecondOrder) next.qd = x.col(1);
+    JointState next{column(x, 0), state.qd};
+    if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
     return result;
   }
@@ -157,7 +157,7 @@ class Tracker {
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
-    X dx = packed(measured);
+    X dx = Loop::packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);
     auto rows = guard().rows(limits, measured);
@@ -206,13 +206,6 @@ class Tracker {
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
   using X = typename Loop::X;
-
-  [[nodiscard]] static X packed(const JointState& state) noexcept {
-    X x(state.q.size(), Loop::kSecondOrder ? 2 : 1);
-    x.col(0) = state.q;
-    if constexpr (Loop::kSecondOrder) x.col(1) = state.qd;
-    return x;
-  }
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.sigma = least_singular_value_bound(kinematics.J);

@@ -107,7 +107,8 @@ struct AccelerationScheme {
         if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
       }
       const auto force = [&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-        return alpha * Jd.transpose().lazyProduct(solutions.force(solutions.shares(xd)));
+        const Vector<N, Scalar> whole = transpose_times(Jd, solutions.force(solutions.shares(xd)));
+        return entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       };
       return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd);
     }
@@ -139,12 +140,13 @@ struct AccelerationScheme {
     Vector<N, Scalar> result = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
       const Vector<M, Scalar> mu =
           second<M, 1, Scalar>(solutions.force(solutions.shares(side_by_side<M, 1, Scalar>(xd, xd))));
-      const Vector<N, Scalar> force = alpha * Jd.transpose().lazyProduct(mu);
+      const Vector<N, Scalar> whole = transpose_times(Jd, mu);
+      const Vector<N, Scalar> force = entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
       const bool braked = status == Status::kDamped;
       if (braked || null_space.template active<kLevel>()) {
         Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-        if (braked) z -= gram.brake() * state.qd;
+        if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
         y += weights.unroot(z);
       }
       const Vector<M, Scalar> even = (Scalar(1) - alpha) * b;

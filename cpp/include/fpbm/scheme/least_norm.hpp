@@ -39,10 +39,12 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   const Vector<N, Scalar> y = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
     if (!(kForced || braked || null_space.template active<kLevel>())) return solutions.motion(solutions.shares(v));
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-    if (braked) z -= gram.brake() * state.qd;
+    if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
     Vector<N, Scalar> y0 = weights.unroot(z);
     if constexpr (kForced) y0 += weights.root_transpose(force(solutions));
-    return solutions.without(y0) + solutions.motion(solutions.shares(v));
+    const Vector<N, Scalar> free = solutions.without(y0);
+    const Vector<N, Scalar> done = solutions.motion(solutions.shares(v));
+    return entrywise(free, [&](Eigen::Index i) { return free.coeff(i) + done.coeff(i); });
   });
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);

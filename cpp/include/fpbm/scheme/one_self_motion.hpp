@@ -28,24 +28,27 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
   const Vector<N, Scalar> v = motion.null();
   const Vector<N, Scalar> Wv = weights.times(v);
   const Vector<N, Value> y = motion.solve(rhs);
-  const auto both = [&](auto i) { return Pair<Scalar>(v.coeff(i), Wv.coeff(i)); };
-  const auto squares = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(v.coeff(i)); });  // vᵀv and vᵀWv.
-  const auto along = total<0, N>([&](auto i) { return both(i) * Pair<Scalar>(first(y.coeff(i))); });  // vᵀp and vᵀWp.
+  const auto both = [&](Eigen::Index i) { return Pair<Scalar>(v.coeff(i), Wv.coeff(i)); };
+  const auto squares =
+      total<0, N>([&](Eigen::Index i) { return both(i) * Pair<Scalar>(v.coeff(i)); });  // vᵀv and vᵀWv.
+  const auto along =
+      total<0, N>([&](Eigen::Index i) { return both(i) * Pair<Scalar>(first(y.coeff(i))); });  // vᵀp and vᵀWp.
   const Pair<Scalar> over = Pair<Scalar>(Scalar(1)) / squares;
   Scalar wanted = -alpha * along.second();
   if (null_space.template active<kLevel>()) {
     const Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-    wanted += total<0, N>([&](auto i) { return Wv.coeff(i) * z.coeff(i); });
+    wanted += total<0, N>([&](Eigen::Index i) { return Wv.coeff(i) * z.coeff(i); });
   }
   if constexpr (!std::is_same_v<Value, Scalar>) {
-    const Scalar rho = over.second() * total<0, N>([&](auto i) { return Wv.coeff(i) * y.coeff(i).second(); });
+    const Scalar rho = over.second() * total<0, N>([&](Eigen::Index i) { return Wv.coeff(i) * y.coeff(i).second(); });
     Vector<N, Scalar> rate;  // J_W⁺xd
-    each(Constant<0>{}, Constant<N>{}, [&](auto i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
+    each(Constant<0>{}, Constant<N>{},
+         [&](Eigen::Index i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
     wanted += alpha * motion.along(Jd.lazyProduct(v), weights.times(rate));
   }
   const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
   Vector<N, Scalar> u;
-  each(Constant<0>{}, Constant<N>{}, [&](auto i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
+  each(Constant<0>{}, Constant<N>{}, [&](Eigen::Index i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
   return u;
 }
 

@@ -2,6 +2,7 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/task/reference.hpp"
 
@@ -22,6 +23,14 @@ struct ClosedLoop {
   State<N, Scalar> state;
   Vector<N, Scalar> qdd;
 
+  /// X of a state.
+  [[nodiscard]] static X packed(const State<N, Scalar>& state) noexcept {
+    X x(state.q.size(), kSecondOrder ? 2 : 1);
+    set_column(x, 0, state.q);
+    if constexpr (kSecondOrder) set_column(x, 1, state.qd);
+    return x;
+  }
+
   /// dX/dt at X. Afterwards kinematics, state and qdd are those of this evaluation; at velocity level state.qd is the
   /// scheme's answer, and qdd is not used.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
@@ -31,9 +40,9 @@ struct ClosedLoop {
 
   /// First half of evaluate(): state and kinematics at X.
   void update(const X& x) noexcept {
-    state.q = x.col(0);
+    state.q = column(x, 0);
     if constexpr (kSecondOrder) {
-      state.qd = x.col(1);
+      state.qd = column(x, 1);
       arm.kinematics(state.q, state.qd, kinematics);
     } else {
       arm.kinematics(state.q, kinematics);
@@ -46,14 +55,14 @@ struct ClosedLoop {
     if constexpr (kSecondOrder) {
       status = scheme.resolve(kinematics, reference, state, qdd);
       if (failed(status)) return status;
-      dx.col(0) = state.qd;
-      dx.col(1) = qdd;
+      set_column(dx, 0, state.qd);
+      set_column(dx, 1, qdd);
     } else {
       Vector<N, Scalar> qd;  // Not state.qd itself, which the scheme may read.
       status = scheme.resolve(kinematics, reference, state, qd);
       if (failed(status)) return status;
       state.qd = qd;
-      dx.col(0) = qd;
+      set_column(dx, 0, qd);
     }
     return status;
   }

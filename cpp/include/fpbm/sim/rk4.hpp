@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/status.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -16,16 +17,16 @@ struct RK4 {
     X k2 = k1;
     X k3 = k1;
     X k4 = k1;
-    X stage = x + half * k1;
+    X stage = plus(x, half, k1);
     Status status = f(t + half, stage, k2);
     if (failed(status)) return status;
-    stage = x + half * k2;
+    stage = plus(x, half, k2);
     status = worse(status, f(t + half, stage, k3));
     if (failed(status)) return status;
-    stage = x + h * k3;
+    stage = plus(x, h, k3);
     status = worse(status, f(t + h, stage, k4));
     if (failed(status)) return status;
-    x += h / Scalar(6) * (k1 + Scalar(2) * (k2 + k3) + k4);
+    x = plus(x, h / Scalar(6), sum(k1, k2, k3, k4));
     return status;
   }
 
@@ -36,6 +37,32 @@ struct RK4 {
     const Status status = f(t, x, k1);
     if (failed(status)) return status;
     return worse(status, step(f, t, h, k1, x));
+  }
+
+ private:
+  /// x + h k.
+  template <typename Scalar, typename X>
+  [[nodiscard]] static X plus(const X& x, const Scalar& h, const X& k) noexcept {
+    return x + h * k;
+  }
+  template <typename Time, int Rows, int Cols, typename Scalar>
+  [[nodiscard]] static Matrix<Rows, Cols, Scalar> plus(const Matrix<Rows, Cols, Scalar>& x, const Time& h,
+                                                       const Matrix<Rows, Cols, Scalar>& k) noexcept {
+    return entrywise(x, [&](Eigen::Index i) { return x.coeff(i) + h * k.coeff(i); });
+  }
+
+  /// k₁ + 2 (k₂ + k₃) + k₄.
+  template <typename X>
+  [[nodiscard]] static X sum(const X& k1, const X& k2, const X& k3, const X& k4) noexcept {
+    return k1 + 2 * (k2 + k3) + k4;
+  }
+  template <int Rows, int Cols, typename Scalar>
+  [[nodiscard]] static Matrix<Rows, Cols, Scalar> sum(const Matrix<Rows, Cols, Scalar>& k1,
+                                                      const Matrix<Rows, Cols, Scalar>& k2,
+                                                      const Matrix<Rows, Cols, Scalar>& k3,
+                                                      const Matrix<Rows, Cols, Scalar>& k4) noexcept {
+    return entrywise(
+        k1, [&](Eigen::Index i) { return k1.coeff(i) + Scalar(2) * (k2.coeff(i) + k3.coeff(i)) + k4.coeff(i); });
   }
 };
 

@@ -5,6 +5,7 @@
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/singular/lost_directions.hpp"
@@ -55,10 +56,20 @@ template <int M, int N, typename Scalar>
 /// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
 template <int kTurns, int M, int N, typename Scalar>
 [[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
-  Vector<M, Scalar> squares = J.col(0).cwiseAbs2();
-  each(Constant<1>{}, extent<N>(J.cols()), [&](auto i) { squares += J.col(i).cwiseAbs2(); });
-  Scalar sum = squares.template head<M - kTurns>().sum();
-  if constexpr (kTurns > 0) sum += length * length * squares.template tail<kTurns>().sum();
+  const Scalar* column = J.data();
+  Vector<M, Scalar> squares;
+  for (int i = 0; i < M; ++i) squares.coeffRef(i) = column[i] * column[i];
+  for (Eigen::Index j = 1; j < extent<N>(J.cols()); ++j) {
+    column += M;
+    for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
+  }
+  Scalar sum = squares.coeff(0);
+  for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
+  if constexpr (kTurns > 0) {
+    Scalar turns = squares.coeff(M - kTurns);
+    for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
+    sum += length * length * turns;
+  }
   return sum;
 }
 
@@ -81,7 +92,9 @@ class DampedGram {
   /// Returns kDamped where Δ is not zero, or why there is no factor.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
     rows_ = rows;
-    for (int i = kLengths; i < M; ++i) rows_.col(i) *= Value(length_);
+    for (int i = kLengths; i < M; ++i) {
+      for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
+    }
     const Status status = factor_.factor(rows_);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
@@ -110,8 +123,8 @@ class DampedGram {
     /// a − motion(shares(J C a)), of a motion itself.
     [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
-        const Vector<M, Value> done = of.rows_.transpose().lazyProduct(a);
-        return a - of.rows_.lazyProduct(of.damped_.solve(done));
+        const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
+        return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
       return of.factor_.without(a);
     }
@@ -158,14 +171,19 @@ class DampedGram {
 
   [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
     Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());
-    even.template rightCols<kTurns>() *= length_;
-    even.template bottomRows<kTurns>() *= length_;
+    for (int i = kLengths; i < M; ++i) {
+      for (int j = 0; j < M; ++j) even(j, i) *= length_;
+    }
+    for (int i = kLengths; i < M; ++i) {
+      for (int j = 0; j < M; ++j) even(i, j) *= length_;
+    }
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram = rows_.transpose().lazyProduct(rows_);
-    for (Eigen::Index i = 0; i < J_.rows(); ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j) gram(i, j) += Value(lost.delta(i, j));
+    Matrix<M, M, Value> gram;  // Its lower triangle.
+    for (int i = 0; i < M; ++i) {
+      const Vector<N, Value> row = column(rows_, i);
+      for (int j = 0; j <= i; ++j) gram(i, j) = row.cwiseProduct(column(rows_, j)).sum() + Value(lost.delta(i, j));
     }
     const Status status = damped_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;

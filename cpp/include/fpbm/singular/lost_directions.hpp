@@ -23,8 +23,11 @@ struct LostDirections {
       const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
-      const Vector<M, Scalar> u = spectrum.vectors.col(i);
-      delta += (share * epsilon_squared) * u.lazyProduct(u.transpose());
+      for (int j = 0; j < M; ++j) {
+        for (int k = 0; k < M; ++k) {
+          delta(j, k) += (share * epsilon_squared) * (spectrum.vectors(j, i) * spectrum.vectors(k, i));
+        }
+      }
       count += share;
     }
   }

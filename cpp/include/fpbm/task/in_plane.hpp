@@ -19,9 +19,9 @@ class InPlane {
     validation::require_finite("u", u);
     validation::require_finite("v", v);
     if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) validation::reject("u and v", ": must both be nonzero");
-    axes_.col(0) = u.normalized();
-    axes_.col(1) = v.normalized();
-    const Scalar cosine = axes_.col(0).dot(axes_.col(1));
+    u_ = u.normalized();
+    v_ = v.normalized();
+    const Scalar cosine = u_(0) * v_(0) + u_(1) * v_(1) + u_(2) * v_(2);
     if (!(cosine * cosine < Scalar(1e-12))) {
       validation::fail("u v / |u| |v|", cosine, "0: u and v are at right angles");
     }
@@ -33,12 +33,17 @@ class InPlane {
 
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t, Scalar since) const noexcept {
     const Reference<Position<2>, Scalar> flat = sample_within(path_, t, since);
-    return {axes_.lazyProduct(flat.x), axes_.lazyProduct(flat.xd), axes_.lazyProduct(flat.xdd)};
+    return {placed(flat.x), placed(flat.xd), placed(flat.xdd)};
   }
 
  private:
+  [[nodiscard]] Vector<3, Scalar> placed(const Vector<2, Scalar>& flat) const noexcept {
+    return entrywise(u_, [&](Eigen::Index i) { return u_.coeff(i) * flat.coeff(0) + v_.coeff(i) * flat.coeff(1); });
+  }
+
   Path path_;
-  Matrix<3, 2, Scalar> axes_;
+  Vector<3, Scalar> u_;
+  Vector<3, Scalar> v_;
 };
 
 }  // namespace fpbm

@@ -60,7 +60,11 @@ class Path {
     const Scalar sd = phase.sd / duration_;
     const Scalar sdd = phase.sdd / (duration_ * duration_);
     const Curve<Space, Scalar> curve = shape_.at(phase.s);
-    return {curve.d, curve.d1 * sd, curve.d2 * (sd * sd) + curve.d1 * sdd};
+    const auto& d1 = curve.d1;
+    const auto& d2 = curve.d2;
+    const Scalar square = sd * sd;
+    return {curve.d, entrywise(d1, [&](Eigen::Index i) { return d1.coeff(i) * sd; }),
+            entrywise(d2, [&](Eigen::Index i) { return d2.coeff(i) * square + d1.coeff(i) * sdd; })};
   }
 
  private:

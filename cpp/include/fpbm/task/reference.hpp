@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -27,9 +28,12 @@ template <typename Space, typename Scalar>
 [[nodiscard]] Reference<Space, Scalar> ahead(const Reference<Space, Scalar>& reference, Scalar seconds) noexcept {
   Reference<Space, Scalar> later = reference;
   if (seconds != Scalar(0)) {
-    const Vector<Space::kRows, Scalar> way = seconds * (reference.xd + seconds / Scalar(2) * reference.xdd);
+    const Vector<Space::kRows, Scalar>& xd = reference.xd;
+    const Vector<Space::kRows, Scalar>& xdd = reference.xdd;
+    const Scalar half = seconds / Scalar(2);
+    const auto way = entrywise(xd, [&](Eigen::Index i) { return seconds * (xd.coeff(i) + half * xdd.coeff(i)); });
     later.x = Space::template displace<Scalar>(reference.x, way);
-    later.xd += seconds * reference.xdd;
+    later.xd = entrywise(xd, [&](Eigen::Index i) { return xd.coeff(i) + seconds * xdd.coeff(i); });
   }
   return later;
 }

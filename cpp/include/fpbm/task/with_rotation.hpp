@@ -39,16 +39,18 @@ class WithRotation {
     const Scalar T = path_.duration();
     Phase<Scalar> phase = time_law_.at(t < Scalar(0) ? Scalar(0) : t > T ? Scalar(1) : t / T);
     if (t < Scalar(0) || t > T) phase.sd = phase.sdd = Scalar(0);
-    return {Space::displace(Space::template origin<Scalar>(), join(position.x, rotation_ * phase.s)),
-            join(position.xd, rotation_ * (phase.sd / T)), join(position.xdd, rotation_ * (phase.sdd / (T * T)))};
+    return {Space::displace(Space::template origin<Scalar>(), join(position.x, phase.s)),
+            join(position.xd, phase.sd / T), join(position.xdd, phase.sdd / (T * T))};
   }
 
  private:
-  [[nodiscard]] static Vector<Space::kRows, Scalar> join(const Vector<Positions::kRows, Scalar>& linear,
-                                                         const Rotation& angular) noexcept {
+  /// Linear rows, and a share of the rotation.
+  [[nodiscard]] Vector<Space::kRows, Scalar> join(const Vector<Positions::kRows, Scalar>& linear,
+                                                  Scalar share) const noexcept {
+    constexpr int kLinear = Positions::kRows;
     Vector<Space::kRows, Scalar> result;
-    result.template head<Positions::kRows>() = linear;
-    result.template tail<Rotation::RowsAtCompileTime>() = angular;
+    for (int i = 0; i < kLinear; ++i) result.coeffRef(i) = linear.coeff(i);
+    for (int i = kLinear; i < Space::kRows; ++i) result.coeffRef(i) = rotation_.coeff(i - kLinear) * share;
     return result;
   }
 

@@ -1,0 +1,10 @@
+#include "lane_code.hpp"
+#include "lane_run.hpp"
+
+namespace fpbm::bindings {
+
+RunInLanes<Position<3>> position_in_lanes() noexcept {
+  return &run_in_lanes<Position<3>>;
+}
+
+}  // namespace fpbm::bindings
