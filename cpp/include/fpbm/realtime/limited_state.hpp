@@ -177,7 +177,7 @@ class LimitedState {
     const Scalar length = correction_.length();
     const Scalar error = Distance::norm(result.error, length);
     if (stall_.has_moved(target, length)) recovery_.renew();
-    stall_.update(target, error, length);
+    stall_.update(target, error, length, result.scale == Scalar(1) && !correction_.far());
     recovery_.follow(target, length);
     if (result.status == Status::kStalled && stall_.stalled()) recovery_.begin(state_.q, target, error, length);
   }

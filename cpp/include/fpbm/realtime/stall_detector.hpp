@@ -12,9 +12,12 @@ namespace fpbm {
 
 /// Detects an arm that comes no nearer to its target.
 ///
-/// Progress is an error below the least one so far by a step, or a target that has moved by 0.002 (TaskDistance). A
-/// step is 0.002, or a quarter of the least error where that is smaller. The arm has stalled if there is no progress
-/// for stall_time. Errors below 0.0001 do not count. The arm continues when its target moves, or a shape near it.
+/// Progress is an error below the least one so far by a step, or a target that has moved by 0.002 (TaskDistance). The
+/// arm has stalled if there is no progress for stall_time. It continues when its target moves, or a shape near it.
+///
+/// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm is
+/// only damped, it may approach its target slowly: a step is 1/64 of the least error, and errors below 0.0001 do not
+/// count.
 template <typename Space, typename Scalar = double>
 class StallDetector {
  public:
@@ -35,9 +38,11 @@ class StallDetector {
   }
 
   /// One more tick that does not do the whole task. error: distance to the target. length: the arm's characteristic
-  /// length [m].
-  void update(const Point& target, Scalar error, Scalar length) noexcept {
-    if (error < kSmall || error < least_ - Distance::step(least_) || has_moved(target, length)) {
+  /// length [m]. damped: the arm is neither slowed nor far from its target.
+  void update(const Point& target, Scalar error, Scalar length, bool damped) noexcept {
+    const Scalar step = damped ? std::min(Distance::kProgress, least_ * kApproach) : Distance::kProgress;
+    const Scalar small = damped ? kSmall : Distance::kProgress;
+    if (error < small || error < least_ - step || has_moved(target, length)) {
       target_ = target;
       least_ = error;
       waited_ = Scalar(0);
@@ -66,7 +71,10 @@ class StallDetector {
  private:
   using Distance = TaskDistance<Space, Scalar>;
 
-  static constexpr Scalar kSmall = Scalar(1e-4);  ///< 0.1 mm for an arm of 1 m: below what feedback of the tip leaves.
+  static constexpr Scalar kSmall = Scalar(1e-4);  ///< 0.1 mm for an arm of 1 m.
+  /// Share of its error by which a damped arm comes nearer in stall_time: an arm whose target is exactly at the
+  /// workspace boundary still does so after a minute (Stall.is_not_a_slow_approach).
+  static constexpr Scalar kApproach = Scalar(1) / Scalar(64);
 
   Scalar stall_time_;
   Scalar dt_;
