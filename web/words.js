@@ -34,8 +34,9 @@ export const SCHEME_WORDS = [
 const OK = 0;
 const DAMPED = 2;
 const SLOWED = 3;
-const STALLED = 5;
-const NOT_FINITE = 8;
+const RECOVERING = 5;
+const STALLED = 6;
+const NOT_FINITE = 9;
 
 /// What the arm does now. leads: whether the scheme has feedback on the tip.
 export function describe({ status, dragging, following, resting, damped, limited, leads, fastest, error }) {
@@ -45,6 +46,7 @@ export function describe({ status, dragging, following, resting, damped, limited
   if (off && !leads && !dragging && (status === STALLED || turning < 0.05)) {
     return "The arm rests off its target: this scheme has no feedback that would lead it there.";
   }
+  if (status === RECOVERING) return "The arm got no nearer. It moves to a posture that it remembers, and tries again.";
   if (status === STALLED) return "The arm gets no nearer. It waits at rest until the target moves.";
   if (status > STALLED) return "The arm is stretched out, where it cannot move in every direction. It brakes.";
   if (dragging && status === SLOWED) return "A joint is at its limit: the others take over, or the tip slows down.";

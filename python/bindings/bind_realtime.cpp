@@ -226,6 +226,8 @@ singular_radius, singular_brake : float
 null_damping : float
     Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
     rest; 0 switches it off.
+recovery : bool
+    Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
 measured_delay : int
     Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
     tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
@@ -240,9 +242,10 @@ ParameterError
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
                        double error_bound, double gain, double bound, double stall_time, double radius, double brake,
-                       double null_damping, int measured_delay, const py::object& clearance) {
+                       double null_damping, bool recovery, int measured_delay, const py::object& clearance) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
+             options.recovery = recovery;
              options.measured_delay = measured_delay;
              return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options, clearance);
            }),
@@ -252,7 +255,7 @@ ParameterError
            py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake(),
-           py::arg("null_damping") = TrackerOptions<>().null_damping,
+           py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
            py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none)
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")

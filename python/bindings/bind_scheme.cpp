@@ -91,6 +91,8 @@ void bind_scheme(py::module_& m) {
       .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
       .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
       .value("BLOCKED", Status::kBlocked, "The motion is slowed by shapes that the arm keeps clear of.")
+      .value("RECOVERING", Status::kRecovering,
+             "The arm came no nearer to its target, and moved to a posture from which it can reach the target.")
       .value("STALLED", Status::kStalled, "The arm came no nearer to its target, and rested.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")

@@ -21,6 +21,7 @@ HINTS = {
     Status.DAMPED: "In all other directions it follows.",
     Status.SLOWED: "It follows as fast as its joints may.",
     Status.BLOCKED: "Drag the handle round the nearest shape.",
+    Status.RECOVERING: "Wait until it has reached that posture.",
     Status.STALLED: "Drag the handle into reach or, where a joint is at its end or a shape is near, round another way.",
 }
 NAMES = ("speed", "acceleration", "jerk")

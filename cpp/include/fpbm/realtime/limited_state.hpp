@@ -34,7 +34,8 @@ class LimitedState {
         guard_(guard),
         state_(start),
         last_(qdd0),
-        recovery_(start.q, options.stall_time, options.dt) {}
+        recovery_(start.q, options.stall_time, options.dt),
+        recovers_(options.recovery) {}
 
   /// The tip of the start posture, and the arm's characteristic length [m]: the first posture to recover to.
   void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
@@ -179,7 +180,8 @@ class LimitedState {
     if (stall_.has_moved(target, length)) recovery_.renew();
     stall_.update(target, error, length, result.scale == Scalar(1) && !correction_.far());
     recovery_.follow(target, length);
-    if (result.status == Status::kStalled && stall_.stalled()) recovery_.begin(state_.q, target, error, length);
+    if (recovers_ && result.status == Status::kStalled && stall_.stalled())
+      recovery_.begin(state_.q, target, error, length);
   }
 
   /// After a tick of a recovery.
@@ -238,6 +240,7 @@ class LimitedState {
   JointState state_;
   JointVector last_;  ///< Acceleration of the last tick.
   Recovery<Space, N, Scalar> recovery_;
+  bool recovers_;
   bool stopping_ = false;
 };
 

@@ -42,6 +42,8 @@ struct TrackerOptions {
   /// self-motion of these schemes never comes to rest. 2 is the library's usual value: self-motion decays to 1 % in
   /// 2.3 s.
   Scalar null_damping = Scalar(2);
+  /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
+  bool recovery = true;
   /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
   /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
   int measured_delay = 3;
