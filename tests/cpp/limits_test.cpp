@@ -136,6 +136,32 @@ void roll_every_scheme(const char* name, const Arm& arm, const JointLimits<Arm::
               100.0 * static_cast<double>(tally.slowed) / static_cast<double>(tally.ticks), tally.worst);
 }
 
+/// The ends of a box are motions of a tick that keep every bound, from any viable state.
+template <Level kLevel>
+void expect_boxes_within_bounds() {
+  constexpr int N = 4;
+  constexpr double kRoundOff = 1e-12;
+  for (std::uint32_t seed = 0; seed < 500; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto bounds = narrow_limits<N>(N, random);
+    const Limits<kLevel, N> limits(bounds, kTick);
+    const State<N> state = viable_state(limits, random);
+    const auto box = limits.box(state);
+    for (const Vector<N>& u : {box.lower, box.upper}) {
+      const Vector<N> qd = kLevel == Level::kVelocity ? u : Vector<N>(state.qd + kTick * u);
+      ASSERT_LE(((qd - state.qd) / kTick - bounds.acceleration).maxCoeff(), kRoundOff);
+      ASSERT_LE(((state.qd - qd) / kTick - bounds.acceleration).maxCoeff(), kRoundOff);
+      ASSERT_LE((qd.cwiseAbs() - bounds.velocity).maxCoeff(), kRoundOff);
+    }
+    ASSERT_LE((box.lower - box.upper).maxCoeff(), 0.0);
+  }
+}
+TEST(Limits, of_a_tick_are_within_the_bounds) {
+  expect_boxes_within_bounds<Level::kVelocity>();
+  expect_boxes_within_bounds<Level::kAcceleration>();
+}
+
 /// 12,000 rollouts in all.
 TEST(Limits, hold_on_a_planar_arm) {
   Random random(7);

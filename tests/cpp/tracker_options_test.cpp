@@ -32,10 +32,10 @@ struct Undampable {
     return Status::kOk;
   }
 };
-struct Recording : Undampable {
+struct Recorder : Undampable {
   double* null_damping;
 };
-void set_damping(Recording& scheme, const DefaultDamping<>& damping) {
+void set_damping(Recorder& scheme, const DefaultDamping<>& damping) {
   *scheme.null_damping = damping.null_space;
 }
 
@@ -193,10 +193,10 @@ TEST(TrackerOptions, need_a_scheme_that_takes_damping) {
   static_assert(kTakesDamping<ManipulabilityAscent<AccelerationScheme<7>, SerialArm<7>>, double>);
   static_assert(!kTakesDamping<Undampable, double>);
   static_assert(!kTakesDamping<ManipulabilityAscent<Undampable, Arm>, double>);
-  static_assert(kTakesDamping<Recording, double>);
-  static_assert(kTakesDamping<ManipulabilityAscent<Recording, Arm>, double>);
+  static_assert(kTakesDamping<Recorder, double>);
+  static_assert(kTakesDamping<ManipulabilityAscent<Recorder, Arm>, double>);
   double given = -1.0;
-  Recording recording;
+  Recorder recording;
   recording.null_damping = &given;
   const Preset panda = redundant()[0];
   (void)tracker_of(panda, Accelerations(recording), with_null_damping(3.0));
@@ -260,7 +260,7 @@ TEST(TickGains, beyond_what_a_tick_integrates_are_refused) {
 
     const std::string both =
         refusal(FPBM<kOpen>(0.6, ones, 5.0 / dt, 6.25 / dt / dt), dt);  // a critically damped error
-    const double k1 = number_after(both, "k1 = " + validation::text_of(5.0 / dt) + ": must be at most ");
+    const double k1 = number_after(both, "k1 = " + std::to_string(std::lround(5.0 / dt)) + ": must be at most ");
     const double k2 = number_after(both, " with k2 = ");
     EXPECT_NEAR(k1 * k1 / k2, 4.0, 1e-6) << both;
     EXPECT_EQ(refusal(FPBM<kOpen>(0.6, ones, k1, k2), dt), "");
