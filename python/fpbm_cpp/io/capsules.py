@@ -24,7 +24,7 @@ ALIKE = 0.95  # Cosine of an angle between directions that are as good as one.
 MANY = 12  # So many shapes are not tried in groups.
 POSTURES = 64  # In which distances of links are compared.
 MORE = 1  # Capsules that a link may have above per_link, where it is taken to be too close to others.
-GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by; a choice, as Gaps'.
+GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by; a choice.
 
 
 def capsules_of(
