@@ -17,7 +17,7 @@ from .capsule_fit import Fit, distances, outermost
 from .urdf_shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
-# These four are choices that pytest tests/python/test_home_postures.py passes with; no sweep of values stands behind them.
+# Choices that tests/python/test_home_postures.py passes with; no sweep of values stands behind them.
 CLOSE = 1.2  # Capsules below so many margins are close: a start at rest is accepted from one margin on.
 APART = 1.5  # Links whose hulls are above so many margins are not close: between the two, no cut is worth its capsule.
 FIRST = 2  # Postures of which one is enough for a pair to count: joints at zero, and in the middle.
