@@ -125,7 +125,8 @@ class Clearance(Data):
         from .io.capsules import capsules_of
         from .io.srdf import read_disabled_pairs
 
-        capsules = capsules_of(path, tip, base, per_link=per_link)
+        cls([], obstacles, margin=margin)  # Whether these are sound is said before the fit, which takes long.
+        capsules = capsules_of(path, tip, base, per_link=per_link, margin=margin)
         names = {each.name for each in capsules}
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
         disabled = [pair for pair in pairs if names.issuperset(pair)]

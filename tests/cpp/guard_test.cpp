@@ -468,6 +468,13 @@ TEST(Guard, names_what_is_wrong) {
   const std::string close = complaint([&] { (void)panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.6}}}); });
   EXPECT_EQ(close.substr(0, 31), "q0: hand and floor overlap by 0");
   EXPECT_NE(close.find(R"( m, with margin=0.01; give allowed={{"hand", "floor"}})"), std::string::npos) << close;
+  Clearance<7> in_box(chain, hand, {}, 0.01);
+  in_box.keep_tip_within(Vector<3>::Constant(5.0), Vector<3>::Constant(6.0));
+  const std::string outside = complaint([&] {
+    const Limits<Level::kAcceleration, 7> limits(Panda(chain).limits(), kTick);
+    PandaGuard(in_box).require_clear(limits, State<7>{ready(), Vector<7>::Zero()}, Vector<7>::Zero());
+  });
+  EXPECT_NE(outside.find("with margin=0.01; give a larger box to keep_tip_within()"), std::string::npos) << outside;
   auto tracker = panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.0}}});
   EXPECT_FALSE(tracker.guard().clearance().move(0, Capsule<>{zero, zero, 0.1}, zero));
   EXPECT_FALSE(tracker.guard().clearance().move(1, HalfSpace<>{Vector<3>::UnitZ(), 0.0}, zero));

@@ -16,7 +16,7 @@ from fpbm_cpp._core import PRESETS
 from fpbm_cpp._types import Array
 from fpbm_cpp.clearance import MARGIN
 from fpbm_cpp.io.capsule_fit import Fit
-from fpbm_cpp.io.capsule_gaps import capsules_apart, hulls_apart, link_frames, postures
+from fpbm_cpp.io.capsule_gaps import Gaps, Link, Part, capsules_apart, hulls_apart, link_frames, postures
 from fpbm_cpp.io.capsules import capsules_of
 from fpbm_cpp.io.urdf import read_places
 from fpbm_cpp.io.urdf_shapes import Shape
@@ -145,6 +145,20 @@ def test_the_message_names_both_remedies() -> None:
     fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
 
 
+def test_the_message_about_the_tip_s_box_names_a_larger_box() -> None:
+    """The pair of the tip and a wall cannot be allowed to meet: its names are not those of shapes."""
+    arm = fp.SerialArm.preset("panda")
+    q = np.array(FRANKA[0])
+    upper = arm.forward(q)[:3, 3] + [0.00403, 1.0, 1.0]
+    with pytest.raises(fp.ParameterError) as caught:
+        fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance([], tip_lower=[-1, -1, -1], tip_upper=upper))
+    assert str(caught.value) == (
+        "q0: tip and upper x are 0.0040 m apart, closer than margin=0.01; "
+        "give margin=0.004 or a larger box by tip_lower and tip_upper"
+    )
+    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance([], margin=0.004, tip_lower=[-1, -1, -1], tip_upper=upper))
+
+
 # What decides where capsules are cut
 
 
@@ -181,6 +195,26 @@ def test_hulls_are_at_least_that_far_apart() -> None:
         exact = float(np.linalg.norm(pose[:3, 3])) - 0.2
         found = hulls_apart(ball(0, 0, 0), ball(0, 0, 0), pose)
         assert exact - 1e-3 < found <= exact + 1e-12
+
+
+def test_gaps_are_measured_against_the_margin() -> None:
+    """Capsules of 15 mm about balls of 5 mm whose middles are 60 mm apart: 30 mm apart, the balls 50 mm."""
+
+    def link(number: int) -> Link:
+        shape = Shape(centers=np.zeros((1, 3)), radii=np.array([0.005]))
+        return Link(number, [Part(shape, Fit(np.zeros(3), np.zeros(3), 0.015))])
+
+    frames = np.tile(np.eye(4), (8, 3, 1, 1))
+    frames[:, 2, 0, 3] = 0.06
+    frames[-1, 2, 0, 3] = 0.2
+    assert Gaps([link(0), link(2)], frames, 0.02).worst(set()) is None
+    assert Gaps([link(0), link(2)], frames, 0.03).worst(set()) == (0, 1)
+    assert Gaps([link(0), link(2)], frames, 0.04).worst(set()) is None
+
+
+def test_a_wrong_margin_is_refused_before_the_fit(tmp_path: Path) -> None:
+    with pytest.raises(fp.ParameterError, match=r"^margin"):
+        fp.Clearance.from_urdf(tmp_path / "none.urdf", "tip", margin=-1.0)
 
 
 def test_postures_fill_the_ranges() -> None:

@@ -13,13 +13,13 @@ import numpy as np
 from .._core import rotation
 from .._types import Array
 from ..arms import Joint
-from ..clearance import MARGIN
 from .capsule_fit import Fit, distances, outermost
 from .urdf_shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
-CLOSE = 1.2 * MARGIN  # Capsules below this distance are close,
-APART = 1.5 * MARGIN  # and links whose hulls are above this distance are not.
+# Choices that tests/python/test_home_postures.py passes with; no sweep of values stands behind them.
+CLOSE = 1.2  # Capsules below so many margins are close: a start at rest is accepted from one margin on.
+APART = 1.5  # Links whose hulls are above so many margins are not close: between the two, no cut is worth its capsule.
 FIRST = 2  # Postures of which one is enough for a pair to count: joints at zero, and in the middle.
 OFTEN = 0.25  # Share of the postures that is enough.
 OPEN = 3.0  # [rad] or [m], the range of a joint without ends, to either side of zero.
@@ -47,13 +47,14 @@ class Link:
 
 
 class Gaps:
-    """Pairs of links, not next to one another, that are too close: capsules below CLOSE, and hulls above APART.
+    """Pairs of links, not next to one another, that are too close: capsules are below CLOSE margins, hulls above APART.
 
     A pair counts where it is too close in one of the first postures, or in a share OFTEN of all.
     """
 
-    def __init__(self, links: list[Link], frames: Array) -> None:
+    def __init__(self, links: list[Link], frames: Array, margin: float) -> None:
         self.links = links
+        self.margin, self.close = margin, CLOSE * margin
         inverse = np.linalg.inv(frames)
         self._cases: dict[tuple[int, int], Array] = {}  # Poses of the second link, and how much each counts.
         self._weights: dict[tuple[int, int], Array] = {}
@@ -64,10 +65,11 @@ class Gaps:
                 continue
             poses = inverse[:, links[i].number] @ frames[:, links[j].number]
             gaps = capsules_apart(links[i].fits, links[j].fits, poses)
-            if np.max(gaps) < MARGIN:
+            if np.max(gaps) < margin:
                 self._left_out[i, j] = poses
                 continue
-            wrong = [k for k in np.flatnonzero(gaps < CLOSE) if hulls_apart(hulls[i], hulls[j], poses[k]) >= APART]
+            apart, near = APART * margin, np.flatnonzero(gaps < self.close)
+            wrong = [k for k in near if hulls_apart(hulls[i], hulls[j], poses[k], apart) >= apart]
             self._cases[i, j] = poses[wrong]
             self._weights[i, j] = np.where(np.array(wrong) < FIRST, 1.0, 1.0 / len(poses))
 
@@ -79,12 +81,12 @@ class Gaps:
     def _often(self, i: int, j: int) -> float:
         """In what share of the postures a pair is too close; at least 1 where it is so in one of the first."""
         gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
-        return float((gaps < CLOSE) @ self._weights[i, j])
+        return float((gaps < self.close) @ self._weights[i, j])
 
     def excess(self, i: int, j: int) -> float:
         """How much capsules of a pair are too close by, in all postures together [m]."""
         gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
-        return float(np.maximum(CLOSE - gaps, 0.0) @ self._weights[i, j])
+        return float(np.maximum(self.close - gaps, 0.0) @ self._weights[i, j])
 
     def excess_with(self, i: int, parts: list[Part], pair: tuple[int, int]) -> float:
         """That of a pair with other parts of link i; infinite where a pair that is left out would not be any longer."""
@@ -92,7 +94,10 @@ class Gaps:
         try:
             found = self.excess(*pair)
             for (a, b), poses in self._left_out.items():
-                if i in (a, b) and np.max(capsules_apart(self.links[a].fits, self.links[b].fits, poses)) > MARGIN / 2:
+                if (
+                    i in (a, b)
+                    and np.max(capsules_apart(self.links[a].fits, self.links[b].fits, poses)) > self.margin / 2
+                ):
                     return np.inf
             return found
         finally:
@@ -160,8 +165,11 @@ def _segments_apart(p: Array, q: Array, a: Array, b: Array) -> Array:
     return np.asarray(np.min([crossing, *ends], axis=0))
 
 
-def hulls_apart(first: Shape, second: Shape, pose: Array) -> float:
-    """A lower bound on the distance of two links' convex hulls: the widest gap between planes, of many directions."""
+def hulls_apart(first: Shape, second: Shape, pose: Array, enough: float = np.inf) -> float:
+    """A lower bound on the distance of two links' convex hulls: the widest gap between planes, of many directions.
+
+    The search for a better direction ends at the first that gives enough.
+    """
     moved = second.points @ pose[:3, :3].T + pose[:3, 3]
 
     def best(normals: Array) -> tuple[float, Array]:
@@ -173,6 +181,8 @@ def hulls_apart(first: Shape, second: Shape, pose: Array) -> float:
     fan = _sphere(NORMALS)
     found = best(fan)
     for spread in SPREADS:
+        if found[0] >= enough:
+            break
         found = max(found, best(found[1] + spread * fan), key=lambda each: each[0])
     return found[0]
 

@@ -11,6 +11,7 @@ import numpy as np
 from .._types import Array
 from ..arms import Joint
 from ..capsule import Capsule
+from ..clearance import MARGIN
 from ..errors import wrong
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
 from .capsule_gaps import Gaps, Link, Part, link_frames, postures
@@ -23,16 +24,23 @@ ALIKE = 0.95  # Cosine of an angle between directions that are as good as one.
 MANY = 12  # So many shapes are not tried in groups.
 POSTURES = 64  # In which distances of links are compared.
 MORE = 1  # Capsules that a link may have above per_link, where it is taken to be too close to others.
-GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by.
+GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by; a choice.
 
 
 def capsules_of(
-    path: str | os.PathLike[str], tip: str, base: str | None = None, *, per_link: int = 2, finer: bool = True
+    path: str | os.PathLike[str],
+    tip: str,
+    base: str | None = None,
+    *,
+    per_link: int = 2,
+    finer: bool = True,
+    margin: float = MARGIN,
 ) -> list[Capsule]:
     """Capsules that contain the collision geometry of a URDF file's links: tight, and the same each time.
 
     Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
-    or finer is False, a link may have one more where it would be taken to be too close to another link: see Gaps.
+    or finer is False, a link may have one more where it would be taken to be closer to another link than a margin [m]:
+    see Gaps.
     Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
     belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
     Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for
@@ -58,18 +66,18 @@ def capsules_of(
         for name in names
     ]
     if finer and per_link > 1:
-        refine(links, joints, per_link + MORE)
+        refine(links, joints, per_link + MORE, margin)
     fits = [(link.number, part.fit, name) for link, name in zip(links, names) for part in link.parts]
     return [Capsule(number, fit.a, fit.b, fit.radius, name) for number, fit, name in fits]
 
 
-def refine(links: list[Link], joints: list[Joint], most: int) -> None:
+def refine(links: list[Link], joints: list[Joint], most: int, margin: float) -> None:
     """Cuts links further, into at most so many parts, where capsules are close and the links' hulls are not: see Gaps.
 
     Of all cuts of either link, the one is made after which the capsules are too close by least. A pair that is below
     the margin in all postures is left out by Clearance: no cut brings such a pair back.
     """
-    gaps = Gaps(links, link_frames(joints, postures(joints, POSTURES)))
+    gaps = Gaps(links, link_frames(joints, postures(joints, POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()
     known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its halves.
     while pair := gaps.worst(given_up):

@@ -63,6 +63,7 @@ class Clearance {
     }
     leave_out_overlaps(chain);
     open_.resize(pairs_.size());
+    named_ = bodies_.size();
   }
 
   [[nodiscard]] const Links<N, Scalar>& links() const noexcept { return links_; }
@@ -75,6 +76,9 @@ class Clearance {
   [[nodiscard]] Names names(const ShapePair& pair) const {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
   }
+
+  /// Whether a pair is the tip with a wall of its box: not a pair that `allowed` could name.
+  [[nodiscard]] bool is_of_box(const ShapePair& pair) const noexcept { return pair.first >= named_; }
 
   /// Pairs that overlap in all of many postures, which no motion could keep apart: left out.
   [[nodiscard]] const std::vector<ShapePair>& left_out() const noexcept { return left_out_; }
@@ -187,6 +191,7 @@ class Clearance {
   Links<N, Scalar> links_;
   Vector3 tip_;  ///< In the last link's frame.
   std::vector<Body> bodies_;
+  std::size_t named_ = 0;  ///< Bodies before these are the capsules; then comes the tip, once it is kept in a box.
   std::vector<Obstacle<Scalar>> obstacles_;
   std::vector<ShapePair> pairs_;
   std::vector<ShapePair> left_out_;

@@ -38,8 +38,9 @@ class Guard {
     clearance_.place(start.q);
     const auto [pair, distance] = clearance_.nearest_pair();
     if (!(distance >= clearance_.margin())) {
-      reject_close(clearance_.names(clearance_.pairs()[pair]), static_cast<double>(distance),
-                   static_cast<double>(clearance_.margin()));
+      const ShapePair& close = clearance_.pairs()[pair];
+      reject_close(clearance_.names(close), static_cast<double>(distance), static_cast<double>(clearance_.margin()),
+                   clearance_.is_of_box(close));
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);

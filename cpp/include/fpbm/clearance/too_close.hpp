@@ -13,24 +13,28 @@ namespace fpbm {
 /// A start posture in which two shapes are closer than the margin. what() names the remedies in the terms of C++.
 class TooClose : public ParameterError {
  public:
-  TooClose(std::pair<std::string, std::string> names, double distance, double margin)
+  /// of_box: the pair is the tip with a wall of its box.
+  TooClose(std::pair<std::string, std::string> names, double distance, double margin, bool of_box)
       : ParameterError("q0", -1, distance,
-                       text(names, distance, margin, "{{\"" + names.first + "\", \"" + names.second + "\"}}")),
+                       text(names, distance, margin,
+                            of_box ? "a larger box to keep_tip_within()"
+                                   : "allowed={{\"" + names.first + "\", \"" + names.second + "\"}}")),
         names_(std::move(names)),
-        margin_(margin) {}
+        margin_(margin),
+        of_box_(of_box) {}
 
   [[nodiscard]] const std::pair<std::string, std::string>& names() const noexcept { return names_; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
+  [[nodiscard]] bool of_box() const noexcept { return of_box_; }
 
-  /// The message, with the list that allows the pair as a language writes it. Shapes that overlap have no margin.
+  /// The message, with the remedy beside a smaller margin as a language writes it. Shapes that overlap have no margin.
   [[nodiscard]] static std::string text(const std::pair<std::string, std::string>& names, double distance,
-                                        double margin, const std::string& allowed) {
+                                        double margin, const std::string& remedy) {
     const double smaller = std::floor(distance * kDigits) / kDigits;
     const std::string less = smaller >= 0.0 ? "give margin=" + number("%.4g", smaller) + " or " : "give ";
     const std::string are = distance >= 0.0 ? " are " + number("%.4f", distance) + " m apart, closer than margin="
                                             : " overlap by " + number("%.4f", -distance) + " m, with margin=";
-    return "q0: " + names.first + " and " + names.second + are + number("%.4g", margin) + "; " + less +
-           "allowed=" + allowed;
+    return "q0: " + names.first + " and " + names.second + are + number("%.4g", margin) + "; " + less + remedy;
   }
 
  private:
@@ -44,12 +48,13 @@ class TooClose : public ParameterError {
 
   std::pair<std::string, std::string> names_;
   double margin_;
+  bool of_box_;
 };
 
 /// Throws TooClose; without exceptions, ends the program with its message.
-[[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance,
-                                      double margin) {
-  const TooClose error(names, distance, margin);
+[[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance, double margin,
+                                      bool of_box) {
+  const TooClose error(names, distance, margin, of_box);
 #if defined(__cpp_exceptions)
   throw error;
 #else
