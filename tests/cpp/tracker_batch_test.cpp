@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdio>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -108,17 +110,19 @@ struct Motions {
   using Arm = decltype(Case::arm());
   using Starts = std::array<Vector<N>, kLanes>;
 
-  static Limits<kLevel, N> limits(double velocity) {
+  /// jerk: as a multiple of the bound on acceleration [1/s].
+  static Limits<kLevel, N> limits(double velocity, double jerk = std::numeric_limits<double>::infinity()) {
     auto bounds = JointLimits<N>::none(N);
-    for (int i = 0; i < N; ++i) bounds.set(i, {-3.5, 3.9, velocity, 10.0 * velocity});
+    for (int i = 0; i < N; ++i) bounds.set(i, {-3.5, 3.9, velocity, 10.0 * velocity, jerk * 10.0 * velocity});
     return {bounds, kTick};
   }
 
-  static auto trackers(const Starts& starts, double velocity, const TrackerOptions<>& options) {
+  static auto trackers(const Starts& starts, double velocity, const TrackerOptions<>& options,
+                       double jerk = std::numeric_limits<double>::infinity()) {
     std::vector<Tracker<Arm, Space, Law>> all;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       all.emplace_back(Case::arm(), Space{}, Laws<kLevel, N>::of(static_cast<double>(lane)),
-                       State<N>{starts[lane], Vector<N>::Zero()}, options, limits(velocity));
+                       State<N>{starts[lane], Vector<N>::Zero()}, options, limits(velocity, jerk));
     }
     return all;
   }
@@ -208,6 +212,47 @@ TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
   });
   EXPECT_LE(fastest, 0.2 + 1e-12);
   EXPECT_GT(fastest, 0.199);
+}
+
+/// Each tick from equal states. A long motion on limits with bounds on jerk amplifies round-off errors.
+TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
+  using All = Motions<TypeParam>;
+  using Case = typename TypeParam::Case;
+  using Space = typename Case::Space;
+  constexpr int N = Case::N;
+  const auto path = Case::path(0.1);
+  for (const double jerk : {std::numeric_limits<double>::infinity(), 100.0, 20.0}) {
+    for (const double velocity : {0.2, 0.5}) {
+      auto all = All::batch(All::trackers({Case::start(0.0), Case::start(0.1)}, velocity, All::options(), jerk));
+      const std::array<typename Space::template Point<double>, kLanes> tips{all.trackers()[0].tip(),
+                                                                            all.trackers()[1].tip()};
+      PathFollower follower(path, Space::template origin<double>());
+      Sample<Space, N, In> sample;
+      double difference = 0.0;  // Of accelerations, as a share of their bound.
+      int limited = 0;
+      for (int k = 0; k < All::grid().samples(); ++k) {
+        const auto ahead = [&follower](double seconds) noexcept { return follower.ahead(seconds); };
+        const auto displacements = TickReferences<Space, double>::of(ahead, All::kTick);
+        auto alone = all.trackers();
+        all.tick(displacements, sample);
+        follower.advance(All::kTick);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          const auto tick = alone[lane].advance(displacements.template from<double>(tips[lane]));
+          if (tick.status == Status::kSlowed || tick.saturated != 0) ++limited;
+          const auto& same = all.trackers()[lane];
+          const auto apart = [](const Vector<N>& one, const Vector<N>& other) {
+            return (one - other).cwiseAbs().maxCoeff();
+          };
+          difference = std::max({difference, apart(same.state().q, alone[lane].state().q),
+                                 apart(same.state().qd, alone[lane].state().qd),
+                                 apart(same.acceleration(), alone[lane].acceleration()) / (10.0 * velocity)});
+        }
+      }
+      std::printf("jerk %g, velocity %g: %d limited ticks, %.1e apart\n", jerk, velocity, limited, difference);
+      EXPECT_LE(difference, 1e-9) << jerk << ' ' << velocity;
+      EXPECT_GT(limited, 0) << jerk << ' ' << velocity;
+    }
+  }
 }
 
 /// To the last bit, in any lane, whatever happens in the others.

@@ -69,16 +69,17 @@ class HeldJoints {
 
   /// Holds one more joint on its bound, or holds it in place of one that may leave its own. False where neither works.
   ///
-  /// rate: of the joint; round_off(): of the rates of independent joints. A joint that depends on those held and whose
-  /// rate is round-off error needs no hold.
+  /// rate: of the joint; remaining: increase of s up to 1; round_off(): of the motions of independent joints. A joint
+  /// that depends on those held and whose remaining motion is round-off error needs no hold.
   template <typename Basis, typename RoundOff>
-  [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above, Scalar rate, RoundOff&& round_off) noexcept {
+  [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above, Scalar rate, Scalar remaining,
+                          RoundOff&& round_off) noexcept {
     split(Z, joint, count_);
     const Scalar outside = R_[count_][count_];
     const bool spare = count_ < Z.cols();
     if (spare && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
     const Free share = shares();
-    if (rate <= round_off() * std::min(Scalar(1) + share.cwiseAbs().sum(), kAmplified)) {
+    if (rate * remaining <= round_off() * std::min(Scalar(1) + share.cwiseAbs().sum(), kAmplified)) {
       fixed_ |= bit(joint);
       return true;
     }

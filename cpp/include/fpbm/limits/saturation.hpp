@@ -122,7 +122,7 @@ class NullSpaceSaturation {
         const Scalar given = (desired.cwiseAbs() + rest.cwiseAbs()).cwiseQuotient(unit_).maxCoeff();
         return Held::kRoundOff * (fastest + goal.cwiseAbs().maxCoeff()) + kStill * given;
       };
-      if (!held_.hold(Z_, hit, above, abs(rate(hit)), round_off)) {
+      if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - result.scale, round_off)) {
         count(result, hit, joints);
         break;
       }
