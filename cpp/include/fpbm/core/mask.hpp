@@ -52,11 +52,7 @@ template <typename Derived>
     return true;
   } else {
     using Scalar = typename Derived::Scalar;
-    Scalar sum(0);
-    for (Eigen::Index j = 0; j < values.cols(); ++j) {
-      for (Eigen::Index i = 0; i < values.rows(); ++i) sum += values.derived().coeff(i, j) * Scalar(0);
-    }
-    return sum == Scalar(0);  // Inf and NaN make NaN of it.
+    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
   }
 }
 

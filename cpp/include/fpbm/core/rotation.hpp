@@ -47,6 +47,16 @@ struct Transform {
   }
 };
 
+/// A vector of length 1, unless the length is 0.
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> normalized(const Vector<3, Scalar>& a) noexcept {
+  using std::sqrt;
+  const Scalar square = a.squaredNorm();
+  if (!(square > Scalar(0))) return a;
+  const Scalar length = sqrt(square);
+  return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / length; });
+}
+
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> cross(const Vector<3, Scalar>& a, const Vector<3, Scalar>& b) noexcept {
   return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
@@ -247,8 +257,8 @@ template <typename Scalar>
   const Split b = column(1);
   const Split c = column(2);
   const Vector<3, Scalar> s(b.z - c.xy.second(), c.xy.first() - a.z, a.xy.second() - b.xy.first());
-  return rotation_detail::rotation_vector<Scalar>(
-      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return times(x, transposed(y)); });
+  return rotation_detail::rotation_vector<Scalar>(s, a.xy.first() + b.xy.second() + c.z,
+                                                  [&]() -> Matrix<3, 3, Scalar> { return times(x, transposed(y)); });
 }
 
 }  // namespace fpbm

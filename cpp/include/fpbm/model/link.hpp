@@ -49,22 +49,12 @@ struct DecomposedLink {
   }
 };
 
-/// A vector of length 1, unless the length is 0.
-template <typename Scalar>
-[[nodiscard]] Vector<3, Scalar> unit(const Vector<3, Scalar>& a) noexcept {
-  using std::sqrt;
-  const Scalar square = a.squaredNorm();
-  if (!(square > Scalar(0))) return a;
-  const Scalar length = sqrt(square);
-  return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / length; });
-}
-
 /// A rotation that takes z to the axis.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
   using Vector3 = Vector<3, Scalar>;
   using std::abs;
-  const Vector3 z = unit(axis);
+  const Vector3 z = normalized(axis);
   if (z(0) == Scalar(0) && z(1) == Scalar(0) && z(2) == Scalar(1)) return identity<Matrix<3, 3, Scalar>>();
   Eigen::Index least = 0;
   for (Eigen::Index i = 1; i < 3; ++i) {
@@ -72,7 +62,7 @@ template <typename Scalar>
   }
   Vector3 across(Scalar(0), Scalar(0), Scalar(0));
   across(least) = Scalar(1);
-  const Vector3 x = unit(cross(across, z));
+  const Vector3 x = normalized(cross(across, z));
   Matrix<3, 3, Scalar> R;
   set_column(R, 0, x);
   set_column(R, 1, cross(z, x));
