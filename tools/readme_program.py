@@ -18,7 +18,7 @@ def program(heading: str) -> str:
     if not blocks:
         raise SystemExit(f"README.md has no C++ under '{heading}'")
     body = "".join(f"  {line}\n" for line in "".join(blocks).splitlines())
-    return f"#include <fpbm/fpbm.hpp>\n\nint main() {{\n{body}  return fpbm::failed(tick.status) ? 1 : 0;\n}}\n"
+    return f"#include <fpbm/tracker.hpp>\n\nint main() {{\n{body}  return fpbm::failed(tick.status) ? 1 : 0;\n}}\n"
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "fpbm/any/any_path.hpp"
+#include "fpbm/clearance/guard.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "scheme.hpp"

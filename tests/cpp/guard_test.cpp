@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "fpbm/clearance/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
 #include "support/bodies.hpp"

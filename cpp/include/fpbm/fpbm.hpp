@@ -144,3 +144,4 @@
 #include "fpbm/task/tip_bounds.hpp"
 #include "fpbm/task/waypoints.hpp"
 #include "fpbm/task/with_rotation.hpp"
+#include "fpbm/tracker.hpp"

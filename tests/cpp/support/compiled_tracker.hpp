@@ -4,6 +4,7 @@
 
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/any/any_path.hpp"
+#include "fpbm/clearance/guard.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 

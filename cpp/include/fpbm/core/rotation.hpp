@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/sincos.hpp"
@@ -11,11 +12,28 @@
 
 namespace fpbm {
 
+/// A B, of three rows, with the round-off of Eigen's lazyProduct(): rows that fill a pair of doubles are summed from
+/// the first term on.
+template <int Cols, typename Scalar>
+[[nodiscard]] Matrix<3, Cols, Scalar> times(const Matrix<3, 3, Scalar>& A, const Matrix<3, Cols, Scalar>& B) noexcept {
+  constexpr bool kInPairs = std::is_same_v<Scalar, double>;
+  Matrix<3, Cols, Scalar> result;
+  for (int j = 0; j < Cols; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const Scalar x = A.coeff(i, 0) * B.coeff(0, j);
+      const Scalar y = A.coeff(i, 1) * B.coeff(1, j);
+      const Scalar z = A.coeff(i, 2) * B.coeff(2, j);
+      result.coeffRef(i, j) = kInPairs && i < 2 ? (x + y) + z : x + (y + z);
+    }
+  }
+  return result;
+}
+
 /// Pose of a frame b in a frame a: x_a = p + R x_b.
 template <typename Scalar = double>
 struct Transform {
-  Vector<3, Scalar> p = Vector<3, Scalar>::Zero();            ///< Origin of b in a [m].
-  Matrix<3, 3, Scalar> R = Matrix<3, 3, Scalar>::Identity();  ///< Columns: the axes of b in a.
+  Vector<3, Scalar> p = filled<Vector<3, Scalar>>(3);         ///< Origin of b in a [m].
+  Matrix<3, 3, Scalar> R = identity<Matrix<3, 3, Scalar>>();  ///< Columns: the axes of b in a.
 
   template <typename Other>
   [[nodiscard]] Transform<Other> cast() const noexcept {
@@ -24,10 +42,20 @@ struct Transform {
 
   /// Composition: T_ac = T_ab T_bc.
   [[nodiscard]] friend Transform operator*(const Transform& a, const Transform& b) noexcept {
-    const Vector<3, Scalar> turned = a.R.lazyProduct(b.p);
-    return {entrywise(turned, [&](Eigen::Index i) { return a.p.coeff(i) + turned.coeff(i); }), a.R.lazyProduct(b.R)};
+    const Vector<3, Scalar> turned = times(a.R, b.p);
+    return {entrywise(turned, [&](Eigen::Index i) { return a.p.coeff(i) + turned.coeff(i); }), times(a.R, b.R)};
   }
 };
+
+/// A vector of length 1, unless the length is 0.
+template <typename Scalar>
+[[nodiscard]] Vector<3, Scalar> normalized(const Vector<3, Scalar>& a) noexcept {
+  using std::sqrt;
+  const Scalar square = a.squaredNorm();
+  if (!(square > Scalar(0))) return a;
+  const Scalar length = sqrt(square);
+  return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / length; });
+}
 
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> cross(const Vector<3, Scalar>& a, const Vector<3, Scalar>& b) noexcept {
@@ -229,8 +257,8 @@ template <typename Scalar>
   const Split b = column(1);
   const Split c = column(2);
   const Vector<3, Scalar> s(b.z - c.xy.second(), c.xy.first() - a.z, a.xy.second() - b.xy.first());
-  return rotation_detail::rotation_vector<Scalar>(
-      s, a.xy.first() + b.xy.second() + c.z, [&]() -> Matrix<3, 3, Scalar> { return x.lazyProduct(transposed(y)); });
+  return rotation_detail::rotation_vector<Scalar>(s, a.xy.first() + b.xy.second() + c.z,
+                                                  [&]() -> Matrix<3, 3, Scalar> { return times(x, transposed(y)); });
 }
 
 }  // namespace fpbm

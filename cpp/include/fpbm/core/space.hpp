@@ -31,7 +31,7 @@ struct Position {
 
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> origin() noexcept {
-    return Point<Scalar>::Zero();
+    return filled<Point<Scalar>>(kRows);
   }
 
   template <typename Scalar>
@@ -103,13 +103,13 @@ struct Pose {
     const Vector<3, Scalar> p = entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + d.coeff(i); });
     const Scalar none(0);
     if (all_of(turned(0) == none && turned(1) == none && turned(2) == none)) return {p, y.R};
-    return {p, rotation(turned).lazyProduct(y.R)};
+    return {p, times(rotation(turned), y.R)};
   }
 
   /// y moved by x.p and turned by x.R, both along the base frame's axes.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
-    return {entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + x.p.coeff(i); }), x.R.lazyProduct(y.R)};
+    return {entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + x.p.coeff(i); }), times(x.R, y.R)};
   }
 
   /// As a homogeneous 4×4 matrix, row by row.

@@ -25,6 +25,22 @@ using Matrix =
 template <int N, typename Scalar = double>
 using Vector = Matrix<N, 1, Scalar>;
 
+/// A matrix of equal entries, and the identity. Eigen's Constant(), Zero() and Identity() are expressions, each with a
+/// type of its own for a compiler to make.
+template <typename Whole>
+[[nodiscard]] Whole filled(Eigen::Index rows, typename Whole::Scalar value = typename Whole::Scalar(0)) noexcept {
+  Whole result;
+  result.resize(rows, Whole::ColsAtCompileTime);
+  for (Eigen::Index i = 0; i < result.size(); ++i) result.coeffRef(i) = value;
+  return result;
+}
+template <typename Square>
+[[nodiscard]] Square identity() noexcept {
+  Square result = filled<Square>(Square::RowsAtCompileTime);
+  for (Eigen::Index i = 0; i < result.rows(); ++i) result.coeffRef(i, i) = typename Square::Scalar(1);
+  return result;
+}
+
 /// Joint state of an arm.
 template <int N, typename Scalar = double>
 struct State {

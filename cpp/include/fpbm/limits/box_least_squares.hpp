@@ -18,7 +18,7 @@ namespace fpbm {
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                                   const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {
-  Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
+  Matrix<M, M, Scalar> gram = gram_of(J);
   for (Eigen::Index i = 0; i < gram.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return box.nearest(rest);
@@ -29,10 +29,13 @@ template <int M, int N, typename Scalar>
   const Vector<N, Scalar> change = transpose_times(J, cholesky.solve(missing(rest)));
   Vector<N, Scalar> u = box.nearest(entrywise(rest, [&](Eigen::Index i) { return rest.coeff(i) + change.coeff(i); }));
   Vector<M, Scalar> left = missing(u);
-  const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) { return column(J, i).squaredNorm() + mu; });
+  const Vector<N, Scalar> curvature = entrywise(u, [&](Eigen::Index i) {
+    return entrywise(v, [&](Eigen::Index k) { return J.coeff(k, i) * J.coeff(k, i); }).sum() + mu;
+  });
   for (Eigen::Index round = 0; round < J.cols(); ++round) {
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      const Scalar slope = column(J, i).cwiseProduct(left).sum() + mu * (rest(i) - u(i));
+      const Scalar slope =
+          entrywise(left, [&](Eigen::Index k) { return J.coeff(k, i) * left.coeff(k); }).sum() + mu * (rest(i) - u(i));
       const Scalar to = std::clamp(u(i) + slope / curvature(i), box.lower(i), box.upper(i));
       for (Eigen::Index k = 0; k < J.rows(); ++k) left(k) -= (to - u(i)) * J(k, i);
       u(i) = to;

@@ -175,7 +175,7 @@ class Limits {
   }
 
   [[nodiscard]] static JointVector at_rest(const State<N, Scalar>& state) noexcept {
-    return JointVector::Zero(state.q.size());
+    return filled<JointVector>(state.q.size());
   }
 
   [[nodiscard]] bool viable(Eigen::Index i, Scalar q, Scalar qd) const noexcept {

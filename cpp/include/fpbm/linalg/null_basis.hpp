@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
@@ -41,7 +42,9 @@ class RowSpace {
       });
       if (!(square > round_off)) return;
       if (k == 0 && square * kRoundOff > round_off) round_off = square * kRoundOff;
-      if (largest != k) V_.col(k).swap(V_.col(largest));
+      if (largest != k) {
+        for (Eigen::Index i = 0; i < V_.rows(); ++i) std::swap(V_.coeffRef(i, k), V_.coeffRef(i, largest));
+      }
       const Scalar head = V_.coeff(k, k);
       V_.coeffRef(k, k) += head < Scalar(0) ? -sqrt(square) : sqrt(square);
       beta_.coeffRef(k) = Scalar(1) / (square + sqrt(square) * (head < Scalar(0) ? -head : head));
@@ -55,7 +58,7 @@ class RowSpace {
   /// Column j of Q.
   template <typename Column>
   void column(Eigen::Index j, Column&& out) const noexcept {
-    out.setZero();
+    for (Eigen::Index i = 0; i < V_.rows(); ++i) out(i) = Scalar(0);
     out(j) = Scalar(1);
     const auto m = extent<kM>(V_.cols());
     each(Constant<0>{}, m, [&](auto from_last) {

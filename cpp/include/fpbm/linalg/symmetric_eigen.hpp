@@ -19,7 +19,7 @@ struct SymmetricEigen {
   Matrix<M, M, Scalar> vectors;
 
   /// A: both triangles are read. Where A is not finite, the values are not finite either.
-  explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(Matrix<M, M, Scalar>::Identity()) {
+  explicit SymmetricEigen(const Matrix<M, M, Scalar>& A) noexcept : vectors(identity<Matrix<M, M, Scalar>>()) {
     using std::abs;
     Matrix<M, M, Scalar> D = A;
     Scalar largest = abs(A(0));

@@ -57,13 +57,13 @@ struct JointLimits {
   Vector<N, Scalar> acceleration;                           ///< [rad/s²] or [m/s²]
   Vector<N, Scalar> jerk = unbounded(acceleration.size());  ///< [rad/s³] or [m/s³]
   /// As in JointBounds [rad/s, rad/s²] or [m/s, m/s²].
-  Vector<N, Scalar> velocity_offset = Vector<N, Scalar>::Zero(acceleration.size());
+  Vector<N, Scalar> velocity_offset = filled<Vector<N, Scalar>>(acceleration.size());
   Vector<N, Scalar> deceleration = unbounded(acceleration.size());
 
   /// No bounds at all, for dof joints.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
     const Vector<N, Scalar> infinite = unbounded(dof);
-    return {Vector<N, Scalar>::Constant(dof, -JointBounds<Scalar>::kNone), infinite, infinite, infinite};
+    return {filled<Vector<N, Scalar>>(dof, -JointBounds<Scalar>::kNone), infinite, infinite, infinite};
   }
 
   template <typename Other>
@@ -101,7 +101,7 @@ struct JointLimits {
 
   /// No bound, for dof joints.
   [[nodiscard]] static Vector<N, Scalar> unbounded(Eigen::Index dof) {
-    return Vector<N, Scalar>::Constant(dof, JointBounds<Scalar>::kNone);
+    return filled<Vector<N, Scalar>>(dof, JointBounds<Scalar>::kNone);
   }
 };
 

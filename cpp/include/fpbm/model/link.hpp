@@ -54,15 +54,15 @@ template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
   using Vector3 = Vector<3, Scalar>;
   using std::abs;
-  const Vector3 z = axis.normalized();
-  if (z(0) == Scalar(0) && z(1) == Scalar(0) && z(2) == Scalar(1)) return Matrix<3, 3, Scalar>::Identity();
+  const Vector3 z = normalized(axis);
+  if (z(0) == Scalar(0) && z(1) == Scalar(0) && z(2) == Scalar(1)) return identity<Matrix<3, 3, Scalar>>();
   Eigen::Index least = 0;
   for (Eigen::Index i = 1; i < 3; ++i) {
     if (abs(z(i)) < abs(z(least))) least = i;
   }
   Vector3 across(Scalar(0), Scalar(0), Scalar(0));
   across(least) = Scalar(1);
-  const Vector3 x = cross(across, z).normalized();
+  const Vector3 x = normalized(cross(across, z));
   Matrix<3, 3, Scalar> R;
   set_column(R, 0, x);
   set_column(R, 1, cross(z, x));

@@ -29,7 +29,7 @@ class Links {
   explicit Links(const Chain<Scalar>& chain)
       : count_(static_cast<Eigen::Index>(chain.joints.size())), range_(count_), turns_(count_), b_(count_) {
     validation::require_dof("joints", count_, 1);
-    Matrix<3, 3, Scalar> back = Matrix<3, 3, Scalar>::Identity();
+    Matrix<3, 3, Scalar> back = identity<Matrix<3, 3, Scalar>>();
     Eigen::Array<Eigen::Index, Eigen::Dynamic, 1> column(count_);
     Eigen::Index dof = 0;
     for (Eigen::Index i = 0; i < count_; ++i) {

@@ -33,14 +33,14 @@ class SerialArm {
   template <int Length = Eigen::Dynamic>
   explicit SerialArm(const Chain<Scalar, Length>& chain)
       : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
-    turns_.setOnes(dof_);
-    offsets_.setZero(dof_);
+    turns_ = filled<Vector<N, Scalar>>(dof_, Scalar(1));
+    offsets_ = filled<Vector<N, Scalar>>(dof_);
     Transform<Scalar> turned_back;
     for (Eigen::Index i = 0; i < dof_; ++i) {
       const auto& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       Transform<Scalar> step = turned_back * joint.placement;
-      step.R = Matrix<3, 3, Scalar>(step.R.lazyProduct(to_axis));
+      step.R = times(step.R, to_axis);
       turned_back.R = transposed(to_axis);
       if (i == 0) {
         base_ = step;

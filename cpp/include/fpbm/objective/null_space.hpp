@@ -36,7 +36,7 @@ class NullSpace {
   [[nodiscard]] NullSpace with_rest_posture(const Vector<N, Scalar>& q_rest, Scalar stiffness) const {
     validation::require_finite("rest_posture", q_rest);
     validation::require_positive("null_stiffness", stiffness);
-    return with_spring(Vector<N, Scalar>::Constant(q_rest.size(), stiffness), q_rest);
+    return with_spring(filled<Vector<N, Scalar>>(q_rest.size(), stiffness), q_rest);
   }
 
   /// Draws each joint to the middle of its bounds, down the gradient of H = ½ Σ ((qᵢ − q̄ᵢ)/(uᵢ − lᵢ))² with
@@ -46,8 +46,8 @@ class NullSpace {
     validation::require_positive("joint_centring", gain);
     const Eigen::Index dof = limits.lower.size();
     validation::require_size("limits.upper", limits.upper.size(), dof);
-    Vector<N, Scalar> stiffness = Vector<N, Scalar>::Zero(dof);
-    Vector<N, Scalar> middle = Vector<N, Scalar>::Zero(dof);
+    Vector<N, Scalar> stiffness = filled<Vector<N, Scalar>>(dof);
+    Vector<N, Scalar> middle = filled<Vector<N, Scalar>>(dof);
     for (Eigen::Index i = 0; i < dof; ++i) {
       const Scalar range = limits.upper(i) - limits.lower(i);
       if (!(range > Scalar(0))) {
@@ -132,8 +132,8 @@ class NullSpace {
   [[nodiscard]] NullSpace with_constant(const Vector<N, Scalar>& added) const {
     NullSpace changed = *this;
     if (!has_constant_) {
-      changed.constant_.setZero(added.size());
-      changed.stiffness_.setZero(added.size());
+      changed.constant_ = filled<Vector<N, Scalar>>(added.size());
+      changed.stiffness_ = filled<Vector<N, Scalar>>(added.size());
       changed.has_constant_ = true;
     }
     validation::require_size("rest_posture, limits or c", added.size(), changed.constant_.size());
@@ -146,8 +146,8 @@ class NullSpace {
   Scalar damping_{0};
   bool has_damping_ = false;
   bool has_constant_ = false;
-  Vector<N, Scalar> stiffness_ = Vector<N, Scalar>::Zero(kSize);  ///< Per joint.
-  Vector<N, Scalar> constant_ = Vector<N, Scalar>::Zero(kSize);   ///< c + kₚ q_rest + what centring adds.
+  Vector<N, Scalar> stiffness_ = filled<Vector<N, Scalar>>(kSize);  ///< Per joint.
+  Vector<N, Scalar> constant_ = filled<Vector<N, Scalar>>(kSize);   ///< c + kₚ q_rest + what centring adds.
 };
 
 }  // namespace fpbm

@@ -28,7 +28,7 @@ class Correction {
   /// Call at the start of a tick, with its error and the arm's characteristic length.
   void begin(const Twist& error, Scalar length) noexcept {
     error_ = error;
-    excess_.setZero();
+    excess_ = filled<Twist>(Space::kRows);
     length_ = length;
     far_ = bring_near<kLengths>(error.data(), error_bound_ * length, excess_.data());
     if constexpr (Space::kTurns > 0) {
@@ -60,9 +60,11 @@ class Correction {
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) += dt_ * error_(i);
+    using std::sqrt;
     Twist even = integral_;  // In arm lengths and radians.
     for (int i = 0; i < kLengths; ++i) even(i) /= length_;
-    const Scalar size = gain_ * even.norm();
+    const Scalar size =
+        gain_ * sqrt(entrywise(even, [&](Eigen::Index i) { return even.coeff(i) * even.coeff(i); }).sum());
     if (!(size > bound_)) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;
   }
@@ -87,9 +89,9 @@ class Correction {
   Scalar bound_;
   bool far_ = false;
   Scalar length_ = Scalar(1);  ///< Of the arm [m].
-  Twist error_ = Twist::Zero();
-  Twist excess_ = Twist::Zero();
-  Twist integral_ = Twist::Zero();
+  Twist error_ = filled<Twist>(Space::kRows);
+  Twist excess_ = filled<Twist>(Space::kRows);
+  Twist integral_ = filled<Twist>(Space::kRows);
 };
 
 }  // namespace fpbm

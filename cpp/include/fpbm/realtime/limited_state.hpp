@@ -1,8 +1,8 @@
 #pragma once
 
-#include "fpbm/clearance/guard.hpp"
 #include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/limits/limiter.hpp"
+#include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
@@ -62,7 +62,8 @@ class LimitedState {
   /// The result of a tick in which nothing has happened yet.
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
-    return {state.q, state.qd, JointVector::Zero(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0), Twist::Zero()};
+    return {state.q, state.qd,  filled<JointVector>(state.q.size()), Status::kOk, Scalar(1),
+            0,       Scalar(0), filled<Twist>(Space::kRows)};
   }
 
   /// Whether a state is finite and far enough from overflow to brake from.

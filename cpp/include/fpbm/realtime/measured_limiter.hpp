@@ -44,10 +44,11 @@ class MeasuredLimiter {
       : delayed_(delay > 0),
         limiter_(delayed_ ? slower(limits, horizon(limits, delay)) : limits),
         unit_(limits.bounds().acceleration),
-        step_(limits.tick() * limits.bounds().jerk),
+        step_(limits.bounds().jerk),
         filter_(std::min(Scalar(2) * limits.tick() / (kRest * limiter_.limits().tick()), Scalar(1))),
         bounds_jerk_(delayed_ && limits.bounds_jerk()) {
     require_measured_delay(delay);
+    for (Eigen::Index i = 0; i < step_.size(); ++i) step_(i) *= limits.tick();
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
       if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
     }

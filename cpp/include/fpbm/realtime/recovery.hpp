@@ -39,7 +39,11 @@ class Recovery {
 
   /// Whether a posture differs from the last one passed to remember() by more than kApart in some joint.
   [[nodiscard]] bool is_new(const JointVector& q) const noexcept {
-    return count_ == 0 || (q - seen_).cwiseAbs().maxCoeff() > kApart;
+    if (count_ == 0) return true;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (std::abs(q(i) - seen_(i)) > kApart) return true;
+    }
+    return false;
   }
 
   /// Remembers a posture in which the task is done whole, and its tip, unless a remembered tip is within kSpread. If
@@ -71,7 +75,7 @@ class Recovery {
     returned_ = returned_ || !nearer;
     tried_ = distance;
     goal_ = known_[best].q;
-    whole_ = left_ = (goal_ - q).norm();
+    whole_ = left_ = distance_to(q);
     waited_ = Scalar(0);
     active_ = true;
     return true;
@@ -80,7 +84,7 @@ class Recovery {
   /// Call after a tick of the recovery. True if the arm has arrived. Without progress for the patience, the recovery
   /// ends as well.
   bool advance(const JointVector& q) noexcept {
-    const Scalar left = (goal_ - q).norm();
+    const Scalar left = distance_to(q);
     waited_ = left < left_ - kArrived * whole_ ? Scalar(0) : waited_ + dt_;
     if (waited_ == Scalar(0)) left_ = left;
     const bool arrived = left <= kArrived * whole_;
@@ -101,15 +105,17 @@ class Recovery {
   [[nodiscard]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
                                    const State<N, Scalar>& state) const noexcept {
     const auto& bounds = limits.bounds();
-    const JointVector left = goal_ - state.q;
+    const JointVector left = entrywise(goal_, [&](Eigen::Index i) { return goal_(i) - state.q(i); });
     Scalar rate = kRate;
     for (Eigen::Index i = 0; i < left.size(); ++i) {
       const Scalar distance = std::abs(left(i));
       if (rate * distance > bounds.velocity(i)) rate = bounds.velocity(i) / distance;
       if (rate * rate * distance > bounds.acceleration(i)) rate = std::sqrt(bounds.acceleration(i) / distance);
     }
-    if constexpr (kLevel == Level::kVelocity) return rate * left;
-    return Scalar(4) * kRate * (rate * left - state.qd);
+    return entrywise(left, [&](Eigen::Index i) {
+      if constexpr (kLevel == Level::kVelocity) return rate * left(i);
+      return Scalar(4) * kRate * (rate * left(i) - state.qd(i));
+    });
   }
 
  private:
@@ -119,6 +125,10 @@ class Recovery {
   static constexpr Scalar kReturned = Scalar(0.5);
   static constexpr Scalar kRate = Scalar(2);  ///< Rate of the approach [1/s]; the acceleration's poles are −4 kRate/2.
   static constexpr Scalar kArrived = Scalar(0.02);  ///< Share of the whole displacement that counts as arrived.
+
+  [[nodiscard]] Scalar distance_to(const JointVector& q) const noexcept {
+    return std::sqrt(entrywise(q, [&](Eigen::Index i) { return (goal_(i) - q(i)) * (goal_(i) - q(i)); }).sum());
+  }
 
   struct Known {
     JointVector q;

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
-#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -21,7 +22,8 @@ struct TaskDistance {
 
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
     for (int i = 0; i < Space::kRows - Space::kTurns; ++i) twist(i) /= length;
-    return twist.norm();
+    using std::sqrt;
+    return sqrt(entrywise(twist, [&](Eigen::Index i) { return twist.coeff(i) * twist.coeff(i); }).sum());
   }
 
   [[nodiscard]] static Scalar between(const Point& x, const Point& y, Scalar length) noexcept {

@@ -46,7 +46,7 @@ class Tracker {
   /// (Limits), or the state breaks one. The scheme gets the options' damping where the scheme has none.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
-      : Tracker(arm, Space{}, scheme, start, options, limits, JointVector::Zero(start.q.size())) {}
+      : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
 
   /// qdd0: acceleration of the tick before, for bounds on jerk. guard: what the arm keeps clear of.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
@@ -78,7 +78,7 @@ class Tracker {
       : Tracker(arm, space, scheme, start, options, Limits<kLevel, N, Scalar>(arm.limits(), options.dt)) {}
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointVector& q0, const Options& options = {})
-      : Tracker(arm, space, scheme, JointState{q0, JointVector::Zero(q0.size())}, options) {}
+      : Tracker(arm, space, scheme, JointState{q0, filled<JointVector>(q0.size())}, options) {}
 
   /// One tick toward a reference, which continues at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
@@ -105,7 +105,7 @@ class Tracker {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
-    Loop loop{arm_, scheme_, {}, state, JointVector::Zero(state.q.size())};
+    Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
     loop.update(x);
@@ -138,7 +138,7 @@ class Tracker {
   Status finish(const Target& now, const JointState& next, const JointVector& field) noexcept {
     Result result = kept_.idle(state());
     result.error = kept_.correction().error();
-    Loop loop{arm_, scheme_, {}, state(), JointVector::Zero(state().q.size())};
+    Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
     kept_.take(loop, now, next, field, result);
     return result.status;
   }
@@ -156,7 +156,7 @@ class Tracker {
       result.qdd = answer_ = fade(kept_.limits(), answer_);
       return result;
     }
-    Loop loop{arm_, scheme_, {}, measured, JointVector::Zero(q.size())};
+    Loop loop{arm_, scheme_, {}, measured, filled<JointVector>(q.size())};
     X dx = Loop::packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);

@@ -27,7 +27,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
                                               const Known& foreseen, Vector<N, Scalar>& u) noexcept {
-  const Matrix<N, M, Scalar> Jt = J.transpose();
+  const Matrix<N, M, Scalar> Jt = transpose_of(J);
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());

@@ -129,7 +129,7 @@ class DampedGram {
       return of.factor_.without(a);
     }
     [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
-      if constexpr (kDamped) return of.rows_.lazyProduct(shares);
+      if constexpr (kDamped) return product(of.rows_, shares);
       return of.factor_.sum(shares);
     }
     [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
@@ -170,7 +170,7 @@ class DampedGram {
   }
 
   [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
-    Matrix<M, M, Scalar> even = J_.lazyProduct(J_.transpose());
+    Matrix<M, M, Scalar> even = gram_of(J_);
     for (int i = kLengths; i < M; ++i) {
       for (int j = 0; j < M; ++j) even(j, i) *= length_;
     }
@@ -183,7 +183,9 @@ class DampedGram {
     Matrix<M, M, Value> gram;  // Its lower triangle.
     for (int i = 0; i < M; ++i) {
       const Vector<N, Value> row = column(rows_, i);
-      for (int j = 0; j <= i; ++j) gram(i, j) = row.cwiseProduct(column(rows_, j)).sum() + Value(lost.delta(i, j));
+      for (int j = 0; j <= i; ++j)
+        gram(i, j) = entrywise(row, [&](Eigen::Index k) { return row.coeff(k) * rows_.coeff(k, j); }).sum() +
+                     Value(lost.delta(i, j));
     }
     const Status status = damped_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;

@@ -14,8 +14,8 @@ namespace fpbm {
 /// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};                                            ///< tr Δ/ε²: about the number of lost directions.
-  Matrix<M, M, Scalar> delta = Matrix<M, M, Scalar>::Zero();  ///< Δ
+  Scalar count{0};                                               ///< tr Δ/ε²: about the number of lost directions.
+  Matrix<M, M, Scalar> delta = filled<Matrix<M, M, Scalar>>(M);  ///< Δ
 
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept {
     const SymmetricEigen<M, Scalar> spectrum(gram);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/task/path.hpp"
@@ -19,8 +20,8 @@ class InPlane {
     validation::require_finite("u", u);
     validation::require_finite("v", v);
     if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) validation::reject("u and v", ": must both be nonzero");
-    u_ = u.normalized();
-    v_ = v.normalized();
+    u_ = normalized(u);
+    v_ = normalized(v);
     const Scalar cosine = u_(0) * v_(0) + u_(1) * v_(1) + u_(2) * v_(2);
     if (!(cosine * cosine < Scalar(1e-12))) {
       validation::fail("u v / |u| |v|", cosine, "0: u and v are at right angles");

@@ -14,7 +14,8 @@ struct Reference {
 
   /// At rest at x.
   [[nodiscard]] static Reference hold(const typename Space::template Point<Scalar>& x) noexcept {
-    return {x, Vector<Space::kRows, Scalar>::Zero(), Vector<Space::kRows, Scalar>::Zero()};
+    using Twist = Vector<Space::kRows, Scalar>;
+    return {x, filled<Twist>(Space::kRows), filled<Twist>(Space::kRows)};
   }
 
   template <typename Other>

@@ -34,10 +34,10 @@ class RoundingCompensation {
     lost_ = lost_.cwiseMax(-most).cwiseMin(most);
   }
 
-  void clear() noexcept { lost_.setZero(); }
+  void clear() noexcept { lost_ = filled<Twist>(Space::kRows); }
 
  private:
-  Twist lost_ = Twist::Zero();
+  Twist lost_ = filled<Twist>(Space::kRows);
 };
 
 }  // namespace fpbm

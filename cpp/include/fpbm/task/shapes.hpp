@@ -97,7 +97,7 @@ class Line {
   }
 
   [[nodiscard]] Curve<Space, Scalar> at(Scalar s) const noexcept {
-    return {displacement_ * s, displacement_, Vector<M, Scalar>::Zero()};
+    return {displacement_ * s, displacement_, filled<Vector<M, Scalar>>(M)};
   }
 
  private:

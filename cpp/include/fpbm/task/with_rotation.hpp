@@ -22,7 +22,7 @@ class WithRotation {
   using Rotation = Vector<Space::kRows - Positions::kRows, Scalar>;
 
   /// Orientation held.
-  explicit WithRotation(const Path& path) : WithRotation(path, Rotation::Zero()) {}
+  explicit WithRotation(const Path& path) : WithRotation(path, filled<Rotation>(Rotation::RowsAtCompileTime)) {}
 
   /// Throws std::invalid_argument unless rotation is finite.
   WithRotation(const Path& path, const Rotation& rotation, const TimeLaw& time_law = {})
