@@ -13,6 +13,7 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"
+#include "support/recording.hpp"
 #include "support/schemes.hpp"
 
 /// What is known only at run time gives what the code of fixed size gives, to the last bit.
@@ -242,19 +243,18 @@ TEST(AnyPath, is_converted_to_the_space_of_the_task) {
 /// Whole motions and ticks: the code round the seam is of run-time size, and may round its sums in another order.
 TEST(Any, motions_are_those_of_fixed_size) {
   const AnyArm<Position<2>> arm(paper_arm());
-  const Path circle(Circle(0.45), kDuration);
-  const AnyPath<Position<2>> path(circle);
-  const AnyScheme<Level::kAcceleration, Position<2>> scheme(paper_fpbm());
+  const AnyPath<Position<2>> path(Path(Circle(0.45), kDuration));
+  const auto scheme = FPBM<kOpen>(0.6, Vector<kOpen>(Vector<4>(1.0, 2.0, 3.0, 4.0)), 1.0, 1.0);
   const State<kOpen> start{paper_start().q, paper_start().qd};
   const TimeGrid<> grid(kDuration, 1e-2, 1.0);
-  const auto expected = rollout(paper_arm(), circle, paper_fpbm(), paper_start(), grid, [](const auto&) {});
-  const auto found = rollout(arm, path, scheme, start, grid, [](const auto&) {});
+  const auto expected = recorded(paper_arm(), path, paper_fpbm(), paper_start(), grid).result;
+  const auto found = recorded(arm, path, erased(scheme), start, grid).result;
   EXPECT_EQ(found.status, expected.status);
   EXPECT_EQ(found.samples, expected.samples);
   EXPECT_LE((found.last.q - expected.last.q).norm() + (found.last.qd - expected.last.qd).norm(), 1e-13);
 
   CompiledTracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
-  Tracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
+  CompiledTracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
   PathFollower fixed_follower(path, fixed.tip());
   PathFollower any_follower(path, any.tip());
   for (int i = 0; i < 2000; ++i) {
