@@ -15,7 +15,7 @@ namespace {
 
 constexpr int N = Eigen::Dynamic;
 constexpr int kSeconds = 40;
-constexpr int kTargets = trials(10);  // Of each arm; docs/realtime.md says what 144 give.
+constexpr int kTargets = trials(6);  // Of each arm; docs/realtime.md says what 144 give.
 
 /// Of each joint, in place of the arm's own where these are infinite.
 [[nodiscard]] JointLimits<N> bounded(JointLimits<N> limits, double acceleration) {
