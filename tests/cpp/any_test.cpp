@@ -13,6 +13,7 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 #include "support/paper.hpp"
+#include "support/recording.hpp"
 #include "support/schemes.hpp"
 
 /// What is known only at run time gives what the code of fixed size gives, to the last bit.
@@ -154,27 +155,25 @@ TEST(AnyScheme, is_the_scheme_that_it_holds) {
   expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()), MVN<kOpen>(1.0));
 }
 
-/// Weights of any kind answer as the kind that they hold, at both levels.
+/// Weights of any kind answer as the kind that they hold; subjects.hpp has schemes with each.
 TEST(AnyWeights, are_the_weights_that_they_hold) {
-  const PlanarArm<kOpen> arm(Vector<6>::Ones());
   Random random(8);
-  const State<kOpen> state{random.uniform(6, -1.5, 1.5), random.uniform(6, -1.0, 1.0)};
-  Kinematics<Position<2>, kOpen> kinematics;
-  arm.kinematics(state.q, state.qd, kinematics);
-  const auto reference = random_reference(random, kinematics);
-  const auto z = NullSpace<kOpen>{}.with_damping(1.0);
+  const Vector<kOpen> a = random.uniform(6, -1.0, 1.0);
+  const Matrix<2, kOpen> J = random.uniform(2, 6, -1.0, 1.0);
+  const Matrix<kOpen, 2> Jt = J.transpose();
   const auto check = [&](const auto& weights) {
     const AnyWeights any(weights);
     EXPECT_EQ(complaint([&] { any.require_dof(5); }), complaint([&] { weights.require_dof(5); }));
-    Vector<kOpen> expected;
-    Vector<kOpen> found;
-    EXPECT_EQ(WMVN<kOpen>(weights, 1.0, z).resolve(kinematics, reference, state, expected), Status::kOk);
-    EXPECT_EQ(WMVN<kOpen>(any, 1.0, z).resolve(kinematics, reference, state, found), Status::kOk);
-    EXPECT_LE((found - expected).norm(), 1e-14 * expected.norm());
-    for (const double alpha : {0.0, 0.6, 1.0}) {
-      EXPECT_EQ(FPBM<kOpen>(alpha, weights, 1.0, 1.0, z).resolve(kinematics, reference, state, expected), Status::kOk);
-      EXPECT_EQ(FPBM<kOpen>(alpha, any, 1.0, 1.0, z).resolve(kinematics, reference, state, found), Status::kOk);
-      EXPECT_LE((found - expected).norm(), 1e-13 * expected.norm()) << alpha;
+    EXPECT_EQ(any.is_unit(), weights.is_unit());
+    EXPECT_EQ(any.template inverse_bound<double>(), weights.template inverse_bound<double>());
+    expect_same(any.root(a), Vector<kOpen>(weights.root(a)), "root");
+    expect_same(any.unroot(a), Vector<kOpen>(weights.unroot(a)), "unroot");
+    expect_same(any.root_transpose(Jt), Matrix<kOpen, 2>(weights.root_transpose(Jt)), "root_transpose");
+    const auto found = any.with_unit(J);
+    const auto expected = weights.with_unit(J);
+    for (Eigen::Index i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(found(i).first(), expected(i).first());
+      EXPECT_EQ(found(i).second(), expected(i).second());
     }
   };
   check(UnitWeights{});
@@ -242,19 +241,18 @@ TEST(AnyPath, is_converted_to_the_space_of_the_task) {
 /// Whole motions and ticks: the code round the seam is of run-time size, and may round its sums in another order.
 TEST(Any, motions_are_those_of_fixed_size) {
   const AnyArm<Position<2>> arm(paper_arm());
-  const Path circle(Circle(0.45), kDuration);
-  const AnyPath<Position<2>> path(circle);
-  const AnyScheme<Level::kAcceleration, Position<2>> scheme(paper_fpbm());
+  const AnyPath<Position<2>> path(Path(Circle(0.45), kDuration));
+  const auto scheme = FPBM<kOpen>(0.6, Vector<kOpen>(Vector<4>(1.0, 2.0, 3.0, 4.0)), 1.0, 1.0);
   const State<kOpen> start{paper_start().q, paper_start().qd};
   const TimeGrid<> grid(kDuration, 1e-2, 1.0);
-  const auto expected = rollout(paper_arm(), circle, paper_fpbm(), paper_start(), grid, [](const auto&) {});
-  const auto found = rollout(arm, path, scheme, start, grid, [](const auto&) {});
+  const auto expected = recorded(paper_arm(), path, paper_fpbm(), paper_start(), grid).result;
+  const auto found = recorded(arm, path, erased(scheme), start, grid).result;
   EXPECT_EQ(found.status, expected.status);
   EXPECT_EQ(found.samples, expected.samples);
   EXPECT_LE((found.last.q - expected.last.q).norm() + (found.last.qd - expected.last.qd).norm(), 1e-13);
 
   CompiledTracker fixed(paper_arm(), Position<2>{}, paper_fpbm(), paper_start().q);
-  Tracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
+  CompiledTracker any(arm, Position<2>{}, scheme, Vector<kOpen>(paper_start().q));
   PathFollower fixed_follower(path, fixed.tip());
   PathFollower any_follower(path, any.tip());
   for (int i = 0; i < 2000; ++i) {

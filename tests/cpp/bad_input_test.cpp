@@ -156,30 +156,28 @@ TEST(BadInput, time_grid) {
   EXPECT_EQ(TimeGrid<float>(10.0F, 1e-3F, 0.5F).samples(), 10501);
 }
 
-/// Runs a rollout that must be refused before anything is recorded.
+/// Runs a rollout that must be refused.
 template <typename Scheme>
 void expect_rollout_refusal(const Scheme& scheme, const State<Eigen::Dynamic>& start,
                             const std::vector<std::string>& words, double duration = 10.0) {
-  const AnyScheme<Scheme::kLevel, Position<2>> any(scheme);
+  const auto any = erased(scheme);
   const TimeGrid<> grid(duration, 0.1);
-  int recorded = 0;
-  expect_refusal(
-      [&] {
-        rollout(any_planar_arm(Open::Ones(4)), paper_circle(), any, start, grid, [&](const auto&) { ++recorded; });
-      },
-      words);
-  EXPECT_EQ(recorded, 0);
+  expect_refusal([&] { (void)recorded(any_planar_arm(Open::Ones(4)), paper_circle(), any, start, grid); }, words);
+}
+
+AccelerationScheme<Eigen::Dynamic> open_fpbm() {
+  return FPBM<Eigen::Dynamic>(0.6, Open(Open::Ones(4)), 1.0, 1.0);
 }
 
 TEST(BadInput, start) {
   for (const double bad : kNotFinite) {
     State<4> start = paper_start();
     start.q(2) = bad;
-    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"q0[2]" + value(bad), "finite"});
-    expect_rollout_refusal(MVN<4>(), {start.q, start.qd}, {"q0[2]" + value(bad)});
+    expect_rollout_refusal(open_fpbm(), {start.q, start.qd}, {"q0[2]" + value(bad), "finite"});
+    expect_rollout_refusal(MVN<Eigen::Dynamic>(), {start.q, start.qd}, {"q0[2]" + value(bad)});
     start = paper_start();
     start.qd(3) = bad;
-    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"qd0[3]" + value(bad), "finite"});
+    expect_rollout_refusal(open_fpbm(), {start.q, start.qd}, {"qd0[3]" + value(bad), "finite"});
     // At velocity level the start velocity is not read.
     EXPECT_EQ(recorded(paper_arm(), paper_circle(), MVN<4>(), start, TimeGrid<>(10.0, 0.1)).result.status, Status::kOk);
   }
@@ -188,8 +186,17 @@ TEST(BadInput, start) {
 TEST(BadInput, a_grid_of_another_duration) {
   const State<4> start = paper_start();
   for (const double duration : {5.0, 20.0}) {
-    expect_rollout_refusal(paper_fpbm(), {start.q, start.qd}, {"grid duration = ", "must be the duration of the path"},
+    expect_rollout_refusal(open_fpbm(), {start.q, start.qd}, {"grid duration = ", "must be the duration of the path"},
                            duration);
+    const State<Eigen::Dynamic> open{start.q, start.qd};
+    const TimeGrid<> grid(duration, 0.1);
+    int samples = 0;
+    const auto record = [&](const auto&) { ++samples; };
+    EXPECT_NE(complaint([&] {
+                rollout(any_planar_arm(Open::Ones(4)), paper_circle(), erased(open_fpbm()), open, grid, record);
+              }),
+              "");
+    EXPECT_EQ(samples, 0);
   }
 }
 

@@ -147,23 +147,24 @@ TEST(Guard, no_pair_comes_nearer_than_its_margin) {
   expect_to_keep_clear<Level::kVelocity>();
 }
 
-using Panda = SerialArm<7>;
-using PandaGuard = Guard<Level::kAcceleration, 7>;
+using Panda = AnyArm<Position<3>>;
+using PandaGuard = Guard<Level::kAcceleration, kOpen>;
+using PandaTracker = GuardedTracker<Level::kAcceleration>;
 
-[[nodiscard]] Vector<7> ready() {
+[[nodiscard]] Vector<kOpen> ready() {
   return (Vector<7>() << 0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785).finished();
 }
 
 /// A Panda's tracker of positions, at rest in the ready posture, with a hand of 10 cm.
 [[nodiscard]] auto panda_tracker(const std::vector<Obstacle<>>& obstacles) {
   const Chain<> chain = presets::panda();
-  const Panda arm(chain);
+  const Panda arm = any_arm(chain);
   const std::vector<LinkCapsule<>> hand = {{7, {Vector<3>::Zero(), chain.tip.p, 0.05}, "hand"}};
-  const Clearance<7> clearance(chain, hand, obstacles, 0.01);
-  const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
-  return Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard>(
-      arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
-      Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(clearance));
+  const Clearance<kOpen> clearance(chain, hand, obstacles, 0.01);
+  const auto law = FPBM<kOpen>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(2.0));
+  return PandaTracker(arm, Position<3>{}, law, State<kOpen>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
+                      Limits<Level::kAcceleration, kOpen>(arm.limits(), kTick), Vector<7>::Zero(),
+                      PandaGuard(clearance));
 }
 
 struct Slide {
@@ -178,7 +179,7 @@ template <typename Tracker_>
 [[nodiscard]] Slide swing(Tracker_&& tracker, double x) {
   const Vector<3> home = tracker.tip();
   Slide slide;
-  Vector<7> last = Vector<7>::Zero();
+  Vector<kOpen> last = Vector<7>::Zero();
   double sum = 0.0;
   int count = 0;
   for (int k = 0; k < 8000; ++k) {
@@ -193,7 +194,7 @@ template <typename Tracker_>
     auto clearance = tracker.guard().clearance();
     clearance.place(tick.q);
     slide.nearest = std::min(slide.nearest, clearance.nearest_pair().second);
-    const Vector<7> jerk = (tick.qdd - last) / kTick;
+    const Vector<kOpen> jerk = (tick.qdd - last) / kTick;
     last = tick.qdd;
     if (s < 2.0) continue;
     slide.along = std::max(slide.along, std::hypot(tick.error(1), tick.error(2)));
@@ -264,12 +265,12 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
   for (const char* part : {"hand", "finger"}) {
     for (const char* link : {"panda_link4", "panda_link5"}) allowed.emplace_back(part, link);
   }
-  const Panda arm(chain);
-  const auto law = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
+  const Panda arm = any_arm(chain);
+  const auto law = FPBM<kOpen>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(2.0));
   TrackerOptions<> options{kTick};
   options.stall_time = std::numeric_limits<double>::infinity();
   const Vector<3> elbow(0.0, 0.0, 0.6);
-  Kinematics<Position<3>, 7> kinematics;
+  Kinematics<Position<3>, kOpen> kinematics;
   arm.kinematics(ready(), kinematics);
   const Vector<3> wrist = kinematics.tip;
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(10)); ++seed) {
@@ -288,10 +289,9 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
         const Vector<3> foot = nearest_to_axis + (k * kTick * speed - 0.95) * way;
         return Capsule<>{foot, foot + 1.1 * Vector<3>::UnitZ(), 0.04};
       };
-      Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
-          arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, options,
-          Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(),
-          PandaGuard(Clearance<7>(chain, capsules, {{"post", post_at(0)}}, 0.02, allowed)));
+      PandaTracker tracker(arm, Position<3>{}, law, State<kOpen>{ready(), Vector<7>::Zero()}, options,
+                           Limits<Level::kAcceleration, kOpen>(arm.limits(), kTick), Vector<7>::Zero(),
+                           PandaGuard(Clearance<kOpen>(chain, capsules, {{"post", post_at(0)}}, 0.02, allowed)));
       const auto home = Reference<Position<3>>::hold(tracker.tip());
       double nearest = 1e9;
       for (int k = 0; k * kTick * speed < 1.9; ++k) {
@@ -366,16 +366,16 @@ TEST(Guard, self_motion_keeps_away_in_time) {
   const std::vector<Obstacle<>> post = {{"post", Capsule<>{{0.2, 0.3, 0.0}, {0.2, 0.3, 1.0}, 0.05}}};
   const std::vector<LinkCapsule<>> elbow = {{3, {{0.0825, 0.0, 0.0}, {0.0825, 0.0, 0.0}, 0.1}, "elbow"}};
   const auto settle = [&](double gain) {
-    const Panda arm(chain);
-    const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(4.0));
-    Vector<7> q = ready();
+    const Panda arm = any_arm(chain);
+    const auto law = FPBM<kOpen>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(4.0));
+    Vector<kOpen> q = ready();
     q(0) = 0.6;
     q(2) = -0.6;
-    Clearance<7> apart(chain, elbow, post, 0.0);
+    Clearance<kOpen> apart(chain, elbow, post, 0.0);
     apart.keep_away({gain, 0.6});
-    Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
-        arm, Position<3>{}, law, State<7>{q, Vector<7>::Zero()}, TrackerOptions<>{kTick},
-        Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(apart));
+    PandaTracker tracker(arm, Position<3>{}, law, State<kOpen>{q, Vector<7>::Zero()}, TrackerOptions<>{kTick},
+                         Limits<Level::kAcceleration, kOpen>(arm.limits(), kTick), Vector<7>::Zero(),
+                         PandaGuard(apart));
     const auto home = Reference<Position<3>>::hold(tracker.tip());
     double error = 0.0;
     for (int k = 0; k < 5000; ++k) error = std::max(error, tracker.tick(home).error.norm());
@@ -394,14 +394,14 @@ TEST(Guard, self_motion_keeps_away_in_time) {
 /// Walls for the tip hold, and no other part of the arm heeds them.
 TEST(Guard, keeps_the_tip_within_its_box) {
   const Chain<> chain = presets::panda();
-  const Panda arm(chain);
-  Clearance<7> clearance(chain, {}, {}, 0.0);
+  const Panda arm = any_arm(chain);
+  Clearance<kOpen> clearance(chain, {}, {}, 0.0);
   clearance.keep_tip_within({0.2, -0.2, 0.3}, {0.4, 0.2, 0.7});
   EXPECT_EQ(clearance.pairs().size(), 6U);
-  const auto law = FPBM<7>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<7>().with_damping(2.0));
-  Tracker<Panda, Position<3>, std::decay_t<decltype(law)>, PandaGuard> tracker(
-      arm, Position<3>{}, law, State<7>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
-      Limits<Level::kAcceleration, 7>(arm.limits(), kTick), Vector<7>::Zero(), PandaGuard(clearance));
+  const auto law = FPBM<kOpen>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(2.0));
+  PandaTracker tracker(arm, Position<3>{}, law, State<kOpen>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
+                       Limits<Level::kAcceleration, kOpen>(arm.limits(), kTick), Vector<7>::Zero(),
+                       PandaGuard(clearance));
   Random random(1);
   auto target = Reference<Position<3>>::hold(tracker.tip());
   for (int k = 0; k < 20000; ++k) {

@@ -28,16 +28,6 @@ Real manipulability_as_written(const Arm& arm, const Vector<Arm::kDof>& q) {
   return manipulability_as_written(J);
 }
 
-TEST(Manipulability, is_the_root_of_the_determinant) {
-  on_every_arm([](const auto& each, const auto& q, const auto&) {
-    using Space = typename std::decay_t<decltype(each)>::Space;
-    Kinematics<Space, std::decay_t<decltype(q)>::RowsAtCompileTime> kinematics;
-    each.arm.kinematics(q, kinematics);
-    const Real expected = manipulability_as_written<Space>(each.arm, q);
-    EXPECT_NEAR(manipulability(kinematics.J), static_cast<double>(expected), 1e-13 * kinematics.J.norm());
-  });
-}
-
 /// Two links of 1 m: w = |sin q₂|, which a determinant would give without a correct digit here.
 TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   const PlanarArm<2> arm(Vector<2>::Ones());
@@ -58,54 +48,71 @@ TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   EXPECT_NEAR(manipulability_gradient<Position<2>>(arm, Vector<2>(0.4, 0.3))(1), std::cos(0.3), kRoundOff);
 }
 
-TEST(Manipulability, gradient_is_its_slope) {
+TEST(Manipulability, is_the_root_of_the_determinant_and_its_gradient_the_slope) {
   on_every_arm([](const auto& each, const auto& q, const auto&) {
     using Space = typename std::decay_t<decltype(each)>::Space;
     using Joints = std::decay_t<decltype(q)>;
+    Kinematics<Space, Joints::RowsAtCompileTime> kinematics;
+    const auto as_written = [&](const Joints& at) {
+      each.arm.kinematics(at, kinematics);
+      return manipulability_as_written(real(kinematics.J));
+    };
     const Joints gradient = manipulability_gradient<Space>(each.arm, q);
     ASSERT_EQ(gradient.size(), q.size());
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       constexpr double kStep = 1e-5;
-      const Joints step = kStep * Joints::Unit(q.size(), k);
-      const Real slope = (manipulability_as_written<Space>(each.arm, q + step) -
-                          manipulability_as_written<Space>(each.arm, q - step)) /
-                         (2 * static_cast<Real>(kStep));
+      Joints ahead = q;
+      ahead(k) += kStep;
+      Joints behind = q;
+      behind(k) -= kStep;
+      const Real slope = (as_written(ahead) - as_written(behind)) / (2 * static_cast<Real>(kStep));
       EXPECT_NEAR(gradient(k), static_cast<double>(slope), 1e-7) << "joint " << k;
     }
+    const Real expected = as_written(q);
+    EXPECT_NEAR(manipulability(kinematics.J), static_cast<double>(expected), 1e-13 * kinematics.J.norm());
   });
 }
 
+/// The answers of a scheme, u alone and with an ascent, whose gradient is known.
+void expect_ascent(const RealMatrix& J, const RealVector& own, const RealVector& u, const RealVector& gradient) {
+  const RealMatrix N_E = RealMatrix::Identity(J.cols(), J.cols()) - pseudoinverse(J) * J;
+  EXPECT_LE((u - own - 3 * N_E * gradient).norm(), 1e-11L * (1 + own.norm()));
+  EXPECT_LE((J * (u - own)).norm(), 1e-12L * (1 + own.norm()));
+}
+
 /// u + gain N∇w with the projector N = I − J⁺J formed, at either level; J u is that of the scheme alone.
-TEST(ManipulabilityAscent, equals_the_textbook) {
-  on_every_arm([](const auto& each, const auto& q, const auto& qd) {
-    using Space = typename std::decay_t<decltype(each)>::Space;
-    using Joints = std::decay_t<decltype(q)>;
-    constexpr int N = Joints::RowsAtCompileTime;
-    Kinematics<Space, N> kinematics;
-    each.arm.kinematics(q, qd, kinematics);
-    Random random(7);
+template <typename Space, typename Arm>
+void expect_ascents(const Arm& arm) {
+  using Joints = Vector<Eigen::Dynamic>;
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Joints q = random.uniform(arm.dof(), -1.5, 1.5);
+    const Joints qd = random.uniform(arm.dof(), -1.0, 1.0);
+    Kinematics<Space, Eigen::Dynamic> kinematics;
+    arm.kinematics(q, qd, kinematics);
     const auto reference = random_reference(random, kinematics);
-    const State<N> state{q, qd};
+    const State<Eigen::Dynamic> state{q, qd};
     const auto check = [&](const auto& scheme) {
       Joints own = q;
       Joints u = q;
       ASSERT_EQ(scheme.resolve(kinematics, reference, state, own), Status::kOk);
-      const ManipulabilityAscent ascent(scheme, each.arm, 3.0);
+      const ManipulabilityAscent ascent(scheme, arm, 3.0);
       ascent.require_dof(q.size());
       ASSERT_EQ(ascent.resolve(kinematics, reference, state, u), Status::kOk);
-      const RealMatrix J = real(kinematics.J);
-      const RealMatrix N_E = RealMatrix::Identity(q.size(), q.size()) - pseudoinverse(J) * J;
-      const RealVector added = 3 * N_E * real(manipulability_gradient<Space>(each.arm, q));
-      EXPECT_LE(static_cast<double>((real(u) - real(own) - added).norm()), 1e-11 * (1.0 + own.norm()));
-      EXPECT_LE((kinematics.J * (u - own)).norm(), 1e-12 * (1.0 + own.norm()));
+      expect_ascent(real(kinematics.J), real(own), real(u), real(manipulability_gradient<Space>(arm, q)));
     };
-    check(MVN<N>(1.0));
-    // What is added depends on the space and the arm, not on the level: of fixed size in the plane alone, and not with
-    // three rows.
-    if constexpr (Space::kRows == 2 || (Space::kRows == 6 && N == Eigen::Dynamic)) {
-      check(FPBM<N>(0.6, Joints(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
-    }
-  });
+    check(WMVN<Eigen::Dynamic>(Joints(Joints::Ones(q.size())), 1.0));
+    check(FPBM<Eigen::Dynamic>(0.6, Joints(random.uniform(q.size(), 0.5, 2.0)), 1.0, 1.0));
+  }
+}
+
+/// Of what each arm and task space has, only the gradient enters, which the law above covers.
+TEST(ManipulabilityAscent, equals_the_textbook) {
+  for (const int dof : {4, 6}) expect_ascents<Position<2>>(any_planar_arm(Vector<Eigen::Dynamic>::Ones(dof)));
+  for (const Chain<>& chain : {presets::panda(), panda_on_rail(), coupled_panda()}) {
+    expect_ascents<Pose>(any_arm(chain));
+  }
 }
 
 TEST(ManipulabilityAscent, commutes_with_what_adds) {
@@ -168,8 +175,10 @@ template <typename Scheme>
 void expect_to_climb(const Scheme& scheme, double gain) {
   const PlanarArm<4> arm = paper_arm();
   const TimeGrid<> grid(kDuration, 5e-3, 2.0 * kDuration);
+  const State<Eigen::Dynamic> start{paper_start().q, paper_start().qd};
   const auto without = recorded(arm, paper_circle(), scheme, paper_start(), grid);
-  const auto with = recorded(arm, paper_circle(), ManipulabilityAscent(scheme, arm, gain), paper_start(), grid);
+  const auto with = recorded(any_planar_arm(Vector<4>::Ones()), paper_circle(),
+                             erased(ManipulabilityAscent(scheme, arm, gain)), start, grid);
   ASSERT_EQ(with.result.status, Status::kOk);
   EXPECT_LE(with.max_error(), 1e-8);
   const Vector<4> end = with.result.last.q;

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "fpbm/model/presets.hpp"
-#include "fpbm/model/serial_arm.hpp"
-#include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
+#include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
 
 /// resolve_measured() for states that are some ticks old, quantised and noisy: after stop() the arm comes to rest, and
@@ -70,7 +70,7 @@ struct Sensor {
 constexpr std::array<Sensor, 3> kSensors{Sensor{0.0, 0.0}, Sensor{1e-5, 1e-3}, Sensor{1e-4, 1e-3}};
 
 /// Bounds of a preset: without those on jerk, with the maker's where he gives some, with long ramps.
-[[nodiscard]] JointLimits<kOpen> bounds_of(const SerialArm<kOpen>& arm, int kind) {
+[[nodiscard]] JointLimits<kOpen> bounds_of(const AnyArm<Position<3>>& arm, int kind) {
   JointLimits<kOpen> bounds = arm.limits();
   if (kind == 0) bounds.jerk.setConstant(std::numeric_limits<double>::infinity());
   if (kind == 1 && !std::isfinite(bounds.jerk(0))) bounds.jerk = 500.0 * bounds.acceleration;
@@ -98,14 +98,15 @@ void expect_within(const JointLimits<kOpen>& bounds, const State<kOpen>& state, 
 template <typename Space>
 void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age, const Sensor& sensor,
                     double& busiest) {
-  const SerialArm<kOpen> arm(preset.chain());
+  const AnyArm<Position<3>> arm = any_arm(preset.chain());
   const JointLimits<kOpen> bounds = bounds_of(arm, kind);
   Random random(static_cast<std::uint32_t>(100 * kind + 10 * delay + age));
   const State<kOpen> start{middle(bounds, random), Joints::Zero(arm.dof())};
-  const auto scheme = FPBM<kOpen>(0.6, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>{}.with_damping(2.0));
+  const auto scheme =
+      FPBM<kOpen>(0.6, Joints(Joints::Ones(arm.dof())), 20.0, 100.0, NullSpace<kOpen>{}.with_damping(2.0));
   TrackerOptions<> options;
   options.measured_delay = delay;
-  Tracker tracker(arm, Space{}, scheme, start, options, Limits<Level::kAcceleration, kOpen>(bounds, kTick));
+  CompiledTracker tracker(arm, Space{}, scheme, start, options, Limits<Level::kAcceleration, kOpen>(bounds, kTick));
   LateArm<kOpen> late(start, delay);
   Reference<Space> target = Reference<Space>::hold(tracker.tip());
   double fastest = 0.0;
@@ -165,7 +166,7 @@ TEST(MeasuredDelay, every_preset_stops) {
 
 /// The null space presses a joint on its bound: it comes to rest there. Whether the joint came to its bound.
 [[nodiscard]] bool rests_on_bound(const presets::Preset& preset, int kind, int age, const Sensor& sensor) {
-  const SerialArm<kOpen> arm(preset.chain());
+  const AnyArm<Position<3>> arm = any_arm(preset.chain());
   JointLimits<kOpen> bounds = bounds_of(arm, kind);
   Random random(static_cast<std::uint32_t>(10 * kind + age));
   const State<kOpen> start{middle(bounds, random), Joints::Zero(arm.dof())};
@@ -176,9 +177,10 @@ TEST(MeasuredDelay, every_preset_stops) {
   bounds.deceleration(joint) = std::numeric_limits<double>::infinity();
   bounds.velocity_offset(joint) = 0.0;
   const auto z = NullSpace<kOpen>{}.with_damping(8.0).with_rest_posture(beyond, 16.0);
-  const auto scheme = FPBM<kOpen>(0.6, UnitWeights{}, 20.0, 100.0, z);
+  const auto scheme = FPBM<kOpen>(0.6, Joints(Joints::Ones(arm.dof())), 20.0, 100.0, z);
   const TrackerOptions<> options;
-  Tracker tracker(arm, Position<3>{}, scheme, start, options, Limits<Level::kAcceleration, kOpen>(bounds, kTick));
+  CompiledTracker tracker(arm, Position<3>{}, scheme, start, options,
+                          Limits<Level::kAcceleration, kOpen>(bounds, kTick));
   const auto target = Reference<Position<3>>::hold(tracker.tip());
   LateArm<kOpen> late(start, options.measured_delay);
   double busy = 0.0;
@@ -217,14 +219,14 @@ TEST(MeasuredDelay, joints_rest_on_their_bounds) {
 }
 
 TEST(MeasuredDelay, is_validated) {
-  const SerialArm<kOpen> arm(presets::ur5e());
-  const auto scheme = FPBM<kOpen>(0.6, UnitWeights{}, 20.0, 100.0);
+  const AnyArm<Position<3>> arm = any_arm(presets::ur5e());
+  const auto scheme = FPBM<kOpen>(0.6, Joints(Joints::Ones(arm.dof())), 20.0, 100.0);
   const Joints q0 = Joints::Constant(6, 0.5);
   for (const int delay : {-1, kMaxMeasuredDelay + 1}) {
     TrackerOptions<> options;
     options.measured_delay = delay;
     try {
-      const Tracker tracker(arm, Position<3>{}, scheme, q0, options);
+      const CompiledTracker tracker(arm, Position<3>{}, scheme, q0, options);
       FAIL() << delay;
     } catch (const ParameterError& error) {
       EXPECT_EQ(error.name(), "measured_delay");

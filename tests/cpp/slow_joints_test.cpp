@@ -5,8 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "fpbm/realtime/tracker.hpp"
+#include "fpbm/any/any_arm.hpp"
+#include "fpbm/limits/limits.hpp"
+#include "fpbm/scheme/schemes.hpp"
 #include "support/arms.hpp"
+#include "support/compiled_tracker.hpp"
 
 /// Joints of any speed, down to those whose velocity bound V is below J h², the change of velocity in one tick of jerk
 /// J, keep their bounds; every motion within box() leads from a viable state to a viable one; and require_viable()
@@ -271,6 +274,16 @@ TEST(SlowJoints, may_leave_an_end_that_they_rest_on) {
   return chain;
 }
 
+/// The kinds of arms that trackers are compiled for.
+template <typename Scalar>
+[[nodiscard]] auto arm_of(const Chain<>& chain) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    return any_arm(chain);
+  } else {
+    return SerialArm<kOpen>(chain).template cast<Scalar>();
+  }
+}
+
 template <typename Scalar, typename Scheme>
 void expect_to_be_made_again(const Scheme& scheme, int motions) {
   using Joints = Vector<kOpen, Scalar>;
@@ -279,7 +292,7 @@ void expect_to_be_made_again(const Scheme& scheme, int motions) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(motions); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const auto arm = SerialArm<kOpen>(with_random_bounds(presets::fr3(), random)).template cast<Scalar>();
+    const auto arm = arm_of<Scalar>(with_random_bounds(presets::fr3(), random));
     TrackerOptions<Scalar> options;
     options.dt = static_cast<Scalar>(seed % 2 == 0 ? 1e-3 : spread(random, 1e-4, 1e-2));
     std::optional<Limits<Scheme::kLevel, kOpen, Scalar>> limits;
@@ -289,7 +302,7 @@ void expect_to_be_made_again(const Scheme& scheme, int motions) {
     const Vector<kOpen> share = random.uniform(arm.dof(), 0.05, 0.95);
     const State<kOpen, Scalar> start{bounds.lower + share.cast<Scalar>().cwiseProduct(bounds.upper - bounds.lower),
                                      Joints::Zero(arm.dof())};
-    Tracker tracker(arm, Position<3>{}, scheme, start, options, *limits);
+    CompiledTracker tracker(arm, Position<3>{}, scheme, start, options, *limits);
     Target reference = Target::hold(tracker.tip());
     for (int tick = 0; tick < 600; ++tick) {
       if (tick % 100 == 0) {
@@ -303,7 +316,7 @@ void expect_to_be_made_again(const Scheme& scheme, int motions) {
       ASSERT_EQ(complaint([&] { limits->require_viable(tracker.state(), tracker.acceleration()); }), "") << tick;
     }
     ASSERT_EQ(complaint([&] {
-                Tracker(arm, Position<3>{}, scheme, tracker.state(), options, *limits, tracker.acceleration());
+                CompiledTracker(arm, Position<3>{}, scheme, tracker.state(), options, *limits, tracker.acceleration());
               }),
               "");
     ++made;
@@ -312,11 +325,13 @@ void expect_to_be_made_again(const Scheme& scheme, int motions) {
 }
 
 TEST(SlowJoints, let_a_tracker_start_from_the_state_of_another) {
+  const Vector<kOpen> ones = Vector<kOpen>::Ones(7);
   const auto z = NullSpace<kOpen>{}.with_damping(2.0);
-  expect_to_be_made_again<double>(FPBM<kOpen>(0.6, UnitWeights{}, 10.0, 25.0, z), trials(150));
-  expect_to_be_made_again<double>(MVN<kOpen>(5.0), trials(150));
+  expect_to_be_made_again<double>(FPBM<kOpen>(0.6, ones, 10.0, 25.0, z), trials(150));
+  expect_to_be_made_again<double>(WMVN<kOpen>(ones, 5.0), trials(150));
   const auto single = NullSpace<kOpen, float>{}.with_damping(2.0F);
-  expect_to_be_made_again<float>(FPBM<kOpen, float>(0.6F, UnitWeights{}, 10.0F, 25.0F, single), trials(150));
+  expect_to_be_made_again<float>(
+      FPBM<kOpen, float>(0.6F, Vector<kOpen, float>(ones.cast<float>()), 10.0F, 25.0F, single), trials(150));
 }
 
 }  // namespace

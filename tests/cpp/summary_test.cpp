@@ -7,8 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "support/arms.hpp"
 #include "support/paper.hpp"
+#include "support/random.hpp"
+#include "support/recording.hpp"
 
 /// A summary of a motion equals what its samples give, all of them kept.
 namespace fpbm::test {
@@ -17,19 +18,21 @@ namespace {
 template <typename Space, int N>
 using Samples = std::vector<Sample<Space, N>>;
 
-/// Runs a motion into samples and a summary at once.
-template <typename Arm, typename Path, typename Scheme, typename Space = typename Path::Space>
-std::pair<Samples<Space, Arm::kDof>, MotionSummary<>> both(const Arm& arm, const Path& path, const Scheme& scheme,
-                                                           const State<Arm::kDof>& start, const TimeGrid<>& grid) {
-  Samples<Space, Arm::kDof> samples;
-  Summary<Space, Arm::kDof> summary(Scheme::kLevel);
-  const auto result = rollout(arm, path, scheme, start, grid, [&](const auto& sample) {
-    samples.push_back(sample);
-    summary(sample);
-  });
-  EXPECT_EQ(samples.size(), static_cast<std::size_t>(result.samples));
-  EXPECT_GT(samples.size(), 2U) << message(result.status);
-  return {samples, summary.result()};
+template <typename Space, int N>
+MotionSummary<> summary_of(const Samples<Space, N>& samples, Level level) {
+  Summary<Space, N> summary(level);
+  for (const auto& sample : samples) summary(sample);
+  return summary.result();
+}
+
+/// A motion of the paper's arm.
+template <typename Scheme>
+std::pair<Samples<Position<2>, 4>, MotionSummary<>> both(const AnyPath<Position<2>>& path, const Scheme& scheme,
+                                                         const TimeGrid<>& grid) {
+  const auto run = recorded(paper_arm(), path, scheme, paper_start(), grid);
+  EXPECT_EQ(run.samples.size(), static_cast<std::size_t>(run.result.samples));
+  EXPECT_GT(run.samples.size(), 2U) << message(run.result.status);
+  return {run.samples, summary_of<Position<2>, 4>(run.samples, Scheme::kLevel)};
 }
 
 template <typename Space, int N>
@@ -73,53 +76,66 @@ void expect_differences(const Samples<Space, N>& samples, const MotionSummary<>&
   EXPECT_NEAR(summary.final_acceleration, slope(last - 1, last), 1e-9 * peak);
 }
 
+/// Of samples that no arm has to make: the laws of a summary know neither arm nor path.
+template <typename Space, int N>
+void expect_summaries(Eigen::Index dof) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    Samples<Space, N> samples;
+    for (int i = 0; i < 20; ++i) {
+      Sample<Space, N> sample{};
+      if constexpr (!std::is_same_v<Space, Pose>) sample.tip.setZero();
+      sample.reference = Reference<Space>::hold(sample.tip);
+      sample.index = i;
+      sample.t = 0.01 * i;
+      sample.q = random.uniform(dof, -2.0, 2.0);
+      sample.qd = random.uniform(dof, -2.0, 2.0);
+      sample.qdd = random.uniform(dof, -2.0, 2.0);
+      sample.error = random.uniform(Space::kRows, -0.1, 0.1);
+      sample.J = random.uniform(Space::kRows, dof, -1.0, 1.0);
+      samples.push_back(sample);
+    }
+    const auto accelerations = summary_of<Space, N>(samples, Level::kAcceleration);
+    expect_agreement<Space, N>(samples, accelerations);
+    expect_accelerations<Space, N>(samples, accelerations);
+    const auto differences = summary_of<Space, N>(samples, Level::kVelocity);
+    expect_agreement<Space, N>(samples, differences);
+    expect_differences<Space, N>(samples, differences);
+  }
+}
+
 TEST(Summary, equals_what_the_samples_give) {
-  on_every_arm([](const auto& each, const auto& q, const auto&) {
-    using Space = typename std::decay_t<decltype(each)>::Space;
-    using Joints = std::decay_t<decltype(q)>;
-    constexpr int N = Joints::RowsAtCompileTime;
-    using Positions =
-        std::conditional_t<Space::kRows == 2 || std::is_same_v<Space, PlanarPose>, Position<2>, Position<3>>;
-    const Path line(Line<Positions::kRows>(Vector<Positions::kRows>::Constant(0.002)), 0.2);
-    const auto path = [&line] {
-      if constexpr (std::is_same_v<Space, Positions>) {
-        return AnyPath<Space>(line);
-      } else {
-        using Turned = WithRotation<Path<Line<Positions::kRows>>>;
-        return AnyPath<Space>(Turned(line, Turned::Rotation::Constant(0.01)));
-      }
-    }();
-    const TimeGrid<> grid(path.duration(), 0.01, 0.1);
-    const State<N> start{q, Joints::Zero(q.size())};
-    {
-      // Gains that the step does not resolve well, so that there is an error.
-      const auto scheme = FPBM<N>(0.6, Joints(Joints::Ones(q.size())), 30.0, 80.0);
-      const auto [samples, summary] = both(each.arm, path, scheme, start, grid);
-      expect_agreement<Space, N>(samples, summary);
-      expect_accelerations<Space, N>(samples, summary);
-      EXPECT_GT(summary.max_error, 0.0);
-      EXPECT_EQ(summary.max_orientation_error > 0.0, !(std::is_same_v<Space, Positions>));
-    }
-    {
-      const auto [samples, summary] = both(each.arm, path, MVN<N>(5.0), start, grid);
-      expect_agreement<Space, N>(samples, summary);
-      expect_differences<Space, N>(samples, summary);
-    }
-  });
+  for (const Eigen::Index dof : {6, 7, 9}) expect_summaries<Pose, Eigen::Dynamic>(dof);
+  for (const Eigen::Index dof : {3, 6}) expect_summaries<PlanarPose, Eigen::Dynamic>(dof);
+  expect_summaries<Position<3>, 7>(7);
+}
+
+/// Gains that the step does not resolve well, so that there is an error.
+TEST(Summary, equals_what_a_motion_gives) {
+  const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(0.002, 0.002)), 0.2));
+  const TimeGrid<> grid(path.duration(), 0.01, 0.1);
+  const auto [samples, summary] = both(path, FPBM<4>(0.6, Vector<4>(Vector<4>::Ones()), 30.0, 80.0), grid);
+  expect_agreement<Position<2>, 4>(samples, summary);
+  expect_accelerations<Position<2>, 4>(samples, summary);
+  EXPECT_GT(summary.max_error, 0.0);
+  EXPECT_EQ(summary.max_orientation_error, 0.0);
+  const auto [at_velocity_level, differences] = both(path, MVN<4>(5.0), grid);
+  expect_agreement<Position<2>, 4>(at_velocity_level, differences);
+  expect_differences<Position<2>, 4>(at_velocity_level, differences);
 }
 
 /// At constant speed the largest slopes of qd may be those at the ends.
 TEST(Summary, counts_the_slopes_at_the_ends) {
   const AnyPath<Position<2>> path(Path(Circle(0.45), 1.0, ConstantSpeed{}));
   for (const double dt : {0.1, 0.01}) {
-    const auto [samples, summary] = both(paper_arm(), path, MVN<4>(), paper_start(), TimeGrid<>(1.0, dt));
+    const auto [samples, summary] = both(path, MVN<4>(), TimeGrid<>(1.0, dt));
     expect_differences<Position<2>, 4>(samples, summary);
   }
 }
 
 TEST(Summary, finds_what_is_in_between) {
   const AnyPath<Position<2>> path = paper_circle();
-  const auto [samples, summary] = both(paper_arm(), path, paper_fpbm(), paper_start(), TimeGrid<>(kDuration, 1e-2));
+  const auto [samples, summary] = both(path, paper_fpbm(), TimeGrid<>(kDuration, 1e-2));
   EXPECT_LT(summary.manipulability, manipulability(samples.front().J));
   EXPECT_LT(summary.manipulability, manipulability(samples.back().J));
   EXPECT_GT(summary.peak_velocity, 2.0 * summary.final_velocity);

@@ -28,6 +28,8 @@ class CompiledTracker {
 
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
                   const JointLimits& limits);
+  CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
+                  const JointLimits& limits, const JointVector& acceleration);
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options = {});
   CompiledTracker(const Arm& arm, Space, const Scheme& scheme, const JointVector& q0, const Options& options = {});
   CompiledTracker(CompiledTracker&&) noexcept;

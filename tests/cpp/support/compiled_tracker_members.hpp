@@ -15,6 +15,13 @@ CompiledTracker<Arm, Space, Scheme, Guard>::CompiledTracker(const Arm& arm, Spac
 
 template <typename Arm, typename Space, typename Scheme, typename Guard>
 CompiledTracker<Arm, Space, Scheme, Guard>::CompiledTracker(const Arm& arm, Space space, const Scheme& scheme,
+                                                            const JointState& start, const Options& options,
+                                                            const JointLimits& limits, const JointVector& acceleration)
+    : tracker_(std::make_unique<Tracker<Arm, Space, Scheme, Guard>>(arm, space, scheme, start, options, limits,
+                                                                    acceleration)) {}
+
+template <typename Arm, typename Space, typename Scheme, typename Guard>
+CompiledTracker<Arm, Space, Scheme, Guard>::CompiledTracker(const Arm& arm, Space space, const Scheme& scheme,
                                                             const JointState& start, const Options& options)
     : tracker_(std::make_unique<Tracker<Arm, Space, Scheme, Guard>>(arm, space, scheme, start, options)) {}
 

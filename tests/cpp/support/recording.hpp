@@ -35,6 +35,18 @@ template <typename Arm, typename Path, typename Scheme>
   return {std::move(samples), result};
 }
 
+/// A planar scheme behind AnyScheme, for rollouts that are compiled once.
+template <typename Scheme>
+[[nodiscard]] AnyScheme<Scheme::kLevel, Position<2>> erased(const Scheme& scheme) {
+  return AnyScheme<Scheme::kLevel, Position<2>>(scheme);
+}
+[[nodiscard]] AnyScheme<Level::kAcceleration, Position<2>> erased(const AccelerationScheme<Eigen::Dynamic>& scheme);
+[[nodiscard]] AnyScheme<Level::kAcceleration, Position<2>> erased(
+    const AccelerationScheme<Eigen::Dynamic, double, UnitWeights>& scheme);
+[[nodiscard]] AnyScheme<Level::kVelocity, Position<2>> erased(const VelocityScheme<Eigen::Dynamic>& scheme);
+[[nodiscard]] AnyScheme<Level::kVelocity, Position<2>> erased(
+    const VelocityScheme<Eigen::Dynamic, double, UnitWeights>& scheme);
+
 // The paper's arm under the schemes that many tests take: compiled once, in recording.cpp.
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const AccelerationScheme<4>&,
                                       const State<4>&, const TimeGrid<>&);
@@ -46,6 +58,14 @@ extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Positio
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
                                       const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
                                       const TimeGrid<>&);
+
+// Planar arms under schemes of run-time type.
+extern template Recording<Eigen::Dynamic> recorded(const AnyArm<Position<2>>&, const AnyPath<Position<2>>&,
+                                                   const AnyScheme<Level::kAcceleration, Position<2>>&,
+                                                   const State<Eigen::Dynamic>&, const TimeGrid<>&);
+extern template Recording<Eigen::Dynamic> recorded(const AnyArm<Position<2>>&, const AnyPath<Position<2>>&,
+                                                   const AnyScheme<Level::kVelocity, Position<2>>&,
+                                                   const State<Eigen::Dynamic>&, const TimeGrid<>&);
 
 // The Panda's poses.
 extern template Recording<7, double, Pose> recorded(const SerialArm<7>&, const AnyPath<Pose>&,

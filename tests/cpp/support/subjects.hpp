@@ -51,8 +51,8 @@ inline void PrintTo(const Subject& subject, std::ostream* out) {
 /// Planar arms of 4 joints and of 2, 7 and 12 joints at run-time size; with diagonal weights of 4 joints in float, and
 /// of 4 joints with the task space PlanarPose.
 [[nodiscard]] std::vector<Subject> planar_subjects();
-/// Arms in space of 7 joints with the task space Pose and, with diagonal weights, Position<3>; of 9 joints at run-time
-/// size, on a rail.
+/// Arms in space of 7 joints with the task space Pose, without dense weights, and, with diagonal weights, Position<3>;
+/// of 9 joints at run-time size, on a rail.
 [[nodiscard]] std::vector<Subject> spatial_subjects();
 /// Both.
 [[nodiscard]] std::vector<Subject> subjects();
