@@ -170,7 +170,9 @@ class ServoLoop:
         """Whether stop() was called last, not resume()."""
         return self._stopped
 
-    def _new_tracker(self, scheme: Scheme, q0: Array, **state: Array) -> Tracker:
+    def _new_tracker(
+        self, scheme: Scheme, q0: Array, *, qd0: Array | None = None, qdd0: Array | None = None
+    ) -> Tracker:
         return Tracker(
             self.arm,
             scheme,
@@ -179,7 +181,8 @@ class ServoLoop:
             dt=self.dt,
             limits=self.limits,
             clearance=self._obstacles.clearance,
-            **state,
+            qd0=qd0,
+            qdd0=qdd0,
         )
 
     def _one_tick(self) -> Tick:
