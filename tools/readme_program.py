@@ -1,5 +1,5 @@
-"""Prints the program of README's section "In a control loop", as a user writes it: what .ci/run compiles to see what the
-library costs a program.
+"""Prints the program of README's section "In a control loop", as a user writes it: .ci/run compiles the program to see
+what the library costs its users.
 
     readme_program.py [HEADING] > program.cpp
 """
