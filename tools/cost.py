@@ -3,8 +3,9 @@
     cost.py [--seconds S] [--processor S] [--megabytes MB] [--largest MB] COMMAND ...
 
 --seconds is the time by the clock, and --megabytes what all processes of the command together hold, looked at five
-times a second (Linux only): both depend on what else the machine does, and are only printed. --processor is the processor
-time of all processes, and --largest the memory of the largest one: cost.py fails where they are above what is promised.
+times a second (Linux only): both depend on what else the machine does, and are only printed. --processor is the
+processor time of all processes, and --largest the memory of the largest one: cost.py fails where they are above what is
+promised.
 """
 
 import argparse

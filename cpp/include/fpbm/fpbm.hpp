@@ -93,6 +93,7 @@
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/realtime/progress.hpp"
 #include "fpbm/realtime/recovery.hpp"
 #include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/slow_down.hpp"

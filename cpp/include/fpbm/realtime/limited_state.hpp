@@ -6,9 +6,8 @@
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
-#include "fpbm/realtime/recovery.hpp"
+#include "fpbm/realtime/progress.hpp"
 #include "fpbm/realtime/slow_down.hpp"
-#include "fpbm/realtime/stall_detector.hpp"
 #include "fpbm/realtime/tick.hpp"
 
 namespace fpbm {
@@ -29,17 +28,15 @@ class LimitedState {
                const JointVector& qdd0, const Guard_& guard)
       : dt_(options.dt),
         correction_(options),
-        stall_(options.stall_time, options.dt),
         limiter_(limits),
         guard_(guard),
         state_(start),
         last_(qdd0),
-        recovery_(start.q, options.stall_time, options.dt),
-        recovers_(options.recovery) {}
+        progress_(options, start.q) {}
 
   /// The tip of the start posture, and the arm's characteristic length [m]: the first posture to recover to.
   void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
-    recovery_.remember(state_.q, tip, length);
+    progress_.begin_at(state_.q, tip, length);
   }
 
   [[nodiscard]] Scalar dt() const noexcept { return dt_; }
@@ -56,7 +53,7 @@ class LimitedState {
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept {
     stopping_ = false;
-    try_again();
+    progress_.try_again();
   }
 
   /// The result of a tick in which nothing has happened yet.
@@ -80,8 +77,7 @@ class LimitedState {
   void take(Loop& loop, const Target& now, JointState next, const JointVector& field, Result& result) noexcept {
     auto rows = guard_.rows(limits(), state_);
     if constexpr (kGuarded) {
-      const bool at_rest = state_.qd.isZero(Scalar(0));
-      if (stall_.stalled() && stall_.wait(at_rest, guard_.room(), correction_.length())) try_again();
+      progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
       if (limits().bounds_jerk()) next.q = moved(rate(state_.qd, next.qd));
@@ -95,11 +91,11 @@ class LimitedState {
       guard_.bound_tip_speed(limits(), state_, motion_to(next), rows);
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
-    const bool recovering = recovery_.active() && !stopping_ && !failed(result.status);
-    if (stall_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
+    const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);
+    if (progress_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
     if (recovering) {
       const Box<N, Scalar> box = limits().box(state_, last_);
-      next = after(rows.near(box.nearest(recovery_.motion(limits(), state_)), box));
+      next = after(rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
       result.status = Status::kRecovering;
       result.scale = Scalar(0);
     } else if (stopping_ || result.status >= Status::kStalled || !limits().admits(state_, next, last_) ||
@@ -138,11 +134,13 @@ class LimitedState {
     const JointVector q = state_.q;
     state_ = next;
     if (stopping_ || failed(result.status)) return;
-    if (recovering) return recover(now.x);
-    if (result.status != Status::kOk || correction_.far()) return watch_progress(now.x, result);
+    const Scalar length = correction_.length();
+    if (recovering) return progress_.recovered(state_.q, now.x, length);
+    if (result.status != Status::kOk || correction_.far()) {
+      return progress_.missed(state_.q, now.x, result, length, correction_.far());
+    }
     correction_.integrate();
-    recovery_.settle();
-    if (recovery_.is_new(q)) remember(q, now.x, result);
+    progress_.done(q, now.x, result, length);
   }
 
   /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
@@ -166,36 +164,6 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
-  using Distance = TaskDistance<Space, Scalar>;
-  using Point = typename Space::template Point<Scalar>;
-
-  void try_again() noexcept {
-    stall_.reset();
-    recovery_.renew();
-  }
-
-  /// After a tick that did not do the whole task.
-  void watch_progress(const Point& target, const Result& result) noexcept {
-    const Scalar length = correction_.length();
-    const Scalar error = Distance::norm(result.error, length);
-    if (stall_.has_moved(target, length)) recovery_.renew();
-    stall_.update(target, error, length, result.scale == Scalar(1) && !correction_.far());
-    recovery_.follow(target, length);
-    if (recovers_ && result.status == Status::kStalled && stall_.stalled())
-      recovery_.begin(state_.q, target, error, length);
-  }
-
-  /// After a tick of a recovery.
-  void recover(const Point& target) noexcept {
-    if (stall_.has_moved(target, correction_.length())) return try_again();
-    if (recovery_.advance(state_.q)) stall_.reset();
-  }
-
-  /// After a tick that began in a posture q and did the whole task.
-  void remember(const JointVector& q, const Point& target, const Result& result) noexcept {
-    const Scalar length = correction_.length();
-    if (Distance::norm(result.error, length) < Distance::kProgress) recovery_.remember(q, target, length);
-  }
 
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
   template <typename Arm>
@@ -235,13 +203,11 @@ class LimitedState {
 
   Scalar dt_;
   Correction<kLevel, Space, Scalar> correction_;
-  StallDetector<Space, Scalar> stall_;
   Limiter<kLevel, N, Scalar> limiter_;
   Guard_ guard_;
   JointState state_;
   JointVector last_;  ///< Acceleration of the last tick.
-  Recovery<Space, N, Scalar> recovery_;
-  bool recovers_;
+  Progress<Space, N, Scalar> progress_;
   bool stopping_ = false;
 };
 
