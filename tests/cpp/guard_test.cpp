@@ -472,8 +472,9 @@ TEST(Guard, names_what_is_wrong) {
   Clearance<7> in_box(chain, hand, {}, 0.01);
   in_box.keep_tip_within(Vector<3>::Constant(5.0), Vector<3>::Constant(6.0));
   const std::string outside = complaint([&] {
-    const Limits<Level::kAcceleration, 7> limits(Panda(chain).limits(), kTick);
-    PandaGuard(in_box).require_clear(limits, State<7>{ready(), Vector<7>::Zero()}, Vector<7>::Zero());
+    const Limits<Level::kAcceleration, 7> limits(SerialArm<7>(chain).limits(), kTick);
+    Guard<Level::kAcceleration, 7> guard(in_box);
+    guard.require_clear(limits, State<7>{ready(), Vector<7>::Zero()}, Vector<7>::Zero());
   });
   EXPECT_NE(outside.find("with margin=0.01; give a larger box to keep_tip_within()"), std::string::npos) << outside;
   auto tracker = panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.0}}});

@@ -120,8 +120,8 @@ class Recovery {
   }
 
  private:
-  // Choices. Of 183 motions whose target came back up to 0.2 m and 0.2 rad away from the start, 4 arms did not return
-  // with these, and 19 without kReturned.
+  // Choices. Of 180 motions whose target came back up to 0.2 m and 0.2 rad away from the start, 4 arms did not return
+  // with these; of 92 without kReturned, 18 did not.
   static constexpr Scalar kApart = Scalar(0.1);    ///< Change of a joint that may move the tip by kSpread [rad] or [m].
   static constexpr Scalar kSpread = Scalar(0.05);  ///< Least distance of two tips, as TaskDistance.
   /// Share of its farthest distance within which a target has come back.
