@@ -15,7 +15,7 @@ mkdir -p "$house"
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: -r build/requires.txt cmake ninja numpy pip
 "$python" -m pip download --quiet --dest "$house" --only-binary :all: --group test
 
-"$python" tools/cost.py --seconds 90 --processor 180 --megabytes 2600 --largest 2050 \
+"$python" tools/cost.py --seconds 90 --processor 180 --megabytes 2600 \
     tools/bare.sh "$python" -m pip wheel --no-index --find-links "$house" --no-deps --wheel-dir build/wheel \
     --config-settings=cmake.define.FPBM_LANES=all dist/*.tar.gz
 
