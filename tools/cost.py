@@ -3,7 +3,7 @@
     cost.py [--seconds S] [--processor S] [--megabytes MB] [--largest MB] COMMAND ...
 
 --seconds is the time by the clock, --processor the processor time of all processes, and --megabytes what all processes
-of the command together hold, looked at five times a second (Linux only). These depend on what else the machine does, and
+of the command together hold, looked at five times a second (Linux only). They depend on the load of the machine and
 are only printed. --largest is the memory of the largest process: cost.py fails if it is above what is promised.
 """
 
