@@ -127,7 +127,8 @@ class Clearance(Data):
         given, they are the group states of the SRDF file that have all of the arm's joints and no other; none where
         per_link is 1.
 
-        Raises ParameterError where postures have another shape or are not finite, ValueError where a file is not sound, OSError where one cannot be read.
+        Raises ParameterError where postures have another shape or are not finite, ValueError where a file is not sound,
+        OSError where one cannot be read.
         """
         from .io.capsules import capsules_of
         from .io.srdf import read_disabled_pairs

@@ -149,7 +149,8 @@ def test_wrong_postures_are_refused(postures: object) -> None:
 
 def arm_of_boxes(folder: Path) -> Path:
     """Three boxes, links 0 and 2 beside one another at q = (0, 0), 20 mm apart: capsules about them overlap."""
-    box = '<link name="{}"><collision><origin xyz="{} 0 0"/><geometry><box size="0.08 0.3 0.3"/></geometry></collision></link>'
+    geometry = '<origin xyz="{} 0 0"/><geometry><box size="0.08 0.3 0.3"/></geometry>'
+    box = '<link name="{}"><collision>' + geometry + "</collision></link>"
     joint = (
         '<joint name="{}" type="revolute"><parent link="{}"/><child link="{}"/><axis xyz="0 1 0"/>'
         '<limit lower="-3" upper="3" velocity="1"/></joint>'

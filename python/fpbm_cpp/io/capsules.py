@@ -44,8 +44,8 @@ def capsules_of(
 
     Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
     or finer is False, a link may have one more where it would be taken to be closer to another link than a margin [m]:
-    see Gaps. In the required postures (k, n) [rad] or [m], capsules are clear by the margin where clear() achieves that,
-    by up to 8 capsules a link, but for allowed pairs of names.
+    see Gaps. In the required postures (k, n) [rad] or [m], capsules keep the margin where clear() achieves that, by up
+    to 8 capsules a link, but for allowed pairs of names.
     Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
     belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
     Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for

@@ -58,9 +58,9 @@ class Shape:
     def between(self, u: Array, low: float, high: float) -> Shape:
         """What lies in low <= u x < high; a ball belongs where its center is.
 
-        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face. The face
-        gets a new edge there, which a later plane may cut: it is inside the convex hull of the section, whose sides are
-        kept, and join the edges where a plane cuts them.
+        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face. There,
+        the face gets a new edge, which a later plane may cut. That edge is inside the convex hull of the section, whose
+        sides are kept, and join the edges where a plane cuts them.
         """
         kept, cut = _clipped(self.edges, u, low, high)
         sides_kept, sides_cut = _clipped(self.sides, u, low, high)
