@@ -107,9 +107,8 @@ def main() -> None:
     if spec is None or spec.origin is None:
         sys.exit("needs example-robot-data: pip install example-robot-data")
     robots = Path(spec.origin).parents[1] / "cmeel.prefix/share/example-robot-data/robots"
-    print(
-        "| arm | links | capsules | pairs | volume / hulls' | about cylinders / hulls' | beyond, median [mm] | worst | [s] |"
-    )
+    ratios = "volume / hulls' | about cylinders / hulls'"
+    print(f"| arm | links | capsules | pairs | {ratios} | beyond, median [mm] | worst | [s] |")
     print("|---|---|---|---|---|---|---|---|---|")
     per_link = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     for name, (path, tip, base) in ARMS.items():
