@@ -1,10 +1,10 @@
 """How much larger than their collision geometry the capsules of arms are: `python bench/capsules.py [per_link]`.
 
 Needs example-robot-data and the extra `clearance`; of the presets, those whose meshes are found, which
-tools/preset_capsules.py names. For each arm, over all links with collision geometry: the volume of the links' capsules
-(of their union, by sampling) over that of their convex hulls; how far the capsules reach beyond the hulls, max over
-directions u of h_capsule(u) - h_hull(u), of the median and of the worst link; and, to compare, the volume of capsules
-about trimesh's minimum cylinders. Least for a cube is 2.64 times its volume.
+tools/preset_capsules.py names. For each arm, over all links with collision geometry: the pairs of capsules that are
+kept apart; the volume of the links' capsules (of their union, by sampling) over that of their convex hulls; how far the
+capsules reach beyond the hulls, max over directions u of h_capsule(u) - h_hull(u), of the median and of the worst link;
+and, to compare, the volume of capsules about trimesh's minimum cylinders. Least for a cube is 2.64 times its volume.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull
 
+from fpbm_cpp.arms import SerialArm
 from fpbm_cpp.capsule import Capsule
+from fpbm_cpp.clearance import Clearance
 from fpbm_cpp.io.capsule_fit import distances
 from fpbm_cpp.io.capsules import capsules_of
 from fpbm_cpp.io.urdf import read_places
@@ -81,10 +83,12 @@ def row(
     capsules = capsules_of(file, tip, base, per_link=per_link)
     taken = time.perf_counter() - start
     places = read_places(file, tip, base)[2]
+    arm = SerialArm.from_urdf(file, tip, base)
     rng = np.random.default_rng(0)
     sums, reach = np.zeros(3), []
     shapes = {link: parts for link, parts in read_shapes(file).items() if kept(link)}
     capsules = [each for each in capsules if kept(each.name)]
+    pairs = len(Clearance(capsules).pairs(arm))
     for link, parts in shapes.items():
         points = solid([shape.moved(places[link][1]) for shape in parts], rng)
         hull = ConvexHull(points)
@@ -93,7 +97,7 @@ def row(
         reach.append(1e3 * beyond(own, points[hull.vertices], rng))
     ratios = f"{sums[1] / sums[0]:.2f} | {sums[2] / sums[0]:.2f}"
     return (
-        f"| {name} | {len(shapes)} | {len(capsules)} | {ratios} | "
+        f"| {name} | {len(shapes)} | {len(capsules)} | {pairs} | {ratios} | "
         f"{np.median(reach):.0f} | {max(reach):.0f} | {taken:.1f} |"
     )
 
@@ -103,8 +107,9 @@ def main() -> None:
     if spec is None or spec.origin is None:
         sys.exit("needs example-robot-data: pip install example-robot-data")
     robots = Path(spec.origin).parents[1] / "cmeel.prefix/share/example-robot-data/robots"
-    print("| arm | links | capsules | volume / hulls' | about cylinders / hulls' | beyond, median [mm] | worst | [s] |")
-    print("|---|---|---|---|---|---|---|---|")
+    ratios = "volume / hulls' | about cylinders / hulls'"
+    print(f"| arm | links | capsules | pairs | {ratios} | beyond, median [mm] | worst | [s] |")
+    print("|---|---|---|---|---|---|---|---|---|")
     per_link = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     for name, (path, tip, base) in ARMS.items():
         print(row(name, robots / path, tip, base, per_link), flush=True)

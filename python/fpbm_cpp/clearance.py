@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import KW_ONLY, replace
 from typing import Any, ClassVar
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ._core import Clearance as CoreClearance
 from ._core import Nearest, preset_capsules
-from ._types import OptionalArrayField
-from .arms import Arm
+from ._types import Array, OptionalArrayField
+from .arms import Arm, Joint, SerialArm
 from .capsule import Capsule
 from .errors import ParameterError, suggestion, wrong
 from .obstacle import OBSTACLES, Obstacle
@@ -112,6 +113,7 @@ class Clearance(Data):
         margin: float = MARGIN,
         allowed: Sequence[tuple[str, str]] = (),
         per_link: int = 2,
+        postures: ArrayLike | None = None,
     ) -> Clearance:
         """Clearance of SerialArm.from_urdf(path, tip, base), by capsules that contain the file's collision geometry.
 
@@ -120,15 +122,24 @@ class Clearance(Data):
         MoveIt's, whose disabled pairs are allowed to meet, beside those in `allowed`. Needs the extra 'clearance',
         meshes a part of it alone.
 
-        Raises ValueError where a file is not sound, OSError where one cannot be read.
+        postures: of shape (n,) or (k, n) [rad] or [m], in which the arm shall be accepted. There, links that are closer
+        than the margin by their capsules get up to 8 capsules each, unless their meshes are closer as well. Unless
+        given, they are the group states of the SRDF file that have all of the arm's joints and no other; none where
+        per_link is 1.
+
+        Raises ParameterError where postures have another shape or are not finite, ValueError where a file is not sound,
+        OSError where one cannot be read.
         """
         from .io.capsules import capsules_of
         from .io.srdf import read_disabled_pairs
 
         cls([], obstacles, margin=margin)  # Whether these are sound is said before the fit, which takes long.
-        capsules = capsules_of(path, tip, base, per_link=per_link, margin=margin)
-        names = {each.name for each in capsules}
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
+        required = _postures(SerialArm.from_urdf(path, tip, base).joints, postures, srdf if per_link != 1 else None)
+        capsules = capsules_of(
+            path, tip, base, per_link=per_link, margin=margin, required=required, allowed=[*pairs, *allowed]
+        )
+        names = {each.name for each in capsules}
         disabled = [pair for pair in pairs if names.issuperset(pair)]
         return cls(capsules, obstacles, margin=margin, allowed=[*disabled, *allowed])
 
@@ -155,6 +166,30 @@ class Clearance(Data):
         return known[1]
 
 
+def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
+    """Postures (k, n) that are given, or that an SRDF file has for these joints; None where there are none."""
+    if given is not None:
+        try:
+            q = np.atleast_2d(np.asarray(given, dtype=float))
+        except (TypeError, ValueError):
+            raise wrong("postures", given, f" = {given!r:.60}: must be numbers") from None
+        if q.ndim != 2 or q.shape[1] != len(joints) or not np.all(np.isfinite(q)):
+            demand = f"must be finite, of shape ({len(joints)},) or (k, {len(joints)})"
+            raise wrong("postures", given, f" of shape {np.shape(given)}: {demand}")
+        return q
+    if srdf is None:
+        return None
+    from .io.srdf import read_group_states
+
+    free = [joint.name for joint in joints if joint.mimic is None]
+    states = [state for state in read_group_states(srdf) if sorted(state) == sorted(free)]
+    q = np.zeros((len(states), len(joints)))
+    for i, joint in enumerate(joints):
+        leader, ratio, offset = joint.mimic or (i, 1.0, 0.0)
+        q[:, i] = [ratio * state[joints[leader].name] + offset for state in states]
+    return q if states else None
+
+
 def _require(name: str, shapes: Iterable[Any], kinds: tuple[Any, ...], demand: str) -> None:
     if not isinstance(shapes, (list, tuple)):
         raise wrong(name, shapes, f" = {shapes!r:.60}: must be a list")
@@ -172,8 +207,11 @@ def _from_urdf(
     obstacles: Sequence[Obstacle] = (),
     margin: float = MARGIN,
     per_link: int = 2,
+    postures: ArrayLike | None = None,
 ) -> Clearance:
-    return Clearance.from_urdf(file, tip, base, srdf=srdf, obstacles=obstacles, margin=margin, per_link=per_link)
+    return Clearance.from_urdf(
+        file, tip, base, srdf=srdf, obstacles=obstacles, margin=margin, per_link=per_link, postures=postures
+    )
 
 
 # What makes a clearance, by the kind that a table has.

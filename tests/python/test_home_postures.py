@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,9 +18,10 @@ from fpbm_cpp._types import Array
 from fpbm_cpp.clearance import MARGIN
 from fpbm_cpp.io.capsule_fit import Fit
 from fpbm_cpp.io.capsule_gaps import Gaps, Link, Part, capsules_apart, hulls_apart, link_frames, postures
+from fpbm_cpp.io.capsule_slabs import MOST
 from fpbm_cpp.io.capsules import capsules_of
 from fpbm_cpp.io.urdf import read_places
-from fpbm_cpp.io.urdf_shapes import Shape
+from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
 
 pytest.importorskip("trimesh")
 
@@ -82,6 +84,94 @@ def test_home_of_a_robot(name: str) -> None:
     urdf, tip, base, homes = OTHERS[name]
     assert base is None
     expect_accepted(ROBOTS / urdf, tip, homes)
+
+
+# TIAGo's "home" of tiago_motions, torso first: by Coal, the closest links that are not left out are 17.9 mm apart.
+REQUIRED = {
+    "tiago": (
+        Other(
+            "tiago_description/robots/tiago_no_hand.urdf",
+            "arm_7_link",
+            None,
+            [[0.15, 0.20, -1.34, -0.20, 1.94, -1.57, 1.37, 0]],
+        ),
+        r"arm_3_link and torso_lift_link overlap by 0\.05",
+    ),
+}
+
+
+@with_robots
+@pytest.mark.parametrize("name", REQUIRED)
+def test_required_postures_are_accepted(name: str) -> None:
+    (urdf, tip, base, (home,)), refused = REQUIRED[name]
+    arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
+    without = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base)
+    with pytest.raises(fp.ParameterError, match=refused):
+        fp.Tracker(arm, fp.MVN(), home, clearance=without)
+    clearance = fp.Clearance.from_urdf(ROBOTS / urdf, tip, base, postures=home)
+    assert clearance.margin == MARGIN
+    fp.Tracker(arm, fp.MVN(), home, clearance=clearance)
+    nearest = clearance.nearest(arm, home)
+    assert nearest is not None
+    assert nearest.distance >= MARGIN
+    counts = Counter(each.name for each in clearance.capsules)
+    assert max(counts.values()) <= MOST
+    assert len(clearance.capsules) <= len(without.capsules) + 12
+    places = read_places(ROBOTS / urdf, tip, base)[2]
+    for link, shapes in read_shapes(ROBOTS / urdf).items():
+        own = [each for each in clearance.capsules if each.name == link]
+        for shape in (each for each in shapes if each.cylinder is None and len(each.edges)):
+            edges = shape.moved(places[link][1]).edges
+            inner = np.linspace(0, 1, 21)[:, None, None] * (edges[:, 1] - edges[:, 0]) + edges[:, 0]
+            assert outside(inner.reshape(-1, 3), own) <= 1e-9, link
+
+
+@with_robots
+def test_postures_that_are_accepted_anyway_change_nothing() -> None:
+    urdf, tip, _, homes = OTHERS["z1"]
+    found = fp.Clearance.from_urdf(ROBOTS / urdf, tip)
+    assert fp.Clearance.from_urdf(ROBOTS / urdf, tip, postures=homes) == found
+
+
+@with_robots
+@pytest.mark.parametrize("postures", [[0.0] * 5, [[[0.0] * 6]], [[np.nan] * 6], "home"])
+def test_wrong_postures_are_refused(postures: object) -> None:
+    urdf, tip, _, _ = OTHERS["z1"]
+    with pytest.raises(fp.ParameterError, match=r"^postures") as caught:
+        fp.Clearance.from_urdf(ROBOTS / urdf, tip, postures=postures)
+    assert caught.value.name == "postures"
+
+
+def arm_of_boxes(folder: Path) -> Path:
+    """Three boxes, links 0 and 2 beside one another at q = (0, 0), 40 mm apart: capsules about them overlap."""
+    geometry = '<origin xyz="{} 0 0"/><geometry><box size="0.08 0.3 0.3"/></geometry>'
+    box = '<link name="{}"><collision>' + geometry + "</collision></link>"
+    joint = (
+        '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><axis xyz="1 0 0"/>'
+        '<limit lower="-1" upper="1" velocity="1"/></joint>'
+    )
+    file = folder / "boxes.urdf"
+    file.write_text(
+        f'<robot name="r">{box.format("l0", 0)}<link name="l1"/>{box.format("l2", 0.12)}'
+        f"{joint.format('j1', 'revolute', 'l0', 'l1')}{joint.format('j2', 'prismatic', 'l1', 'l2')}</robot>"
+    )
+    return file
+
+
+def test_group_states_are_required(tmp_path: Path) -> None:
+    urdf, srdf = arm_of_boxes(tmp_path), tmp_path / "boxes.srdf"
+    state = '<joint name="j1" value="0"/><joint name="j2" value="0"/>'
+    arm = fp.SerialArm.from_urdf(urdf, "l2")
+    for inside, accepted in ((state, True), (state.replace("j2", "finger"), False), ("", False)):
+        srdf.write_text(f'<robot name="r"><group_state name="home" group="arm">{inside}</group_state></robot>')
+        clearance = fp.Clearance.from_urdf(urdf, "l2", srdf=srdf)
+        nearest = clearance.nearest(arm, [0, 0])
+        assert nearest is not None
+        assert (nearest.distance >= MARGIN) == accepted
+    srdf.write_text(f'<robot name="r"><group_state name="home" group="arm">{state}</group_state></robot>')
+    assert len(fp.Clearance.from_urdf(urdf, "l2", srdf=srdf, per_link=1).capsules) == 2
+    allowed = fp.Clearance.from_urdf(urdf, "l2", srdf=srdf, allowed=[("l0", "l2")])
+    assert allowed.capsules == fp.Clearance.from_urdf(urdf, "l2").capsules
 
 
 @with_robots
@@ -160,6 +250,17 @@ def test_the_message_about_the_tip_s_box_names_a_larger_box() -> None:
 
 
 # What decides where capsules are cut
+
+
+def test_a_face_that_is_cut_twice_is_covered() -> None:
+    """A plane's cut through a face is an edge that the next plane cuts: the corner there is in each quarter."""
+    a, b, c = np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]])
+    whole = Shape(np.array([[a, b], [b, c], [c, a]]))
+    ex, ey = np.eye(3)[:2]
+    for x in ((-np.inf, 1.0), (1.0, np.inf)):
+        for y in ((-np.inf, 1.0), (1.0, np.inf)):
+            quarter = whole.between(ex, *x).between(ey, *y)
+            assert np.min(np.linalg.norm(quarter.points - [1, 1, 0], axis=1)) < 1e-12
 
 
 def ball(*centre: float) -> Shape:

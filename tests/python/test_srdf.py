@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fpbm_cpp.io.srdf import read_disabled_pairs
+from fpbm_cpp.io.srdf import read_disabled_pairs, read_group_states
 
 
 @pytest.fixture
@@ -53,3 +53,15 @@ def test_refused(text: str, message: str, write) -> None:
 def test_no_file(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_disabled_pairs(tmp_path / "nowhere.srdf")
+
+
+def test_group_states(write) -> None:
+    file = write(
+        "<robot><group_state name='home' group='arm'><joint name='a' value='0.5'/><joint name='b' value='-1'/>"
+        "</group_state><group_state name='floating' group='base'><joint name='c' value='0 0 1'/></group_state></robot>"
+    )
+    assert read_group_states(file) == [{"a": 0.5, "b": -1.0}]
+    assert read_group_states(write("<robot/>")) == []
+    message = "group state 'home': joint value = 'x': must be 1 finite number"
+    with pytest.raises(ValueError, match=re.escape(message)):
+        read_group_states(write("<robot><group_state name='home'><joint name='a' value='x'/></group_state></robot>"))

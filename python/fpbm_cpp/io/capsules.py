@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from itertools import combinations, pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._types import Array
 from ..arms import Joint
@@ -15,6 +16,7 @@ from ..clearance import MARGIN
 from ..errors import wrong
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
 from .capsule_gaps import Gaps, Link, Part, link_frames, postures
+from .capsule_slabs import clear
 from .urdf import read_places
 from .urdf_shapes import Shape, read_shapes, together
 
@@ -35,12 +37,15 @@ def capsules_of(
     per_link: int = 2,
     finer: bool = True,
     margin: float = MARGIN,
+    required: ArrayLike | None = None,
+    allowed: Collection[tuple[str, str]] = (),
 ) -> list[Capsule]:
     """Capsules that contain the collision geometry of a URDF file's links: tight, and the same each time.
 
     Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
     or finer is False, a link may have one more where it would be taken to be closer to another link than a margin [m]:
-    see Gaps.
+    see Gaps. In the required postures (k, n) [rad] or [m], capsules keep the margin where clear() achieves that, by up
+    to 8 capsules a link, but for allowed pairs of names.
     Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
     belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
     Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for
@@ -67,6 +72,10 @@ def capsules_of(
     ]
     if finer and per_link > 1:
         refine(links, joints, per_link + MORE, margin)
+    if required is not None:
+        known = {frozenset(pair) for pair in allowed}
+        but = {(i, j) for i in range(len(names)) for j in range(len(names)) if {names[i], names[j]} in known}
+        clear(links, joints, np.asarray(required, dtype=float), margin, but)
     fits = [(link.number, part.fit, name) for link, name in zip(links, names) for part in link.parts]
     return [Capsule(number, fit.a, fit.b, fit.radius, name) for number, fit, name in fits]
 

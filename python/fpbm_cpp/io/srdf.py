@@ -1,11 +1,12 @@
-"""Pairs of links that an SRDF file says need not be kept apart."""
+"""Pairs of links that an SRDF file says need not be kept apart, and its named postures."""
 
 from __future__ import annotations
 
 import os
 
-from .xml_file import Kept, read_xml
+from .xml_file import Element, Kept, read_xml
 
+STATES: Kept = {("robot",): {"group_state": ("name",)}, ("robot", "group_state"): {"joint": ("name", "value")}}
 KEPT: Kept = {("robot",): {"disable_collisions": ("link1", "link2")}}
 
 
@@ -30,3 +31,26 @@ def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
     return sorted(pairs)
+
+
+def read_group_states(path: str | os.PathLike[str]) -> list[dict[str, float]]:
+    """Positions of the joints of each <group_state> [rad] or [m]; without those that have a joint of several numbers.
+
+    Raises ValueError where the file is no sound SRDF, OSError where it cannot be read.
+    """
+    name = os.fsdecode(path)
+    states = []
+    try:
+        for element in read_xml(name, STATES).parts:
+            state: dict[str, float] = {}
+            for joint in element.parts:
+                own = f"line {joint.line}: group state {element.attributes.get('name', '')!r}"
+                if len(joint.attributes.get("value", "").split()) > 1:
+                    break
+                inside = Element("group_state", joint.line, {}, [joint])
+                (state[joint.attributes.get("name", "")],) = inside.numbers("joint", "value", [0.0], own)
+            else:
+                states.append(state)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    return states

@@ -8,8 +8,10 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._types import Array
+from ..errors import extra
 from .mesh_file import find_mesh, read_mesh
 from .urdf import pose
 from .xml_file import Element, Kept, named, read_xml
@@ -36,6 +38,7 @@ class Shape:
     centers: Array = field(default_factory=lambda: np.zeros((0, 3)))
     radii: Array = field(default_factory=lambda: np.zeros(0))
     cylinder: tuple[float, float, Array] | None = None
+    sides: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))  # Around sections by planes, of what was cut.
 
     @property
     def points(self) -> Array:
@@ -50,24 +53,55 @@ class Shape:
     def moved(self, frame: Array) -> Shape:
         R, p = frame[:3, :3], frame[:3, 3]
         cylinder = self.cylinder and (*self.cylinder[:2], frame @ self.cylinder[2])
-        return Shape(self.edges @ R.T + p, self.centers @ R.T + p, self.radii, cylinder)
+        return Shape(self.edges @ R.T + p, self.centers @ R.T + p, self.radii, cylinder, self.sides @ R.T + p)
 
     def between(self, u: Array, low: float, high: float) -> Shape:
         """What lies in low <= u x < high; a ball belongs where its center is.
 
-        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face.
+        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face. There,
+        the face gets a new edge, which a later plane may cut. That edge is inside the convex hull of the section, whose
+        sides are kept, and join the edges where a plane cuts them.
         """
-        s = self.edges @ u
-        rise = s[:, 1] - s[:, 0]
-        flat = rise == 0.0
-        enter, leave = ((bound - s[:, 0]) / np.where(flat, 1.0, rise) for bound in (low, high))
-        enter, leave = np.minimum(enter, leave), np.maximum(enter, leave)
-        kept = (s.max(axis=1) >= low) & (s.min(axis=1) <= high)
-        shares = np.stack([np.where(flat, 0.0, enter), np.where(flat, 1.0, leave)], axis=1)[kept].clip(0.0, 1.0)
-        start, way = self.edges[kept, :1], self.edges[kept, 1:] - self.edges[kept, :1]
-        cut = np.where(shares[:, :, None] == 1.0, self.edges[kept, 1:], start + shares[:, :, None] * way)
+        kept, cut = _clipped(self.edges, u, low, high)
+        sides_kept, sides_cut = _clipped(self.sides, u, low, high)
+        edges = np.concatenate([kept, sides_kept[sides_cut]])
+        ends = np.concatenate([kept[cut], sides_kept[sides_cut]]).reshape(-1, 3)
+        sections = [_section(ends, u, bound) for bound in (low, high) if np.isfinite(bound)]
         mine = (self.centers @ u >= low) & (self.centers @ u < high)
-        return Shape(cut, self.centers[mine], self.radii[mine])
+        return Shape(
+            edges, self.centers[mine], self.radii[mine], sides=np.concatenate([sides_kept[~sides_cut], *sections])
+        )
+
+
+def _clipped(edges: Array, u: Array, low: float, high: float) -> tuple[Array, NDArray[np.bool_]]:
+    """What is left of edges in low <= u x <= high, and which of them a plane cuts."""
+    s = edges @ u
+    rise = s[:, 1] - s[:, 0]
+    flat = rise == 0.0
+    enter, leave = ((bound - s[:, 0]) / np.where(flat, 1.0, rise) for bound in (low, high))
+    enter, leave = np.minimum(enter, leave), np.maximum(enter, leave)
+    kept = (s.max(axis=1) >= low) & (s.min(axis=1) <= high)
+    shares = np.stack([np.where(flat, 0.0, enter), np.where(flat, 1.0, leave)], axis=1)[kept].clip(0.0, 1.0)
+    start, way = edges[kept, :1], edges[kept, 1:] - edges[kept, :1]
+    left = np.where(shares[:, :, None] == 1.0, edges[kept, 1:], start + shares[:, :, None] * way)
+    return left, (shares[:, 0] > 0.0) | (shares[:, 1] < 1.0)
+
+
+def _section(points: Array, u: Array, bound: float) -> Array:
+    """Sides of the convex hull of those points that are on a plane u x = bound."""
+    spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
+    size = float(np.max(np.abs(points), initial=0.0))
+    on = points[np.abs(points @ u - bound) <= 1e-9 * size]
+    if len(on) < 2:
+        return np.zeros((0, 2, 3))
+    across = np.linalg.svd(u[None, :])[2][1:]
+    try:
+        corners = spatial.ConvexHull(on @ across.T).simplices
+    except spatial.QhullError:  # On a line.
+        along = (on - on[0]) @ np.linalg.svd(on - on.mean(axis=0), full_matrices=False)[2][0]
+        corners = np.array([[np.argmin(along), np.argmax(along)]])
+    sides: Array = on[corners]
+    return sides
 
 
 def together(shapes: list[Shape]) -> Shape:
@@ -78,6 +112,7 @@ def together(shapes: list[Shape]) -> Shape:
         edges=np.concatenate([each.edges for each in shapes]),
         centers=np.concatenate([each.centers for each in shapes]),
         radii=np.concatenate([each.radii for each in shapes]),
+        sides=np.concatenate([each.sides for each in shapes]),
     )
 
 

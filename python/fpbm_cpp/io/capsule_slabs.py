@@ -1,0 +1,165 @@
+"""Cuts that make capsules clear of one another in postures that an arm must be accepted in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from .._types import Array
+from ..arms import Joint
+from ..errors import extra
+from .capsule_fit import enclosing, fit_capsule
+from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures
+
+MOST = 8  # Capsules that a link may have: TIAGo's torso needs 5 in its home posture.
+PLACES = 6  # A cut in two is tried at each of so many parts of a shape.
+SLABS = (3, 4, 5)  # Numbers of equal slabs that are tried.
+STEPS = (0.1, 0.2, 0.5, 1.0)  # Radii that a capsule is moved by; a choice.
+LEAST = 0.1  # Share of what a part lacks that a cut must gain; a choice.
+SPREAD = 64  # Postures, beside the required ones, in which a pair that is close in all is left out.
+ROOM = 1.01  # Of the margin: a posture in which capsules are one margin apart is accepted.
+ALIKE = 0.95  # Cosine of an angle between directions that count as one.
+
+
+class Postures:
+    """How much closer than a margin the capsules of links are in some postures."""
+
+    def __init__(
+        self, links: list[Link], joints: list[Joint], required: Array, margin: float, but: Collection[tuple[int, int]]
+    ) -> None:
+        self.links, self.margin, self.count = links, margin, len(required)
+        frames = link_frames(joints, np.vstack([required, postures(joints, SPREAD)]))
+        inverse = np.linalg.inv(frames)
+        self.poses = {
+            (i, j): inverse[:, one.number] @ frames[:, other.number]
+            for i, one in enumerate(links)
+            for j, other in enumerate(links)
+            if other.number >= one.number + 2 and (i, j) not in but
+        }
+        self.touching = {pair for pair in self.poses if self._touch(*pair)}
+
+    def _touch(self, i: int, j: int) -> bool:
+        """Whether corners of the links are closer than the margin: then no capsules are farther apart."""
+        spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
+        one, other = (np.vstack([part.shape.points for part in self.links[k].parts]) for k in (i, j))
+        tree = spatial.cKDTree(one)
+        return any(
+            float(np.min(tree.query(other @ pose[:3, :3].T + pose[:3, 3])[0])) < self.margin
+            for pose in self.poses[i, j][: self.count]
+        )
+
+    def lack(self, i: int, j: int, one: list[Part], other: list[Part]) -> float:
+        """How much, summed over the required postures, parts of link i and link j lack to the margin [m].
+
+        As in Clearance, capsules that are closer than the margin in all postures do not count.
+        """
+        found = np.zeros(self.count)
+        for a in one:
+            for b in other:
+                gaps = capsules_apart([a.fit], [b.fit], self.poses[i, j])
+                if np.max(gaps) >= self.margin:
+                    found = np.maximum(found, ROOM * self.margin - gaps[: self.count])
+        return float(np.sum(found))
+
+    def lack_of_link(self, i: int, parts: list[Part]) -> float:
+        """How much parts of link i lack to all other links [m]; infinite where it lacks to one it touches."""
+        total = 0.0
+        for pair in self.poses:
+            if i in pair:
+                one, other = (parts if k == i else self.links[k].parts for k in pair)
+                lack = self.lack(*pair, one, other)
+                if lack > 0.0 and pair in self.touching:
+                    return np.inf
+                total += lack
+        return total
+
+    def worst(self, given_up: Collection[tuple[int, int]]) -> tuple[int, int] | None:
+        """The pair that lacks most, of those that do not touch; None where no other pair lacks anything."""
+        lacks = {
+            (i, j): self.lack(i, j, self.links[i].parts, self.links[j].parts)
+            for i, j in self.poses
+            if (i, j) not in self.touching and (i, j) not in given_up
+        }
+        pair = max(lacks, key=lambda each: lacks[each], default=None)
+        return pair if pair is not None and lacks[pair] > 0.0 else None
+
+
+def clear(
+    links: list[Link], joints: list[Joint], required: Array, margin: float, but: Collection[tuple[int, int]] = ()
+) -> None:
+    """Changes capsules until they keep the margin in the required postures (k, n), where the links do; but some pairs.
+
+    Capsules are moved away while that gains anything, since it adds none; TIAGo then has 33 capsules, and 43 were not
+    enough the other way round. Else, of all cuts of a pair's links, the one is made that gains most for each capsule
+    that it adds.
+    """
+    state = Postures(links, joints, required, margin, but)
+    given_up: set[tuple[int, int]] = set()
+    known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its slabs.
+
+    def slabs(part: Part) -> list[list[Part]]:
+        if id(part) not in known:
+            known[id(part)] = part, list(_slabs(part))
+        return known[id(part)][1]
+
+    while pair := state.worst(given_up):
+        found = _best(state, pair, _moved) or _best(state, pair, slabs)
+        if found is None:
+            given_up.add(pair)
+        else:
+            links[found[0]].parts = found[1]
+
+
+def _best(
+    state: Postures, pair: tuple[int, int], ways: Callable[[Part], Iterable[list[Part]]]
+) -> tuple[int, list[Part]] | None:
+    """The link of a pair, and its parts, of which one is changed in the way that gains most; None where none gains."""
+    most, best = 0.0, None
+    for i in pair:
+        parts = state.links[i].parts
+        for k, part in enumerate(parts):
+            one, other = ([part] if n == i else state.links[n].parts for n in pair)
+            if state.lack(*pair, one, other) == 0.0:
+                continue
+            lack = state.lack_of_link(i, [part])
+            for new in ways(part):
+                if len(parts) + len(new) - 1 <= MOST:
+                    gain = lack - state.lack_of_link(i, new)
+                    rate = gain / max(len(new) - 1, 1)
+                    if gain > LEAST * lack and rate > most:
+                        most, best = rate, (i, [*parts[:k], *new, *parts[k + 1 :]])
+    return best
+
+
+def _directions(part: Part) -> list[Array]:
+    """The axis of a part's capsule, its principal axes, and its frame's axes, no two alike."""
+    points = part.shape.points
+    along = part.fit.b - part.fit.a
+    principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
+    directions: list[Array] = []
+    for u in (along / max(float(np.linalg.norm(along)), 1e-300), *principal, *np.eye(3)):
+        if np.any(u) and all(abs(u @ other) < ALIKE for other in directions):
+            directions.append(u)
+    return directions
+
+
+def _slabs(part: Part) -> Iterator[list[Part]]:
+    """A part, cut in two, or into equal slabs."""
+    points = part.shape.points
+    for u in _directions(part):
+        low, high = float(np.min(points @ u)), float(np.max(points @ u))
+        inner = [[place] for place in np.linspace(low, high, PLACES + 1)[1:-1]]
+        for places in [*inner, *(list(np.linspace(low, high, count + 1)[1:-1]) for count in SLABS)]:
+            shapes = [part.shape.between(u, *ends) for ends in pairwise([-np.inf, *places, np.inf])]
+            if all(len(shape.points) for shape in shapes):
+                yield [Part(shape, fit_capsule(shape.points, shape.sizes, rough=True)) for shape in shapes]
+
+
+def _moved(part: Part) -> Iterator[list[Part]]:
+    """A part with its capsule moved: behind a flat face, a larger capsule whose axis is farther away bulges less."""
+    for u in _directions(part):
+        for step in (*STEPS, *(-step for step in STEPS)):
+            a, b = (end + step * part.fit.radius * u for end in (part.fit.a, part.fit.b))
+            yield [Part(part.shape, enclosing(a, b, part.shape.points, part.shape.sizes))]
