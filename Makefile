@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -25,6 +25,7 @@ help:
 	@echo 'make page             a page to drag an arm in, with the library in WebAssembly: build/web/page.html'
 	@echo 'make test             build and run the C++ tests and the Python tests'
 	@echo 'make test-view        the tests of the viewer and of the page in a browser, which make test skips without them'
+	@echo 'make homes            fit capsules to the meshes of every robot of the tests, and try its home posture'
 	@echo 'make clang, sanitize  the C++ tests with clang++, and under ASan and UBSan'
 	@echo 'make arm64, windows   the C++ tests for 64-bit Arm under qemu, and for Windows under Wine'
 	@echo 'make arm64-wheel      the Python package for 64-bit Arm, its TESTS run under qemu'
@@ -149,6 +150,10 @@ fuzz:
 
 test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 	$(BIN)/python -m pytest --numprocesses $(JOBS)
+
+# Capsules of every robot's meshes, and whether its home posture keeps the default margin.
+homes: $(VENV)/package $(VENV)/test $(VENV)/peers
+	FPBM_ALL_HOMES=1 $(BIN)/python -m pytest tests/python/test_home_postures.py --numprocesses $(JOBS)
 
 test-view: page $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium

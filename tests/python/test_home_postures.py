@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +26,15 @@ from fpbm_cpp.io.urdf import read_places
 from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
 
 pytest.importorskip("trimesh")
+
+# A fit takes from 10 s to a minute of processor time: every day one of each kind, all of them by `make homes`.
+EVERY_DAY = {"ur5e", "z1"}
+every_home = pytest.mark.skipif("FPBM_ALL_HOMES" not in os.environ, reason="takes minutes: make homes")
+
+
+def some(names: Iterable[str]) -> list[object]:
+    return [name if name in EVERY_DAY else pytest.param(name, marks=every_home) for name in names]
+
 
 PI = np.pi
 FRANKA = [[0, -PI / 4, 0, -3 * PI / 4, 0, PI / 2, PI / 4], [0, -0.3, 0, -2.2, 0, 2, 0.785]]
@@ -71,7 +82,7 @@ def expect_accepted(urdf: str | Path, tip: str, homes: list[list[float]]) -> Non
 
 
 @needs_clone
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", some(PRESETS))
 def test_home_of_a_preset_s_urdf(name: str) -> None:
     tool = load_tool()
     with urdf_of(tool, name) as urdf:
@@ -79,7 +90,7 @@ def test_home_of_a_preset_s_urdf(name: str) -> None:
 
 
 @with_robots
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", some(OTHERS))
 def test_home_of_a_robot(name: str) -> None:
     urdf, tip, base, homes = OTHERS[name]
     assert base is None
@@ -101,7 +112,7 @@ REQUIRED = {
 
 
 @with_robots
-@pytest.mark.parametrize("name", REQUIRED)
+@pytest.mark.parametrize("name", some(REQUIRED))
 def test_required_postures_are_accepted(name: str) -> None:
     (urdf, tip, base, (home,)), refused = REQUIRED[name]
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)
@@ -194,7 +205,7 @@ def test_pieces_of_cut_triangles_are_inside() -> None:
 
 @with_robots
 def test_the_same_each_time() -> None:
-    urdf, tip, _, _ = OTHERS["panda with its hand"]
+    urdf, tip, _, _ = OTHERS["z1"]
     assert capsules_of(ROBOTS / urdf, tip) == capsules_of(ROBOTS / urdf, tip)
 
 
