@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "fpbm/core/types.hpp"
@@ -169,7 +169,7 @@ class Recovery {
 
   Scalar patience_;
   Scalar dt_;
-  std::array<Known, kPostures> known_{};
+  Known known_[kPostures]{};
   int count_ = 0;
   std::int64_t age_ = 0;
   JointVector seen_;  ///< Last posture passed to remember().
