@@ -20,10 +20,10 @@ namespace fpbm {
 /// Trackers of one arm side by side, one a lane, which follow one path, each from its own tip.
 ///
 /// The evaluations of a tick's step are made in lanes; each tracker ends its tick by itself. So limits are kept
-/// exactly, and every tick is the one that its tracker makes alone from the same state, to round-off. Whole motions
-/// agree to round-off without bounds on jerk. On limits with bounds on jerk, a motion amplifies round-off errors as it
-/// amplifies a change of its start (docs/sweeps.md). A lane whose step is not finite, near a singular posture or where
-/// the scheme fails, leaves the tick to its tracker. No lane influences another.
+/// exactly, and every tick is the one that its tracker makes alone from the same state, to round-off. Where limits
+/// press for seconds, above all with bounds on jerk, a motion amplifies round-off errors as it amplifies a change of
+/// its start (docs/sweeps.md). A lane whose step is not finite, near a singular posture or where the scheme fails,
+/// leaves the tick to its tracker. No lane influences another.
 template <typename Tracker, typename Arm, typename Space, typename Scheme>
 class TrackerBatch {
  public:
