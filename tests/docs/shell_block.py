@@ -45,7 +45,7 @@ def commands(block: str) -> list[list[str]]:
 
 
 def check_pip(arguments: list[str]) -> None:
-    assert arguments[0] == "install"
+    assert arguments[0] in ("install", "wheel")
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     for argument in arguments[1:]:
         ours = re.fullmatch(r"(?:\.|fpbm_cpp)\[(.+)\]", argument)
