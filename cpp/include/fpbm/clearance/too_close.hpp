@@ -54,10 +54,10 @@ class TooClose : public ParameterError {
 /// Throws TooClose; without exceptions, ends the program with its message.
 [[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance, double margin,
                                       bool of_box) {
-  const TooClose error(names, distance, margin, of_box);
 #if defined(__cpp_exceptions)
-  throw error;
+  throw TooClose(names, distance, margin, of_box);
 #else
+  const TooClose error(names, distance, margin, of_box);
 #if !defined(EIGEN_NO_IO)
   std::fprintf(stderr, "fpbm: %s\n", error.what());
 #endif

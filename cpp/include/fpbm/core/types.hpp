@@ -36,7 +36,7 @@ template <typename Whole>
 }
 template <typename Square>
 [[nodiscard]] Square identity() noexcept {
-  Square result = filled<Square>(Square::RowsAtCompileTime);
+  auto result = filled<Square>(Square::RowsAtCompileTime);
   for (Eigen::Index i = 0; i < result.rows(); ++i) result.coeffRef(i, i) = typename Square::Scalar(1);
   return result;
 }

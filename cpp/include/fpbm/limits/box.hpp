@@ -15,8 +15,9 @@ struct Box {
 
   [[nodiscard]] bool contains(const Vector<N, Scalar>& u) const noexcept {
     bool inside = true;
-    for (Eigen::Index i = 0; i < u.size(); ++i)
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
       inside = inside && lower.coeff(i) <= u.coeff(i) && u.coeff(i) <= upper.coeff(i);
+    }
     return inside;
   }
 

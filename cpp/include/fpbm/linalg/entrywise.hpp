@@ -15,8 +15,8 @@ template <int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
   Matrix<Rows, Cols, Scalar> result;
   constexpr Eigen::Index kMost = 16;
-  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kMost) {
-    constexpr Eigen::Index kSize = Rows * Cols;
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Eigen::Index{Rows} * Cols <= kMost) {
+    constexpr Eigen::Index kSize = Eigen::Index{Rows} * Cols;
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 16
 #endif

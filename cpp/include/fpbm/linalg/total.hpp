@@ -8,7 +8,7 @@ namespace fpbm {
 /// not Count times. Two to four are written out, which saves a compiler most of the calls.
 template <Eigen::Index First, Eigen::Index Count, typename F>
 [[nodiscard, gnu::always_inline]] inline auto total(const F& f) noexcept {
-  constexpr Constant<First> i{};
+  const Constant<First> i{};
   if constexpr (Count == 1) {
     return f(i);
   } else if constexpr (Count == 2) {

@@ -99,7 +99,7 @@ class MeasuredLimiter {
  private:
   /// H. The feedback on the velocity is (T + H)/(T + H/2)/H at most, 1.172/H.
   [[nodiscard]] static Scalar horizon(const JointLimits& limits, int delay) {
-    const Scalar d = static_cast<Scalar>(delay);
+    const auto d = static_cast<Scalar>(delay);
     const Scalar gain = std::pow(d / (d + Scalar(1)), d) / (d + Scalar(1));  // g
     Scalar longest = std::max(kMargin * limits.tick() / gain, kQuiet);
     for (Eigen::Index i = 0; i < limits.bounds().jerk.size(); ++i) {

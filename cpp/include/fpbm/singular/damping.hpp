@@ -183,9 +183,10 @@ class DampedGram {
     Matrix<M, M, Value> gram;  // Its lower triangle.
     for (int i = 0; i < M; ++i) {
       const Vector<N, Value> row = column(rows_, i);
-      for (int j = 0; j <= i; ++j)
+      for (int j = 0; j <= i; ++j) {
         gram(i, j) = entrywise(row, [&](Eigen::Index k) { return row.coeff(k) * rows_.coeff(k, j); }).sum() +
                      Value(lost.delta(i, j));
+      }
     }
     const Status status = damped_.factor(gram);
     return status == Status::kOk ? Status::kDamped : status;
