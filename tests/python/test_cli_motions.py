@@ -107,6 +107,7 @@ def test_every_key_of_a_job_is_an_option() -> None:
         "clearance__tip",  # The arm's own.
         "clearance__base",
         "clearance__obstacles",
+        "clearance__postures",  # A list for each posture.
     }
 
 
