@@ -50,7 +50,8 @@ class Progress {
   }
 
   /// After a tick that did not do the whole task and led to q. far: the target is beyond the error bound.
-  void missed(const JointVector& q, const Point& target, const Result& result, Scalar length, bool far) noexcept {
+  [[gnu::noinline]] void missed(const JointVector& q, const Point& target, const Result& result, Scalar length,
+                                bool far) noexcept {
     const Scalar error = Distance::norm(result.error, length);
     if (stall_.has_moved(target, length)) recovery_.renew();
     stall_.update(target, error, length, result.scale == Scalar(1) && !far);

@@ -50,7 +50,7 @@ class Recovery {
   /// Remembers a posture in which the task is done whole, and its tip, unless a remembered tip is within kSpread. If
   /// the memory is full, the posture replaces the older one of the two whose tips are nearest to each other. length:
   /// the arm's characteristic length [m].
-  void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
+  [[gnu::cold, gnu::noinline]] void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
     seen_ = q;
     for (int i = 0; i < count_; ++i) {
       if (Distance::between(known_[i].tip, tip, length) < kSpread) return;
@@ -68,7 +68,8 @@ class Recovery {
   /// Starts toward the remembered posture whose tip is nearest to the target. error: distance of the arm's own tip.
   /// False if that posture promises nothing: its tip is not nearer to the target than the arm's own tip and the tip of
   /// the last recovery, and the target has not come back, or was tried already.
-  bool begin(const JointVector& q, const Point& target, Scalar error, Scalar length) noexcept {
+  [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
+                                          Scalar length) noexcept {
     const auto [distance, best] = nearest(target, length);
     const Scalar bound = std::min(error, tried_);
     const bool nearer = distance < bound - Distance::step(bound);
@@ -103,8 +104,8 @@ class Recovery {
   /// is common to all joints, so that they move in a straight line. Each joint keeps its bound on velocity, and
   /// decelerates at half of its bound on acceleration: v²/(2|goal − q|) = A/2.
   template <Level kLevel>
-  [[nodiscard]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
-                                   const State<N, Scalar>& state) const noexcept {
+  [[nodiscard, gnu::cold, gnu::noinline]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
+                                                             const State<N, Scalar>& state) const noexcept {
     const auto& bounds = limits.bounds();
     const JointVector left = entrywise(goal_, [&](Eigen::Index i) { return goal_(i) - state.q(i); });
     Scalar rate = kRate;
