@@ -121,12 +121,14 @@ class Recovery {
   }
 
  private:
-  // Choices, not optimised: `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with them.
+  // Choices, not optimised: `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with
+  // them.
   static constexpr Scalar kApart = Scalar(0.1);    ///< Change of a joint that may move the tip by kSpread [rad] or [m].
   static constexpr Scalar kSpread = Scalar(0.05);  ///< Least distance of two tips, as TaskDistance.
   /// Share of its farthest distance within which a target has come back.
   static constexpr Scalar kReturned = Scalar(0.5);
-  static constexpr Scalar kRate = Scalar(2);  ///< Rate of the approach [1/s]; both poles of the acceleration are at −2 kRate.
+  static constexpr Scalar kRate =
+      Scalar(2);  ///< Rate of the approach [1/s]; both poles of the acceleration are at −2 kRate.
   static constexpr Scalar kArrived = Scalar(0.02);  ///< Share of the whole displacement that counts as arrived.
 
   [[nodiscard]] Scalar distance_to(const JointVector& q) const noexcept {
