@@ -5,13 +5,12 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "fpbm/limits/limiter.hpp"
-#include "fpbm/limits/rows.hpp"
+#include "limiter.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
-constexpr int kOpen = Eigen::Dynamic;
+constexpr int kOpen = kDynamic;
 
 /// A motion within limits, as Python has it.
 struct PyMotion {
@@ -22,12 +21,13 @@ struct PyMotion {
 
 using OptionalRows = std::optional<std::pair<ArrayLike, ArrayLike>>;
 constexpr int kMostRows = 16;
+static_assert(kMostRows <= kLimiterRows);
 
 /// Bounds on motions of n joints, of G u <= b.
-Rows<kOpen, kMostRows> rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
+LimiterRows rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
   const auto& [G, b] = given;
-  Rows<kOpen, kMostRows> rows;
-  rows.g.setZero(n, kMostRows);
+  LimiterRows rows;
+  rows.g.setZero(n, kLimiterRows);
   rows.b.setZero();
   rows.count = real_array(G, "rows[0]", 2).shape(0);
   if (rows.count > kMostRows) {
@@ -51,40 +51,39 @@ class PyLimiter {
 
   [[nodiscard]] PyMotion motion(const ArrayLike& J, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& desired,
                                 const OptionalArray& last, const OptionalRows& bounds) const {
-    return std::visit(
-        [&](const auto& limiter) {
-          const auto n = static_cast<int>(limiter.limits().bounds().lower.size());
-          const auto rows = real_array(J, "J", 2).shape(0);
-          if (rows < 1 || rows > n) {
-            validation::fail("J's number of rows", static_cast<double>(rows), "from 1 to the number of joints");
-          }
-          const State<kOpen> state{joint_vector(q, "q", n), joint_vector(qd, "qd", n)};
-          const Vector<kOpen> before = last ? joint_vector(*last, "last", n) : Vector<kOpen>::Zero(n);
-          const Matrix<kOpen, kOpen> jacobian = matrix(J, "J", rows, n);
-          const Vector<kOpen> wanted = joint_vector(desired, "desired", n);
-          if (!bounds) return python(limiter.template motion<kOpen>(jacobian, state, wanted, before));
-          return python(limiter.template motion<kOpen>(jacobian, state, wanted, before, rows_of(*bounds, n)));
-        },
-        any_);
+    const auto rows = real_array(J, "J", 2).shape(0);
+    if (rows < 1 || rows > dof()) {
+      validation::fail("J's number of rows", static_cast<double>(rows), "from 1 to the number of joints");
+    }
+    const State<kOpen> state = state_of(q, qd);
+    const Vector<kOpen> before = last_of(last);
+    const Matrix<kOpen, kOpen> jacobian = matrix(J, "J", rows, dof());
+    const Vector<kOpen> wanted = joint_vector(desired, "desired", dof());
+    return python(
+        limited_motion(any_, jacobian, state, wanted, before, bounds ? rows_of(*bounds, dof()) : LimiterRows{}));
   }
 
   [[nodiscard]] PyMotion brake(const ArrayLike& q, const ArrayLike& qd, const OptionalArray& last) const {
-    return std::visit(
-        [&](const auto& limiter) {
-          const auto n = static_cast<int>(limiter.limits().bounds().lower.size());
-          const State<kOpen> state{joint_vector(q, "q", n), joint_vector(qd, "qd", n)};
-          return python(limiter.brake(state, last ? joint_vector(*last, "last", n) : Vector<kOpen>::Zero(n)));
-        },
-        any_);
+    const State<kOpen> state = state_of(q, qd);
+    return python(braking_motion(any_, state, last_of(last)));
   }
 
  private:
-  using Any = std::variant<Limiter<Level::kAcceleration, kOpen>, Limiter<Level::kVelocity, kOpen>>;
-
-  static Any make(const JointLimits<kOpen>& limits, double dt, const std::string& level) {
+  static AnyLimiter make(const JointLimits<kOpen>& limits, double dt, const std::string& level) {
     if (level == "acceleration") return Limiter(Limits<Level::kAcceleration, kOpen>(limits, dt));
     if (level == "velocity") return Limiter(Limits<Level::kVelocity, kOpen>(limits, dt));
     validation::reject("level", " = '" + level + "': must be 'acceleration' or 'velocity'");
+  }
+
+  [[nodiscard]] int dof() const {
+    return std::visit([](const auto& limiter) { return static_cast<int>(limiter.limits().bounds().lower.size()); },
+                      any_);
+  }
+  [[nodiscard]] State<kOpen> state_of(const ArrayLike& q, const ArrayLike& qd) const {
+    return {joint_vector(q, "q", dof()), joint_vector(qd, "qd", dof())};
+  }
+  [[nodiscard]] Vector<kOpen> last_of(const OptionalArray& last) const {
+    return last ? joint_vector(*last, "last", dof()) : Vector<kOpen>::Zero(dof());
   }
 
   static PyMotion python(const Saturated<kOpen>& found) {
@@ -93,7 +92,7 @@ class PyLimiter {
     return {array_of(found.u), found.scale, saturated};
   }
 
-  Any any_;
+  AnyLimiter any_;
 };
 
 }  // namespace

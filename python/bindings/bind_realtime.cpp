@@ -1,5 +1,7 @@
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "arrays.hpp"
 #include "clearance.hpp"
@@ -32,15 +34,15 @@ PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNear
           saturated,        tick.sigma,        array_of(tick.error), nearest};
 }
 
-template <typename Arm, typename Space, typename Scheme, typename Guard>
-Space space_of(const Tracker<Arm, Space, Scheme, Guard>&) {
+template <typename Space>
+Space space_of(const AnyTracker<Space>&) {
   return {};
 }
 
 /// What take() gives for a tracker in a posture, with what is nearest there.
 template <typename Tracker, typename Take>
 PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
-  const std::optional<PyNearest> nearest = nearest_at(tracker.guard().clearance(), q);
+  const std::optional<PyNearest> nearest = nearest_at(tracker.clearance(), q);
   return python_tick(take(), nearest);
 }
 
@@ -50,13 +52,14 @@ struct PyFollower {
 
 /// A tracker with any task.
 class PyTracker {
-  using Any = std::variant<AnyTracker<Position<2>>, AnyTracker<PlanarPose>, AnyTracker<Position<3>>, AnyTracker<Pose>>;
+  template <typename Space>
+  using Held = std::unique_ptr<AnyTracker<Space>>;
+  using Any = std::variant<Held<Position<2>>, Held<PlanarPose>, Held<Position<3>>, Held<Pose>>;
 
   /// Calls visitor(tracker, Space).
   template <typename Visitor>
-  auto visit(Visitor&& visitor) {
-    const auto with_space = [&](auto& tracker) { return visitor(tracker, space_of(tracker)); };
-    return std::visit([&](auto& either) { return std::visit(with_space, either); }, any_);
+  auto visit(Visitor&& visitor) const {
+    return std::visit([&](const auto& held) { return visitor(*held, space_of(*held)); }, any_);
   }
 
  public:
@@ -69,9 +72,9 @@ class PyTracker {
           if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
           const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
           require_enough_joints<Space>(dof_);
-          return Any(make_tracker<Space>(any, scheme, start, options,
-                                         limits.is_none() ? arm.limits() : joint_limits(limits), before,
-                                         clearance_of(arm, clearance)));
+          return Any(
+              make_tracker<Space>(scheme, {any, start, options, limits.is_none() ? arm.limits() : joint_limits(limits),
+                                           before, clearance_of(arm, clearance)}));
         })) {}
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
@@ -100,13 +103,10 @@ class PyTracker {
 
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                                         const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit([&](auto& tracker, auto space) -> PyTick {
-      if constexpr (std::decay_t<decltype(tracker)>::kLevel == Level::kAcceleration) {
-        const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
-        const auto target = reference<decltype(space)>(x, xd, xdd);
-        return tick_at(tracker, measured.q, [&] { return tracker.resolve_measured(measured.q, measured.qd, target); });
-      }
-      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
+    return visit([&](auto& tracker, auto space) {
+      const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
+      const auto target = reference<decltype(space)>(x, xd, xdd);
+      return tick_at(tracker, measured.q, [&] { return tracker.resolve_measured(measured, target); });
     });
   }
 
@@ -119,7 +119,7 @@ class PyTracker {
 
   void move(const std::string& name, const Shape& shape, const ArrayLike& velocity) {
     const Vector<3> v = fixed_vector<3>(velocity, "velocity");
-    visit([&](auto& tracker, auto) { move_obstacle(tracker.guard().clearance(), name, shape, v); });
+    visit([&](auto& tracker, auto) { move_obstacle(tracker.clearance(), name, shape, v); });
   }
 
   void stop() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
@@ -8,7 +9,8 @@
 
 namespace fpbm::bindings {
 
-/// A tracker as code in lanes sees it (TrackerBatch). What it does is compiled once, for every processor.
+/// A tracker as code in lanes sees it (TrackerBatch): an AnyTracker, for joints of a number known when it is compiled.
+/// What it does is compiled once, for every processor.
 template <typename Space, int N>
 class LaneTracker {
  public:
@@ -18,7 +20,7 @@ class LaneTracker {
   };
 
   template <typename Tracker>
-  explicit LaneTracker(const Tracker& tracker) : held_(std::make_unique<Held<Tracker>>(tracker)) {}
+  explicit LaneTracker(std::unique_ptr<Tracker> tracker) : held_(std::make_unique<Held<Tracker>>(std::move(tracker))) {}
 
   [[nodiscard]] Point tip() const noexcept { return held_->tip(); }
   [[nodiscard]] State<N> state() const noexcept { return held_->state(); }
@@ -49,26 +51,24 @@ class LaneTracker {
 
   template <typename Tracker>
   struct Held final : Holder {
-    explicit Held(const Tracker& tracker) : tracker_(tracker) {}
+    explicit Held(std::unique_ptr<Tracker> tracker) : tracker_(std::move(tracker)) {}
 
-    [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
-    [[nodiscard]] State<N> state() const noexcept override { return {tracker_.state().q, tracker_.state().qd}; }
-    [[nodiscard]] Vector<N> acceleration() const noexcept override { return tracker_.acceleration(); }
+    [[nodiscard]] Point tip() const noexcept override { return tracker_->tip(); }
+    [[nodiscard]] State<N> state() const noexcept override { return {tracker_->state().q, tracker_->state().qd}; }
+    [[nodiscard]] Vector<N> acceleration() const noexcept override { return tracker_->acceleration(); }
     bool begin(const Vector<Space::kRows>& error, double length) noexcept override {
-      return tracker_.begin(error, length);
+      return tracker_->begin(error, length);
     }
     [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
-      return tracker_.corrected(reference);
+      return tracker_->corrected(reference);
     }
     Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept override {
-      return tracker_.finish(now, {next.q, next.qd}, field);
+      return tracker_->finish(now, {next.q, next.qd}, field);
     }
-    Status advance(const TickReferences<Space>& references) noexcept override {
-      return tracker_.advance(references).status;
-    }
+    Status advance(const TickReferences<Space>& references) noexcept override { return tracker_->advance(references); }
 
    private:
-    Tracker tracker_;
+    std::unique_ptr<Tracker> tracker_;
   };
 
   std::unique_ptr<Holder> held_;

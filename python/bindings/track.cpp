@@ -1,5 +1,7 @@
 #include "fpbm/realtime/track.hpp"
 
+#include <memory>
+
 #include "motion.hpp"
 #include "tracker.hpp"
 
@@ -7,33 +9,29 @@ namespace fpbm::bindings {
 namespace {
 
 template <typename Space>
-AnyTracker<Space> tracker_of(const Motion<Space>& motion, const Limited& limited) {
+std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const Limited& limited) {
   TrackerOptions<> options = limited.options;
   options.dt = motion.grid.dt();
-  return make_tracker<Space>(motion.arm, motion.scheme, motion.start, options, limited.limits,
-                             JointVector::Zero(motion.start.q.size()), limited.clearance);
+  return make_tracker<Space>(motion.scheme, {motion.arm, motion.start, options, limited.limits,
+                                             JointVector::Zero(motion.start.q.size()), limited.clearance});
 }
 
 }  // namespace
 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
-  AnyTracker<Space> any = tracker_of(*this, limited);
+  const auto tracker = tracker_of(*this, limited);
   Recorder<Space> record(output, Level::kAcceleration);
-  const auto result = std::visit(
-      [&](auto& tracker) {
-        AnyFollower<Space> follower(path, tracker.tip());
-        auto& clearance = tracker.guard().clearance();
-        const auto with_clearance = [&](const auto& sample, const auto& tick) noexcept {
-          if (output.clearance != nullptr) {
-            clearance.place(sample.q);
-            output.clearance[sample.index] = clearance.nearest_pair().second;
-          }
-          return record(sample, tick);
-        };
-        return fpbm::track(tracker, follower, grid, with_clearance);
-      },
-      any);
+  AnyFollower<Space> follower(path, tracker->tip());
+  auto& clearance = tracker->clearance();
+  const auto with_clearance = [&](const auto& sample, const auto& tick) noexcept {
+    if (output.clearance != nullptr) {
+      clearance.place(sample.q);
+      output.clearance[sample.index] = clearance.nearest_pair().second;
+    }
+    return record(sample, tick);
+  };
+  const auto result = fpbm::track(*tracker, follower, grid, with_clearance);
   record.finish();
   return result;
 }
@@ -41,7 +39,7 @@ RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Outpu
 template <typename Space>
 template <int N>
 LaneTracker<Space, N> Motion<Space>::tracker(const Limited& limited) const {
-  return std::visit([](const auto& any) { return LaneTracker<Space, N>(any); }, tracker_of(*this, limited));
+  return LaneTracker<Space, N>(tracker_of(*this, limited));
 }
 
 template <typename Space>

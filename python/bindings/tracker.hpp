@@ -1,36 +1,70 @@
 #pragma once
 
-#include <variant>
+#include <memory>
 
 #include "fpbm/any/any_path.hpp"
-#include "fpbm/clearance/guard.hpp"
+#include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/path_follower.hpp"
-#include "fpbm/realtime/tracker.hpp"
+#include "fpbm/realtime/tick.hpp"
+#include "fpbm/realtime/tick_references.hpp"
+#include "fpbm/task/target_filter.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {
 
-/// fpbm::Tracker of any arm for a task in Space, under any scheme of one level, clear of shapes; and of either level.
-/// A clearance of nothing is all but free, and spares a second tracker.
-template <Level kLevel, typename Space>
-using TrackerAt = Tracker<AnyArmFor<Space>, Space, AnyScheme<kLevel, Space>, Guard<kLevel, kDynamic>>;
-template <typename Space>
-using AnyTracker = std::variant<TrackerAt<Level::kVelocity, Space>, TrackerAt<Level::kAcceleration, Space>>;
-
 template <typename Space>
 using AnyFollower = PathFollower<AnyPath<Space>>;
 
-/// Throws std::invalid_argument where scheme, state, options, limits or clearance do not fit, as fpbm::Tracker does.
+/// fpbm::Tracker of any arm for a task in Space, under any scheme of either level, clear of shapes.
 template <typename Space>
-AnyTracker<Space> make_tracker(const AnyArmFor<Space>& arm, const Scheme& scheme, const State<kDynamic>& start,
-                               const TrackerOptions<>& options, const JointLimits<kDynamic>& limits,
-                               const JointVector& qdd0, const Clearance<kDynamic>& clearance) {
-  const auto make = [&](const auto& any) -> AnyTracker<Space> {
-    constexpr Level kLevel = std::decay_t<decltype(any)>::kLevel;
-    return TrackerAt<kLevel, Space>(arm, Space{}, any, start, options, Limits<kLevel, kDynamic>(limits, options.dt),
-                                    qdd0, Guard<kLevel, kDynamic>(clearance));
-  };
-  return std::visit(make, scheme.make<Space>(arm));
-}
+class AnyTracker {
+ public:
+  static constexpr int N = kDynamic;
+  using Point = typename Space::template Point<double>;
+  using Result = Tick<Space, kDynamic>;
+
+  AnyTracker() = default;
+  AnyTracker(const AnyTracker&) = delete;
+  AnyTracker& operator=(const AnyTracker&) = delete;
+  virtual ~AnyTracker() = default;
+
+  virtual Result tick(const Reference<Space>& reference) noexcept = 0;
+  virtual Result tick(AnyFollower<Space>& follower) noexcept = 0;
+  virtual Result tick(TargetFilter<Space>& filter) noexcept = 0;
+  /// Throws std::invalid_argument where the scheme is of velocity level.
+  [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
+
+  virtual void stop() noexcept = 0;
+  virtual void resume() noexcept = 0;
+
+  [[nodiscard]] virtual const AnyArmFor<Space>& arm() const noexcept = 0;
+  [[nodiscard]] virtual const State<kDynamic>& state() const noexcept = 0;
+  [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
+  [[nodiscard]] virtual Point tip() const noexcept = 0;
+  [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
+
+  // A tick whose step is made in lanes (LaneTracker).
+  virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
+  [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
+  virtual Status finish(const Reference<Space>& now, const State<kDynamic>& next,
+                        const JointVector& field) noexcept = 0;
+  virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
+};
+
+/// What a tracker starts from, apart from its scheme.
+template <typename Space>
+struct TrackerStart {
+  const AnyArmFor<Space>& arm;
+  const State<kDynamic>& start;
+  const TrackerOptions<>& options;
+  const JointLimits<kDynamic>& limits;
+  const JointVector& qdd0;
+  const Clearance<kDynamic>& clearance;
+};
+
+/// The tracker. Throws std::invalid_argument where scheme, start, options, limits or clearance do not fit, as
+/// fpbm::Tracker does. Compiled once, in tracker.cpp.
+template <typename Space>
+std::unique_ptr<AnyTracker<Space>> make_tracker(const Scheme& scheme, const TrackerStart<Space>& from);
 
 }  // namespace fpbm::bindings

@@ -19,11 +19,16 @@ struct Kinematics {
   Scalar length = Scalar(1);
 };
 
+/// Rows of a Jacobian as limits see it. Where the number of joints is known at run time alone, so is that of rows: the
+/// limits of all tasks are then one code.
+template <typename Space, int N>
+inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
+
 /// J with all rows in metres: angles count by the arm's length.
 template <typename Space, int N, typename Scalar>
-[[nodiscard]] Matrix<Space::kRows, N, Scalar> jacobian_in_metres(
+[[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(
     const Kinematics<Space, N, Scalar>& kinematics) noexcept {
-  Matrix<Space::kRows, N, Scalar> J = kinematics.J;
+  Matrix<kLimitedRows<Space, N>, N, Scalar> J = kinematics.J;
   for (Eigen::Index j = 0; Space::kTurns > 0 && j < J.cols(); ++j) {
     for (int i = Space::kRows - Space::kTurns; i < Space::kRows; ++i) J.coeffRef(i, j) *= kinematics.length;
   }

@@ -171,7 +171,7 @@ class LimitedState {
     const JointVector middle = (state_.q + end) / Scalar(2);
     Kinematics<Space, N, Scalar> kinematics;
     arm.kinematics(middle, kinematics);
-    const auto Z = null_basis<Space::kRows, N, Scalar>(jacobian_in_metres(kinematics));
+    const auto Z = null_basis<kLimitedRows<Space, N>, N, Scalar>(jacobian_in_metres(kinematics));
     return Z.lazyProduct(Z.transpose().lazyProduct(guard_.away(state_.q)).eval());
   }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <variant>
+
+#include "arm.hpp"
+#include "fpbm/clearance/guard.hpp"
+#include "fpbm/limits/limiter.hpp"
+#include "fpbm/limits/rows.hpp"
+
+namespace fpbm::bindings {
+
+/// fpbm::Limiter of either level.
+using AnyLimiter = std::variant<Limiter<Level::kAcceleration, kDynamic>, Limiter<Level::kVelocity, kDynamic>>;
+
+/// Further bounds on motions: of as many as a guard has, so that trackers and limiters are one code.
+inline constexpr int kLimiterRows = Guard<Level::kAcceleration, kDynamic>::kRows;
+using LimiterRows = Rows<kDynamic, kLimiterRows>;
+
+/// Limiter::motion() and Limiter::brake(). Compiled once, beside trackers.
+Saturated<kDynamic> limited_motion(const AnyLimiter& any, const Matrix<kDynamic, kDynamic>& J,
+                                   const State<kDynamic>& state, const JointVector& desired, const JointVector& last,
+                                   const LimiterRows& rows);
+Saturated<kDynamic> braking_motion(const AnyLimiter& any, const State<kDynamic>& state, const JointVector& last);
+
+}  // namespace fpbm::bindings
