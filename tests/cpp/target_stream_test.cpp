@@ -11,7 +11,7 @@
 #include "support/random.hpp"
 
 /// Streams of targets from real senders: clocks that drift, jump and restart, and orientations that were rounded.
-namespace fpbm::test {
+namespace fpbm::test::target_stream_laws {
 namespace {
 
 constexpr TargetBounds<> kBounds{0.5, 3.0, 100.0, 1.5, 8.0, 300.0};
@@ -281,4 +281,4 @@ TEST(TargetStream, old_messages_stay_rejected) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::target_stream_laws

@@ -8,7 +8,7 @@
 #include "support/subjects.hpp"
 
 /// Theorem 1: the weighted minimum velocity norm (7), differentiated, is (9).
-namespace fpbm::test {
+namespace fpbm::test::theorem_laws {
 namespace {
 
 /// Pairs among the subjects: those with weights and in double.
@@ -95,4 +95,4 @@ TEST(Theorem1, is_true_from_a_start_in_motion) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::theorem_laws
