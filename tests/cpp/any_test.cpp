@@ -17,7 +17,7 @@
 #include "support/schemes.hpp"
 
 /// What is known only at run time gives what the code of fixed size gives, to the last bit.
-namespace fpbm::test {
+namespace fpbm::test::any_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -264,4 +264,4 @@ TEST(Any, motions_are_those_of_fixed_size) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::any_laws

@@ -11,7 +11,7 @@
 #include "support/recording.hpp"
 
 /// Bad arguments throw std::invalid_argument, and the message names the argument, the index and the value.
-namespace fpbm::test {
+namespace fpbm::test::bad_input_laws {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -229,4 +229,4 @@ TEST(BadInput, joints_that_do_not_fit) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::bad_input_laws

@@ -10,7 +10,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::cholesky_laws {
 namespace {
 
 /// Solves A x = b by a Cholesky whose type is erased; false where it refuses A.
@@ -167,4 +167,4 @@ INSTANTIATE_TEST_SUITE_P(every, CholeskyOf, ::testing::ValuesIn(sizes()),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::cholesky_laws

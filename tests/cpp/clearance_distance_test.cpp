@@ -11,7 +11,7 @@
 #include "support/random.hpp"
 
 /// Distances of shapes of all sizes, in general position, parallel, crossing, touching, one in the other, or points.
-namespace fpbm::test {
+namespace fpbm::test::clearance_distance_laws {
 namespace {
 
 template <typename Scalar>
@@ -333,4 +333,4 @@ TYPED_TEST(Distances, have_a_unit_normal_at_every_size) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::clearance_distance_laws

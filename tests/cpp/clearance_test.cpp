@@ -9,7 +9,7 @@
 #include "support/bodies.hpp"
 
 /// Links, distances along motions, and what is sure of them.
-namespace fpbm::test {
+namespace fpbm::test::clearance_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -172,4 +172,4 @@ TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::clearance_laws

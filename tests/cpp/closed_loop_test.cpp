@@ -6,7 +6,7 @@
 #include "support/paper.hpp"
 
 /// dX/dt of an arm under a scheme, with X = q or X = [q, qd].
-namespace fpbm::test {
+namespace fpbm::test::closed_loop_laws {
 namespace {
 
 /// Evaluates a loop at X in a good posture and in a singular one; check(X, dX, kinematics, reference, loop).
@@ -67,4 +67,4 @@ TEST(ClosedLoop, of_the_second_order_has_the_scheme_s_acceleration) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::closed_loop_laws

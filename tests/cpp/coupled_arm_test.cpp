@@ -13,7 +13,7 @@
 #include "support/compiled_tracker.hpp"
 
 /// Joints that follow others keep their own bounds.
-namespace fpbm::test {
+namespace fpbm::test::coupled_arm_laws {
 namespace {
 
 constexpr double kSlack = 1e-9;
@@ -165,4 +165,4 @@ TEST(CoupledArm, says_which_joint_has_no_room) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::coupled_arm_laws

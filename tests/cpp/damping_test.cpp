@@ -16,7 +16,7 @@
 
 /// Damping near singular postures, of every scheme on every arm and on the Panda, against singular value decompositions
 /// in extended precision.
-namespace fpbm::test {
+namespace fpbm::test::damping_laws {
 namespace {
 
 /// A subject and a posture in which it is singular, whatever the angle of the first joint.
@@ -588,4 +588,4 @@ TEST(DampedMotion, comes_to_rest_at_the_edge) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::damping_laws

@@ -14,7 +14,7 @@
 /// Degenerate problems of the saturation: the motion that it starts from is on several bounds, several joints meet
 /// their bounds together, joints hardly move the tip or hardly move in the null space. The share of the task is the one
 /// that a linear program finds.
-namespace fpbm::test {
+namespace fpbm::test::degenerate_saturation_laws {
 namespace {
 
 /// Problems of each kind and size; FPBM_DEGENERATE sets another number: 11 × 5 × 2000 are 110,000.
@@ -166,4 +166,4 @@ TEST(DegenerateSaturation, is_optimal) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::degenerate_saturation_laws

@@ -9,7 +9,7 @@
 #include "support/recording.hpp"
 
 /// FPBM's tip error obeys ë + k₁ė + k₂e = 0, whatever α, W and z.
-namespace fpbm::test {
+namespace fpbm::test::error_dynamics_laws {
 namespace {
 
 /// The solution of ë + k₁ė + k₂e = 0 from e(0), ė(0), by its characteristic roots.
@@ -120,4 +120,4 @@ TEST(ErrorDynamics, at_velocity_level_are_a_decay) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::error_dynamics_laws

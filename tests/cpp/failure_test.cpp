@@ -14,7 +14,7 @@
 
 /// A motion that leaves the workspace ends with a status, in time, and its samples are good. A motion well inside
 /// reaches its end.
-namespace fpbm::test {
+namespace fpbm::test::failure_laws {
 namespace {
 
 /// A line for a random arm in a random posture.
@@ -274,4 +274,4 @@ TEST(Status, has_a_message_and_advice) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::failure_laws

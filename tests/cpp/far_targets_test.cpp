@@ -10,7 +10,7 @@
 #include "support/compiled_tracker.hpp"
 
 /// Toward targets that it cannot reach an arm comes as near as it can, and rests there.
-namespace fpbm::test {
+namespace fpbm::test::far_targets_laws {
 namespace {
 
 constexpr int N = Eigen::Dynamic;
@@ -233,4 +233,4 @@ TEST_F(Stall, is_not_a_slow_approach) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::far_targets_laws

@@ -10,7 +10,7 @@
 #include "support/wild_reference.hpp"
 
 /// An arm that keeps clear of shapes: no pair comes nearer than its margin, whatever is asked for.
-namespace fpbm::test {
+namespace fpbm::test::guard_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -483,4 +483,4 @@ TEST(Guard, names_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::guard_laws

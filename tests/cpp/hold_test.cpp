@@ -4,7 +4,7 @@
 #include "support/recording.hpp"
 
 /// A hold after a path: the reference may jump at T, and the motion stays exact on both sides.
-namespace fpbm::test {
+namespace fpbm::test::hold_laws {
 namespace {
 
 constexpr double kHold = 2.0;
@@ -69,4 +69,4 @@ TEST(Float, follows_the_papers_circle) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::hold_laws

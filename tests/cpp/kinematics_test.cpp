@@ -12,7 +12,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::kinematics_laws {
 namespace {
 
 /// Tip, J and Jd of an arm whose type is erased.
@@ -147,4 +147,4 @@ INSTANTIATE_TEST_SUITE_P(every, PlanarKinematics, ::testing::ValuesIn(arms()),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::kinematics_laws

@@ -10,7 +10,7 @@
 #include "support/random.hpp"
 
 /// Each lane computes what its motion gives by itself, whatever happens in the other lanes.
-namespace fpbm::test {
+namespace fpbm::test::lanes_laws {
 namespace {
 
 constexpr int kLanes = 2;
@@ -233,4 +233,4 @@ TEST(Lanes, check_the_arguments_of_every_lane) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::lanes_laws

@@ -6,7 +6,7 @@
 #include "support/textbook.hpp"
 
 /// The lemmas of the paper, in extended precision: they check the textbook, which the other tests rely on.
-namespace fpbm::test {
+namespace fpbm::test::lemma_laws {
 namespace {
 
 struct Subject {
@@ -77,4 +77,4 @@ TEST(Textbook, pseudoinverses_invert) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::lemma_laws

@@ -9,7 +9,7 @@
 #include "support/paper.hpp"
 
 /// What a class refers to outlives it: a temporary, which would not, is refused where the program is compiled.
-namespace fpbm::test {
+namespace fpbm::test::lifetime_laws {
 namespace {
 
 template <typename Scalar>
@@ -57,4 +57,4 @@ TYPED_TEST(Lifetimes, of_a_closed_loop_spans_arm_and_scheme) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::lifetime_laws

@@ -9,7 +9,7 @@
 
 /// Bounds hold whatever numbers they are given as: an acceleration or a velocity far beyond what a tick can use,
 /// DBL_MAX say, is as good as none.
-namespace fpbm::test {
+namespace fpbm::test::limits_extremes_laws {
 namespace {
 
 template <typename Scalar>
@@ -186,4 +186,4 @@ TEST(LimitsOfAnySize, hold_on_an_arm) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::limits_extremes_laws

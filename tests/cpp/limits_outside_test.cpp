@@ -9,7 +9,7 @@
 
 /// A measured state may lie beyond a bound: the joint comes back as fast as its bounds on velocity and acceleration
 /// allow, and comes to rest there, or goes on inside. The other joints go on with the task.
-namespace fpbm::test {
+namespace fpbm::test::limits_outside_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -179,4 +179,4 @@ TEST(Outside, noise_about_a_bound_does_no_harm) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::limits_outside_laws

@@ -14,7 +14,7 @@
 /// Bounds on positions, velocities and accelerations hold at every tick, and there is always a motion that keeps them.
 #include "support/wild_reference.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::limits_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -162,7 +162,7 @@ TEST(Limits, of_a_tick_are_within_the_bounds) {
   expect_boxes_within_bounds<Level::kAcceleration>();
 }
 
-/// 12,000 rollouts in all.
+/// 12,000 rollouts in all with FPBM_ALL_TRIALS.
 TEST(Limits, hold_on_a_planar_arm) {
   Random random(7);
   roll_every_scheme<Position<2>>("planar, 4 joints", PlanarArm<4>(Vector<4>::Ones()), narrow_limits<4>(4, random),
@@ -170,11 +170,11 @@ TEST(Limits, hold_on_a_planar_arm) {
 }
 TEST(Limits, hold_on_the_panda) {
   const SerialArm<7> panda(presets::panda());
-  roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), trials(500));
+  roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), trials(500, 100));
 }
 TEST(Limits, hold_on_a_rail) {
   const AnyArm<Position<3>> rail = any_arm(panda_on_rail());
-  roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250));
+  roll_every_scheme<Position<3>>("Panda on a rail, position", rail, rail.limits(), trials(250, 100));
 }
 TEST(Limits, hold_on_arms_without_redundancy) {
   const AnyArm<Position<3>> ur5e = any_arm(presets::ur5e());
@@ -382,4 +382,4 @@ TEST(Limits, say_what_is_wrong_with_them) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::limits_laws

@@ -12,7 +12,7 @@
 #include "support/textbook.hpp"
 
 /// w = √det(JJᵀ), its gradient, and schemes that climb it.
-namespace fpbm::test {
+namespace fpbm::test::manipulability_laws {
 namespace {
 
 /// √det(JJᵀ)
@@ -197,4 +197,4 @@ TEST(ManipulabilityAscent, climbs_and_leaves_the_tip_alone) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::manipulability_laws

@@ -16,7 +16,7 @@
 
 /// resolve_measured() for states that are some ticks old, quantised and noisy: after stop() the arm comes to rest, and
 /// no bound is exceeded.
-namespace fpbm::test {
+namespace fpbm::test::measured_delay_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -236,4 +236,4 @@ TEST(MeasuredDelay, is_validated) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::measured_delay_laws

@@ -10,7 +10,7 @@
 #include "support/random.hpp"
 
 /// Limits of one joint whose measured state is late.
-namespace fpbm::test {
+namespace fpbm::test::measured_limiter_laws {
 namespace {
 
 /// One joint that is driven at random, or always toward a bound, under all delays, ticks and jerks; the age of its
@@ -163,4 +163,4 @@ TEST(MeasuredLimiter, has_stability_margins) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::measured_limiter_laws

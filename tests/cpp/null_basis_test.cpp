@@ -9,7 +9,7 @@
 
 #include "support/random.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::null_basis_laws {
 namespace {
 
 /// null_basis of a size and a Scalar, types erased.
@@ -101,4 +101,4 @@ INSTANTIATE_TEST_SUITE_P(every, NullBasisOf,
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::null_basis_laws

@@ -12,7 +12,7 @@
 #include "support/recording.hpp"
 
 /// Secondary motions that depend on the state alone.
-namespace fpbm::test {
+namespace fpbm::test::null_space_laws {
 namespace {
 
 constexpr double kNone = JointBounds<>::kNone;
@@ -146,4 +146,4 @@ TEST(NullSpace, a_rest_posture_at_the_start_makes_motion_repeat) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::null_space_laws

@@ -8,7 +8,7 @@
 #include "support/recording.hpp"
 
 /// The paper's figures and tables.
-namespace fpbm::test {
+namespace fpbm::test::paper_laws {
 namespace {
 
 const TimeGrid<>& grid() {
@@ -62,4 +62,4 @@ TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::paper_laws

@@ -11,7 +11,7 @@
 #include "support/random.hpp"
 
 /// The clock of a path follower keeps to its path's time, whenever it is paused and resumed.
-namespace fpbm::test {
+namespace fpbm::test::path_follower_laws {
 namespace {
 
 template <typename Scalar>
@@ -157,4 +157,4 @@ TYPED_TEST(PathFollowers, take_half_a_ramps_way_to_rest) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::path_follower_laws

@@ -12,7 +12,7 @@
 
 #include "support/paper.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::path_laws {
 namespace {
 
 using Sample2 = Reference<Position<2>>;
@@ -166,4 +166,4 @@ TEST(TimeLaws, begin_and_end_as_they_say) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::path_laws

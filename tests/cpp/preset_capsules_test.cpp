@@ -12,7 +12,7 @@
 
 /// Capsules of presets.hpp's arms: on every link, apart where the arm is at home, and not too large. That they contain
 /// the links, tests/python/test_preset_capsules.py checks.
-namespace fpbm::test {
+namespace fpbm::test::preset_capsules_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -116,4 +116,4 @@ TEST(PresetCapsules, neighbours_touch) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::preset_capsules_laws

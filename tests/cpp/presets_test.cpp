@@ -14,7 +14,7 @@
 
 /// The arms of presets.hpp against models from other sources and in a control loop as they come, and
 /// Denavit-Hartenberg tables against products of their factors.
-namespace fpbm::test {
+namespace fpbm::test::presets_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -330,4 +330,4 @@ TEST(DenavitHartenberg, tip_is_the_product_of_its_rows) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::presets_laws

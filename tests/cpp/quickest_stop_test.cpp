@@ -10,7 +10,7 @@
 #include "support/random.hpp"
 
 /// The closed form of the quickest stop against motion along it, for bounds and states of every size.
-namespace fpbm::test {
+namespace fpbm::test::quickest_stop_laws {
 namespace {
 
 template <typename Scalar>
@@ -154,4 +154,4 @@ TYPED_TEST(QuickestStops, find_the_largest_below_zero) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::quickest_stop_laws

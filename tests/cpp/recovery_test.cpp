@@ -14,7 +14,7 @@
 
 /// An arm whose target leaves the workspace and comes back follows the target back; it rests while the target is
 /// unreachable.
-namespace fpbm::test {
+namespace fpbm::test::recovery_laws {
 namespace {
 
 constexpr int N = Eigen::Dynamic;
@@ -251,4 +251,4 @@ TEST(Recovery, ends_for_every_target) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::recovery_laws

@@ -9,7 +9,7 @@
 
 /// An arm that starts at rest with a joint exactly on its bound stays there: round-off neither pushes the joint off nor
 /// shakes the arm.
-namespace fpbm::test {
+namespace fpbm::test::rest_on_bounds_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -128,4 +128,4 @@ TEST(RestOnBounds, is_kept_by_every_preset) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::rest_on_bounds_laws

@@ -4,7 +4,7 @@
 #include "support/recording.hpp"
 
 /// Self-motion: none of the paper's schemes damps it; the secondary motion z does.
-namespace fpbm::test {
+namespace fpbm::test::rest_laws {
 namespace {
 
 Recording<4> circle_and_hold(const NullSpace<4>& null_space) {
@@ -61,4 +61,4 @@ TEST(Rest, posture_makes_circles_repeat) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::rest_laws

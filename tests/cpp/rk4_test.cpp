@@ -7,7 +7,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::rk4_laws {
 namespace {
 
 /// Exponent p of error = C hᵖ, from errors at h and h/2.
@@ -91,4 +91,4 @@ TEST(RK4, evaluates_at_the_ends_and_twice_in_the_middle) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::rk4_laws

@@ -8,7 +8,7 @@
 #include "support/random.hpp"
 
 /// The motion within rows that changes a task least.
-namespace fpbm::test {
+namespace fpbm::test::row_projection_laws {
 namespace {
 
 constexpr int kRows = 6;
@@ -153,4 +153,4 @@ TEST(TaskGivenUp, is_nothing_where_rows_admit_the_motion) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::row_projection_laws

@@ -12,7 +12,7 @@
 #include "support/linear_program.hpp"
 
 /// Saturation in the null space does as much of the task as a linear program, along the task's line, within the box.
-namespace fpbm::test {
+namespace fpbm::test::saturation_laws {
 namespace {
 
 constexpr int kRows = 6;
@@ -305,4 +305,4 @@ TEST(Saturation, solves_the_random_problems_of_sns_ik_in_velocity) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::saturation_laws

@@ -8,7 +8,7 @@
 #include "support/compiled_tracker.hpp"
 
 /// A tick that says kOk with scale 1 has done the whole task, and one that says less has not.
-namespace fpbm::test {
+namespace fpbm::test::scale_laws {
 namespace {
 
 constexpr int N = Eigen::Dynamic;
@@ -71,4 +71,4 @@ TEST(Scale, is_less_than_one_where_less_is_done) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::scale_laws

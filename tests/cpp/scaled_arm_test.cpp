@@ -8,7 +8,7 @@
 #include "support/compiled_tracker.hpp"
 
 /// An arm of another size, or in other units, does the same in proportion.
-namespace fpbm::test {
+namespace fpbm::test::scaled_arm_laws {
 namespace {
 
 /// Statuses of all ticks, the joints' way, and the largest error of the position, in arm lengths.
@@ -89,4 +89,4 @@ TEST(ScaledArm, does_the_same_in_the_plane) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::scaled_arm_laws

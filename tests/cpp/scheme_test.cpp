@@ -6,7 +6,7 @@
 #include "support/subjects.hpp"
 
 /// Laws of every scheme, on every arm, for every number of joints and Scalar.
-namespace fpbm::test {
+namespace fpbm::test::scheme_laws {
 namespace {
 
 double condition(const RealMatrix& gram) {
@@ -147,4 +147,4 @@ INSTANTIATE_TEST_SUITE_P(every, SchemeLaws, ::testing::ValuesIn(subjects()),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::scheme_laws

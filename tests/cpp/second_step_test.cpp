@@ -14,7 +14,7 @@
 
 /// The second step of limits with bounds on jerk, and its degenerate problems: the motion that it starts from is on
 /// bounds, and its goal may be on the same bounds. The share of the task is the one that a linear program finds.
-namespace fpbm::test {
+namespace fpbm::test::second_step_laws {
 namespace {
 
 /// Slack of the linear program's bounds, in their own units: the round-off error of an envelope's bound.
@@ -188,4 +188,4 @@ TEST(SecondStep, is_optimal_along_motions_by_velocity) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::second_step_laws

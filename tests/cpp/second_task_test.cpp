@@ -11,7 +11,7 @@
 #include "support/textbook.hpp"
 
 /// A second task in the null space of the first: an elbow that holds a point, a tip that looks in a direction.
-namespace fpbm::test {
+namespace fpbm::test::second_task_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -378,4 +378,4 @@ TEST(SecondTask, goes_before_what_it_wraps) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::second_task_laws

@@ -12,7 +12,7 @@
 
 /// J taken apart without JJᵀ, by its one self-motion and by its rows, against pseudoinverses in extended precision: the
 /// condition of J enters the round-off once.
-namespace fpbm::test {
+namespace fpbm::test::self_motion_laws {
 namespace {
 
 /// Of M rows of J, the last kTurns_ angular, and N joints.
@@ -202,4 +202,4 @@ INSTANTIATE_TEST_SUITE_P(every, ThreeJoints, ::testing::ValuesIn(make_subjects<P
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::self_motion_laws

@@ -15,7 +15,7 @@
 #include "support/textbook.hpp"
 
 /// Serial arms against finite differences, products of transforms and planar arms.
-namespace fpbm::test {
+namespace fpbm::test::serial_arm_laws {
 namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
@@ -339,4 +339,4 @@ TEST(SerialArm, bad_chains_are_refused) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::serial_arm_laws

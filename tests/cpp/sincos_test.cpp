@@ -8,7 +8,7 @@
 
 #include "support/random.hpp"
 
-namespace fpbm::test {
+namespace fpbm::test::sincos_laws {
 namespace {
 
 constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
@@ -143,4 +143,4 @@ TEST(SinCos, takes_as_many_angles_as_there_are) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::sincos_laws

@@ -14,7 +14,7 @@
 /// Joints of any speed, down to those whose velocity bound V is below J h², the change of velocity in one tick of jerk
 /// J, keep their bounds; every motion within box() leads from a viable state to a viable one; and require_viable()
 /// accepts these states in spite of round-off.
-namespace fpbm::test {
+namespace fpbm::test::slow_joints_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -335,4 +335,4 @@ TEST(SlowJoints, let_a_tracker_start_from_the_state_of_another) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::slow_joints_laws

@@ -12,7 +12,7 @@
 #include "support/random.hpp"
 
 /// Paths in space, paths of poses, waypoints and sequences.
-namespace fpbm::test {
+namespace fpbm::test::space_path_laws {
 namespace {
 
 constexpr double kPi = kTwoPi / 2;
@@ -278,4 +278,4 @@ TEST(SpacePaths, bad_ones_are_refused) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::space_path_laws

@@ -9,7 +9,7 @@
 #include "support/recording.hpp"
 
 /// Task spaces, with arms and rollouts in each.
-namespace fpbm::test {
+namespace fpbm::test::spaces_laws {
 namespace {
 
 constexpr double kPi = kTwoPi / 2;
@@ -240,4 +240,4 @@ TEST(PoseTask, converges_at_the_rate_of_its_gains) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::spaces_laws

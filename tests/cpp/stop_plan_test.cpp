@@ -7,7 +7,7 @@
 #include "support/arms.hpp"
 
 /// Stops that are known to their end.
-namespace fpbm::test {
+namespace fpbm::test::stop_plan_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -140,4 +140,4 @@ TEST(StopPlan, keeps_all_bounds_and_stays_within_its_sweep) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::stop_plan_laws

@@ -12,7 +12,7 @@
 #include "support/recording.hpp"
 
 /// A summary of a motion equals what its samples give, all of them kept.
-namespace fpbm::test {
+namespace fpbm::test::summary_laws {
 namespace {
 
 template <typename Space, int N>
@@ -161,4 +161,4 @@ TEST(Rollout, ends_where_the_recorder_says_so) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::summary_laws

@@ -12,7 +12,7 @@
 #include "support/textbook.hpp"
 
 /// A = V diag(λ) Vᵀ with VᵀV = I, and the eigenvalues are Eigen's, to round-off, at every rank and scale.
-namespace fpbm::test {
+namespace fpbm::test::symmetric_eigen_laws {
 namespace {
 
 /// The decomposition of A as its Scalar rounds it.
@@ -92,4 +92,4 @@ INSTANTIATE_TEST_SUITE_P(every, SymmetricEigenOf,
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::symmetric_eigen_laws

@@ -15,7 +15,7 @@
 #include "support/random.hpp"
 
 /// What a filter makes of targets keeps every bound whatever they are, and arrives where they are.
-namespace fpbm::test {
+namespace fpbm::test::target_filter_laws {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -506,4 +506,4 @@ TEST(TargetFilter, leads_a_tracker) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::target_filter_laws

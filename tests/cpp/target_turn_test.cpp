@@ -8,7 +8,7 @@
 #include "support/random.hpp"
 
 /// How long a TargetFilter takes for a change of orientation, against the largest angle alone.
-namespace fpbm::test {
+namespace fpbm::test::target_turn_laws {
 namespace {
 
 struct Case {
@@ -153,4 +153,4 @@ TEST(TargetTurn, from_a_motion) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::target_turn_laws

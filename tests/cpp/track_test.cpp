@@ -9,7 +9,7 @@
 #include "support/recording.hpp"
 
 /// A whole motion of a tracker is its ticks, one after another.
-namespace fpbm::test {
+namespace fpbm::test::track_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -97,4 +97,4 @@ TEST(Track, ends_where_the_recorder_says_so) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::track_laws

@@ -15,7 +15,7 @@
 #include "fpbm/fpbm.hpp"
 
 /// Trackers side by side in lanes move as each does by itself.
-namespace fpbm::test {
+namespace fpbm::test::tracker_batch_laws {
 namespace {
 
 constexpr int kLanes = 2;
@@ -314,4 +314,4 @@ TYPED_TEST(TrackerBatchLaws, end_where_the_recorder_says_so) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::tracker_batch_laws

@@ -17,7 +17,7 @@
 #include "fpbm/scheme/schemes.hpp"
 
 /// The options of a tracker act on every scheme: damping, and refusal of gains that a tick cannot integrate.
-namespace fpbm::test {
+namespace fpbm::test::tracker_options_laws {
 
 /// A scheme that knows no damping, and one that keeps what it is given.
 struct Undampable {
@@ -359,4 +359,4 @@ TEST(TickGains, a_stiff_rest_posture_leaves_the_task_alone) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::tracker_options_laws

@@ -13,7 +13,7 @@
 #include "support/recording.hpp"
 
 /// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
-namespace fpbm::test {
+namespace fpbm::test::tracker_laws {
 namespace {
 
 constexpr int kOpen = Eigen::Dynamic;
@@ -466,4 +466,4 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::tracker_laws

@@ -9,7 +9,7 @@
 #include "support/random.hpp"
 
 /// Waypoints::within: no bound is exceeded between samples, and the path is as fast as promised.
-namespace fpbm::test {
+namespace fpbm::test::waypoints_bounds_laws {
 namespace {
 
 /// Points at distances of millimetres to metres; orientations up to half a turn apart, one in four exactly.
@@ -118,4 +118,4 @@ TEST(WaypointsBounds, hold_between_samples) {
 }
 
 }  // namespace
-}  // namespace fpbm::test
+}  // namespace fpbm::test::waypoints_bounds_laws

@@ -39,8 +39,7 @@ grep -q "fpbm_DIR:PATH=$prefix" "$scratch/installed/CMakeCache.txt"
 # The same by pkg-config.
 flags=$(PKG_CONFIG_PATH="$prefix/share/pkgconfig" pkg-config --cflags fpbm)
 # shellcheck disable=SC2086 # Several words.
-"$compiler" -std=c++17 -O1 "$consumer/main.cpp" $flags -o "$scratch/by_pkg_config"
-"$scratch/by_pkg_config"
+"$compiler" -std=c++17 -fsyntax-only "$consumer/main.cpp" $flags
 
 # As a subdirectory, which brings the library alone: none of our tests, examples or flags.
 configure -S "$consumer" -B "$scratch/subdirectory" -DFPBM_SOURCE_DIR="$source_dir"

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 
 namespace fpbm::test {
@@ -13,6 +15,11 @@ namespace fpbm::test {
 #else
   return all;
 #endif
+}
+
+/// Trials of a law that takes long: few every day, all of them if FPBM_ALL_TRIALS is set, as `make nightly` does.
+[[nodiscard]] inline int trials(int all, int few) {
+  return std::getenv("FPBM_ALL_TRIALS") != nullptr ? trials(all) : std::min(trials(all), few);
 }
 
 /// Random test material, the same in every run and on every machine.
