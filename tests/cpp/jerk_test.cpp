@@ -301,16 +301,16 @@ TEST(Jerk, all_bounds_hold_at_every_tick_until_rest) {
   for (const presets::Preset& preset : presets::kAll) {
     SCOPED_TRACE(preset.name);
     const AnyArm<Position<3>> arm = any_arm(preset.chain());
-    roll_schemes<Position<3>>(arm, arm.limits(), trials(60, 20));
-    roll_schemes<Pose>(arm, arm.limits(), trials(60, 20));
+    roll_schemes<Position<3>>(arm, arm.limits(), trials(60));
+    roll_schemes<Pose>(arm, arm.limits(), trials(60));
   }
   const AnyArm<Position<2>> planar = any_planar_arm(Vector<kOpen>::Constant(4, 0.5));
   auto bounds = JointLimits<kOpen>::none(4);
   for (Eigen::Index i = 0; i < 4; ++i) bounds.set(i, {-2.0, 2.5, 2.0, 10.0});
-  roll_schemes<Position<2>>(planar, bounds, trials(60, 20));
-  roll_schemes<PlanarPose>(planar, bounds, trials(60, 20));
+  roll_schemes<Position<2>>(planar, bounds, trials(60));
+  roll_schemes<PlanarPose>(planar, bounds, trials(60));
   const SerialArm<7> fixed(presets::panda());
-  roll_schemes<Pose>(fixed, fixed.limits(), trials(60, 20));
+  roll_schemes<Pose>(fixed, fixed.limits(), trials(60));
 }
 
 /// A step of the target is followed along the same line as without a bound on jerk, and nearly as soon.

@@ -220,7 +220,8 @@ TEST(Recovery, is_left_by_stop_and_by_nonsense) {
     EXPECT_TRUE(tick.qd.isZero(0.0)) << k;
     loop.resume();
     for (int i = 0; i < 30000; ++i) tick = loop.tick(home);
-    EXPECT_LT(tick.error.norm(), 1e-4) << k;
+    // As in expect_return(): where limits slow the arm, no error below 2e-3 starts a recovery (StallDetector).
+    EXPECT_LT(tick.error.norm(), 1e-3) << k;
   }
   EXPECT_GE(recoveries, 2);
 }
