@@ -1,4 +1,10 @@
+import os
+import pickle
 import signal
+import time
+from collections.abc import Callable, Hashable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,6 +33,41 @@ def circle() -> fp.Path:
 @pytest.fixture(scope="session")
 def q0() -> np.ndarray:
     return Q0.copy()
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
+    """once(make, *arguments) is make(*arguments): what takes long is made in one process of pytest-xdist's for all."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
+    known: dict[Hashable, Any] = {}
+
+    def shared(file: Path, make: Callable[..., Any], arguments: tuple[Hashable, ...]) -> Any:
+        lock = file.with_suffix(".lock")
+        give_up = time.monotonic() + 600.0  # Whoever had the lock has crashed.
+        while time.monotonic() < give_up:
+            try:
+                lock.mkdir()
+            except FileExistsError:
+                time.sleep(0.1)
+                continue
+            try:
+                if not file.exists():
+                    file.write_bytes(pickle.dumps(make(*arguments)))
+                return pickle.loads(file.read_bytes())
+            finally:
+                lock.rmdir()
+        return make(*arguments)
+
+    def once(make: Callable[..., Any], *arguments: Hashable) -> Any:
+        key = (make.__module__, make.__qualname__, *arguments)
+        if key not in known:
+            name = "".join(each if each.isalnum() else "-" for each in repr(key))
+            known[key] = shared(folder / f"{name}.pickle", make, arguments)
+        return known[key]
+
+    return once
 
 
 @pytest.fixture

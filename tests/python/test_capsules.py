@@ -215,7 +215,8 @@ def test_each_link_moves_with_the_last_joint_before_it(write) -> None:
         joint("flange", "b", "plate", "fixed", at.format(32)),
         joint("grip", "plate", "finger", "revolute", at.format(64)),
     )
-    found = {c.name: (c.link, float(c.a[0])) for c in capsules_of(file, "b")}
+    capsules = capsules_of(file, "b")
+    found = {c.name: (c.link, float(c.a[0])) for c in capsules}
     assert found == {
         "world": (0, 0),
         "base": (0, 1),
@@ -230,7 +231,7 @@ def test_each_link_moves_with_the_last_joint_before_it(write) -> None:
     assert found["world"] == (0, -1)
     assert found["box"] == (0, 1)
     assert found["finger"] == (1, 112)
-    assert [c.link for c in capsules_of(file, "b")] == sorted(c.link for c in capsules_of(file, "b"))
+    assert [c.link for c in capsules] == sorted(c.link for c in capsules)
 
 
 def test_shapes_and_their_frames(write) -> None:
@@ -407,6 +408,11 @@ ARMS = {
 FLOAT = 1e-6  # Pinocchio's reader of meshes keeps single precision.
 
 
+def fitted(path: str, tip: str, base: str | None, per_link: int) -> fp.Clearance:
+    """The clearance of a robot of example-robot-data."""
+    return fp.Clearance.from_urdf(ROBOTS / path, tip, base, per_link=per_link)
+
+
 def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
     """Of the base and of each joint, in the base frame."""
     frames = [np.eye(4)]
@@ -454,12 +460,12 @@ def test_no_axis_is_better_for_a_mesh(mesh: str) -> None:
 
 @with_robots
 @pytest.mark.parametrize("name", ARMS)
-def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str) -> None:
+def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
     """By our own reader exactly; by Pinocchio's, in random postures, faces as well, as far as its readers are exact."""
     pin = pytest.importorskip("pinocchio")
     path, tip, base, most = ARMS[name]
     file = str(ROBOTS / path)
-    found = capsules_of(file, tip, base, per_link=most)
+    found = once(fitted, path, tip, base, most).capsules
     of_link = {n: [c for c in found if c.name == n] for n in dict.fromkeys(c.name for c in found)}
     joints, end, places = read_places(file, tip, base)
     for n, shapes in read_shapes(file).items():

@@ -54,6 +54,17 @@ def random_viable(rng, limits, speed):
             return q, qd
 
 
+def random_demands(rng, limits, m):
+    """Viable q, qd, with xd, xdd of m rows and the ends of the box, all boxes in one bisection."""
+    while True:
+        states, demands = [], []
+        for _ in range(500):
+            states.append(random_viable(rng, limits, speed=rng.uniform(0, 0.4)))
+            demands.append(rng.uniform(-1, 1, (2, m)) * rng.uniform(0, 1))
+        q, qd = np.swapaxes(states, 0, 1)
+        yield from zip(q, qd, *np.swapaxes(demands, 0, 1), *box(limits, q, qd))
+
+
 def narrow_limits():
     return fp.JointLimits(
         lower=[-2, -1.5, -1.5, -2], upper=[2, 1.5, 1.8, 2], velocity=[1, 1.5, 2, 2], acceleration=[5, 8, 10, 12]
@@ -73,13 +84,11 @@ def test_saturation_finds_the_task_feasible_when_a_solver_does(case, panda):
     scheme = fp.FPBM(0.6, rng.uniform(1, 4, n), 10, 25, null_damping=2, singular_radius=0.02)
     tracker = fp.Tracker(arm, scheme, middle, task=task, limits=limits, error_bound=1e9, measured_delay=0)
     met = feasible = agreed = 0
+    demands = random_demands(rng, limits, len(arm.jacobian(middle, task=task)))
     while feasible < 300:
-        q, qd = random_viable(rng, limits, speed=rng.uniform(0, 0.4))
-        m = len(arm.jacobian(q, task=task))
+        q, qd, xd, xdd, lower, upper = next(demands)
         x = arm.forward(q) if task == "pose" else np.asarray(arm.forward(q))[..., :3, 3] if n == 7 else arm.forward(q)
-        xd, xdd = rng.uniform(-1, 1, (2, m)) * rng.uniform(0, 1)
         tick = tracker.resolve_measured(q, qd, x, xd, xdd)
-        lower, upper = box(limits, q, qd)
         assert (tick.qdd >= lower - 1e-6).all()
         assert (tick.qdd <= upper + 1e-6).all()
         desired = scheme.resolve(arm, q, qd, x, xd, xdd, task=task)
