@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -168,10 +169,13 @@ PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike&
     const JointVector values = joint_vector(given[k].second, b.c_str(), static_cast<int>(rows));
     levels.emplace_back(matrix(given[k].first, J.c_str(), rows, n), values);
   }
-  const Levels found = saturate(levels, box, rest_in(box, rest), unit_of(box, unit));
+  const JointVector units = unit_of(box, unit);
+  const Levels found = saturate(levels, box, rest_in(box, rest), units);
   py::array_t<bool> saturated(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    saturated.mutable_at(i) = found.u(i) == box.lower(i) || found.u(i) == box.upper(i);
+    const double room = std::min(found.u(i) - box.lower(i), box.upper(i) - found.u(i));
+    // A joint that moves along with held ones ends within round-off.
+    saturated.mutable_at(i) = room <= 1e-12 * units(i);
   }
   return {
       array_of(found.u),

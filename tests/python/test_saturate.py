@@ -12,7 +12,7 @@ PROBLEMS = int(os.environ.get("FPBM_PROBLEMS", "150"))
 
 
 def random_problem(rng):
-    """2 to 32 joints and 1 to 6 levels, with rows that are zero, repeat or depend on others, of sizes from 1e-4 to 1e4."""
+    """2 to 32 joints, 1 to 6 levels of sizes from 1e-4 to 1e4, with rows that are zero, repeat or depend on others."""
     n = int(rng.integers(2, 33))
     lower, upper = -rng.uniform(0.1, 1.1, n), rng.uniform(0.1, 1.1, n)
     levels = []
@@ -53,16 +53,21 @@ def test_every_scale_is_the_largest():
         whole = fp.saturate(tasks, lower, upper)
         for k, (J, b) in enumerate(tasks):
             found = fp.saturate(tasks[: k + 1], lower, upper)
-            assert (found.u >= lower).all() and (found.u <= upper).all()
+            assert (found.u >= lower).all()
+            assert (found.u <= upper).all()
             assert found.scale[k] == whole.scale[k]
             if J.any():  # No level after it disturbs it.
                 assert np.linalg.norm(J @ (whole.u - found.u)) <= 1e-10 * np.linalg.norm(J)
             Z = null_space(above * unit, n)
             A = J * unit @ Z
-            way = unit * (Z @ np.linalg.lstsq(A, b - J @ before, rcond=None)[0]) if Z.shape[1] else np.zeros(n)
+            way = np.zeros(n)
+            if np.linalg.norm(A) > 1e-9 * np.linalg.norm(J * unit):
+                # As a share of the largest singular value.
+                least = 1e-9 * np.linalg.norm(J * unit) / np.linalg.norm(A, 2)
+                way = unit * (Z @ np.linalg.lstsq(A, b - J @ before, rcond=least)[0])
             above = np.vstack([above, J])
             levels += 1
-            if np.linalg.norm(A) > 1e-9 * np.linalg.norm(J * unit) and np.linalg.norm(way) > 1e-9:
+            if np.linalg.norm(way) > 1e-9:
                 size = np.linalg.norm(above, axis=1)
                 rows = above[size > 0] / size[size > 0, None]
                 best = linprog(
@@ -85,7 +90,8 @@ def test_one_level_within_the_bounds_is_the_pseudoinverse():
     J, b = rng.normal(size=(3, 7)), rng.normal(size=3)
     found = fp.saturate([(J, b)], np.full(7, -np.inf), np.full(7, np.inf))
     np.testing.assert_allclose(found.u, np.linalg.pinv(J) @ b, atol=1e-14)
-    assert found.scale.tolist() == [1.0] and not found.saturated.any()
+    assert found.scale.tolist() == [1.0]
+    assert not found.saturated.any()
 
 
 def test_three_tasks_by_hand():
@@ -99,7 +105,7 @@ def test_three_tasks_by_hand():
 
 
 @pytest.mark.parametrize(
-    "changed, message",
+    ("changed", "message"),
     [
         ({"levels": []}, "levels: must be one at least"),
         ({"levels": [([[1, 0]], [1, 2])]}, r"levels\[0\]'s b"),
