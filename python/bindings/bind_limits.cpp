@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -6,6 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "limiter.hpp"
+#include "saturate.hpp"
 
 namespace fpbm::bindings {
 namespace {
@@ -95,10 +98,132 @@ class PyLimiter {
   AnyLimiter any_;
 };
 
+/// A motion of several levels, as Python has it.
+struct PyLevels {
+  Array u;
+  Array scale;
+  py::array_t<bool> saturated;
+};
+
+using PyLevelRows = std::pair<ArrayLike, ArrayLike>;
+
+/// Bounds of n motions that are numbers, infinite where there is none.
+JointVector bounds_of(const ArrayLike& argument, const char* name, Eigen::Index n) {
+  const JointVector values = joint_vector(argument, name);
+  validation::require_size(name, values.size(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (std::isnan(values(i))) validation::fail(validation::element(name, i), values(i), "a number");
+  }
+  return values;
+}
+
+/// What is not given: the motion within the box nearest to rest, and units of half its width.
+JointVector rest_in(const Box<kOpen>& box, const OptionalArray& given) {
+  const auto n = static_cast<int>(box.lower.size());
+  if (!given) return box.nearest(JointVector::Zero(n));
+  const JointVector rest = joint_vector(*given, "rest", n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (rest(i) < box.lower(i) || rest(i) > box.upper(i)) {
+      validation::fail(validation::element("rest", i), rest(i), "from lower to upper");
+    }
+  }
+  return rest;
+}
+JointVector unit_of(const Box<kOpen>& box, const OptionalArray& given) {
+  const auto n = static_cast<int>(box.lower.size());
+  if (given) {
+    const JointVector unit = joint_vector(*given, "unit", n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!(unit(i) > 0.0)) validation::fail(validation::element("unit", i), unit(i), "positive");
+    }
+    return unit;
+  }
+  JointVector unit = (box.upper - box.lower) / 2.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!std::isfinite(unit(i)) || unit(i) == 0.0) unit(i) = 1.0;
+  }
+  return unit;
+}
+
+PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike& lower, const ArrayLike& upper,
+                         const OptionalArray& rest, const OptionalArray& unit) {
+  if (given.empty()) validation::reject("levels", ": must be one at least");
+  const JointVector low = joint_vector(lower, "lower");
+  const Eigen::Index n = low.size();
+  const Box<kOpen> box{bounds_of(lower, "lower", n), bounds_of(upper, "upper", n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (box.lower(i) > box.upper(i)) {
+      validation::fail(validation::element("lower", i), box.lower(i), "at most upper, " + std::to_string(box.upper(i)));
+    }
+  }
+  std::vector<LevelRows> levels;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::string level = "levels[" + std::to_string(k) + "]";
+    const std::string J = level + "'s J";
+    const std::string b = level + "'s b";
+    const auto rows = real_array(given[k].first, J.c_str(), 2).shape(0);
+    if (rows < 1 || rows > kMaxDof) {
+      validation::fail((J + "'s number of rows").c_str(), static_cast<double>(rows),
+                       "from 1 to " + std::to_string(kMaxDof));
+    }
+    const JointVector values = joint_vector(given[k].second, b.c_str(), static_cast<int>(rows));
+    levels.emplace_back(matrix(given[k].first, J.c_str(), rows, n), values);
+  }
+  const JointVector units = unit_of(box, unit);
+  const Levels found = saturate(levels, box, rest_in(box, rest), units);
+  py::array_t<bool> saturated(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double room = std::min(found.u(i) - box.lower(i), box.upper(i) - found.u(i));
+    // A joint that moves along with held ones ends within round-off.
+    saturated.mutable_at(i) = room <= 1e-12 * units(i);
+  }
+  return {
+      array_of(found.u),
+      array_of(Eigen::Map<const Eigen::VectorXd>(found.scale.data(), static_cast<Eigen::Index>(found.scale.size()))),
+      saturated};
+}
+
 }  // namespace
 
 void bind_limits(py::module_& m) {
   const auto none = py::none();
+  py::class_<PyLevels>(m, "SaturatedLevels", "A motion of several tasks in strict priority within bounds.")
+      .def_readonly("u", &PyLevels::u, "The motion, within the bounds, shape (n,).")
+      .def_readonly(
+          "scale", &PyLevels::scale,
+          "How much of each level's task the bounds and the levels before leave, from 0 to 1, shape (levels,).")
+      .def_readonly("saturated", &PyLevels::saturated, "Which joints are on a bound, shape (n,).");
+
+  m.def("saturate", &saturate_levels, py::arg("levels"), py::arg("lower"), py::arg("upper"), py::kw_only(),
+        py::arg("rest") = none, py::arg("unit") = none,
+        R"(The motion u with lower <= u <= upper that does tasks J u = b in strict priority.
+
+Level by level, from u_0 = rest: with d the motion nearest to u_{k-1} that does level k and leaves the levels before as
+they are,
+
+    u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as can be,
+
+where the columns of Z_k span the null space of J_1 ... J_k, and g moves joints that are free in place of those that meet
+a bound. No level disturbs one before it; each scale is the largest that the levels before leave, as a linear program
+finds it.
+
+Parameters
+----------
+levels : sequence of (J, b)
+    The tasks, the first one first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may depend on one another
+    and on those of levels before; a level that cannot be done even without bounds is done by least squares.
+lower, upper : array_like, shape (n,)
+    Bounds of each joint's motion; infinite where there is none.
+rest : array_like, shape (n,), optional
+    A motion within the bounds to start from: the braking motion of a loop, say. Unless given, the one nearest to zero.
+unit : array_like, shape (n,), optional
+    One unit of each joint's motion: of all motions that are left, the one of least norm in these units is taken. Half
+    the distance of the bounds unless given.
+
+Raises
+------
+ParameterError
+    Where a shape does not fit, a number is not finite, a bound is below the other, or rest is outside the bounds.)");
   py::class_<PyMotion>(m, "LimitedMotion", "A motion of one tick within limits.")
       .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).")
       .def_readonly("scale", &PyMotion::scale, "How much of the task is left, from 0 to 1.")

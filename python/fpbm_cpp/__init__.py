@@ -13,6 +13,7 @@ from ._core import (
     Limiter,
     Nearest,
     PathFollower,
+    SaturatedLevels,
     Status,
     TargetFilter,
     Tick,
@@ -21,6 +22,7 @@ from ._core import (
     failed,
     rotation,
     rotation_vector,
+    saturate,
 )
 from .arms import *
 from .capsule import Capsule
@@ -41,7 +43,7 @@ __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "
 __all__ += ["servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "TargetFilter", "Tick"]
-__all__ += ["Tracker", "failed"]
+__all__ += ["SaturatedLevels", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__

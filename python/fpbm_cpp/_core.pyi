@@ -20,6 +20,7 @@ __all__: list[str] = [
     "PRESETS",
     "Path",
     "PathFollower",
+    "SaturatedLevels",
     "Scheme",
     "Shape",
     "Status",
@@ -44,6 +45,7 @@ __all__: list[str] = [
     "rollout",
     "rotation",
     "rotation_vector",
+    "saturate",
     "sequence",
     "sweep_chunk",
     "tricuspid",
@@ -288,6 +290,26 @@ class Stop:
     def set(self) -> None:
         """
         From any thread.
+        """
+
+class SaturatedLevels:
+    """
+    A motion of several tasks in strict priority within bounds.
+    """
+    @property
+    def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Which joints are on a bound, shape (n,).
+        """
+    @property
+    def scale(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        How much of each level's task the bounds and the levels before leave, from 0 to 1, shape (levels,).
+        """
+    @property
+    def u(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The motion, within the bounds, shape (n,).
         """
 
 class LimitedMotion:
@@ -764,6 +786,45 @@ def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
 def rotation_vector(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Rotation vector of a rotation matrix, shape (3,), of length at most pi [rad].
+    """
+
+def saturate(
+    levels: collections.abc.Sequence[tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]],
+    lower: numpy.typing.ArrayLike,
+    upper: numpy.typing.ArrayLike,
+    *,
+    rest: numpy.typing.ArrayLike | None = None,
+    unit: numpy.typing.ArrayLike | None = None,
+) -> SaturatedLevels:
+    """
+    The motion u with lower <= u <= upper that does tasks J u = b in strict priority.
+
+    Level by level, from u_0 = rest: with d the motion nearest to u_{k-1} that does level k and leaves the levels before as
+    they are,
+
+        u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as can be,
+
+    where the columns of Z_k span the null space of J_1 ... J_k, and g moves joints that are free in place of those that meet
+    a bound. No level disturbs one before it; each scale is the largest that the levels before leave, as a linear program
+    finds it.
+
+    Parameters
+    ----------
+    levels : sequence of (J, b)
+        The tasks, the first one first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may depend on one another
+        and on those of levels before; a level that cannot be done even without bounds is done by least squares.
+    lower, upper : array_like, shape (n,)
+        Bounds of each joint's motion; infinite where there is none.
+    rest : array_like, shape (n,), optional
+        A motion within the bounds to start from: the braking motion of a loop, say. Unless given, the one nearest to zero.
+    unit : array_like, shape (n,), optional
+        One unit of each joint's motion: of all motions that are left, the one of least norm in these units is taken. Half
+        the distance of the bounds unless given.
+
+    Raises
+    ------
+    ParameterError
+        Where a shape does not fit, a number is not finite, a bound is below the other, or rest is outside the bounds.
     """
 
 def sequence(paths: collections.abc.Sequence[Path]) -> Path: ...

@@ -7,6 +7,7 @@
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/held_joints.hpp"
 #include "fpbm/limits/rows.hpp"
+#include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/linalg/self_motion.hpp"
 
@@ -60,16 +61,19 @@ class NullSpaceSaturation {
         for (Eigen::Index i = 0; i < n; ++i) Z_.coeffRef(i, j) = column.coeff(i);
       }
     }
-    if constexpr (P > 0) {
-      // Each row in a unit of its own, so that its length is 1.
-      for (Eigen::Index k = 0; k < rows.count; ++k) {
-        const Scalar length = rows_.g.col(k).cwiseProduct(unit).norm();
-        const Scalar scale = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
-        rows_.g.col(k) *= scale;
-        rows_.b(k) *= scale;
-        Z_.row(n + k) = rows_.g.col(k).cwiseProduct(unit).transpose().lazyProduct(Z_.topRows(n));
-      }
-    }
+    add_rows(n);
+  }
+
+  /// In the null space of levels whose rows are in each joint's unit.
+  NullSpaceSaturation(const LevelSpace<N, Scalar>& space, const JointVector& unit,
+                      const Rows<N, P, Scalar>& rows = {}) noexcept
+      : unit_(unit), rows_(rows) {
+    const Eigen::Index n = space.size();
+    Eigen::Index all = n;
+    if constexpr (P > 0) all += rows.count;
+    Z_.resize(all, n - space.rank());
+    Z_.topRows(n) = space.basis();
+    add_rows(n);
   }
 
   [[nodiscard]] Saturated<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
@@ -166,6 +170,19 @@ class NullSpaceSaturation {
       }
     }
     return false;
+  }
+
+  /// Rows of Z for the rows beside n joints, each in a unit of its own, so that its length is 1.
+  void add_rows([[maybe_unused]] Eigen::Index n) noexcept {
+    if constexpr (P > 0) {
+      for (Eigen::Index k = 0; k < rows_.count; ++k) {
+        const Scalar length = rows_.g.col(k).cwiseProduct(unit_).norm();
+        const Scalar scale = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
+        rows_.g.col(k) *= scale;
+        rows_.b(k) *= scale;
+        Z_.row(n + k) = rows_.g.col(k).cwiseProduct(unit_).transpose().lazyProduct(Z_.topRows(n));
+      }
+    }
   }
 
   static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {

@@ -1,0 +1,124 @@
+"""Tasks in strict priority within bounds, against linear programs (HiGHS)."""
+
+import os
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+import fpbm_cpp as fp
+
+PROBLEMS = int(os.environ.get("FPBM_PROBLEMS", "150"))
+
+
+def random_problem(rng):
+    """2 to 32 joints, 1 to 6 levels of sizes from 1e-4 to 1e4, with rows that are zero, repeat or depend on others."""
+    n = int(rng.integers(2, 33))
+    lower, upper = -rng.uniform(0.1, 1.1, n), rng.uniform(0.1, 1.1, n)
+    levels = []
+    for _ in range(rng.integers(1, 7)):
+        J = rng.normal(size=(int(rng.integers(1, min(n, 6) + 1)), n)) * 10 ** rng.uniform(-4, 4)
+        kind = rng.integers(6)
+        if kind == 0:
+            J[0] = 0
+        if kind == 1:
+            J[0] = 2 * J[-1]
+        if kind == 2 and levels:
+            J[0] = levels[0][0][0]
+        u = rng.uniform(lower, upper)
+        u[rng.random(n) < 0.2] = 0.1
+        levels.append((J, J @ u / (rng.uniform(0.1, 0.9) if rng.random() < 0.4 else 1)))
+    return lower, upper, levels
+
+
+def null_space(rows, n):
+    """An orthonormal basis of the null space of rows, each at length 1 first."""
+    lengths = np.linalg.norm(rows, axis=1)
+    rows = rows[lengths > 0] / lengths[lengths > 0, None]
+    if len(rows) == 0:
+        return np.eye(n)
+    _, sigma, V = np.linalg.svd(rows)
+    return V[np.sum(sigma > 1e-9) :].T
+
+
+def test_every_scale_is_the_largest():
+    rng = np.random.default_rng(1)
+    levels = limited = missed = 0
+    for _ in range(PROBLEMS):
+        lower, upper, tasks = random_problem(rng)
+        n = len(lower)
+        unit = (upper - lower) / 2
+        before = np.clip(np.zeros(n), lower, upper)
+        above = np.zeros((0, n))
+        whole = fp.saturate(tasks, lower, upper)
+        for k, (J, b) in enumerate(tasks):
+            found = fp.saturate(tasks[: k + 1], lower, upper)
+            assert (found.u >= lower).all()
+            assert (found.u <= upper).all()
+            assert found.scale[k] == whole.scale[k]
+            if J.any():  # No level after it disturbs it.
+                assert np.linalg.norm(J @ (whole.u - found.u)) <= 1e-10 * np.linalg.norm(J)
+            Z = null_space(above * unit, n)
+            A = J * unit @ Z
+            way = np.zeros(n)
+            if np.linalg.norm(A) > 1e-9 * np.linalg.norm(J * unit):
+                # As a share of the largest singular value.
+                least = 1e-9 * np.linalg.norm(J * unit) / np.linalg.norm(A, 2)
+                way = unit * (Z @ np.linalg.lstsq(A, b - J @ before, rcond=least)[0])
+            above = np.vstack([above, J])
+            levels += 1
+            if np.linalg.norm(way) > 1e-9:
+                size = np.linalg.norm(above, axis=1)
+                rows = above[size > 0] / size[size > 0, None]
+                best = linprog(
+                    np.r_[np.zeros(n), -1],
+                    A_eq=np.c_[rows, -rows @ way],
+                    b_eq=rows @ before,
+                    bounds=[*zip(lower, upper), (0, 1)],
+                    method="highs",
+                )
+                limited += found.scale[k] < 1
+                missed += best.status == 0 and -best.fun - found.scale[k] > 1e-6
+            before = found.u
+    print(f"{levels} levels, {limited} limited, {missed} below the largest scale by more than 1e-6")
+    assert limited > levels / 10
+    assert missed <= 1e-3 * levels
+
+
+def test_one_level_within_the_bounds_is_the_pseudoinverse():
+    rng = np.random.default_rng(2)
+    J, b = rng.normal(size=(3, 7)), rng.normal(size=3)
+    found = fp.saturate([(J, b)], np.full(7, -np.inf), np.full(7, np.inf))
+    np.testing.assert_allclose(found.u, np.linalg.pinv(J) @ b, atol=1e-14)
+    assert found.scale.tolist() == [1.0]
+    assert not found.saturated.any()
+
+
+def test_three_tasks_by_hand():
+    """The first is done by half, the second whole with what is left, the third contradicts the first."""
+    found = fp.saturate(
+        [([[1, 0, 0]], [2]), ([[0, 1, 1]], [1.5]), ([[1, 0, 0]], [0])], lower=[-1, -0.5, -1], upper=[1, 0.5, 1]
+    )
+    np.testing.assert_allclose(found.u, [1, 0.5, 1], atol=1e-15)
+    np.testing.assert_allclose(found.scale, [0.5, 1, 1])
+    assert found.saturated.all()
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"levels": []}, "levels: must be one at least"),
+        ({"levels": [([[1, 0]], [1, 2])]}, r"levels\[0\]'s b"),
+        ({"levels": [([[1, 0, 0]], [1])]}, r"levels\[0\]'s J"),
+        ({"levels": [([[1, np.nan]], [1])]}, "finite"),
+        ({"levels": [(np.zeros((33, 2)), np.zeros(33))]}, "number of rows"),
+        ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper"),
+        ({"upper": [1, np.nan]}, r"upper\[1\]"),
+        ({"rest": [0, 3]}, r"rest\[1\] = 3: must be from lower to upper"),
+        ({"unit": [1, 0]}, r"unit\[1\] = 0: must be positive"),
+    ],
+)
+def test_wrong_arguments_are_named(changed, message):
+    arguments = {"levels": [([[1, 0]], [1])], "lower": [-1, -1], "upper": [1, 1]} | changed
+    with pytest.raises(fp.ParameterError, match=message):
+        fp.saturate(**arguments)
