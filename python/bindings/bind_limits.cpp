@@ -98,7 +98,7 @@ class PyLimiter {
   AnyLimiter any_;
 };
 
-/// A motion of several levels, as Python has it.
+/// Motion of several task levels, as Python has it.
 struct PyLevels {
   Array u;
   Array scale;
@@ -107,7 +107,7 @@ struct PyLevels {
 
 using PyLevelRows = std::pair<ArrayLike, ArrayLike>;
 
-/// Bounds of n motions that are numbers, infinite where there is none.
+/// Bounds of n motions; may be infinite, not NaN.
 JointVector bounds_of(const ArrayLike& argument, const char* name, Eigen::Index n) {
   const JointVector values = joint_vector(argument, name);
   validation::require_size(name, values.size(), n);
@@ -117,7 +117,7 @@ JointVector bounds_of(const ArrayLike& argument, const char* name, Eigen::Index 
   return values;
 }
 
-/// What is not given: the motion within the box nearest to rest, and units of half its width.
+/// Defaults: the motion in the box nearest to zero, and units of half the width of the box.
 JointVector rest_in(const Box<kOpen>& box, const OptionalArray& given) {
   const auto n = static_cast<int>(box.lower.size());
   if (!given) return box.nearest(JointVector::Zero(n));
@@ -174,7 +174,7 @@ PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike&
   py::array_t<bool> saturated(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double room = std::min(found.u(i) - box.lower(i), box.upper(i) - found.u(i));
-    // A joint that moves along with held ones ends within round-off.
+    // Joints that are linearly dependent on held joints stop within round-off of their bounds.
     saturated.mutable_at(i) = room <= 1e-12 * units(i);
   }
   return {
@@ -187,43 +187,40 @@ PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike&
 
 void bind_limits(py::module_& m) {
   const auto none = py::none();
-  py::class_<PyLevels>(m, "SaturatedLevels", "A motion of several tasks in strict priority within bounds.")
-      .def_readonly("u", &PyLevels::u, "The motion, within the bounds, shape (n,).")
-      .def_readonly(
-          "scale", &PyLevels::scale,
-          "How much of each level's task the bounds and the levels before leave, from 0 to 1, shape (levels,).")
+  py::class_<PyLevels>(m, "SaturatedLevels", "Motion of several task levels in strict priority within bounds.")
+      .def_readonly("u", &PyLevels::u, "The motion within the bounds, shape (n,).")
+      .def_readonly("scale", &PyLevels::scale, "Task scale of each level, from 0 to 1, shape (levels,).")
       .def_readonly("saturated", &PyLevels::saturated, "Which joints are on a bound, shape (n,).");
 
   m.def("saturate", &saturate_levels, py::arg("levels"), py::arg("lower"), py::arg("upper"), py::kw_only(),
         py::arg("rest") = none, py::arg("unit") = none,
-        R"(The motion u with lower <= u <= upper that does tasks J u = b in strict priority.
+        R"(Resolves tasks J u = b in strict priority within lower <= u <= upper.
 
-Level by level, from u_0 = rest: with d the motion nearest to u_{k-1} that does level k and leaves the levels before as
-they are,
+From u_0 = rest, level by level,
 
-    u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as can be,
+    d = u_{k-1} + Z_{k-1} pinv(J_k Z_{k-1}) (b_k - J_k u_{k-1})
+    u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as possible,
 
-where the columns of Z_k span the null space of J_1 ... J_k, and g moves joints that are free in place of those that meet
-a bound. No level disturbs one before it; each scale is the largest that the levels before leave, as a linear program
-finds it.
+where the columns of Z_k are a basis of the null space of J_1 ... J_k, and the null-space motion g replaces joints on
+their bounds by others. A lower level never changes J u of a higher one. Each scale s_k is the optimum of a linear program.
 
 Parameters
 ----------
 levels : sequence of (J, b)
-    The tasks, the first one first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may depend on one another
-    and on those of levels before; a level that cannot be done even without bounds is done by least squares.
+    The task levels, highest priority first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may be linearly
+    dependent. If the higher levels contradict a task, d is the least-squares solution.
 lower, upper : array_like, shape (n,)
-    Bounds of each joint's motion; infinite where there is none.
+    Bounds of each joint's motion; infinite if there is none.
 rest : array_like, shape (n,), optional
-    A motion within the bounds to start from: the braking motion of a loop, say. Unless given, the one nearest to zero.
+    Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
 unit : array_like, shape (n,), optional
-    One unit of each joint's motion: of all motions that are left, the one of least norm in these units is taken. Half
-    the distance of the bounds unless given.
+    Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
+    between the bounds.
 
 Raises
 ------
 ParameterError
-    Where a shape does not fit, a number is not finite, a bound is below the other, or rest is outside the bounds.)");
+    If a shape does not fit, a number is not finite, lower exceeds upper, or rest is outside the bounds.)");
   py::class_<PyMotion>(m, "LimitedMotion", "A motion of one tick within limits.")
       .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).")
       .def_readonly("scale", &PyMotion::scale, "How much of the task is left, from 0 to 1.")

@@ -294,7 +294,7 @@ class Stop:
 
 class SaturatedLevels:
     """
-    A motion of several tasks in strict priority within bounds.
+    Motion of several task levels in strict priority within bounds.
     """
     @property
     def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
@@ -304,12 +304,12 @@ class SaturatedLevels:
     @property
     def scale(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        How much of each level's task the bounds and the levels before leave, from 0 to 1, shape (levels,).
+        Task scale of each level, from 0 to 1, shape (levels,).
         """
     @property
     def u(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        The motion, within the bounds, shape (n,).
+        The motion within the bounds, shape (n,).
         """
 
 class LimitedMotion:
@@ -797,34 +797,33 @@ def saturate(
     unit: numpy.typing.ArrayLike | None = None,
 ) -> SaturatedLevels:
     """
-    The motion u with lower <= u <= upper that does tasks J u = b in strict priority.
+    Resolves tasks J u = b in strict priority within lower <= u <= upper.
 
-    Level by level, from u_0 = rest: with d the motion nearest to u_{k-1} that does level k and leaves the levels before as
-    they are,
+    From u_0 = rest, level by level,
 
-        u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as can be,
+        d = u_{k-1} + Z_{k-1} pinv(J_k Z_{k-1}) (b_k - J_k u_{k-1})
+        u_k = u_{k-1} + s_k (d - u_{k-1}) + Z_k g,    lower <= u_k <= upper,    0 <= s_k <= 1 as large as possible,
 
-    where the columns of Z_k span the null space of J_1 ... J_k, and g moves joints that are free in place of those that meet
-    a bound. No level disturbs one before it; each scale is the largest that the levels before leave, as a linear program
-    finds it.
+    where the columns of Z_k are a basis of the null space of J_1 ... J_k, and the null-space motion g replaces joints on
+    their bounds by others. A lower level never changes J u of a higher one. Each scale s_k is the optimum of a linear program.
 
     Parameters
     ----------
     levels : sequence of (J, b)
-        The tasks, the first one first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may depend on one another
-        and on those of levels before; a level that cannot be done even without bounds is done by least squares.
+        The task levels, highest priority first: J of shape (m, n), b of shape (m,), m at most MAX_DOF. Rows may be linearly
+        dependent. If the higher levels contradict a task, d is the least-squares solution.
     lower, upper : array_like, shape (n,)
-        Bounds of each joint's motion; infinite where there is none.
+        Bounds of each joint's motion; infinite if there is none.
     rest : array_like, shape (n,), optional
-        A motion within the bounds to start from: the braking motion of a loop, say. Unless given, the one nearest to zero.
+        Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
     unit : array_like, shape (n,), optional
-        One unit of each joint's motion: of all motions that are left, the one of least norm in these units is taken. Half
-        the distance of the bounds unless given.
+        Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
+        between the bounds.
 
     Raises
     ------
     ParameterError
-        Where a shape does not fit, a number is not finite, a bound is below the other, or rest is outside the bounds.
+        If a shape does not fit, a number is not finite, lower exceeds upper, or rest is outside the bounds.
     """
 
 def sequence(paths: collections.abc.Sequence[Path]) -> Path: ...

@@ -7,26 +7,26 @@
 
 namespace fpbm {
 
-/// Tasks J_k u = b_k in strict priority, within a box and further rows g·u ≤ b. Level by level, from u₀ = rest:
+/// Task levels J_k u = b_k in strict priority, within a box and further rows g·u ≤ b. From u₀ = rest, level by level:
 ///
-///   d = u_{k−1} + the least motion that the levels before leave free and J_k d = b_k
-///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as can be,
+///   d = u_{k−1} + Z_{k−1} (J_k Z_{k−1})⁺ (b_k − J_k u_{k−1})
+///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible,
 ///
-/// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace) and γ moves joints that the bounds leave free in
-/// place of those that meet one (NullSpaceSaturation). So u_k keeps every bound that rest keeps; no J_i u of a level
-/// before changes, but for round-off; and s_k is the largest that the levels before leave, as a linear program finds
-/// it. A task that the levels before contradict is done in the sense of least squares: s_k then refers to that.
+/// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace), and the null-space motion γ replaces joints on
+/// their bounds by others (NullSpaceSaturation). u_k keeps every bound that rest keeps. J_i u of a higher level changes
+/// by round-off only. s_k is the optimum of the linear program in s_k and γ. If the higher levels contradict a task, d
+/// is the least-squares solution, and s_k is the scale of d. docs/limits.md has the proofs.
 template <int N, typename Scalar = double, int P = 0>
 class LevelSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// rest: a motion that keeps the box; unit: one unit of each joint's motion, as of NullSpaceSaturation.
+  /// rest: a motion in the box. unit: unit of each joint's motion, as for NullSpaceSaturation.
   LevelSaturation(const Box<N, Scalar>& box, const JointVector& rest, const JointVector& unit,
                   const Rows<N, P, Scalar>& rows = {}) noexcept
       : box_(box), rows_(rows), unit_(unit), u_(rest), space_(rest.size()) {}
 
-  /// Resolves the next level and returns its scale s. A level that is not finite changes nothing, and its scale is 0.
+  /// Resolves the next level and returns its scale s_k. If J or b is not finite, the level is skipped with scale 0.
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b) noexcept {
     if (!J.allFinite() || !b.allFinite()) return Scalar(0);
@@ -46,9 +46,9 @@ class LevelSaturation {
     return found.scale;
   }
 
-  /// The motion of the levels so far.
+  /// u_k of the last level.
   [[nodiscard]] const JointVector& motion() const noexcept { return u_; }
-  /// What they leave free.
+  /// Null space of the levels so far.
   [[nodiscard]] const LevelSpace<N, Scalar>& space() const noexcept { return space_; }
 
  private:

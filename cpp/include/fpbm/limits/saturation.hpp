@@ -64,7 +64,7 @@ class NullSpaceSaturation {
     add_rows(n);
   }
 
-  /// In the null space of levels whose rows are in each joint's unit.
+  /// Saturation in the null space of task levels, whose rows are in the units of the joints.
   NullSpaceSaturation(const LevelSpace<N, Scalar>& space, const JointVector& unit,
                       const Rows<N, P, Scalar>& rows = {}) noexcept
       : unit_(unit), rows_(rows) {

@@ -8,10 +8,10 @@
 
 namespace fpbm {
 
-/// The null space of levels of rows, taken one level after another.
+/// Null space of task levels, each a matrix of rows, added in the order of their priority.
 ///
-/// Keeps Aᵀ = QR of the rows of all levels so far, by Householder reflections, one block of reflections for each level.
-/// The columns of Q from rank() on are an orthonormal basis Z of the null space of all of them.
+/// Stores Aᵀ = QR of the rows A of all levels so far as Householder reflections, one block for each level. The columns
+/// of Q from rank() on are an orthonormal basis Z of the null space of A.
 template <int N, typename Scalar = double>
 class LevelSpace {
  public:
@@ -19,23 +19,23 @@ class LevelSpace {
   using Basis =
       Eigen::Matrix<Scalar, N, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<N>>;
 
-  /// Of vectors of n entries, without rows.
+  /// No levels: the null space is ℝⁿ.
   explicit LevelSpace(Eigen::Index n) noexcept : V_(n, n), beta_(n) {}
 
   [[nodiscard]] Eigen::Index size() const noexcept { return V_.rows(); }
   [[nodiscard]] Eigen::Index rank() const noexcept { return rank_; }
 
-  /// Takes the rows of a level A and returns the least y in the null space of the levels before with A y = r, or with
-  /// the least |A y − r| where there is none.
+  /// Adds the level A. Returns y = Z (A Z)⁺ r with the basis Z of the higher levels: the y of least norm that changes
+  /// no higher level and minimises |A y − r|.
   ///
-  /// A row counts as far as it lies in that null space: one of which less than kDependent is left does not count.
+  /// A row whose projection on that null space is shorter than kDependent times the row counts as dependent.
   template <int M>
   [[nodiscard]] Column take(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank_;
     using Rows = Eigen::Matrix<Scalar, N, M, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<M>>;
-    Rows T = A.transpose();  // Qᵀ Aᵀ: a column for each row of A.
+    Rows T = A.transpose();  // Becomes QᵀAᵀ: one column for each row of A.
     Vector<M, Scalar> least(m);
     for (Eigen::Index j = 0; j < m; ++j) {
       least(j) = kDependent * T.col(j).stableNorm();
@@ -46,7 +46,7 @@ class LevelSpace {
       const Eigen::Index k = rank_ - first;
       const Eigen::Index left = n - rank_;
       Eigen::Index next = -1;
-      Scalar most(1);  // Of the share of a row that is left, over the least that counts.
+      Scalar most(1);  // Largest length of a row's remainder, in units of the least that counts.
       for (Eigen::Index j = k; j < m; ++j) {
         const Scalar part = T.col(j).tail(left).stableNorm();
         if (part > most * least(j)) {
@@ -81,7 +81,7 @@ class LevelSpace {
   }
 
  private:
-  /// The reflection that leaves of a column only its entry rank(), below those before it.
+  /// Adds the reflection that makes the entries of a column below rank() zero.
   template <typename Entries>
   void add_reflection(const Entries& column) noexcept {
     const Eigen::Index left = size() - rank_;
@@ -102,8 +102,8 @@ class LevelSpace {
     x.tail(left) -= along * v;
   }
 
-  /// w in L w = r, in place of the first entries of r, by least squares where L has more rows than columns. Row j of L
-  /// is in column j of T, from its entry `first` on: L is lower triangular down to the last of its columns.
+  /// Solves L w = r, by least squares if L has more rows than columns; w replaces the first entries of r. Row j of L
+  /// starts at entry `first` of column j of T. The upper square block of L is lower triangular.
   template <typename Rows, typename Values>
   static void solve(const Rows& T, Eigen::Index first, Eigen::Index count, Values& r) noexcept {
     const Eigen::Index m = T.cols();
@@ -114,7 +114,7 @@ class LevelSpace {
       }
       return;
     }
-    // L = Q₂ R₂ by Gram and Schmidt, each column twice, so that Q₂ is orthogonal; r is projected along the way.
+    // L = Q₂ R₂ by the modified Gram-Schmidt method, with each column orthogonalised twice for round-off.
     using Square =
         Eigen::Matrix<Scalar, Rows::ColsAtCompileTime, Rows::ColsAtCompileTime, Eigen::ColMajor | Eigen::DontAlign,
                       Rows::MaxColsAtCompileTime, Rows::MaxColsAtCompileTime>;
@@ -143,8 +143,8 @@ class LevelSpace {
     r = w;
   }
 
-  /// Share of a row that counts: what is left of a dependent row is round-off, 1e-16 times the condition of the levels
-  /// before it, and motions along less than this share of it amplify that beyond any use.
+  /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of
+  /// the higher levels; a motion along a remainder of 1e-9 already amplifies that error to 1e-7.
   static constexpr Scalar kDependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-4);
 
   Matrix<N, N, Scalar> V_;  ///< Column k is the vector of reflection k, below row k − 1.
