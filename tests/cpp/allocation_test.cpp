@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <new>
@@ -11,6 +12,7 @@
 
 #include "fpbm/any/any_scheme.hpp"
 #include "fpbm/core/lanes.hpp"
+#include "fpbm/limits/level_saturation.hpp"
 #include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
@@ -226,6 +228,23 @@ TEST(NoAllocation, in_trackers_side_by_side) {
   EXPECT_EQ(watch.count().total(), 0);
   EXPECT_GT(samples, 250);
   for (const Status status : all.status()) EXPECT_EQ(status, Status::kSlowed);
+}
+
+TEST(NoAllocation, in_task_levels) {
+  constexpr int N = Eigen::Dynamic;
+  const Vector<N> wide = Vector<N>::Constant(7, 0.3);
+  Matrix<N, N> J(3, 7);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 7; ++j) J(i, j) = std::sin(1.0 + i * 7 + j);
+  }
+  const Matrix<N, N> identity = Matrix<N, N>::Identity(7, 7);
+  const AllocationWatch watch;
+  LevelSaturation<N> levels({-wide, wide}, Vector<N>::Zero(7), wide);
+  const double first = levels.resolve<N>(J, Vector<N>::Constant(3, 0.5));
+  const double second = levels.resolve<N>(identity, Vector<N>::Constant(7, 1.0));
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_GT(first, 0.0);
+  EXPECT_LT(second, 1.0);
 }
 
 /// A motion that has to stop does so without an allocation as well.

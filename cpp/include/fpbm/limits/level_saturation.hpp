@@ -30,6 +30,7 @@ class LevelSaturation {
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b) noexcept {
     if (!J.allFinite() || !b.allFinite()) return Scalar(0);
+    if (space_.rank() == space_.size()) return Scalar(1);  // The higher levels determine the motion.
     Matrix<M, N, Scalar> scaled = J;
     for (Eigen::Index j = 0; j < J.cols(); ++j) scaled.col(j) *= unit_(j);
     const Vector<M, Scalar> left = b - J.lazyProduct(u_);

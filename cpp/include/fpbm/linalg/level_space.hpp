@@ -38,7 +38,7 @@ class LevelSpace {
     Rows T = A.transpose();  // Becomes QᵀAᵀ: one column for each row of A.
     Vector<M, Scalar> least(m);
     for (Eigen::Index j = 0; j < m; ++j) {
-      least(j) = kDependent * T.col(j).stableNorm();
+      least(j) = kDependent * T.col(j).norm();
       for (Eigen::Index k = 0; k < first; ++k) reflect(k, T.col(j));
     }
     Vector<M, Scalar> result = r;
@@ -48,7 +48,7 @@ class LevelSpace {
       Eigen::Index next = -1;
       Scalar most(1);  // Largest length of a row's remainder, in units of the least that counts.
       for (Eigen::Index j = k; j < m; ++j) {
-        const Scalar part = T.col(j).tail(left).stableNorm();
+        const Scalar part = T.col(j).tail(left).norm();
         if (part > most * least(j)) {
           most = part / least(j);
           next = j;
@@ -86,7 +86,7 @@ class LevelSpace {
   void add_reflection(const Entries& column) noexcept {
     const Eigen::Index left = size() - rank_;
     auto v = V_.col(rank_).tail(left);
-    const Scalar length = column.tail(left).stableNorm();
+    const Scalar length = column.tail(left).norm();
     v = column.tail(left) / length;
     const Scalar head = v(0);
     v(0) += head < Scalar(0) ? Scalar(-1) : Scalar(1);
