@@ -142,7 +142,8 @@ JointVector unit_of(const Box<kOpen>& box, const OptionalArray& given) {
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(unit(i)) || unit(i) == 0.0) unit(i) = 1.0;
   }
-  return unit;
+  // Units 1e10 apart would make the motion of a joint with little range round-off error.
+  return unit.cwiseMax(1e-3 * unit.maxCoeff());
 }
 
 PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike& lower, const ArrayLike& upper,
@@ -215,7 +216,7 @@ rest : array_like, shape (n,), optional
     Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
 unit : array_like, shape (n,), optional
     Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
-    between the bounds.
+    between the bounds, but at least 1e-3 of the largest.
 
 Raises
 ------

@@ -818,7 +818,7 @@ def saturate(
         Initial motion within the bounds, such as the braking motion of a control loop. Default: the motion nearest to zero.
     unit : array_like, shape (n,), optional
         Unit of each joint's motion: the norm that d and g minimise is measured in these units. Default: half the distance
-        between the bounds.
+        between the bounds, but at least 1e-3 of the largest.
 
     Raises
     ------

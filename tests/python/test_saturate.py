@@ -94,6 +94,22 @@ def test_one_level_within_the_bounds_is_the_pseudoinverse():
     assert not found.saturated.any()
 
 
+def test_joints_with_little_range_or_none_leave_the_task_to_others():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        lower, upper = -rng.uniform(0.5, 1, 6), rng.uniform(0.5, 1, 6)
+        lower[0] = upper[0] - 1e-10
+        lower[1] = upper[1] = 0
+        lower[2], upper[3] = -np.inf, np.inf
+        J = rng.normal(size=(2, 6))
+        u = rng.uniform(-0.5, 0.5, 6)
+        u[:2] = upper[:2]
+        found = fp.saturate([(J, J @ u)], lower, upper)
+        np.testing.assert_allclose(found.scale, 1)
+        np.testing.assert_allclose(J @ found.u, J @ u, atol=1e-9)
+        assert found.u[1] == 0
+
+
 def test_three_tasks_by_hand():
     """The first is done by half, the second whole with what is left, the third contradicts the first."""
     found = fp.saturate(
