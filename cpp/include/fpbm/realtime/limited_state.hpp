@@ -137,7 +137,7 @@ class LimitedState {
     const Scalar length = correction_.length();
     if (recovering) return progress_.recovered(state_.q, now.x, length);
     if (result.status != Status::kOk || correction_.far()) {
-      return progress_.missed(state_.q, now.x, result, length, correction_.far());
+      return progress_.missed(state_.q, limits().bounds().velocity, now.x, result, length, correction_.far());
     }
     correction_.integrate();
     progress_.done(q, now.x, result, length);

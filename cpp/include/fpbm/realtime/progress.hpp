@@ -49,12 +49,17 @@ class Progress {
     if (recovery_.advance(q)) stall_.reset();
   }
 
-  /// After a tick that did not do the whole task and led to q. far: the target is beyond the error bound.
-  [[gnu::noinline]] void missed(const JointVector& q, const Point& target, const Result& result, Scalar length,
-                                bool far) noexcept {
+  /// After a tick that did not do the whole task and led to q. velocity: the joints' bounds. far: the target is beyond
+  /// the error bound.
+  [[gnu::noinline]] void missed(const JointVector& q, const JointVector& velocity, const Point& target,
+                                const Result& result, Scalar length, bool far) noexcept {
     const Scalar error = Distance::norm(result.error, length);
+    bool crawls = true;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      crawls = crawls && std::abs(result.qd.coeff(i)) < kCrawl * velocity.coeff(i);
+    }
     if (stall_.has_moved(target, length)) recovery_.renew();
-    stall_.update(target, error, length, result.scale == Scalar(1) && !far);
+    stall_.update(target, error, length, result.scale == Scalar(1) && !far, crawls);
     recovery_.follow(target, length);
     if (recovers_ && result.status == Status::kStalled && stall_.stalled()) recovery_.begin(q, target, error, length);
   }
@@ -67,6 +72,10 @@ class Progress {
   }
 
  private:
+  /// Share of a velocity bound below which a joint crawls. An arm that approaches its target within tight velocity
+  /// bounds has a joint near its bound; an arm whose task is blocked moves at 0.2 % of them.
+  static constexpr Scalar kCrawl = Scalar(0.01);
+
   StallDetector<Space, Scalar> stall_;
   Recovery<Space, N, Scalar> recovery_;
   bool recovers_;

@@ -15,7 +15,8 @@ namespace fpbm {
 /// Progress is an error below the least one so far by a step, or a target that has moved by 0.002 (TaskDistance). The
 /// arm has stalled if there is no progress for stall_time. It continues when its target moves, or a shape near it.
 ///
-/// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm is
+/// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm also
+/// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/64 of the least error. If the arm is
 /// only damped, it may approach its target slowly: a step is 1/64 of the least error, and errors below 0.0001 do not
 /// count.
 template <typename Space, typename Scalar = double>
@@ -38,9 +39,12 @@ class StallDetector {
   }
 
   /// One more tick that does not do the whole task. error: distance to the target. length: the arm's characteristic
-  /// length [m]. damped: the arm is neither slowed nor far from its target.
-  void update(const Point& target, Scalar error, Scalar length, bool damped) noexcept {
-    const Scalar step = damped ? std::min(Distance::kProgress, least_ * kApproach) : Distance::kProgress;
+  /// length [m]. damped: the arm is neither slowed nor far from its target. crawls: no joint reaches 1 % of its
+  /// velocity bound.
+  void update(const Point& target, Scalar error, Scalar length, bool damped, bool crawls) noexcept {
+    Scalar step = Distance::kProgress;
+    if (damped) step = std::min(step, least_ * kApproach);
+    if (!damped && crawls && std::isfinite(least_)) step = std::max(step, least_ * kApproach);
     const Scalar small = damped ? kSmall : Distance::kProgress;
     if (error < small || error < least_ - step || has_moved(target, length)) {
       target_ = target;
