@@ -195,6 +195,23 @@ TEST(Recovery, does_not_begin_while_the_target_stays_out_of_reach) {
   EXPECT_EQ(tick.status, Status::kStalled);
 }
 
+/// A joint on its velocity envelope blocks the task of this FR3. Along the envelope the tip approaches its target at 2
+/// mm/s, for 80 s.
+TEST(Recovery, a_blocked_arm_stops_crawling) {
+  const auto arm = any_arm(presets::fr3());
+  const Vector<N> q0 = Vector<7>(0.5103, 0.1993, 0.5043, -1.6654, 0.8065, 1.2024, 0.1491);
+  CompiledTracker loop(arm, Pose{}, scheme_of(Acceleration{}, 7), q0);
+  Target target(loop.tip(), true);
+  Vector<6> out = Vector<6>::Zero();
+  out.head<3>() << -0.2391, -0.4926, -0.2769;
+  double speed = 1.0;
+  target.move(loop, loop.tip(), out, 20.0, [&](const auto& tick) {
+    speed = tick.qd.cwiseAbs().maxCoeff();
+    return true;
+  });
+  EXPECT_LE(speed, 1e-3);
+}
+
 /// During a recovery stop() and a reference that is not finite brake the arm; afterwards it comes back all the same.
 TEST(Recovery, is_left_by_stop_and_by_nonsense) {
   const auto arm = any_arm(presets::panda());

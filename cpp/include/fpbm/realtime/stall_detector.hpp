@@ -16,7 +16,7 @@ namespace fpbm {
 /// arm has stalled if there is no progress for stall_time. It continues when its target moves, or a shape near it.
 ///
 /// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm also
-/// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/64 of the least error. If the arm is
+/// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/16 of the least error. If the arm is
 /// only damped, it may approach its target slowly: a step is 1/64 of the least error, and errors below 0.0001 do not
 /// count.
 template <typename Space, typename Scalar = double>
@@ -44,7 +44,7 @@ class StallDetector {
   void update(const Point& target, Scalar error, Scalar length, bool damped, bool crawls) noexcept {
     Scalar step = Distance::kProgress;
     if (damped) step = std::min(step, least_ * kApproach);
-    if (!damped && crawls && std::isfinite(least_)) step = std::max(step, least_ * kApproach);
+    if (!damped && crawls && std::isfinite(least_)) step = std::max(step, least_ * kCrawl);
     const Scalar small = damped ? kSmall : Distance::kProgress;
     if (error < small || error < least_ - step || has_moved(target, length)) {
       target_ = target;
@@ -79,6 +79,10 @@ class StallDetector {
   /// Share of its error by which a damped arm comes nearer in stall_time: an arm whose target is exactly at the
   /// workspace boundary still does so after a minute (Stall.is_not_a_slow_approach).
   static constexpr Scalar kApproach = Scalar(1) / Scalar(64);
+
+  /// Share of its error by which a crawling arm comes nearer in stall_time: at constant speed, it then arrives within
+  /// 16 stall times.
+  static constexpr Scalar kCrawl = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;
   Scalar dt_;
