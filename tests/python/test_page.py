@@ -82,7 +82,8 @@ def a_tracker(which, kind, limited, damping):
     arm, task, q0, limits, path, bounds = ARMS[which]
     free = fp.JointLimits(**{name: getattr(fp.PlanarArm([1] * arm.dof).limits, name) for name in CHAIN})
     scheme = schemes(arm.dof, damping)[kind]
-    tracker = fp.Tracker(arm, scheme, q0, task=task, limits=limits if limited else free)
+    limits = limits if limited else free
+    tracker = fp.Tracker(arm, scheme, q0, task=task, limits=limits, null_damping=0.0)  # As the page.
     return tracker, path, fp.TargetFilter(tracker.tip, task=task, **dict(zip(BOUNDS, bounds)))
 
 
