@@ -24,7 +24,7 @@ class Motion {
 
   /// seconds: how long a circle takes.
   Motion(const fpbm::SerialArm<N, float>& arm, const Joints& q0, float radius, float seconds)
-      : tracker_(arm, fpbm::Pose{}, scheme(q0), q0), follower_(path(radius, seconds), tracker_.tip()) {}
+      : tracker_(arm, fpbm::Pose{}, scheme(q0), q0, options()), follower_(path(radius, seconds), tracker_.tip()) {}
 
   fpbm::Tick<fpbm::Pose, N, float> tick() { return tracker_.tick(follower_); }
 
@@ -37,6 +37,12 @@ class Motion {
   static Scheme scheme(const Joints& rest) {
     const auto homeward = fpbm::NullSpace<N, float>().with_damping(4.0F).with_rest_posture(rest, 4.0F);
     return fpbm::FPBM<N, float>(0.6F, Joints::LinSpaced(8.0F, 1.0F), 20.0F, 100.0F, homeward);
+  }
+
+  static fpbm::TrackerOptions<float> options() {
+    fpbm::TrackerOptions<float> options;
+    options.recovery = false;  // Remembering a posture takes 29,000 instructions in one tick.
+    return options;
   }
 
   static Path path(float radius, float seconds) {

@@ -40,6 +40,13 @@ class ParameterError : public std::invalid_argument {
 /// nothing to print on, without.
 namespace fpbm::validation {
 
+/// Whether anyone reads messages. Without a reader none is made: strings would bring the heap into a firmware.
+#if defined(__cpp_exceptions) || !defined(EIGEN_NO_IO)
+inline constexpr bool kHasMessages = true;
+#else
+inline constexpr bool kHasMessages = false;
+#endif
+
 /// Throws a ParameterError of that value, with a message.
 [[noreturn, gnu::noinline, gnu::cold]] inline void reject_with([[maybe_unused]] const Argument& argument,
                                                                [[maybe_unused]] double value,
@@ -57,9 +64,13 @@ namespace fpbm::validation {
 /// Throws a ParameterError of that value, which says "<argument><words>".
 template <typename Scalar, typename... Words>
 [[noreturn, gnu::noinline, gnu::cold]] void reject_value(const Argument& argument, Scalar value, Words... words) {
-  std::string message = argument.text();
-  (append_text(message, words), ...);
-  reject_with(argument, static_cast<double>(value), message);
+  if constexpr (kHasMessages) {
+    std::string message = argument.text();
+    (append_text(message, words), ...);
+    reject_with(argument, static_cast<double>(value), message);
+  } else {
+    std::abort();
+  }
 }
 
 /// The same of an argument that is no number.

@@ -67,7 +67,7 @@ class Progress {
   /// After a tick that did the whole task and began at q.
   void done(const JointVector& q, const Point& target, const Result& result, Scalar length) noexcept {
     recovery_.settle();
-    if (!recovery_.is_new(q)) return;
+    if (!recovers_ || !recovery_.is_new(q)) return;
     if (Distance::norm(result.error, length) < Distance::kProgress) recovery_.remember(q, target, length);
   }
 
