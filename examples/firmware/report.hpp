@@ -47,7 +47,7 @@ class Line {
 
 /// print(text) writes a text; counter() counts instructions, or nothing.
 template <int N, typename Print, typename Counter>
-fpbm::Status report(const char* name, Motion<N>&& motion, const Print& print, Counter&& counter) {
+fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Counter&& counter) {
   fpbm::Status worst = fpbm::Status::kOk;
   float error = 0.0F;
   std::uint32_t most = 0;
@@ -80,10 +80,15 @@ fpbm::Status report(const char* name, Motion<N>&& motion, const Print& print, Co
 /// Both arms on circles that they draw with ease, then on wide and quick ones, where joints meet their limits.
 template <typename Print, typename Counter>
 fpbm::Status report_all(const Print& print, Counter&& counter) {
-  fpbm::Status worst = report("panda", panda_motion(0.1F, 10.0F), print, counter);
-  worst = worse(worst, report("ur5e", ur5e_motion(0.1F, 10.0F), print, counter));
-  worst = worse(worst, report("panda_pressed", panda_motion(0.25F, 2.0F), print, counter));
-  return worse(worst, report("ur5e_pressed", ur5e_motion(0.25F, 2.0F), print, counter));
+  // Trackers are static, as in a controller: the stack is for the ticks.
+  static Motion<7> panda = panda_motion(0.1F, 10.0F);
+  static Motion<6> ur5e = ur5e_motion(0.1F, 10.0F);
+  static Motion<7> panda_pressed = panda_motion(0.25F, 2.0F);
+  static Motion<6> ur5e_pressed = ur5e_motion(0.25F, 2.0F);
+  fpbm::Status worst = report("panda", panda, print, counter);
+  worst = worse(worst, report("ur5e", ur5e, print, counter));
+  worst = worse(worst, report("panda_pressed", panda_pressed, print, counter));
+  return worse(worst, report("ur5e_pressed", ur5e_pressed, print, counter));
 }
 
 }  // namespace firmware

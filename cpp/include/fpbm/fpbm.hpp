@@ -30,6 +30,7 @@
 #include "fpbm/clearance/widest_gap.hpp"
 #include "fpbm/core/argument.hpp"
 #include "fpbm/core/float_model.hpp"
+#include "fpbm/core/float_sincos.hpp"
 #include "fpbm/core/lane_access.hpp"
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/mask.hpp"

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "fpbm/core/float_model.hpp"
+#include "fpbm/core/float_sincos.hpp"
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
 
@@ -115,7 +116,7 @@ struct SinCos {
   Scalar cos;
 };
 
-/// sin and cos of one angle [rad]. Scalars other than double use their own sin and cos.
+/// sin and cos of one angle [rad]. Scalars other than double and float use their own sin and cos.
 template <typename Scalar>
 [[nodiscard]] SinCos<Scalar> sincos(Scalar angle) noexcept {
   using std::cos;
@@ -128,6 +129,12 @@ template <typename Scalar>
     if (std::abs(angle) <= ReducedSinCos::kReach) {
       SinCos<double> result;
       ReducedSinCos::evaluate(angle, result.sin, result.cos);
+      return result;
+    }
+  } else if constexpr (std::is_same_v<Scalar, float>) {
+    if (std::abs(angle) <= FloatSinCos::kReach) {
+      SinCos<float> result;
+      FloatSinCos::evaluate(angle, result.sin, result.cos);
       return result;
     }
   }
