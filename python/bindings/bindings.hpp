@@ -10,6 +10,7 @@ void bind_arm(py::module_& m);
 void bind_path(py::module_& m);
 void bind_scheme(py::module_& m);
 void bind_limits(py::module_& m);
+void bind_saturation(py::module_& m);
 void bind_clearance(py::module_& m);
 void bind_sim(py::module_& m);
 void bind_sweep(py::module_& m);

@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, m) {
   fpbm::bindings::bind_sim(m);
   fpbm::bindings::bind_sweep(m);
   fpbm::bindings::bind_limits(m);
+  fpbm::bindings::bind_saturation(m);
   fpbm::bindings::bind_target_filter(m);
   fpbm::bindings::bind_realtime(m);
 }

@@ -8,7 +8,8 @@
 namespace fpbm::bindings {
 namespace {
 
-/// A clearance of nothing is all but free, and spares a tracker without a guard.
+/// AnyTracker at one level. An empty clearance costs almost nothing, so that trackers without a guard need no code of
+/// their own.
 template <Level kLevel, typename Space>
 class TrackerAt final : public AnyTracker<Space> {
  public:

@@ -292,26 +292,6 @@ class Stop:
         From any thread.
         """
 
-class SaturatedLevels:
-    """
-    Motion of several task levels in strict priority within bounds.
-    """
-    @property
-    def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
-        """
-        Which joints are on a bound, shape (n,).
-        """
-    @property
-    def scale(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Task scale of each level, from 0 to 1, shape (levels,).
-        """
-    @property
-    def u(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        The motion within the bounds, shape (n,).
-        """
-
 class LimitedMotion:
     """
     A motion of one tick within limits.
@@ -380,6 +360,26 @@ class Limiter:
         last is the acceleration of the tick before [rad/s^2], from which bounds on jerk start: zero unless given. rows is a pair
         (G, b), shapes (p, n) and (p,), of further bounds G u <= b, 16 at most, kept as far as the limits admit. Raises
         ParameterError where a shape is another, or a number is not finite.
+        """
+
+class SaturatedLevels:
+    """
+    Motion of several task levels in strict priority within bounds.
+    """
+    @property
+    def saturated(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Which joints are on a bound, shape (n,).
+        """
+    @property
+    def scale(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Task scale of each level, from 0 to 1, shape (levels,).
+        """
+    @property
+    def u(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The motion within the bounds, shape (n,).
         """
 
 class TargetFilter:

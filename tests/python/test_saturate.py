@@ -128,7 +128,7 @@ def test_three_tasks_by_hand():
         ({"levels": [([[1, 0, 0]], [1])]}, r"levels\[0\]'s J"),
         ({"levels": [([[1, np.nan]], [1])]}, "finite"),
         ({"levels": [(np.zeros((33, 2)), np.zeros(33))]}, "number of rows"),
-        ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper"),
+        ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper, which is 1"),
         ({"upper": [1, np.nan]}, r"upper\[1\]"),
         ({"rest": [0, 3]}, r"rest\[1\] = 3: must be from lower to upper"),
         ({"unit": [1, 0]}, r"unit\[1\] = 0: must be positive"),

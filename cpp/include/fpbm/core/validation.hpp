@@ -40,7 +40,8 @@ class ParameterError : public std::invalid_argument {
 /// nothing to print on, without.
 namespace fpbm::validation {
 
-/// Whether anyone reads messages. Without a reader none is made: strings would bring the heap into a firmware.
+/// Whether an error message has a reader: a handler of exceptions, or a stream. Without a reader no message is built,
+/// since std::string would link the heap into a firmware.
 #if defined(__cpp_exceptions) || !defined(EIGEN_NO_IO)
 inline constexpr bool kHasMessages = true;
 #else
@@ -54,9 +55,7 @@ inline constexpr bool kHasMessages = false;
 #if defined(__cpp_exceptions)
   throw ParameterError(argument.name(), argument.index(), value, message);
 #else
-#if !defined(EIGEN_NO_IO)
   std::fprintf(stderr, "fpbm: %s\n", message.c_str());
-#endif
   std::abort();
 #endif
 }

@@ -21,20 +21,22 @@ class LevelSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// rest: a motion in the box. unit: unit of each joint's motion, as for NullSpaceSaturation.
+  /// box, rest: bounds, and a motion in them [rad/s², or rad/s at velocity level]. unit: unit of each joint's motion,
+  /// in which norms are measured, as for NullSpaceSaturation.
   LevelSaturation(const Box<N, Scalar>& box, const JointVector& rest, const JointVector& unit,
                   const Rows<N, P, Scalar>& rows = {}) noexcept
       : box_(box), rows_(rows), unit_(unit), u_(rest), space_(rest.size()) {}
 
-  /// Resolves the next level and returns its scale s_k. If J or b is not finite, the level is skipped with scale 0.
+  /// Resolves the next level and returns its scale s_k. J: M × n; b: M. If J or b is not finite, the level is skipped
+  /// with scale 0.
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b) noexcept {
     if (!J.allFinite() || !b.allFinite()) return Scalar(0);
     if (space_.rank() == space_.size()) return Scalar(1);  // The higher levels determine the motion.
     Matrix<M, N, Scalar> scaled = J;
     for (Eigen::Index j = 0; j < J.cols(); ++j) scaled.col(j) *= unit_(j);
-    const Vector<M, Scalar> left = b - J.lazyProduct(u_);
-    const JointVector desired = u_ + unit_.cwiseProduct(space_.take(scaled, left));
+    const Vector<M, Scalar> residual = b - J.lazyProduct(u_);
+    const JointVector desired = u_ + unit_.cwiseProduct(space_.add(scaled, residual));
     if (!desired.allFinite()) return Scalar(0);
     if (box_.contains(desired) && rows_.admit(desired)) {
       u_ = desired;

@@ -172,7 +172,7 @@ class NullSpaceSaturation {
     return false;
   }
 
-  /// Rows of Z for the rows beside n joints, each in a unit of its own, so that its length is 1.
+  /// Appends the rows gᵀZ of the further bounds to the n rows of the joints, each scaled to length 1.
   void add_rows([[maybe_unused]] Eigen::Index n) noexcept {
     if constexpr (P > 0) {
       for (Eigen::Index k = 0; k < rows_.count; ++k) {

@@ -30,7 +30,7 @@ class LevelSpace {
   ///
   /// A row whose projection on that null space is shorter than kDependent times the row counts as dependent.
   template <int M>
-  [[nodiscard]] Column take(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
+  [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank_;
@@ -44,11 +44,11 @@ class LevelSpace {
     Vector<M, Scalar> result = r;
     while (rank_ < n && rank_ - first < m) {
       const Eigen::Index k = rank_ - first;
-      const Eigen::Index left = n - rank_;
+      const Eigen::Index remaining = n - rank_;
       Eigen::Index next = -1;
       Scalar most(1);  // Largest length of a row's remainder, in units of the least that counts.
       for (Eigen::Index j = k; j < m; ++j) {
-        const Scalar part = T.col(j).tail(left).norm();
+        const Scalar part = T.col(j).tail(remaining).norm();
         if (part > most * least(j)) {
           most = part / least(j);
           next = j;
@@ -84,10 +84,10 @@ class LevelSpace {
   /// Adds the reflection that makes the entries of a column below rank() zero.
   template <typename Entries>
   void add_reflection(const Entries& column) noexcept {
-    const Eigen::Index left = size() - rank_;
-    auto v = V_.col(rank_).tail(left);
-    const Scalar length = column.tail(left).norm();
-    v = column.tail(left) / length;
+    const Eigen::Index remaining = size() - rank_;
+    auto v = V_.col(rank_).tail(remaining);
+    const Scalar length = column.tail(remaining).norm();
+    v = column.tail(remaining) / length;
     const Scalar head = v(0);
     v(0) += head < Scalar(0) ? Scalar(-1) : Scalar(1);
     beta_(rank_) = Scalar(1) / (Scalar(1) + std::abs(head));
@@ -96,10 +96,10 @@ class LevelSpace {
   /// Applies reflection k.
   template <typename Entries>
   void reflect(Eigen::Index k, Entries&& x) const noexcept {
-    const Eigen::Index left = size() - k;
-    const auto v = V_.col(k).tail(left);
-    const Scalar along = beta_(k) * v.dot(x.tail(left));
-    x.tail(left) -= along * v;
+    const Eigen::Index remaining = size() - k;
+    const auto v = V_.col(k).tail(remaining);
+    const Scalar along = beta_(k) * v.dot(x.tail(remaining));
+    x.tail(remaining) -= along * v;
   }
 
   /// Solves L w = r, by least squares if L has more rows than columns; w replaces the first entries of r. Row j of L

@@ -19,8 +19,8 @@ struct Kinematics {
   Scalar length = Scalar(1);
 };
 
-/// Rows of a Jacobian as limits see it. Where the number of joints is known at run time alone, so is that of rows: the
-/// limits of all tasks are then one code.
+/// Number of rows of J as the limits' template argument. If N is a run-time number, the number of rows is one too, so
+/// that one instantiation of the limits serves all task spaces.
 template <typename Space, int N>
 inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
 

@@ -49,14 +49,15 @@ class Progress {
     if (recovery_.advance(q)) stall_.reset();
   }
 
-  /// After a tick that did not do the whole task and led to q. velocity: the joints' bounds. far: the target is beyond
-  /// the error bound.
+  /// After a tick that did not do the whole task and led to q. velocity: bounds of the joints' velocities [rad/s]. far:
+  /// the target is beyond the error bound.
   [[gnu::noinline]] void missed(const JointVector& q, const JointVector& velocity, const Point& target,
                                 const Result& result, Scalar length, bool far) noexcept {
     const Scalar error = Distance::norm(result.error, length);
     bool crawls = true;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      crawls = crawls && std::abs(result.qd.coeff(i)) < kCrawl * velocity.coeff(i);
+      const Scalar bound = velocity.coeff(i);
+      crawls = crawls && std::isfinite(bound) && std::abs(result.qd.coeff(i)) < kCrawl * bound;
     }
     if (stall_.has_moved(target, length)) recovery_.renew();
     stall_.update(target, error, length, result.scale == Scalar(1) && !far, crawls);
@@ -72,8 +73,8 @@ class Progress {
   }
 
  private:
-  /// Share of a velocity bound below which a joint crawls. An arm that approaches its target within tight velocity
-  /// bounds has a joint near its bound; an arm whose task is blocked moves at 0.2 % of them.
+  /// Share of its velocity bound below which a joint crawls. An arm that approaches its target within tight velocity
+  /// bounds has a joint near its bound. The arm of Recovery.a_blocked_arm_stops_crawling moves at 0.2 % of its bounds.
   static constexpr Scalar kCrawl = Scalar(0.01);
 
   StallDetector<Space, Scalar> stall_;

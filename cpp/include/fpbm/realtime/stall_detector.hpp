@@ -39,12 +39,12 @@ class StallDetector {
   }
 
   /// One more tick that does not do the whole task. error: distance to the target. length: the arm's characteristic
-  /// length [m]. damped: the arm is neither slowed nor far from its target. crawls: no joint reaches 1 % of its
-  /// velocity bound.
+  /// length [m]. damped: the arm is neither slowed nor far from its target. crawls: every joint has a velocity bound
+  /// and moves at less than 1 % of it.
   void update(const Point& target, Scalar error, Scalar length, bool damped, bool crawls) noexcept {
     Scalar step = Distance::kProgress;
     if (damped) step = std::min(step, least_ * kApproach);
-    if (!damped && crawls && std::isfinite(least_)) step = std::max(step, least_ * kCrawl);
+    if (!damped && crawls && std::isfinite(least_)) step = std::max(step, least_ * kCrawlStep);
     const Scalar small = damped ? kSmall : Distance::kProgress;
     if (error < small || error < least_ - step || has_moved(target, length)) {
       target_ = target;
@@ -82,7 +82,7 @@ class StallDetector {
 
   /// Share of its error by which a crawling arm comes nearer in stall_time: at constant speed, it then arrives within
   /// 16 stall times.
-  static constexpr Scalar kCrawl = Scalar(1) / Scalar(16);
+  static constexpr Scalar kCrawlStep = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;
   Scalar dt_;
