@@ -60,19 +60,19 @@ def test_every_scale_is_the_largest():
                 assert np.linalg.norm(J @ (whole.u - found.u)) <= 1e-10 * np.linalg.norm(J)
             Z = null_space(above * unit, n)
             A = J * unit @ Z
-            way = np.zeros(n)
+            step = np.zeros(n)
             if np.linalg.norm(A) > 1e-9 * np.linalg.norm(J * unit):
                 # As a share of the largest singular value.
                 least = 1e-9 * np.linalg.norm(J * unit) / np.linalg.norm(A, 2)
-                way = unit * (Z @ np.linalg.lstsq(A, b - J @ before, rcond=least)[0])
+                step = unit * (Z @ np.linalg.lstsq(A, b - J @ before, rcond=least)[0])
             above = np.vstack([above, J])
             levels += 1
-            if np.linalg.norm(way) > 1e-9:
+            if np.linalg.norm(step) > 1e-9:
                 size = np.linalg.norm(above, axis=1)
                 rows = above[size > 0] / size[size > 0, None]
                 best = linprog(
                     np.r_[np.zeros(n), -1],
-                    A_eq=np.c_[rows, -rows @ way],
+                    A_eq=np.c_[rows, -rows @ step],
                     b_eq=rows @ before,
                     bounds=[*zip(lower, upper), (0, 1)],
                     method="highs",
