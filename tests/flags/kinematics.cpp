@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdio>
-#include <fpbm/core/mask.hpp>
 #include <fpbm/core/sincos.hpp>
+#include <fpbm/linalg/sums.hpp>
 #include <limits>
 
 /// Succeeds where sine and cosine are right, alone and in a vector, and what is not finite is seen.

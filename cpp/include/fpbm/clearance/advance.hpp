@@ -6,6 +6,7 @@
 
 #include "fpbm/clearance/separation.hpp"
 #include "fpbm/limits/stop_plan.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -113,7 +114,9 @@ template <int N, typename Scalar>
                                const Sweep<N, Scalar>& drives, Scalar time, Pairs pairs = Pairs::kAll) noexcept {
   constexpr int kAdvances = 16;
   constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
-  if (!is_finite(drives.way + drives.tick + drives.low + drives.high)) return false;
+  const auto& [way, tick, low, high] = drives;
+  const auto all = [&](Eigen::Index i) { return way.coeff(i) + tick.coeff(i) + low.coeff(i) + high.coeff(i); };
+  if (!is_finite(entrywise(way, all))) return false;
   const ChainSweep<N, Scalar> sweep(clearance.links(), drives);
   clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
   OpenPairs& open = clearance.open();

@@ -45,15 +45,4 @@ void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar
   }
 }
 
-/// Whether all entries are finite; always true in lanes, where a failed lane does not disturb the others.
-template <typename Derived>
-[[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::MatrixBase<Derived>& values) noexcept {
-  if constexpr (kInLanes<typename Derived::Scalar>) {
-    return true;
-  } else {
-    using Scalar = typename Derived::Scalar;
-    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
-  }
-}
-
 }  // namespace fpbm

@@ -9,6 +9,7 @@
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/split_vector.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -51,7 +52,7 @@ struct Transform {
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> normalized(const Vector<3, Scalar>& a) noexcept {
   using std::sqrt;
-  const Scalar square = a.squaredNorm();
+  const Scalar square = squared_norm(a);
   if (!(square > Scalar(0))) return a;
   const Scalar length = sqrt(square);
   return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / length; });
@@ -77,7 +78,7 @@ template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Vector<3, Scalar>& r) noexcept {
   using std::sqrt;
   // With half angles both factors are accurate near |r| = 0, where sin(a)/a is 1 to round-off.
-  const Scalar half = sqrt(r.squaredNorm()) / Scalar(2);
+  const Scalar half = norm(r) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
   const Scalar scale = sinc / Scalar(2);
@@ -133,7 +134,7 @@ template <typename Scalar>
   for (Eigen::Index j = 0; j < 3; ++j) {
     for (Eigen::Index i = 0; i < 3; ++i) R(i, j) = Scalar(2) * v(i) * v(j);
   }
-  const Scalar even = w * w - v.squaredNorm();
+  const Scalar even = w * w - squared_norm(v);
   for (Eigen::Index i = 0; i < 3; ++i) R(i, i) += even;
   const Vector<3, Scalar> u = entrywise(v, [&](Eigen::Index i) { return Scalar(2) * w * v(i); });
   R(0, 1) -= u(2);
@@ -155,8 +156,8 @@ template <typename Scalar>
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<4, Scalar> q = quaternion(R);
-  const Scalar norm = q.norm();
-  return rotation(entrywise(q, [&](Eigen::Index i) { return q(i) / norm; }));
+  const Scalar length = norm(q);
+  return rotation(entrywise(q, [&](Eigen::Index i) { return q(i) / length; }));
 }
 
 /// The rotation nearest to a matrix (its orthogonal polar factor), accurate to round-off if no entry of RᵀR deviates
@@ -198,7 +199,7 @@ template <typename Scalar>
     using std::sqrt;
     const Vector<4, Scalar> q = quaternion(R);
     const Vector<3, Scalar> v(q(1), q(2), q(3));
-    const Scalar sine = sqrt(v.squaredNorm());
+    const Scalar sine = norm(v);
     const Scalar scale = sine > Scalar(0) ? atan2(sine, q(0)) / sine : Scalar(1);
     return entrywise(v, [&](Eigen::Index i) { return Scalar(2) * scale * v(i); });
   }
@@ -211,7 +212,7 @@ template <typename Scalar, typename Whole>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Scalar> rotation_vector(const Vector<3, Scalar>& s,
                                                                            const Scalar& trace,
                                                                            const Whole& whole) noexcept {
-  const Scalar z = s.squaredNorm() / Scalar(4);
+  const Scalar z = squared_norm(s) / Scalar(4);
   // Even and odd powers apart: two short dependency chains in place of a long one.
   // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
   // double.

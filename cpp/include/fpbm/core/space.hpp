@@ -36,17 +36,17 @@ struct Position {
 
   template <typename Scalar>
   [[nodiscard]] static Vector<M, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
-    return x - y;
+    return entrywise(x, [&](Eigen::Index i) { return x.coeff(i) - y.coeff(i); });
   }
 
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<M, Scalar>& d) noexcept {
-    return y + d;
+    return entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + d.coeff(i); });
   }
 
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
-    return y + x;
+    return entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + x.coeff(i); });
   }
 
   template <typename Scalar>
@@ -64,7 +64,7 @@ struct PlanarPose : Position<3> {
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::round;
     constexpr auto kRound = static_cast<Scalar>(kTwoPi);
-    Vector<3, Scalar> result = x - y;
+    Vector<3, Scalar> result = Position<3>::difference<Scalar>(x, y);
     result(2) -= kRound * round(result(2) / kRound);
     return result;
   }

@@ -20,10 +20,12 @@ template <Eigen::Index I>
   return i + 1;
 }
 
+/// Largest size whose loops are written out.
+inline constexpr int kUnrolled = 8;
+
 /// Size known at compile time if N is small, else at run time.
 template <int N>
 [[nodiscard]] constexpr auto extent([[maybe_unused]] Eigen::Index size) noexcept {
-  constexpr int kUnrolled = 8;
   if constexpr (N != Eigen::Dynamic && N <= kUnrolled) {
     return Constant<N>{};
   } else {

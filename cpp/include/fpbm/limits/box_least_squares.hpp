@@ -5,6 +5,7 @@
 #include "fpbm/limits/box.hpp"
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
 
 namespace fpbm {
 
@@ -23,7 +24,7 @@ template <int M, int N, typename Scalar>
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return box.nearest(rest);
   const auto missing = [&](const Vector<N, Scalar>& of) -> Vector<M, Scalar> {
-    const Vector<M, Scalar> done = J.lazyProduct(of);
+    const Vector<M, Scalar> done = product(J, of);
     return entrywise(v, [&](Eigen::Index i) { return v.coeff(i) - done.coeff(i); });
   };
   const Vector<N, Scalar> change = transpose_times(J, cholesky.solve(missing(rest)));

@@ -79,7 +79,9 @@ class HeldJoints {
     const bool spare = count_ < Z.cols();
     if (spare && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
     const Free share = shares();
-    if (rate * remaining <= round_off() * std::min(Scalar(1) + share.cwiseAbs().sum(), kAmplified)) {
+    Scalar amplified(1);
+    for (int i = 0; i < count_; ++i) amplified += std::abs(share.coeff(i));
+    if (rate * remaining <= round_off() * std::min(amplified, kAmplified)) {
       fixed_ |= bit(joint);
       return true;
     }
@@ -147,12 +149,18 @@ class HeldJoints {
     for (int i = 0; i < k; ++i) R_[i][k] = Scalar(0);
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < k; ++i) {
-        const Scalar along = Q_[i].dot(Q_[k]);
+        const Scalar along = dot(Q_[i], Q_[k]);
         R_[i][k] += along;
         for (Eigen::Index j = 0; j < Z.cols(); ++j) Q_[k].coeffRef(j) -= along * Q_[i].coeff(j);
       }
     }
-    R_[k][k] = Q_[k].norm();
+    R_[k][k] = std::sqrt(dot(Q_[k], Q_[k]));
+  }
+
+  [[nodiscard]] static Scalar dot(const Free& a, const Free& b) noexcept {
+    Scalar sum(0);
+    for (Eigen::Index k = 0; k < a.size(); ++k) sum += a.coeff(k) * b.coeff(k);
+    return sum;
   }
 
   static void shorten(Free& vector, Scalar length) noexcept {

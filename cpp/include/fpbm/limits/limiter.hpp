@@ -7,6 +7,8 @@
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_given_up.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -69,18 +71,25 @@ class Limiter {
   [[nodiscard]] Saturated<N, Scalar> beside(const Rows<N, P, Scalar>& rows, const Matrix<M, N, Scalar>& J,
                                             const JointState& state, const JointVector& desired,
                                             const JointVector& last) const noexcept {
-    const Scalar mu = kSelfMotion * J.squaredNorm();
+    const Scalar mu = kSelfMotion * squared_norm(J);
     const auto [given_up, self_motion] = task_given_up(J, mu, rows, desired);
-    const Scalar square = given_up.squaredNorm();
+    const Scalar square = squared_norm(given_up);
     const Scalar lacks = std::max(Scalar(1) - self_motion / kServes, Scalar(0));
-    Matrix<M, M, Scalar> B = mu * Matrix<M, M, Scalar>::Identity(J.rows(), J.rows());
-    if (square > Scalar(0)) B += lacks * lacks * mu / kGivenUp / square * given_up * given_up.transpose();
+    Matrix<M, M, Scalar> B;
+    B.resize(J.rows(), J.rows());
+    const Scalar price = square > Scalar(0) ? lacks * lacks * mu / kGivenUp / square : Scalar(0);
+    for (Eigen::Index j = 0; j < J.rows(); ++j) {
+      for (Eigen::Index i = 0; i < J.rows(); ++i) {
+        B.coeffRef(i, j) = price * given_up.coeff(i) * given_up.coeff(j) + (i == j ? mu : Scalar(0));
+      }
+    }
     RowProjection<M, N, P, Scalar> projection(J, B, rows);
     const JointVector wanted = projection(desired);
     Saturated<N, Scalar> found = bounded(J, state, wanted, last, rows);
     found.rows |= projection.active();
-    const Scalar lost = J.lazyProduct(wanted - desired).norm();
-    const Scalar task = J.lazyProduct(desired).norm();
+    const JointVector change = entrywise(wanted, [&](Eigen::Index i) { return wanted.coeff(i) - desired.coeff(i); });
+    const Scalar lost = norm(product(J, change));
+    const Scalar task = norm(product(J, desired));
     if (lost > kUnseen * task) found.scale *= lost < task ? Scalar(1) - lost / task : Scalar(0);
     return found;
   }
@@ -159,13 +168,13 @@ class Limiter {
   template <int M, int P>
   void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box,
              const Rows<N, P, Scalar>& rows, const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
-    const Vector<M, Scalar> task = J.lazyProduct(desired);
+    const Vector<M, Scalar> task = product(J, desired);
     Scalar scale = found.scale;
-    if constexpr (kLevel == Level::kVelocity) scale = J.lazyProduct(found.u).dot(task) / task.squaredNorm();
+    if constexpr (kLevel == Level::kVelocity) scale = dot(product(J, found.u), task) / squared_norm(task);
     const Scalar left = scale > Scalar(0) ? scale / kLittle : Scalar(0);
     if (!(left < Scalar(1))) return;
     const Scalar yields = Scalar(1) - left * left;
-    const Scalar mu = kRadius * kRadius * J.squaredNorm();
+    const Scalar mu = kRadius * kRadius * squared_norm(J);
     const JointVector rest = entrywise(
         state.qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0); });
     const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);

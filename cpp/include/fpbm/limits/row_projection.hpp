@@ -6,6 +6,9 @@
 
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -24,16 +27,17 @@ class RowProjection {
 
   RowProjection(const Matrix<M, N, Scalar>& J, const Matrix<M, M, Scalar>& B, const Rows<N, P, Scalar>& rows) noexcept
       : rows_(rows) {
-    Matrix<M, M, Scalar> gram = B;
-    gram += J.lazyProduct(J.transpose());
+    const Matrix<M, M, Scalar> gram = sum_of<M, M, Scalar>(B, gram_of(J));
     Cholesky<M, Scalar> cholesky;
     const bool regular = cholesky.factor(gram) == Status::kOk;
     ways_.resize(J.cols(), P);
     for (Eigen::Index k = 0; k < rows.count; ++k) {
-      ways_.col(k) = rows.g.col(k);  // (JᵀB⁻¹J + I)⁻¹ g
-      if (!regular) continue;
-      const Vector<M, Scalar> along = cholesky.solve(Vector<M, Scalar>(J.lazyProduct(rows.g.col(k))));
-      ways_.col(k) -= J.transpose().lazyProduct(along);
+      JointVector way = column(rows.g, k);  // (JᵀB⁻¹J + I)⁻¹ g
+      if (regular) {
+        const JointVector lost = transpose_times(J, cholesky.solve(product(J, way)));
+        way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - lost.coeff(i); });
+      }
+      set_column(ways_, k, way);
     }
   }
 
@@ -77,7 +81,7 @@ class RowProjection {
     for (Eigen::Index k = 0; k < rows_.count; ++k) {
       const Scalar beyond = rows_.excess(k, u_);
       const Scalar size = gain(k, k);
-      const Scalar round_off = kRoundOff * (std::abs(rows_.b(k)) + rows_.g.col(k).cwiseAbs().dot(u_.cwiseAbs()));
+      const Scalar round_off = kRoundOff * (std::abs(rows_.b(k)) + rows_.magnitude(k, u_));
       if (!(size > Scalar(0)) || !(beyond > round_off) || !(beyond * beyond > worst * size) || is_active(k)) continue;
       worst = beyond * beyond / size;
       met_ = k;
@@ -91,8 +95,10 @@ class RowProjection {
   [[nodiscard]] bool step(bool& meets) noexcept {
     Share share(count_);  // What each active row's multiplier loses, for one that the met row's gains.
     if (!find_shares(share)) return false;
-    JointVector way = ways_.col(met_);
-    for (Eigen::Index j = 0; j < count_; ++j) way -= share(j) * ways_.col(active_[j]);
+    JointVector way = column(ways_, met_);
+    for (Eigen::Index j = 0; j < count_; ++j) {
+      way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - share(j) * ways_.coeff(i, active_[j]); });
+    }
     Scalar length = std::numeric_limits<Scalar>::infinity();
     Eigen::Index leaving = -1;
     for (Eigen::Index j = 0; j < count_; ++j) {
@@ -100,7 +106,7 @@ class RowProjection {
       length = multipliers_[j] / share(j);
       leaving = j;
     }
-    const Scalar slope = rows_.g.col(met_).dot(way);
+    const Scalar slope = rows_.along(met_, way);
     const bool independent = slope > kIndependent * gain(met_, met_) && count_ < kMost;
     const Scalar beyond = rows_.excess(met_, u_);
     if (independent && beyond <= length * slope) {
@@ -109,7 +115,7 @@ class RowProjection {
     } else if (leaving < 0) {
       return false;
     }
-    if (independent) u_ -= length * way;
+    if (independent) u_ = entrywise(u_, [&](Eigen::Index i) { return u_.coeff(i) - length * way.coeff(i); });
     multiplier_ += length;
     for (Eigen::Index j = 0; j < count_; ++j) multipliers_[j] -= length * share(j);
     meets = leaving >= 0;
@@ -141,7 +147,9 @@ class RowProjection {
   }
 
   /// gᵢᵀ H⁻¹ gⱼ
-  [[nodiscard]] Scalar gain(Eigen::Index i, Eigen::Index j) const noexcept { return rows_.g.col(i).dot(ways_.col(j)); }
+  [[nodiscard]] Scalar gain(Eigen::Index i, Eigen::Index j) const noexcept {
+    return sum_over(u_, [&](Eigen::Index k) { return rows_.g.coeff(k, i) * ways_.coeff(k, j); });
+  }
 
   [[nodiscard]] bool is_active(Eigen::Index k) const noexcept {
     return std::find(active_, active_ + count_, k) != active_ + count_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fpbm/limits/box.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -16,8 +17,16 @@ struct Rows {
   Eigen::Index count = 0;
 
   /// How far a motion exceeds row k, below zero where it keeps it.
-  [[nodiscard]] Scalar excess(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
-    return g.col(k).dot(u) - b(k);
+  [[nodiscard]] Scalar excess(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept { return along(k, u) - b(k); }
+
+  /// g_k · u
+  [[nodiscard]] Scalar along(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
+    return sum_over(u, [&](Eigen::Index i) { return g.coeff(i, k) * u.coeff(i); });
+  }
+
+  /// |g_k| · |u|: what round-off is a share of.
+  [[nodiscard]] Scalar magnitude(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
+    return sum_over(u, [&](Eigen::Index i) { return std::abs(g.coeff(i, k) * u.coeff(i)); });
   }
 
   /// Whether a motion keeps all rows.
@@ -33,9 +42,9 @@ struct Rows {
     constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
     Scalar share(1);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Scalar slack = kRoundOff * (std::abs(b(k)) + g.col(k).cwiseAbs().dot(from.cwiseAbs() + to.cwiseAbs()));
+      const Scalar slack = kRoundOff * (std::abs(b(k)) + magnitude(k, from) + magnitude(k, to));
       const Scalar room = slack - excess(k, from);
-      const Scalar change = g.col(k).dot(to - from);
+      const Scalar change = along(k, to) - along(k, from);
       if (change * share > room) share = room > Scalar(0) ? room / change : Scalar(0);
     }
     return share;
@@ -47,8 +56,9 @@ struct Rows {
     for (int round = 0; round < kRounds && !admit(u); ++round) {
       for (Eigen::Index k = 0; k < count; ++k) {
         const Scalar beyond = excess(k, u);
-        const Scalar square = g.col(k).squaredNorm();
-        if (beyond > Scalar(0) && square > Scalar(0)) u -= beyond / square * g.col(k);
+        const Scalar square = sum_over(u, [&](Eigen::Index i) { return g.coeff(i, k) * g.coeff(i, k); });
+        if (!(beyond > Scalar(0) && square > Scalar(0))) continue;
+        for (Eigen::Index i = 0; i < u.size(); ++i) u.coeffRef(i) -= beyond / square * g.coeff(i, k);
       }
       u = box.nearest(u);
     }

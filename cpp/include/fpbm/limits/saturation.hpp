@@ -10,6 +10,7 @@
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -91,12 +92,14 @@ class NullSpaceSaturation {
     }
     if constexpr (P > 0) {
       const Eigen::Index count = n - joints;
-      const auto g = rows_.g.leftCols(count).transpose();
-      goal.tail(count) = g.lazyProduct(desired - rest);
-      upper.tail(count) = (rows_.b.head(count) - g.lazyProduct(rest)).cwiseMax(Scalar(0));
-      lower.tail(count).setConstant(-std::numeric_limits<Scalar>::infinity());
+      for (Eigen::Index k = 0; k < count; ++k) {
+        goal(joints + k) = rows_.along(k, desired) - rows_.along(k, rest);
+        upper(joints + k) = std::max(-rows_.excess(k, rest), Scalar(0));
+        lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
+      }
     }
-    All u = All::Zero(n);
+    All u(n);
+    for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
     Saturated<N, Scalar> result{rest, Scalar(0), 0, 0};
     held_.clear();
     const Eigen::Index most = kPasses * n;
@@ -123,8 +126,13 @@ class NullSpaceSaturation {
       const bool above = rate(hit) > Scalar(0);
       u(hit) = above ? upper(hit) : lower(hit);
       const auto round_off = [&]() noexcept {
-        const Scalar given = (desired.cwiseAbs() + rest.cwiseAbs()).cwiseQuotient(unit_).maxCoeff();
-        return Held::kRoundOff * (fastest + goal.cwiseAbs().maxCoeff()) + kStill * given;
+        Scalar given(0);
+        for (Eigen::Index i = 0; i < joints; ++i) {
+          given = std::max(given, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
+        }
+        Scalar farthest(0);
+        for (Eigen::Index i = 0; i < n; ++i) farthest = std::max(farthest, abs(goal.coeff(i)));
+        return Held::kRoundOff * (fastest + farthest) + kStill * given;
       };
       if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - result.scale, round_off)) {
         count(result, hit, joints);
@@ -164,8 +172,8 @@ class NullSpaceSaturation {
         Z_.resize(rows, 1);
         const JointVector v = motion.null();
         const JointVector in_units = entrywise(v, [&](Eigen::Index i) { return v.coeff(i) / unit_.coeff(i); });
-        const JointVector z = in_units.normalized();
-        for (Eigen::Index i = 0; i < N; ++i) Z_.coeffRef(i, 0) = z.coeff(i);
+        const Scalar length = norm(in_units);
+        for (Eigen::Index i = 0; i < N; ++i) Z_.coeffRef(i, 0) = in_units.coeff(i) / length;
         return true;
       }
     }
@@ -176,11 +184,15 @@ class NullSpaceSaturation {
   void add_rows([[maybe_unused]] Eigen::Index n) noexcept {
     if constexpr (P > 0) {
       for (Eigen::Index k = 0; k < rows_.count; ++k) {
-        const Scalar length = rows_.g.col(k).cwiseProduct(unit_).norm();
+        JointVector g = column(rows_.g, k);
+        const Scalar length = norm(entrywise(g, [&](Eigen::Index i) { return g.coeff(i) * unit_.coeff(i); }));
         const Scalar scale = length > Scalar(0) ? Scalar(1) / length : Scalar(0);
-        rows_.g.col(k) *= scale;
+        g = entrywise(g, [&](Eigen::Index i) { return scale * g.coeff(i); });
+        set_column(rows_.g, k, g);
         rows_.b(k) *= scale;
-        Z_.row(n + k) = rows_.g.col(k).cwiseProduct(unit_).transpose().lazyProduct(Z_.topRows(n));
+        for (Eigen::Index j = 0; j < Z_.cols(); ++j) {
+          Z_(n + k, j) = sum_over(g, [&](Eigen::Index i) { return g.coeff(i) * unit_.coeff(i) * Z_.coeff(i, j); });
+        }
       }
     }
   }

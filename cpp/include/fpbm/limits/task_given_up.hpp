@@ -4,6 +4,9 @@
 
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -24,34 +27,39 @@ template <int M, int N, int P, typename Scalar>
 [[nodiscard]] GivenUp<M, Scalar> task_given_up(const Matrix<M, N, Scalar>& J, Scalar mu, const Rows<N, P, Scalar>& rows,
                                                const Vector<N, Scalar>& u) noexcept {
   constexpr int kRounds = 8;
-  Vector<M, Scalar> change = Vector<M, Scalar>::Zero(J.rows());
-  Matrix<M, M, Scalar> gram = J.lazyProduct(J.transpose());
-  gram.diagonal().array() += mu;
+  auto change = filled<Vector<M, Scalar>>(J.rows());
+  Matrix<M, M, Scalar> gram = gram_of(J);
+  for (Eigen::Index i = 0; i < J.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return {change, Scalar(0)};
   Matrix<M, P, Scalar> normals(J.rows(), P);  // Of the rows, in the task's space.
   Vector<P, Scalar> squares;
   Vector<P, Scalar> multipliers;
   for (Eigen::Index k = 0; k < rows.count; ++k) {
-    normals.col(k) = cholesky.solve(Vector<M, Scalar>(J.lazyProduct(rows.g.col(k))));
-    squares(k) = normals.col(k).squaredNorm();
+    const Vector<M, Scalar> normal = cholesky.solve(product(J, column(rows.g, k)));
+    set_column(normals, k, normal);
+    squares(k) = squared_norm(normal);
     multipliers(k) = Scalar(0);
   }
   for (int round = 0; round < kRounds; ++round) {
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       if (!(squares(k) > Scalar(0))) continue;
-      const Scalar beyond = rows.excess(k, u) + normals.col(k).dot(change);
+      const Vector<M, Scalar> normal = column(normals, k);
+      const Scalar beyond = rows.excess(k, u) + dot(normal, change);
       const Scalar multiplier = std::max(multipliers(k) + beyond / squares(k), Scalar(0));
-      change -= (multiplier - multipliers(k)) * normals.col(k);
+      const Scalar added = multiplier - multipliers(k);
+      change = entrywise(change, [&](Eigen::Index i) { return change.coeff(i) - added * normal.coeff(i); });
       multipliers(k) = multiplier;
     }
   }
-  Vector<N, Scalar> asked = Vector<N, Scalar>::Zero(J.cols());
-  for (Eigen::Index k = 0; k < rows.count; ++k) asked += multipliers(k) * rows.g.col(k);
-  const Scalar square = asked.squaredNorm();
+  auto asked = filled<Vector<N, Scalar>>(J.cols());
+  for (Eigen::Index k = 0; k < rows.count; ++k) {
+    asked = entrywise(asked, [&](Eigen::Index i) { return asked.coeff(i) + multipliers(k) * rows.g.coeff(i, k); });
+  }
+  const Scalar square = squared_norm(asked);
   if (!(square > Scalar(0))) return {change, Scalar(0)};
-  asked += J.transpose().lazyProduct(change);  // N v, as change is −(JJᵀ + μI)⁻¹ J v.
-  return {change, asked.squaredNorm() / square};
+  asked = sum_of<N, 1, Scalar>(asked, transpose_times(J, change));  // N v, as change is −(JJᵀ + μI)⁻¹ J v.
+  return {change, squared_norm(asked) / square};
 }
 
 }  // namespace fpbm

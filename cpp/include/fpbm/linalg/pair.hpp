@@ -167,11 +167,17 @@ template <int Rows, int Cols, typename Scalar>
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> first(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return a.unaryExpr([](const Pair<Scalar>& x) { return x.first(); });
+  Matrix<Rows, Cols, Scalar> result;
+  result.resize(a.rows(), a.cols());
+  for (Eigen::Index i = 0; i < a.size(); ++i) result.coeffRef(i) = a.coeff(i).first();
+  return result;
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> second(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return a.unaryExpr([](const Pair<Scalar>& x) { return x.second(); });
+  Matrix<Rows, Cols, Scalar> result;
+  result.resize(a.rows(), a.cols());
+  for (Eigen::Index i = 0; i < a.size(); ++i) result.coeffRef(i) = a.coeff(i).second();
+  return result;
 }
 
 }  // namespace fpbm

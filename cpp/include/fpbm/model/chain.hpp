@@ -9,6 +9,7 @@
 
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/linalg/three.hpp"
 #include "fpbm/model/joint.hpp"
 
@@ -99,7 +100,7 @@ Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dy
     const validation::Argument name = chain_check::name_of(chain, i);
     chain_check::require_transform(name + ".placement", joint.placement);
     validation::require_finite(name + ".axis", joint.axis);
-    if (!(joint.axis.norm() > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
+    if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
     if (joint.mimic.joint >= 0) validation::reject(name, " moves with another: must be in a CoupledArm");
     chain_check::require_bounds(name, joint.type, joint.bounds);
   }

@@ -10,6 +10,7 @@
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
@@ -56,10 +57,10 @@ class SerialArm {
         const Scalar range = joint.bounds.upper - joint.bounds.lower;
         if (std::isfinite(range)) length_ += range;
       }
-      if (i > 0) length_ += joint.placement.p.norm();
+      if (i > 0) length_ += norm(joint.placement.p);
       limits_.set(i, joint.bounds);
     }
-    length_ += chain.tip.p.norm();
+    length_ += norm(chain.tip.p);
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
     const DecomposedLink<Scalar> last(turned_back * chain.tip);
     links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);

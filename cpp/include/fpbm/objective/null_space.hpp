@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -94,7 +95,11 @@ class NullSpace {
   /// level).
   [[nodiscard]] std::pair<Scalar, Scalar> stiffness_range() const noexcept {
     if (stiffness_.size() == 0) return {Scalar(0), Scalar(0)};
-    return {stiffness_.minCoeff(), stiffness_.maxCoeff()};
+    std::pair<Scalar, Scalar> range{stiffness_(0), stiffness_(0)};
+    for (Eigen::Index i = 1; i < stiffness_.size(); ++i) {
+      range = {std::min(range.first, stiffness_(i)), std::max(range.second, stiffness_(i))};
+    }
+    return range;
   }
 
   /// False where z is zero in every state.
@@ -124,7 +129,7 @@ class NullSpace {
 
   /// Adds stiffness ∘ (middle − q).
   [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
-    NullSpace changed = with_constant(stiffness.cwiseProduct(middle));
+    NullSpace changed = with_constant(entrywise(middle, [&](Eigen::Index i) { return stiffness(i) * middle(i); }));
     changed.stiffness_ += stiffness;
     return changed;
   }

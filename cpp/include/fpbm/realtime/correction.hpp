@@ -2,6 +2,7 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/task/reference.hpp"
 
@@ -60,11 +61,9 @@ class Correction {
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) += dt_ * error_(i);
-    using std::sqrt;
     Twist even = integral_;  // In arm lengths and radians.
     for (int i = 0; i < kLengths; ++i) even(i) /= length_;
-    const Scalar size =
-        gain_ * sqrt(entrywise(even, [&](Eigen::Index i) { return even.coeff(i) * even.coeff(i); }).sum());
+    const Scalar size = gain_ * norm(even);
     if (!(size > bound_)) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;
   }
@@ -77,7 +76,7 @@ class Correction {
   [[nodiscard]] static bool bring_near(const Scalar* error, Scalar bound, Scalar* excess) noexcept {
     Vector<kRows, Scalar> part;
     for (int i = 0; i < kRows; ++i) part(i) = error[i];
-    const Scalar length = part.norm();
+    const Scalar length = norm(part);
     if (length <= bound) return false;
     for (int i = 0; i < kRows; ++i) excess[i] = (Scalar(1) - bound / length) * error[i];
     return true;

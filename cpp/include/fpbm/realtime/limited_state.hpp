@@ -4,6 +4,7 @@
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/realtime/correction.hpp"
 #include "fpbm/realtime/progress.hpp"
@@ -168,7 +169,8 @@ class LimitedState {
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
   template <typename Arm>
   [[nodiscard]] JointVector self_motion_away(const Arm& arm, const JointVector& end) noexcept {
-    const JointVector middle = (state_.q + end) / Scalar(2);
+    const JointVector middle =
+        entrywise(end, [&](Eigen::Index i) { return (state_.q.coeff(i) + end.coeff(i)) / Scalar(2); });
     Kinematics<Space, N, Scalar> kinematics;
     arm.kinematics(middle, kinematics);
     const auto Z = null_basis<kLimitedRows<Space, N>, N, Scalar>(jacobian_in_metres(kinematics));

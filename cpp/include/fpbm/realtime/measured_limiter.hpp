@@ -83,8 +83,12 @@ class MeasuredLimiter {
     const Box<N, Scalar> box = limits().box(state);
     const JointVector u = brake_in_proportion(limits(), state, box, D);
     // Limits that still allow braking at rate 1/D, which keeps the envelopes.
-    const JointVector halt = (state.qd / -D).cwiseMax(-most).cwiseMin(most);
-    const Box<N, Scalar> wider{box.lower.cwiseMin(halt), box.upper.cwiseMax(halt)};
+    Box<N, Scalar> wider = box;
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      const Scalar halt = std::clamp(-state.qd(i) / D, -most(i), most(i));
+      wider.lower(i) = std::min(wider.lower(i), halt);
+      wider.upper(i) = std::max(wider.upper(i), halt);
+    }
     JointVector smooth = u;
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       const Scalar change = u(i) - last(i);
@@ -139,9 +143,12 @@ class MeasuredLimiter {
   /// A box, or what bounds on acceleration and jerk admit nearest to it.
   [[nodiscard]] Box<N, Scalar> in_reach(const Box<N, Scalar>& box, const JointVector& last) const noexcept {
     if (!bounds_jerk_) return box;
-    const JointVector low = last - step_;
-    const JointVector high = last + step_;
-    return {box.lower.cwiseMax(low).cwiseMin(high), box.upper.cwiseMax(low).cwiseMin(high)};
+    const auto reached = [&](const JointVector& u) {
+      return entrywise(u, [&](Eigen::Index i) {
+        return std::min(std::max(u.coeff(i), last.coeff(i) - step_.coeff(i)), last.coeff(i) + step_.coeff(i));
+      });
+    };
+    return {reached(box.lower), reached(box.upper)};
   }
 
   /// H g/h: 1.172, the least possible (horizon()), times 1.28 for accelerations that exceed the commanded ones.

@@ -3,6 +3,8 @@
 #include <type_traits>
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/least_norm.hpp"
 #include "fpbm/scheme/weights.hpp"
@@ -93,7 +95,10 @@ struct AccelerationScheme {
       return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
     } else {
       if constexpr (kUnit) {
-        if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd);
+        // Where a self-motion is foreseen, this is the slow way near a singular posture, for any alpha.
+        if constexpr (!kHasSelfMotion<M, N>) {
+          if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd);
+        }
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
         const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result);
@@ -147,15 +152,15 @@ struct AccelerationScheme {
       if (braked || null_space.template active<kLevel>()) {
         Vector<N, Scalar> z = null_space.template at<kLevel>(state);
         if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
-        y += weights.unroot(z);
+        y = sum_of<N, 1, Scalar>(y, weights.unroot(z));
       }
-      const Vector<M, Scalar> even = (Scalar(1) - alpha) * b;
-      const Vector<M, Scalar> weighted = alpha * b;
+      const Vector<M, Scalar> even = entrywise(b, [&](Eigen::Index i) { return (Scalar(1) - alpha) * b.coeff(i); });
+      const Vector<M, Scalar> weighted = entrywise(b, [&](Eigen::Index i) { return alpha * b.coeff(i); });
       const Vector<N, Pair<Scalar>> parts =
           solutions.motion(solutions.shares(side_by_side<M, 1, Scalar>(even, weighted)));
       y = second<N, 1, Scalar>(solutions.without(side_by_side<N, 1, Scalar>(y, y)));
-      y += second<N, 1, Scalar>(parts);
-      return weights.root(y) + first<N, 1, Scalar>(parts);
+      y = sum_of<N, 1, Scalar>(y, second<N, 1, Scalar>(parts));
+      return sum_of<N, 1, Scalar>(weights.root(y), first<N, 1, Scalar>(parts));
     });
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -22,11 +26,18 @@ class DenseWeights {
       const Eigen::Index i = cholesky.lost_pivot();
       validation::fail(validation::element("weights", i, i), W(i, i), "larger: W is not positive definite");
     }
-    root_ = Matrix<N, N, Scalar>::Identity(W.rows(), W.cols());
-    for (Eigen::Index j = 0; j < W.cols(); ++j) root_.col(j) = cholesky.inverse_root(root_.col(j));
-    const Scalar largest = root_.rowwise().squaredNorm().maxCoeff();
-    root_ /= std::sqrt(largest);
-    weights_ = largest * W;
+    root_ = W;
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      Vector<N, Scalar> axis = filled<Vector<N, Scalar>>(W.rows());
+      axis(j) = Scalar(1);
+      set_column(root_, j, cholesky.inverse_root(axis));
+    }
+    const Matrix<N, N, Scalar> inverse = gram_of(root_);
+    Scalar largest = inverse(0, 0);
+    for (Eigen::Index i = 1; i < W.rows(); ++i) largest = std::max(largest, inverse(i, i));
+    const Scalar scale = std::sqrt(largest);
+    root_ = entrywise(root_, [&](Eigen::Index i) { return root_.coeff(i) / scale; });
+    weights_ = entrywise(W, [&](Eigen::Index i) { return largest * W.coeff(i); });
   }
 
   void require_dof(Eigen::Index dof) const { validation::require_size("weights", root_.rows(), dof); }
@@ -34,33 +45,32 @@ class DenseWeights {
 
   template <typename>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
-    return root_.squaredNorm();
+    return squared_norm(root_);
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return weights_.lazyProduct(a.derived());
+  [[nodiscard]] Vector<N, Scalar> times(const Vector<N, Scalar>& a) const noexcept { return product(weights_, a); }
+
+  [[nodiscard]] Vector<N, Scalar> root(const Vector<N, Scalar>& a) const noexcept { return product(root_, a); }
+
+  [[nodiscard]] Vector<N, Scalar> unroot(const Vector<N, Scalar>& a) const noexcept {
+    return transpose_times(root_, times(a));
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return root_.lazyProduct(a.derived());
-  }
-
-  template <typename Derived>
-  [[nodiscard]] Vector<N, Scalar> unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    const Vector<N, Scalar> Wa = times(a);
-    return root_transpose(Wa);
-  }
-
-  template <typename Derived>
-  [[nodiscard]] auto root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return root_.transpose().lazyProduct(A.derived());
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Scalar> root_transpose(const Matrix<N, M, Scalar>& A) const noexcept {
+    if constexpr (M == 1) {
+      return transpose_times(root_, A);
+    } else {
+      Matrix<N, M, Scalar> result = A;
+      for (Eigen::Index j = 0; j < A.cols(); ++j) set_column(result, j, transpose_times(root_, column(A, j)));
+      return result;
+    }
   }
 
   template <int M>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    return side_by_side<N, M, Scalar>(J.transpose(), root_transpose(J.transpose()));
+    const Matrix<N, M, Scalar> Jt = transpose_of(J);
+    return side_by_side<N, M, Scalar>(Jt, root_transpose<M>(Jt));
   }
 
  private:
@@ -72,7 +82,7 @@ class DenseWeights {
       }
     }
     using std::abs;
-    const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * W.cwiseAbs().maxCoeff();
+    const Scalar tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon()) * largest_magnitude(W);
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       for (Eigen::Index i = j + 1; i < W.rows(); ++i) {
         if (abs(W(i, j) - W(j, i)) > tolerance) {

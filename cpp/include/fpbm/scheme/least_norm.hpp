@@ -4,6 +4,8 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/status.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/one_self_motion.hpp"
 #include "fpbm/singular/damping.hpp"
@@ -41,10 +43,10 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
     if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
     Vector<N, Scalar> y0 = weights.unroot(z);
-    if constexpr (kForced) y0 += weights.root_transpose(force(solutions));
+    if constexpr (kForced) y0 = sum_of<N, 1, Scalar>(y0, weights.root_transpose(force(solutions)));
     const Vector<N, Scalar> free = solutions.without(y0);
     const Vector<N, Scalar> done = solutions.motion(solutions.shares(v));
-    return entrywise(free, [&](Eigen::Index i) { return free.coeff(i) + done.coeff(i); });
+    return sum_of<N, 1, Scalar>(free, done);
   });
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);

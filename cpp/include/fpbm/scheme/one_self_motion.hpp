@@ -4,7 +4,9 @@
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/self_motion.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/linalg/total.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/singular/damping.hpp"
@@ -44,7 +46,7 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
     Vector<N, Scalar> rate;  // J_W⁺xd
     each(Constant<0>{}, Constant<N>{},
          [&](Eigen::Index i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
-    wanted += alpha * motion.along(Jd.lazyProduct(v), weights.times(rate));
+    wanted += alpha * motion.along(product(Jd, v), weights.times(rate));
   }
   const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
   Vector<N, Scalar> u;

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/product.hpp"
 
 /// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost; dense_weights.hpp
 /// has the third.
@@ -28,29 +33,29 @@ struct UnitWeights {
     return Scalar(1);
   }
 
-  template <typename Derived>
-  [[nodiscard]] const Derived& times(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return a.derived();
+  template <int N, typename Scalar>
+  [[nodiscard]] const Vector<N, Scalar>& times(const Vector<N, Scalar>& a) const noexcept {
+    return a;
   }
 
-  template <typename Derived>
-  [[nodiscard]] const Derived& root(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return a.derived();
+  template <int N, typename Scalar>
+  [[nodiscard]] const Vector<N, Scalar>& root(const Vector<N, Scalar>& a) const noexcept {
+    return a;
   }
 
-  template <typename Derived>
-  [[nodiscard]] const Derived& unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return a.derived();
+  template <int N, typename Scalar>
+  [[nodiscard]] const Vector<N, Scalar>& unroot(const Vector<N, Scalar>& a) const noexcept {
+    return a;
   }
 
-  template <typename Derived>
-  [[nodiscard]] const Derived& root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return A.derived();
+  template <int N, int M, typename Scalar>
+  [[nodiscard]] const Matrix<N, M, Scalar>& root_transpose(const Matrix<N, M, Scalar>& A) const noexcept {
+    return A;
   }
 
   template <int M, int N, typename Scalar>
   [[nodiscard]] Matrix<N, M, Pair<Scalar>> with_unit(const Matrix<M, N, Scalar>& J) const noexcept {
-    const Matrix<N, M, Scalar> Jt = J.transpose();
+    const Matrix<N, M, Scalar> Jt = transpose_of(J);
     return side_by_side<N, M, Scalar>(Jt, Jt);
   }
 };
@@ -63,9 +68,12 @@ class DiagonalWeights {
   explicit DiagonalWeights(const Vector<N, Scalar>& weights) {
     validation::require_dof("weights", weights.size(), 1);
     validation::require_positive("weights", weights);
-    const Scalar least = weights.minCoeff();
-    weights_ = weights / least;
-    root_ = (least * weights.cwiseInverse()).cwiseSqrt();
+    using std::min;
+    using std::sqrt;
+    Scalar least = weights(0);
+    for (Eigen::Index i = 1; i < weights.size(); ++i) least = min(least, weights(i));
+    weights_ = entrywise(weights, [&](Eigen::Index i) { return weights(i) / least; });
+    root_ = entrywise(weights, [&](Eigen::Index i) { return sqrt(least / weights(i)); });
   }
 
   /// In lanes: get(lane) is the weights of one lane.
@@ -90,24 +98,21 @@ class DiagonalWeights {
     return Scalar(1);
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return weights_.asDiagonal() * a.derived();
+  [[nodiscard]] Vector<N, Scalar> times(const Vector<N, Scalar>& a) const noexcept {
+    return diagonal_times<N, 1, Scalar>(weights_, a);
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto root(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return root_.asDiagonal() * a.derived();
+  [[nodiscard]] Vector<N, Scalar> root(const Vector<N, Scalar>& a) const noexcept {
+    return diagonal_times<N, 1, Scalar>(root_, a);
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto unroot(const Eigen::MatrixBase<Derived>& a) const noexcept {
-    return a.cwiseQuotient(root_);
+  [[nodiscard]] Vector<N, Scalar> unroot(const Vector<N, Scalar>& a) const noexcept {
+    return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / root_.coeff(i); });
   }
 
-  template <typename Derived>
-  [[nodiscard]] auto root_transpose(const Eigen::MatrixBase<Derived>& A) const noexcept {
-    return root_.asDiagonal() * A.derived();
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Scalar> root_transpose(const Matrix<N, M, Scalar>& A) const noexcept {
+    return diagonal_times<N, M, Scalar>(root_, A);
   }
 
   template <int M>

@@ -7,6 +7,7 @@
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/lower_gram.hpp"
+#include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 

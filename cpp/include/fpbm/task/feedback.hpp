@@ -2,6 +2,8 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/task/reference.hpp"
 
@@ -12,7 +14,10 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_velocity(
     Scalar k, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference) noexcept {
   Vector<Space::kRows, Scalar> v = reference.xd;
-  if (!all_of(k == Scalar(0))) v += k * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  if (!all_of(k == Scalar(0))) {
+    const Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+    v = entrywise(v, [&](Eigen::Index i) { return v.coeff(i) + k * error.coeff(i); });
+  }
   return v;
 }
 
@@ -21,12 +26,19 @@ template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
     const State<N, Scalar>& state) noexcept {
-  Vector<Space::kRows, Scalar> b = reference.xdd - kinematics.Jd.lazyProduct(state.qd);
-  if (!all_of(k1 + k2 == Scalar(0))) {
-    b += k1 * (reference.xd - kinematics.J.lazyProduct(state.qd));
-    b += k2 * Space::template difference<Scalar>(reference.x, kinematics.tip);
+  constexpr int M = Space::kRows;
+  const Scalar* const xdd = reference.xdd.data();
+  if (all_of(k1 + k2 == Scalar(0))) {
+    return by_rows<M, Scalar>(
+        [&](const auto& rows) { return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd); });
   }
-  return b;
+  const Vector<M, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+  return by_rows<M, Scalar>([&](const auto& rows) {
+    using Value = decltype(rows(xdd));
+    const Value velocity = rows(reference.xd.data()) - rows_of_product(rows, kinematics.J, state.qd);
+    return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd) + Value(k1) * velocity +
+           Value(k2) * rows(error.data());
+  });
 }
 
 }  // namespace fpbm

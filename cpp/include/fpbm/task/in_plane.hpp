@@ -3,6 +3,7 @@
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/task/path.hpp"
 
 namespace fpbm {
@@ -19,7 +20,9 @@ class InPlane {
   InPlane(const Path& path, const Vector<3, Scalar>& u, const Vector<3, Scalar>& v) : path_(path) {
     validation::require_finite("u", u);
     validation::require_finite("v", v);
-    if (!(u.norm() > Scalar(0) && v.norm() > Scalar(0))) validation::reject("u and v", ": must both be nonzero");
+    if (!(squared_norm(u) > Scalar(0) && squared_norm(v) > Scalar(0))) {
+      validation::reject("u and v", ": must both be nonzero");
+    }
     u_ = normalized(u);
     v_ = normalized(v);
     const Scalar cosine = u_(0) * v_(0) + u_(1) * v_(1) + u_(2) * v_(2);

@@ -1,0 +1,129 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/total.hpp"
+
+/// Products of small matrices by loops. Of each of Eigen's products a compiler makes some thirty classes and functions.
+namespace fpbm {
+
+/// The vector of M rows that f makes, two rows at a time: f(rows) returns them, where rows(column) are the same rows of
+/// a column in memory. The last row of an odd number comes alone.
+template <int M, typename Scalar, typename F>
+[[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
+  Vector<M, Scalar> result;
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 8
+#endif
+  for (int i = 0; i + 1 < M; i += 2) {
+    f([i](const Scalar* column) { return Pair<Scalar>::load(column + i); }).store(result.data() + i);
+  }
+  if constexpr (M % 2 == 1) result.coeffRef(M - 1) = f([](const Scalar* column) { return column[M - 1]; });
+  return result;
+}
+
+/// Rows of A b, as by_rows() asks for them.
+template <int M, int N, typename Scalar, typename Rows>
+[[nodiscard, gnu::always_inline]] inline auto rows_of_product(const Rows& rows, const Matrix<M, N, Scalar>& A,
+                                                              const Vector<N, Scalar>& b) noexcept {
+  using Value = decltype(rows(A.data()));
+  Value sum = rows(A.data()) * Value(b.coeff(0));
+  if constexpr (N != Eigen::Dynamic && N <= kUnrolled) {
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 8
+#endif
+    for (int j = 1; j < N; ++j) sum += rows(A.data() + j * M) * Value(b.coeff(j));
+  } else {
+    for (Eigen::Index j = 1; j < b.size(); ++j) sum += rows(A.data() + j * M) * Value(b.coeff(j));
+  }
+  return sum;
+}
+
+/// A b.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Vector<Rows, Scalar> product(const Matrix<Rows, Cols, Scalar>& A,
+                                           const Vector<Cols, Scalar>& b) noexcept {
+  if constexpr (Rows != Eigen::Dynamic) {
+    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows_of_product(rows, A, b); });
+  } else {
+    Vector<Rows, Scalar> result;
+    result.resize(A.rows());
+    for (Eigen::Index i = 0; i < A.rows(); ++i) result.coeffRef(i) = A.coeff(i, 0) * b.coeff(0);
+    for (Eigen::Index j = 1; j < A.cols(); ++j) {
+      for (Eigen::Index i = 0; i < A.rows(); ++i) result.coeffRef(i) += A.coeff(i, j) * b.coeff(j);
+    }
+    return result;
+  }
+}
+
+/// Aᵀb.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Vector<Cols, Scalar> transpose_times(const Matrix<Rows, Cols, Scalar>& A,
+                                                   const Vector<Rows, Scalar>& b) noexcept {
+  Vector<Cols, Scalar> result;
+  result.resize(A.cols());
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    const auto term = [&](Eigen::Index i) { return A.coeff(i, j) * b.coeff(i); };
+    if constexpr (Rows != Eigen::Dynamic) {
+      result.coeffRef(j) = total<0, Rows>(term);
+    } else {
+      Scalar sum = term(0);
+      for (Eigen::Index i = 1; i < A.rows(); ++i) sum += term(i);
+      result.coeffRef(j) = sum;
+    }
+  }
+  return result;
+}
+
+/// A Aᵀ.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Rows, Scalar> gram_of(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  Matrix<Rows, Rows, Scalar> result;
+  result.resize(A.rows(), A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    for (Eigen::Index j = 0; j < A.rows(); ++j) {
+      Scalar sum = A.coeff(i, 0) * A.coeff(j, 0);
+      for (Eigen::Index k = 1; k < A.cols(); ++k) sum += A.coeff(i, k) * A.coeff(j, k);
+      result.coeffRef(i, j) = sum;
+    }
+  }
+  return result;
+}
+
+/// Aᵀ.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Cols, Rows, Scalar> transpose_of(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  Matrix<Cols, Rows, Scalar> result;
+  result.resize(A.cols(), A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    for (Eigen::Index j = 0; j < A.cols(); ++j) result.coeffRef(j, i) = A.coeff(i, j);
+  }
+  return result;
+}
+
+/// diag(d) A.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> diagonal_times(const Vector<Rows, Scalar>& d,
+                                                        const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  if constexpr (Cols == 1) {
+    return entrywise(A, [&](Eigen::Index i) { return d.coeff(i) * A.coeff(i); });
+  } else {
+    Matrix<Rows, Cols, Scalar> result;
+    result.resize(A.rows(), A.cols());
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      for (Eigen::Index i = 0; i < A.rows(); ++i) result.coeffRef(i, j) = d.coeff(i) * A.coeff(i, j);
+    }
+    return result;
+  }
+}
+
+/// a + b.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> sum_of(const Matrix<Rows, Cols, Scalar>& a,
+                                                const Matrix<Rows, Cols, Scalar>& b) noexcept {
+  return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) + b.coeff(i); });
+}
+
+}  // namespace fpbm

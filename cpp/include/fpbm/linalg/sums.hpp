@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fpbm/core/mask.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/total.hpp"
+
+/// Sums and maxima over the entries of a matrix that has at least one, in their order.
+///
+/// Of each such call on a matrix or expression of Eigen's a compiler makes some twenty classes and functions, and one
+/// for each entry of a fixed size.
+namespace fpbm {
+
+/// Σ f(i) over as many i as a matrix has entries. Few are written out: a loop would keep them in memory.
+template <int Rows, int Cols, typename Scalar, typename F>
+[[nodiscard]] Scalar sum_over(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
+  constexpr int kFew = 4;
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kFew) {
+    return total<0, Rows * Cols>(f);
+  } else {
+    Scalar sum = f(0);
+    for (Eigen::Index i = 1; i < size.size(); ++i) sum += f(i);
+    return sum;
+  }
+}
+
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Scalar squared_norm(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  return sum_over(A, [&](Eigen::Index i) { return A.coeff(i) * A.coeff(i); });
+}
+
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Scalar norm(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  using std::sqrt;
+  return sqrt(squared_norm(A));
+}
+
+template <int N, typename Scalar>
+[[nodiscard]] Scalar dot(const Vector<N, Scalar>& a, const Vector<N, Scalar>& b) noexcept {
+  return sum_over(a, [&](Eigen::Index i) { return a.coeff(i) * b.coeff(i); });
+}
+
+/// The largest |entry|.
+template <int Rows, int Cols, typename Scalar>
+[[nodiscard]] Scalar largest_magnitude(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+  using std::abs;
+  Scalar largest(0);
+  for (Eigen::Index i = 0; i < A.size(); ++i) largest = std::max(largest, Scalar(abs(A.coeff(i))));
+  return largest;
+}
+
+/// Whether all entries are finite; always true in lanes, where a failed lane does not disturb the others.
+template <typename Derived>
+[[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::MatrixBase<Derived>& values) noexcept {
+  if constexpr (kInLanes<typename Derived::Scalar>) {
+    return true;
+  } else {
+    using Scalar = typename Derived::Scalar;
+    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
+  }
+}
+
+}  // namespace fpbm
