@@ -114,9 +114,10 @@ template <int N, typename Scalar>
                                const Sweep<N, Scalar>& drives, Scalar time, Pairs pairs = Pairs::kAll) noexcept {
   constexpr int kAdvances = 16;
   constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
-  const auto& [way, tick, low, high] = drives;
-  const auto all = [&](Eigen::Index i) { return way.coeff(i) + tick.coeff(i) + low.coeff(i) + high.coeff(i); };
-  if (!is_finite(entrywise(way, all))) return false;
+  const auto all = [&](Eigen::Index i) {
+    return drives.way.coeff(i) + drives.tick.coeff(i) + drives.low.coeff(i) + drives.high.coeff(i);
+  };
+  if (!is_finite(entrywise(drives.way, all))) return false;
   const ChainSweep<N, Scalar> sweep(clearance.links(), drives);
   clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
   OpenPairs& open = clearance.open();
