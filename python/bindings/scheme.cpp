@@ -12,6 +12,16 @@ constexpr int kOwnSize = std::is_same_v<Space, Position<2>> ? 4
                          : std::is_same_v<Space, Pose>      ? 7
                                                             : 0;
 
+AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof) {
+  const auto checked = [dof](const auto& weights) {
+    weights.require_dof(dof);
+    return AnyWeights(weights);
+  };
+  if (const auto* w = std::get_if<Scheme::Diagonal>(&scheme.weights)) return checked(DiagonalWeights<kDynamic>(*w));
+  if (const auto* W = std::get_if<Scheme::Dense>(&scheme.weights)) return checked(DenseWeights<kDynamic>(*W));
+  return checked(UnitWeights{});
+}
+
 }  // namespace
 
 template <typename Space>
@@ -27,16 +37,7 @@ EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {
                   JointLimits<N>{limits.lower, limits.upper, limits.velocity, limits.acceleration});
     }
   }
-  const AnyWeights W = std::visit(
-      [](const auto& given) {
-        using Given = std::decay_t<decltype(given)>;
-        if constexpr (std::is_same_v<Given, Diagonal>) return AnyWeights(DiagonalWeights<kDynamic>(given));
-        if constexpr (std::is_same_v<Given, Dense>) return AnyWeights(DenseWeights<kDynamic>(given));
-        if constexpr (std::is_same_v<Given, std::monostate>) return AnyWeights(UnitWeights{});
-      },
-      weights);
-  W.require_dof(dof);
-  return with(W, limits);
+  return with(any_weights(*this, dof), limits);
 }
 
 template EitherScheme<Position<2>> Scheme::plain(const JointLimits<kDynamic>&) const;

@@ -10,48 +10,53 @@ namespace fpbm {
 
 /// Weights of any kind behind one type, of run-time size: a law is then compiled once for all three.
 class AnyWeights {
+  /// f(weights), of whichever kind. Of std::visit() a compiler makes some hundred classes and functions.
+  template <typename F>
+  auto held(const F& f) const {
+    if (const auto* diagonal = std::get_if<DiagonalWeights<Eigen::Dynamic>>(&weights_)) return f(*diagonal);
+    if (const auto* dense = std::get_if<DenseWeights<Eigen::Dynamic>>(&weights_)) return f(*dense);
+    return f(UnitWeights{});
+  }
+
  public:
   explicit AnyWeights(const UnitWeights& weights) : weights_(weights) {}
   explicit AnyWeights(const DiagonalWeights<Eigen::Dynamic>& weights) : weights_(weights) {}
   explicit AnyWeights(const DenseWeights<Eigen::Dynamic>& weights) : weights_(weights) {}
 
   void require_dof(Eigen::Index dof) const {
-    std::visit([&](const auto& weights) { weights.require_dof(dof); }, weights_);
+    held([&](const auto& weights) { weights.require_dof(dof); });
   }
 
   [[nodiscard]] bool is_unit() const noexcept { return std::holds_alternative<UnitWeights>(weights_); }
 
   template <typename Scalar>
   [[nodiscard]] Scalar inverse_bound() const noexcept {
-    return std::visit([](const auto& weights) { return weights.template inverse_bound<Scalar>(); }, weights_);
+    return held([](const auto& weights) { return weights.template inverse_bound<Scalar>(); });
   }
 
   // Calls, so that the large functions that use them stay small. Templates, so that they compile only where they are
-  // called. The variant is never empty, so no visit throws.
-  // NOLINTBEGIN(bugprone-exception-escape)
+  // called.
   template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
-    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); }, weights_);
+    return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); });
   }
 
   template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> unroot(const Vector<Eigen::Dynamic>& a) const noexcept {
-    return std::visit([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.unroot(a); }, weights_);
+    return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.unroot(a); });
   }
 
   template <int Columns>
   [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, Columns> root_transpose(
       const Matrix<Eigen::Dynamic, Columns>& A) const noexcept {
-    return std::visit([&](const auto& weights) -> Matrix<Eigen::Dynamic, Columns> { return weights.root_transpose(A); },
-                      weights_);
+    return held([&](const auto& weights) -> Matrix<Eigen::Dynamic, Columns> { return weights.root_transpose(A); });
   }
 
   template <int M>
   [[nodiscard, gnu::noinline]] Matrix<Eigen::Dynamic, M, Pair<double>> with_unit(
       const Matrix<M, Eigen::Dynamic>& J) const noexcept {
-    return std::visit([&](const auto& weights) { return weights.with_unit(J); }, weights_);
+    return held([&](const auto& weights) { return weights.with_unit(J); });
   }
-  // NOLINTEND(bugprone-exception-escape)
 
  private:
   std::variant<UnitWeights, DiagonalWeights<Eigen::Dynamic>, DenseWeights<Eigen::Dynamic>> weights_;

@@ -24,6 +24,15 @@ struct Kinematics {
 template <typename Space, int N>
 inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
 
+/// Number of the last rows of J that the schemes count by a length. If N is a run-time number, positions in space and
+/// poses in the plane share one instantiation: the last row of a position counts by 1 m.
+template <typename Space, int N>
+inline constexpr int kScaledRows = N == Eigen::Dynamic&& Space::kRows == 3 ? 1 : Space::kTurns;
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] Scalar scale_of_rows(const Kinematics<Space, N, Scalar>& kinematics) noexcept {
+  return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);
+}
+
 /// J with all rows in metres: angles count by the arm's length.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(

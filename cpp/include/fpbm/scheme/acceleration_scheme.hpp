@@ -55,7 +55,8 @@ struct AccelerationScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qdd) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
-    return solve<Space::kTurns>(b, kinematics.J, kinematics.Jd, reference.xd, kinematics.length, state, qdd);
+    return solve<kScaledRows<Space, N>>(b, kinematics.J, kinematics.Jd, reference.xd, scale_of_rows(kinematics), state,
+                                        qdd);
   }
 
  private:

@@ -44,18 +44,19 @@ struct VelocityScheme {
                                Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
     const auto& J = kinematics.J;
-    const auto& length = kinematics.length;
+    constexpr int kTurns = kScaledRows<Space, N>;
+    const Scalar length = scale_of_rows(kinematics);
     if constexpr (kHasSelfMotion<Space::kRows, N>) {
-      const auto foreseen = foresee<Space::kTurns>(singular, J, length, [&](const auto& motion) noexcept {
+      const auto foreseen = foresee<kTurns>(singular, J, length, [&](const auto& motion) noexcept {
         return with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, kinematics.Jd, null_space, state);
       });
       if (all_of(foreseen.regular)) {
         qd = foreseen.u;
         return Status::kOk;
       }
-      return by_gram<Space::kTurns>(v, J, length, state, foreseen, qd);
+      return by_gram<kTurns>(v, J, length, state, foreseen, qd);
     } else {
-      return by_gram<Space::kTurns>(v, J, length, state, Unforeseen{}, qd);
+      return by_gram<kTurns>(v, J, length, state, Unforeseen{}, qd);
     }
   }
 
