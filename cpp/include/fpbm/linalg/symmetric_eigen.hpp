@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
 
 namespace fpbm {
 
@@ -42,23 +44,42 @@ struct SymmetricEigen {
  private:
   static constexpr int kPasses = 12;  // Six are usually enough.
 
-  /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero.
+  /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero: D's columns p and q as V's, its rows by symmetry.
   void rotate(Matrix<M, M, Scalar>& D, int p, int q) noexcept {
     using std::abs;
     using std::sqrt;
-    const Scalar theta = (D(q, q) - D(p, p)) / (Scalar(2) * D(p, q));
+    const Scalar apart = D(p, q);
+    const Scalar theta = (D(q, q) - D(p, p)) / (Scalar(2) * apart);
     const Scalar tangent =
         (theta < Scalar(0) ? Scalar(-1) : Scalar(1)) / (abs(theta) + sqrt(theta * theta + Scalar(1)));
     const Scalar c = Scalar(1) / sqrt(tangent * tangent + Scalar(1));
     const Scalar s = tangent * c;
-    const auto rotate_pair = [c, s](Scalar& a, Scalar& b) noexcept {
-      const Scalar old_a = a;
-      a = c * old_a - s * b;
-      b = s * old_a + c * b;
+    const Scalar at_p = D(p, p) - tangent * apart;
+    const Scalar at_q = D(q, q) + tangent * apart;
+    rotate_columns(D, p, q, c, s);
+    rotate_columns(vectors, p, q, c, s);
+    D(p, p) = at_p;
+    D(q, q) = at_q;
+    D(p, q) = D(q, p) = Scalar(0);
+    for (int i = 0; i < M; ++i) {
+      D(p, i) = D(i, p);
+      D(q, i) = D(i, q);
+    }
+  }
+
+  static void rotate_columns(Matrix<M, M, Scalar>& A, int p, int q, Scalar c, Scalar s) noexcept {
+    const Scalar* const at_p = A.data() + p * M;
+    const Scalar* const at_q = A.data() + q * M;
+    const auto turned = [&](Scalar first, Scalar second) {
+      return by_rows<M, Scalar>([&](const auto& rows) {
+        using Value = decltype(rows(at_p));
+        return Value(first) * rows(at_p) + Value(second) * rows(at_q);
+      });
     };
-    for (int i = 0; i < M; ++i) rotate_pair(D(i, p), D(i, q));
-    for (int i = 0; i < M; ++i) rotate_pair(D(p, i), D(q, i));
-    for (int i = 0; i < M; ++i) rotate_pair(vectors(i, p), vectors(i, q));
+    const Vector<M, Scalar> new_p = turned(c, -s);
+    const Vector<M, Scalar> new_q = turned(s, c);
+    set_column(A, p, new_p);
+    set_column(A, q, new_q);
   }
 };
 
