@@ -22,6 +22,7 @@ STARTS = 4  # Lines that the search starts from.
 APART = 0.9  # Cosine of the least angle between two of them.
 BALL = 0.1  # Capsules shorter than this are started from twice, once made longer; points fill a ball of radius 1.
 ACTIVE = 40  # Points that the search sees at first; those that it leaves outside join them.
+MARKS = (np.sqrt(2.0), np.pi)  # Different points have different marks, and the result is made to contain all points.
 ROOM = 1e-12  # Of the radius, as a share of the coordinates: rounding in whoever computes a distance.
 
 
@@ -86,6 +87,9 @@ def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     bare = points[radii == 0.0]
     if len(bare) > 4:
+        # Edges share their ends: points of one mark are taken for one point.
+        mark = bare[:, 0] + MARKS[0] * bare[:, 1] + MARKS[1] * bare[:, 2]
+        bare = bare[np.sort(np.unique(mark, return_index=True)[1])]
         with suppress(spatial.QhullError):  # They are flat, and few as a rule.
             bare = bare[spatial.ConvexHull(bare).vertices]
     balls = radii > 0.0
@@ -104,7 +108,7 @@ def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
     points, radii = points[few], radii[few]
     principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
     directions, most = (principal, 1) if rough else (np.vstack([principal, spiral]), STARTS)
-    fits = sorted(((_about(u, points, radii), u) for u in directions), key=lambda found: found[0].volume)
+    fits = sorted(zip(_about(directions, points, radii), directions), key=lambda found: found[0].volume)
     chosen: list[tuple[Fit, Array]] = []
     for fit, u in fits:
         if len(chosen) < most and all(abs(u @ other) < APART for _, other in chosen):
@@ -115,13 +119,16 @@ def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
     return [*(fit for fit, _ in chosen), *longer]
 
 
-def _about(u: Array, points: Array, radii: Array) -> Fit:
-    """A small capsule of direction u: its line goes about through the middle of the points' shadow."""
-    shadow = points - np.outer(points @ u, u)
-    middle = shadow.mean(axis=0)
+def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
+    """A small capsule of each direction (D, 3): its line goes about through the middle of the points' shadow."""
+    shadows = points - (directions @ points.T)[:, :, None] * directions[:, None, :]  # (D, N, 3)
+    middles = shadows.mean(axis=1)
+    each = np.arange(len(directions))
     for step in range(2, 30):  # Badoiu and Clarkson, "Smaller core-sets for balls".
-        middle = middle + (shadow[np.argmax(np.linalg.norm(shadow - middle, axis=1) + radii)] - middle) / step
-    return _on_line(middle, u, points, radii)
+        away = shadows - middles[:, None, :]
+        far = np.argmax(np.sqrt(np.einsum("dni,dni->dn", away, away)) + radii, axis=1)
+        middles = middles + away[each, far] / step
+    return [_on_line(middle, u, points, radii) for middle, u in zip(middles, directions)]
 
 
 def _on_line(origin: Array, u: Array, points: Array, radii: Array) -> Fit:
