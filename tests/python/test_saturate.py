@@ -31,6 +31,22 @@ def random_problem(rng):
     return lower, upper, levels
 
 
+def problem_of_sns_ik(rng):
+    """3 to 9 joints and 3 to 6 tasks, as sns_ik's runTest_snsIk_acc_mt.m draws them (Rethink Robotics, 2018)."""
+    n = int(rng.integers(3, 10))
+    lower, upper = -rng.uniform(0.1, 1.1, n), rng.uniform(0.1, 1.1, n)
+    levels = []
+    for _ in range(rng.integers(3, 7)):
+        J = rng.normal(size=(int(rng.integers(1, n + 1)), n))
+        u = rng.uniform(lower, upper)
+        on_bound = rng.random(n) < 0.2
+        u[on_bound] = np.where(rng.random(n) < 0.5, lower, upper)[on_bound]
+        drift = rng.normal(size=len(J))
+        scale = rng.uniform(0.1, 0.9) if rng.random() < 0.4 else 1.0
+        levels.append((J, (J @ u + drift) / scale - drift))
+    return lower, upper, levels
+
+
 def null_space(rows, n):
     """An orthonormal basis of the null space of rows, each at length 1 first."""
     lengths = np.linalg.norm(rows, axis=1)
@@ -41,11 +57,12 @@ def null_space(rows, n):
     return V[np.sum(sigma > 1e-9) :].T
 
 
-def test_every_scale_is_the_largest():
+@pytest.mark.parametrize("draw", [random_problem, problem_of_sns_ik])
+def test_every_scale_is_the_largest(draw):
     rng = np.random.default_rng(1)
     levels = limited = missed = 0
     for _ in range(PROBLEMS):
-        lower, upper, tasks = random_problem(rng)
+        lower, upper, tasks = draw(rng)
         n = len(lower)
         unit = (upper - lower) / 2
         before = np.clip(np.zeros(n), lower, upper)
@@ -83,6 +100,39 @@ def test_every_scale_is_the_largest():
     print(f"{levels} levels, {limited} limited, {missed} below the largest scale by more than 1e-6")
     assert limited > levels / 10
     assert missed <= 1e-3 * levels
+
+
+def test_the_test_of_sns_ik():
+    """A task that is feasible with a known scale, and a posture below it, as in sns_ik's basic_with_secondary_goal.
+
+    There the scale s is that of the acceleration xdd alone, in J u + drift = s xdd: s is one more joint, from 0 to 1,
+    and the second level raises it.
+    """
+    rng = np.random.default_rng(4)
+    error = 0.0
+    for _ in range(PROBLEMS):
+        m = int(rng.integers(1, 7))
+        n = int(rng.integers(m, m + 5))
+        J = rng.uniform(-3, 3, (m, n))
+        lower, upper = rng.uniform(-3, -1, n), rng.uniform(1, 3, n)
+        drift = rng.uniform(-1, 1, m)
+        scale = min(1.0, rng.uniform(0.2, 1.2))
+        xdd = (J @ rng.uniform(lower, upper) + drift) / scale
+        posture = rng.uniform(lower, upper)
+        levels = [
+            (np.c_[J, -xdd], -drift),
+            (np.eye(1, n + 1, n), [1.0]),
+            (np.eye(n, n + 1), posture),
+        ]
+        found = fp.saturate(levels, np.r_[lower, 0], np.r_[upper, 1])
+        u, s = found.u[:n], found.u[n]
+        assert (u >= lower).all()
+        assert (u <= upper).all()
+        assert found.scale[0] == 1
+        assert s >= scale - 1e-10
+        error = max(error, np.max(np.abs(J @ u + drift - s * xdd)))
+    print(f"{PROBLEMS} problems, all with the known scale or a larger one; the task is off by {error:.1e} at most")
+    assert error <= 1e-10
 
 
 def test_one_level_within_the_bounds_is_the_pseudoinverse():
