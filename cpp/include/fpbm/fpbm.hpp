@@ -126,6 +126,7 @@
 #include "fpbm/sim/summary.hpp"
 #include "fpbm/sim/time_grid.hpp"
 #include "fpbm/sim/watch.hpp"
+#include "fpbm/singular/damped_level.hpp"
 #include "fpbm/singular/damping.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 #include "fpbm/task/curve.hpp"

@@ -4,6 +4,8 @@
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/linalg/level_space.hpp"
+#include "fpbm/linalg/sums.hpp"
+#include "fpbm/singular/damped_level.hpp"
 
 namespace fpbm {
 
@@ -31,12 +33,41 @@ class LevelSaturation {
   /// with scale 0.
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b) noexcept {
+    return next(J, b, [&](const auto& scaled, const auto& r) noexcept { return space_.add(scaled, r); });
+  }
+
+  /// The same with damping: d = u_{k−1} + Z Aᵀ(A Aᵀ + Δ)⁻¹ r with A = J_k Z, Z = Z_{k−1}, r = b_k − J_k u_{k−1}, in the
+  /// units of the joints (DampedLevel). radius: share of ‖J_k‖_F below which a singular value of A counts as being
+  /// lost.
+  template <int M>
+  Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b, Scalar radius) noexcept {
+    return next(J, b, [&](const Matrix<M, N, Scalar>& scaled, const Vector<M, Scalar>& r) noexcept {
+      DampedLevel<M, Scalar> damped(radius * radius * squared_norm(scaled));
+      const JointVector y = space_.add(scaled, r, damped);
+      lost_ = damped.lost();
+      return y;
+    });
+  }
+
+  /// About the number of directions in which the last level was damped: 0 if it was not.
+  [[nodiscard]] Scalar lost() const noexcept { return lost_; }
+
+  /// u_k of the last level.
+  [[nodiscard]] const JointVector& motion() const noexcept { return u_; }
+  /// Null space of the levels so far.
+  [[nodiscard]] const LevelSpace<N, Scalar>& space() const noexcept { return space_; }
+
+ private:
+  /// resolve(), where solution(J in the units of the joints, r) is that of the level and adds it to the space.
+  template <int M, typename Solution>
+  Scalar next(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b, const Solution& solution) noexcept {
+    lost_ = Scalar(0);
     if (!J.allFinite() || !b.allFinite()) return Scalar(0);
     if (space_.rank() == space_.size()) return Scalar(1);  // The higher levels determine the motion.
     Matrix<M, N, Scalar> scaled = J;
     for (Eigen::Index j = 0; j < J.cols(); ++j) scaled.col(j) *= unit_(j);
     const Vector<M, Scalar> residual = b - J.lazyProduct(u_);
-    const JointVector desired = u_ + unit_.cwiseProduct(space_.add(scaled, residual));
+    const JointVector desired = u_ + unit_.cwiseProduct(solution(scaled, residual));
     if (!desired.allFinite()) return Scalar(0);
     if (box_.contains(desired) && rows_.admit(desired)) {
       u_ = desired;
@@ -49,17 +80,12 @@ class LevelSaturation {
     return found.scale;
   }
 
-  /// u_k of the last level.
-  [[nodiscard]] const JointVector& motion() const noexcept { return u_; }
-  /// Null space of the levels so far.
-  [[nodiscard]] const LevelSpace<N, Scalar>& space() const noexcept { return space_; }
-
- private:
   Box<N, Scalar> box_;
   Rows<N, P, Scalar> rows_;
   JointVector unit_;
   JointVector u_;
   LevelSpace<N, Scalar> space_;
+  Scalar lost_{0};
 };
 
 }  // namespace fpbm

@@ -31,6 +31,42 @@ class LevelSpace {
   /// A row whose projection on that null space is shorter than kDependent times the row counts as dependent.
   template <int M>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
+    return add_with(A, r,
+                    [](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
+                      solve(T, first, count, result);
+                    });
+  }
+
+  /// Adds the level A. Returns y = Z Q w with w = solver(L, r), where A Z = L Qᵀ, the columns of Q are orthonormal, and
+  /// L is lower triangular or, with dependent rows, trapezoidal. solver(L, r) gets the rows of L and r in the order of
+  /// their pivots. Columns of L beyond the rank of A Z are zero.
+  template <int M, typename Solver>
+  [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
+    return add_with(A, r,
+                    [&](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
+                      auto L = filled<Matrix<M, M, Scalar>>(M);
+                      for (Eigen::Index i = 0; i < count; ++i) {
+                        for (Eigen::Index j = i; j < M; ++j) L(j, i) = T(first + i, j);
+                      }
+                      result = solver(L, result);
+                    });
+  }
+
+  /// Z, n × (n − rank).
+  [[nodiscard]] Basis basis() const noexcept {
+    Basis Z = Basis::Zero(size(), size() - rank_);
+    for (Eigen::Index j = 0; j < Z.cols(); ++j) {
+      Z(rank_ + j, j) = Scalar(1);
+      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, Z.col(j));
+    }
+    return Z;
+  }
+
+ private:
+  /// Adds the level A and returns y = Q w, where solved(T, first, count, r) replaces the first entries of r by w.
+  template <int M, typename Solved>
+  [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r,
+                                const Solved& solved) noexcept {
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank_;
@@ -64,23 +100,12 @@ class LevelSpace {
     }
     const Eigen::Index count = rank_ - first;
     Column y = Column::Zero(n);
-    solve(T, first, count, result);
+    solved(T, first, count, result);
     y.segment(first, count) = result.head(count);
     for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y);
     return y;
   }
 
-  /// Z, n × (n − rank).
-  [[nodiscard]] Basis basis() const noexcept {
-    Basis Z = Basis::Zero(size(), size() - rank_);
-    for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-      Z(rank_ + j, j) = Scalar(1);
-      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, Z.col(j));
-    }
-    return Z;
-  }
-
- private:
   /// Adds the reflection that makes the entries of a column below rank() zero.
   template <typename Entries>
   void add_reflection(const Entries& column) noexcept {
