@@ -241,8 +241,12 @@ TEST(NoAllocation, in_task_levels) {
   const AllocationWatch watch;
   LevelSaturation<N> levels({-wide, wide}, Vector<N>::Zero(7), wide);
   const double first = levels.resolve<N>(J, Vector<N>::Constant(3, 0.5));
+  const Matrix<1, N> again = J.topRows<1>();  // In conflict with the first level.
+  const double damped = levels.resolve<1>(again, Vector<1>(-0.5), 0.05);
   const double second = levels.resolve<N>(identity, Vector<N>::Constant(7, 1.0));
   EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_EQ(levels.lost(), 0.0);
+  EXPECT_EQ(damped, 1.0);
   EXPECT_GT(first, 0.0);
   EXPECT_LT(second, 1.0);
 }

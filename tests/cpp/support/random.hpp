@@ -8,10 +8,11 @@
 
 namespace fpbm::test {
 
-/// How many of so many trials are made: under a sanitizer, which makes a program some twenty times slower, a tenth.
+/// How many of so many trials are made: under a sanitizer, which makes a program some twenty times slower, a tenth,
+/// but one at least.
 [[nodiscard]] constexpr int trials(int all) {
 #ifdef FPBM_FEW_TRIALS
-  return all / 10;
+  return std::max(all / 10, 1);
 #else
   return all;
 #endif
