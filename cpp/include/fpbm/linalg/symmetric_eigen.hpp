@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/product.hpp"
 
 namespace fpbm {
@@ -56,30 +56,32 @@ struct SymmetricEigen {
     const Scalar s = tangent * c;
     const Scalar at_p = D(p, p) - tangent * apart;
     const Scalar at_q = D(q, q) + tangent * apart;
-    rotate_columns(D, p, q, c, s);
-    rotate_columns(vectors, p, q, c, s);
+    rotate(D.data() + p * M, D.data() + q * M, c, s);
+    rotate(vectors.data() + p * M, vectors.data() + q * M, c, s);
     D(p, p) = at_p;
     D(q, q) = at_q;
     D(p, q) = D(q, p) = Scalar(0);
     for (int i = 0; i < M; ++i) {
-      D(p, i) = D(i, p);
-      D(q, i) = D(i, q);
+      D.coeffRef(p, i) = D.coeff(i, p);
+      D.coeffRef(q, i) = D.coeff(i, q);
     }
   }
 
-  static void rotate_columns(Matrix<M, M, Scalar>& A, int p, int q, Scalar c, Scalar s) noexcept {
-    const Scalar* const at_p = A.data() + p * M;
-    const Scalar* const at_q = A.data() + q * M;
-    const auto turned = [&](Scalar first, Scalar second) {
-      return by_rows<M, Scalar>([&](const auto& rows) {
-        using Value = decltype(rows(at_p));
-        return Value(first) * rows(at_p) + Value(second) * rows(at_q);
-      });
-    };
-    const Vector<M, Scalar> new_p = turned(c, -s);
-    const Vector<M, Scalar> new_q = turned(s, c);
-    set_column(A, p, new_p);
-    set_column(A, q, new_q);
+  /// Columns a and b of a matrix become c a − s b and s a + c b.
+  static void rotate(Scalar* a, Scalar* b, Scalar c, Scalar s) noexcept {
+    using Two = Pair<Scalar>;
+    constexpr int kPaired = kRowsInPairs<Scalar> ? M - M % 2 : 0;
+    for (int i = 0; i < kPaired; i += 2) {
+      const Two x = Two::load(a + i);
+      const Two y = Two::load(b + i);
+      (Two(c) * x - Two(s) * y).store(a + i);
+      (Two(s) * x + Two(c) * y).store(b + i);
+    }
+    for (int i = kPaired; i < M; ++i) {
+      const Scalar x = a[i];
+      a[i] = c * x - s * b[i];
+      b[i] = s * x + c * b[i];
+    }
   }
 };
 
