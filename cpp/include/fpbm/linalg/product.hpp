@@ -8,16 +8,17 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/total.hpp"
 
-/// Products of small matrices by loops. Of each of Eigen's products a compiler makes some thirty classes and functions.
+/// Products of small matrices, by loops. A loop compiles faster than an Eigen product, which instantiates about thirty
+/// classes and functions for each pair of types.
 namespace fpbm {
 
-/// Whether two rows at a time take less time than one: in a processor's vectors of two doubles. A Cortex-M has none,
-/// and takes 1.6 times as long with pairs of floats.
+/// Whether rows are computed in pairs: doubles fill a SIMD register in pairs. A Cortex-M has no SIMD registers for
+/// floats, and needs 1.6 times the instructions with pairs of floats.
 template <typename Scalar>
 inline constexpr bool kRowsInPairs = std::is_same_v<Scalar, double>;
 
-/// The vector of M rows that f makes: f(rows) returns some of them, where rows(column) are the same rows of a column in
-/// memory. Two rows at a time where that takes less time.
+/// The vector whose rows f computes. f is called for one row, or for a pair of rows (kRowsInPairs), with a function
+/// rows(column) that reads the same rows of a column in memory.
 template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;
@@ -32,7 +33,7 @@ template <int M, typename Scalar, typename F>
   return result;
 }
 
-/// Rows of A b, as by_rows() asks for them.
+/// The rows of A b that `rows` reads, for by_rows().
 template <int M, int N, typename Scalar, typename Rows>
 [[nodiscard, gnu::always_inline]] inline auto rows_of_product(const Rows& rows, const Matrix<M, N, Scalar>& A,
                                                               const Vector<N, Scalar>& b) noexcept {

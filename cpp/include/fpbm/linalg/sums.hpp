@@ -8,13 +8,13 @@
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/total.hpp"
 
-/// Sums and maxima over the entries of a matrix that has at least one, in their order.
+/// Sums and maxima over the entries of a non-empty matrix, by loops.
 ///
-/// Of each such call on a matrix or expression of Eigen's a compiler makes some twenty classes and functions, and one
-/// for each entry of a fixed size.
+/// A loop compiles faster than an Eigen reduction, which instantiates about twenty classes and functions for each
+/// expression type, and another function for each entry of a fixed-size matrix.
 namespace fpbm {
 
-/// Σ f(i) over as many i as a matrix has entries. Few are written out: a loop would keep them in memory.
+/// Σ f(i) over the entries of a matrix. Up to four terms are written out, so that a compiler keeps them in registers.
 template <int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard]] Scalar sum_over(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
   constexpr int kFew = 4;

@@ -44,7 +44,7 @@ struct SymmetricEigen {
  private:
   static constexpr int kPasses = 12;  // Six are usually enough.
 
-  /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero: D's columns p and q as V's, its rows by symmetry.
+  /// D ← RᵀDR and V ← VR with the rotation R that makes D(p, q) zero. Rows p and q of D follow by symmetry.
   void rotate(Matrix<M, M, Scalar>& D, int p, int q) noexcept {
     using std::abs;
     using std::sqrt;
