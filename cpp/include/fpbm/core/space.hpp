@@ -6,6 +6,7 @@
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/product.hpp"
 
 namespace fpbm {
 
@@ -36,7 +37,7 @@ struct Position {
 
   template <typename Scalar>
   [[nodiscard]] static Vector<M, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
-    return entrywise(x, [&](Eigen::Index i) { return x.coeff(i) - y.coeff(i); });
+    return by_rows<M, Scalar>([&](const auto& rows) { return rows(x.data()) - rows(y.data()); });
   }
 
   template <typename Scalar>

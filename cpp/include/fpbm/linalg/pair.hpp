@@ -7,6 +7,7 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -167,17 +168,11 @@ template <int Rows, int Cols, typename Scalar>
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> first(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  Matrix<Rows, Cols, Scalar> result;
-  result.resize(a.rows(), a.cols());
-  for (Eigen::Index i = 0; i < a.size(); ++i) result.coeffRef(i) = a.coeff(i).first();
-  return result;
+  return entrywise<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).first(); });
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> second(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  Matrix<Rows, Cols, Scalar> result;
-  result.resize(a.rows(), a.cols());
-  for (Eigen::Index i = 0; i < a.size(); ++i) result.coeffRef(i) = a.coeff(i).second();
-  return result;
+  return entrywise<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
 }
 
 }  // namespace fpbm

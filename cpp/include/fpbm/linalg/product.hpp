@@ -116,7 +116,9 @@ template <int Rows, int Cols, typename Scalar>
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> diagonal_times(const Vector<Rows, Scalar>& d,
                                                         const Matrix<Rows, Cols, Scalar>& A) noexcept {
-  if constexpr (Cols == 1) {
+  if constexpr (Cols == 1 && Rows != Eigen::Dynamic) {
+    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows(d.data()) * rows(A.data()); });
+  } else if constexpr (Cols == 1) {
     return entrywise(A, [&](Eigen::Index i) { return d.coeff(i) * A.coeff(i); });
   } else {
     Matrix<Rows, Cols, Scalar> result;

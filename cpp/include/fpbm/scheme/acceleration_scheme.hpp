@@ -160,8 +160,15 @@ struct AccelerationScheme {
       const Vector<N, Pair<Scalar>> parts =
           solutions.motion(solutions.shares(side_by_side<M, 1, Scalar>(even, weighted)));
       y = second<N, 1, Scalar>(solutions.without(side_by_side<N, 1, Scalar>(y, y)));
-      y = sum_of<N, 1, Scalar>(y, second<N, 1, Scalar>(parts));
-      return sum_of<N, 1, Scalar>(weights.root(y), first<N, 1, Scalar>(parts));
+      y = entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + parts.coeff(i).second(); });
+      // In pairs, since is_finite() loads pairs: a load waits for two stores of single numbers.
+      Vector<N, Scalar> sum = weights.root(y);
+      const Eigen::Index n = sum.size();
+      for (Eigen::Index i = 0; i < n; i += 2) {
+        const Pair<Scalar> added = i + 1 < n ? firsts(parts.coeff(i), parts.coeff(i + 1)) : parts.coeff(i);
+        set_two_of(sum, i, two_of(sum, i) + added);
+      }
+      return sum;
     });
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;
