@@ -1,7 +1,5 @@
 #pragma once
 
-#include <type_traits>
-
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
@@ -10,11 +8,9 @@ namespace fpbm {
 ///
 /// For sums and products entry by entry. An expression of Eigen's has the same entries, but a type of its own, of which
 /// a compiler makes some thirty classes and functions.
-///
-/// Result: the type of an entry, the same as that of `size` unless given.
-template <typename Result = void, int Rows, int Cols, typename Scalar, typename F>
-[[nodiscard]] auto entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
-  Matrix<Rows, Cols, std::conditional_t<std::is_void_v<Result>, Scalar, Result>> result;
+template <int Rows, int Cols, typename Scalar, typename F>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
+  Matrix<Rows, Cols, Scalar> result;
   constexpr Eigen::Index kMost = 16;
   if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Eigen::Index{Rows} * Cols <= kMost) {
     constexpr Eigen::Index kSize = Eigen::Index{Rows} * Cols;

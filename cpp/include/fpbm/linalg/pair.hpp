@@ -7,7 +7,6 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -166,13 +165,30 @@ template <int Rows, int Cols, typename Scalar>
   }
   return result;
 }
+/// The matrix of Scalars whose entry i is f(i), of the size of a matrix of pairs. As entrywise().
+template <typename Scalar, int Rows, int Cols, typename F>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> entries_of(const Matrix<Rows, Cols, Pair<Scalar>>& size, const F& f) noexcept {
+  Matrix<Rows, Cols, Scalar> result;
+  constexpr int kMost = 16;
+  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kMost) {
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 16
+#endif
+    for (int i = 0; i < Rows * Cols; ++i) result.coeffRef(i) = f(i);
+  } else {
+    result.resize(size.rows(), size.cols());
+    for (Eigen::Index i = 0; i < size.size(); ++i) result.coeffRef(i) = f(i);
+  }
+  return result;
+}
+
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> first(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return entrywise<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).first(); });
+  return entries_of<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).first(); });
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> second(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return entrywise<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
+  return entries_of<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
 }
 
 }  // namespace fpbm
