@@ -36,9 +36,9 @@ class LevelSaturation {
     return next(J, b, [&](const auto& scaled, const auto& r) noexcept { return space_.add(scaled, r); });
   }
 
-  /// The same with damping: d = u_{k−1} + Z Aᵀ(A Aᵀ + Δ)⁻¹ r with A = J_k Z, Z = Z_{k−1}, r = b_k − J_k u_{k−1}, in the
-  /// units of the joints (DampedLevel). radius: share of ‖J_k‖_F below which a singular value of A counts as being
-  /// lost.
+  /// Resolves the next level with damping (DampedLevel): d = u_{k−1} + Z Aᵀ(A Aᵀ + Δ)⁻¹ r with A = J_k Z,
+  /// Z = Z_{k−1} and r = b_k − J_k u_{k−1}, in the units of the joints. radius in [0, 1]: ε = radius ‖J_k‖_F. If no
+  /// singular value of A is below ε, the result is that of resolve(J, b).
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b, Scalar radius) noexcept {
     return next(J, b, [&](const Matrix<M, N, Scalar>& scaled, const Vector<M, Scalar>& r) noexcept {
@@ -49,7 +49,7 @@ class LevelSaturation {
     });
   }
 
-  /// About the number of directions in which the last level was damped: 0 if it was not.
+  /// tr Δ/ε² of the last level: about the number of its lost directions. 0 if the level was not damped.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
   /// u_k of the last level.

@@ -27,7 +27,7 @@ class RowProjection {
 
   RowProjection(const Matrix<M, N, Scalar>& J, const Matrix<M, M, Scalar>& B, const Rows<N, P, Scalar>& rows) noexcept
       : rows_(rows) {
-    const Matrix<M, M, Scalar> gram = sum_of<M, M, Scalar>(B, gram_of(J));
+    const Matrix<M, M, Scalar> gram = sum_of(B, gram_of(J));
     Cholesky<M, Scalar> cholesky;
     const bool regular = cholesky.factor(gram) == Status::kOk;
     ways_.resize(J.cols(), P);

@@ -58,7 +58,7 @@ template <int M, int N, int P, typename Scalar>
   }
   const Scalar square = squared_norm(asked);
   if (!(square > Scalar(0))) return {change, Scalar(0)};
-  asked = sum_of<N, 1, Scalar>(asked, transpose_times(J, change));  // N v, as change is −(JJᵀ + μI)⁻¹ J v.
+  asked = sum_of(asked, transpose_times(J, change));  // N v, as change is −(JJᵀ + μI)⁻¹ J v.
   return {change, squared_norm(asked) / square};
 }
 

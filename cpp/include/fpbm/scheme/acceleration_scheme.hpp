@@ -153,7 +153,7 @@ struct AccelerationScheme {
       if (braked || null_space.template active<kLevel>()) {
         Vector<N, Scalar> z = null_space.template at<kLevel>(state);
         if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
-        y = sum_of<N, 1, Scalar>(y, weights.unroot(z));
+        y = sum_of(y, weights.unroot(z));
       }
       const Vector<M, Scalar> even = entrywise(b, [&](Eigen::Index i) { return (Scalar(1) - alpha) * b.coeff(i); });
       const Vector<M, Scalar> weighted = entrywise(b, [&](Eigen::Index i) { return alpha * b.coeff(i); });

@@ -43,10 +43,10 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
     if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
     Vector<N, Scalar> y0 = weights.unroot(z);
-    if constexpr (kForced) y0 = sum_of<N, 1, Scalar>(y0, weights.root_transpose(force(solutions)));
+    if constexpr (kForced) y0 = sum_of(y0, weights.root_transpose(force(solutions)));
     const Vector<N, Scalar> free = solutions.without(y0);
     const Vector<N, Scalar> done = solutions.motion(solutions.shares(v));
-    return sum_of<N, 1, Scalar>(free, done);
+    return sum_of(free, done);
   });
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);
