@@ -24,7 +24,13 @@ struct Rows {
     return sum_over(u, [&](Eigen::Index i) { return g.coeff(i, k) * u.coeff(i); });
   }
 
-  /// |g_k| · |u|: what round-off is a share of.
+  /// g_k · (to − from), without the cancellation of two products.
+  [[nodiscard]] Scalar change(Eigen::Index k, const Vector<N, Scalar>& from,
+                              const Vector<N, Scalar>& to) const noexcept {
+    return sum_over(to, [&](Eigen::Index i) { return g.coeff(i, k) * (to.coeff(i) - from.coeff(i)); });
+  }
+
+  /// |g_k| · |u|: the round-off error of g_k · u is a share of it.
   [[nodiscard]] Scalar magnitude(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
     return sum_over(u, [&](Eigen::Index i) { return std::abs(g.coeff(i, k) * u.coeff(i)); });
   }
@@ -44,8 +50,8 @@ struct Rows {
     for (Eigen::Index k = 0; k < count; ++k) {
       const Scalar slack = kRoundOff * (std::abs(b(k)) + magnitude(k, from) + magnitude(k, to));
       const Scalar room = slack - excess(k, from);
-      const Scalar change = along(k, to) - along(k, from);
-      if (change * share > room) share = room > Scalar(0) ? room / change : Scalar(0);
+      const Scalar toward = change(k, from, to);
+      if (toward * share > room) share = room > Scalar(0) ? room / toward : Scalar(0);
     }
     return share;
   }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/cholesky.hpp"
@@ -32,19 +34,19 @@ template <int M, int N, int P, typename Scalar>
   for (Eigen::Index i = 0; i < J.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return {change, Scalar(0)};
-  Matrix<M, P, Scalar> normals(J.rows(), P);  // Of the rows, in the task's space.
+  std::array<Vector<M, Scalar>, P> normals;  // Of the rows, in the task's space.
   Vector<P, Scalar> squares;
   Vector<P, Scalar> multipliers;
   for (Eigen::Index k = 0; k < rows.count; ++k) {
-    const Vector<M, Scalar> normal = cholesky.solve(product(J, column(rows.g, k)));
-    set_column(normals, k, normal);
+    Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
+    normal = cholesky.solve(product(J, column(rows.g, k)));
     squares(k) = squared_norm(normal);
     multipliers(k) = Scalar(0);
   }
   for (int round = 0; round < kRounds; ++round) {
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       if (!(squares(k) > Scalar(0))) continue;
-      const Vector<M, Scalar> normal = column(normals, k);
+      const Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
       const Scalar beyond = rows.excess(k, u) + dot(normal, change);
       const Scalar multiplier = std::max(multipliers(k) + beyond / squares(k), Scalar(0));
       const Scalar added = multiplier - multipliers(k);
