@@ -4,6 +4,7 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/rotation.hpp"
+#include "fpbm/core/rotation_vector.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/product.hpp"

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "fpbm/linalg/sums.hpp"
+
 namespace fpbm {
 
 /// The joints that a motion in a null space keeps on their bounds. No more can be held than that space has dimensions;
@@ -154,13 +156,7 @@ class HeldJoints {
         for (Eigen::Index j = 0; j < Z.cols(); ++j) Q_[k].coeffRef(j) -= along * Q_[i].coeff(j);
       }
     }
-    R_[k][k] = std::sqrt(dot(Q_[k], Q_[k]));
-  }
-
-  [[nodiscard]] static Scalar dot(const Free& a, const Free& b) noexcept {
-    Scalar sum(0);
-    for (Eigen::Index k = 0; k < a.size(); ++k) sum += a.coeff(k) * b.coeff(k);
-    return sum;
+    R_[k][k] = norm(Q_[k]);
   }
 
   static void shorten(Free& vector, Scalar length) noexcept {

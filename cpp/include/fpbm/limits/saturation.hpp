@@ -7,22 +7,13 @@
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/held_joints.hpp"
 #include "fpbm/limits/rows.hpp"
+#include "fpbm/limits/saturated.hpp"
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/linalg/self_motion.hpp"
 #include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
-
-/// A joint motion within a box.
-template <int N, typename Scalar = double>
-struct Saturated {
-  Vector<N, Scalar> u;
-  Scalar scale;            ///< s: share of the task that is left, 1 for all of it.
-  std::uint32_t joints;    ///< Bit i is set where joint i is on its bound.
-  int passes;              ///< Number of passes; 0 where the desired motion lies in the box.
-  std::uint32_t rows = 0;  ///< Bit k is set where row k is on its bound.
-};
 
 /// Saturation in the null space (after Flacco, De Luca and Khatib 2012, 2015): the joint motion u within a box that
 /// does as much as possible of the desired one,
@@ -93,7 +84,7 @@ class NullSpaceSaturation {
     if constexpr (P > 0) {
       const Eigen::Index count = n - joints;
       for (Eigen::Index k = 0; k < count; ++k) {
-        goal(joints + k) = rows_.along(k, desired) - rows_.along(k, rest);
+        goal(joints + k) = rows_.change(k, rest, desired);
         upper(joints + k) = std::max(-rows_.excess(k, rest), Scalar(0));
         lower(joints + k) = -std::numeric_limits<Scalar>::infinity();
       }
@@ -106,8 +97,7 @@ class NullSpaceSaturation {
     while (result.passes < most) {
       ++result.passes;
       const All rate = held_.direction(Z_, goal);
-      Scalar fastest = Scalar(0);
-      for (Eigen::Index i = 0; i < n; ++i) fastest = std::max(fastest, abs(rate(i)));
+      const Scalar fastest = largest_magnitude(rate);
       if (fastest > Held::kSteepest) break;
       const Scalar still = kStill * fastest;
       Scalar step = Scalar(1) - result.scale;
@@ -130,9 +120,7 @@ class NullSpaceSaturation {
         for (Eigen::Index i = 0; i < joints; ++i) {
           given = std::max(given, (abs(desired.coeff(i)) + abs(rest.coeff(i))) / unit_.coeff(i));
         }
-        Scalar farthest(0);
-        for (Eigen::Index i = 0; i < n; ++i) farthest = std::max(farthest, abs(goal.coeff(i)));
-        return Held::kRoundOff * (fastest + farthest) + kStill * given;
+        return Held::kRoundOff * (fastest + largest_magnitude(goal)) + kStill * given;
       };
       if (!held_.hold(Z_, hit, above, abs(rate(hit)), Scalar(1) - result.scale, round_off)) {
         count(result, hit, joints);

@@ -8,9 +8,11 @@ namespace fpbm {
 ///
 /// For sums and products entry by entry. An expression of Eigen's has the same entries, but a type of its own, of which
 /// a compiler makes some thirty classes and functions.
-template <int Rows, int Cols, typename Scalar, typename F>
-[[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
-  Matrix<Rows, Cols, Scalar> result;
+/// Result: type of an entry.
+template <typename Result, int Rows, int Cols, typename Scalar, typename F>
+[[nodiscard, gnu::always_inline]] inline Matrix<Rows, Cols, Result> entrywise_as(const Matrix<Rows, Cols, Scalar>& size,
+                                                                                 const F& f) noexcept {
+  Matrix<Rows, Cols, Result> result;
   constexpr Eigen::Index kMost = 16;
   if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Eigen::Index{Rows} * Cols <= kMost) {
     constexpr Eigen::Index kSize = Eigen::Index{Rows} * Cols;
@@ -26,13 +28,19 @@ template <int Rows, int Cols, typename Scalar, typename F>
   return result;
 }
 
+template <int Rows, int Cols, typename Scalar, typename F>
+[[nodiscard]] Matrix<Rows, Cols, Scalar> entrywise(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
+  return entrywise_as<Scalar>(size, f);
+}
+
 /// Column j of a matrix.
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Vector<Rows, Scalar> column(const Matrix<Rows, Cols, Scalar>& A, Eigen::Index j) noexcept {
   Vector<Rows, Scalar> result;
   result.resize(A.rows());
   const Scalar* const from = A.data() + j * A.rows();
-  return entrywise(result, [&](Eigen::Index i) { return from[i]; });
+  for (Eigen::Index i = 0; i < A.rows(); ++i) result.coeffRef(i) = from[i];
+  return result;
 }
 template <int Rows, int Cols, typename Scalar>
 void set_column(Matrix<Rows, Cols, Scalar>& A, Eigen::Index j, const Vector<Rows, Scalar>& values) noexcept {

@@ -7,6 +7,7 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
@@ -165,30 +166,23 @@ template <int Rows, int Cols, typename Scalar>
   }
   return result;
 }
-/// The matrix of Scalars whose entry i is f(i), of the size of a matrix of pairs. As entrywise().
-template <typename Scalar, int Rows, int Cols, typename F>
-[[nodiscard]] Matrix<Rows, Cols, Scalar> entries_of(const Matrix<Rows, Cols, Pair<Scalar>>& size, const F& f) noexcept {
-  Matrix<Rows, Cols, Scalar> result;
-  constexpr int kMost = 16;
-  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kMost) {
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC unroll 16
-#endif
-    for (int i = 0; i < Rows * Cols; ++i) result.coeffRef(i) = f(i);
-  } else {
-    result.resize(size.rows(), size.cols());
-    for (Eigen::Index i = 0; i < size.size(); ++i) result.coeffRef(i) = f(i);
-  }
-  return result;
-}
-
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> first(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return entries_of<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).first(); });
+  return entrywise_as<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).first(); });
 }
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Scalar> second(const Matrix<Rows, Cols, Pair<Scalar>>& a) noexcept {
-  return entries_of<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
+  return entrywise_as<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
+}
+
+/// a plus the first of each pair, stored in pairs: a later load of two entries waits if they were stored apart.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> plus_first(Vector<N, Scalar> a, const Vector<N, Pair<Scalar>>& pairs) noexcept {
+  const Eigen::Index n = a.size();
+  for (Eigen::Index i = 0; i < n; i += 2) {
+    set_two_of(a, i, two_of(a, i) + (i + 1 < n ? firsts(pairs.coeff(i), pairs.coeff(i + 1)) : pairs.coeff(i)));
+  }
+  return a;
 }
 
 }  // namespace fpbm

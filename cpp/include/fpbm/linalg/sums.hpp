@@ -5,7 +5,6 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/total.hpp"
 
 /// Sums and maxima over the entries of a non-empty matrix, by loops.
@@ -15,40 +14,41 @@
 namespace fpbm {
 
 /// Σ f(i) over the entries of a matrix. Up to four terms are written out, so that a compiler keeps them in registers.
-template <int Rows, int Cols, typename Scalar, typename F>
-[[nodiscard]] Scalar sum_over(const Matrix<Rows, Cols, Scalar>& size, const F& f) noexcept {
+template <typename Plain, typename F>
+[[nodiscard]] auto sum_over(const Eigen::PlainObjectBase<Plain>& size, const F& f) noexcept {
   constexpr int kFew = 4;
-  if constexpr (Rows != Eigen::Dynamic && Cols != Eigen::Dynamic && Rows * Cols <= kFew) {
-    return total<0, Rows * Cols>(f);
+  if constexpr (Plain::SizeAtCompileTime != Eigen::Dynamic && Plain::SizeAtCompileTime <= kFew) {
+    return total<0, Plain::SizeAtCompileTime>(f);
   } else {
-    Scalar sum = f(0);
+    auto sum = f(0);
     for (Eigen::Index i = 1; i < size.size(); ++i) sum += f(i);
     return sum;
   }
 }
 
-template <int Rows, int Cols, typename Scalar>
-[[nodiscard]] Scalar squared_norm(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+template <typename Plain>
+[[nodiscard]] typename Plain::Scalar squared_norm(const Eigen::PlainObjectBase<Plain>& A) noexcept {
   return sum_over(A, [&](Eigen::Index i) { return A.coeff(i) * A.coeff(i); });
 }
 
-template <int Rows, int Cols, typename Scalar>
-[[nodiscard]] Scalar norm(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+template <typename Plain>
+[[nodiscard]] typename Plain::Scalar norm(const Eigen::PlainObjectBase<Plain>& A) noexcept {
   using std::sqrt;
   return sqrt(squared_norm(A));
 }
 
-template <int N, typename Scalar>
-[[nodiscard]] Scalar dot(const Vector<N, Scalar>& a, const Vector<N, Scalar>& b) noexcept {
+template <typename Plain>
+[[nodiscard]] typename Plain::Scalar dot(const Eigen::PlainObjectBase<Plain>& a,
+                                         const Eigen::PlainObjectBase<Plain>& b) noexcept {
   return sum_over(a, [&](Eigen::Index i) { return a.coeff(i) * b.coeff(i); });
 }
 
 /// The largest |entry|.
-template <int Rows, int Cols, typename Scalar>
-[[nodiscard]] Scalar largest_magnitude(const Matrix<Rows, Cols, Scalar>& A) noexcept {
+template <typename Plain>
+[[nodiscard]] typename Plain::Scalar largest_magnitude(const Eigen::PlainObjectBase<Plain>& A) noexcept {
   using std::abs;
-  Scalar largest(0);
-  for (Eigen::Index i = 0; i < A.size(); ++i) largest = std::max(largest, Scalar(abs(A.coeff(i))));
+  typename Plain::Scalar largest(0);
+  for (Eigen::Index i = 0; i < A.size(); ++i) largest = std::max(largest, abs(A.coeff(i)));
   return largest;
 }
 

@@ -48,18 +48,18 @@ struct SymmetricEigen {
   void rotate(Matrix<M, M, Scalar>& D, int p, int q) noexcept {
     using std::abs;
     using std::sqrt;
-    const Scalar apart = D(p, q);
-    const Scalar theta = (D(q, q) - D(p, p)) / (Scalar(2) * apart);
+    const Scalar coupling = D(p, q);
+    const Scalar theta = (D(q, q) - D(p, p)) / (Scalar(2) * coupling);
     const Scalar tangent =
         (theta < Scalar(0) ? Scalar(-1) : Scalar(1)) / (abs(theta) + sqrt(theta * theta + Scalar(1)));
     const Scalar c = Scalar(1) / sqrt(tangent * tangent + Scalar(1));
     const Scalar s = tangent * c;
-    const Scalar at_p = D(p, p) - tangent * apart;
-    const Scalar at_q = D(q, q) + tangent * apart;
-    rotate(D.data() + p * M, D.data() + q * M, c, s);
-    rotate(vectors.data() + p * M, vectors.data() + q * M, c, s);
-    D(p, p) = at_p;
-    D(q, q) = at_q;
+    const Scalar value_p = D(p, p) - tangent * coupling;
+    const Scalar value_q = D(q, q) + tangent * coupling;
+    rotate_columns(D.data() + p * M, D.data() + q * M, c, s);
+    rotate_columns(vectors.data() + p * M, vectors.data() + q * M, c, s);
+    D(p, p) = value_p;
+    D(q, q) = value_q;
     D(p, q) = D(q, p) = Scalar(0);
     for (int i = 0; i < M; ++i) {
       D.coeffRef(p, i) = D.coeff(i, p);
@@ -68,7 +68,7 @@ struct SymmetricEigen {
   }
 
   /// Columns a and b of a matrix become c a − s b and s a + c b.
-  static void rotate(Scalar* a, Scalar* b, Scalar c, Scalar s) noexcept {
+  static void rotate_columns(Scalar* a, Scalar* b, Scalar c, Scalar s) noexcept {
     using Two = Pair<Scalar>;
     constexpr int kPaired = kRowsInPairs<Scalar> ? M - M % 2 : 0;
     for (int i = 0; i < kPaired; i += 2) {

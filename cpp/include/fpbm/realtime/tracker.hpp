@@ -9,6 +9,7 @@
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/rk4.hpp"
+#include "fpbm/singular/damped_gram.hpp"
 #include "fpbm/task/target_filter.hpp"
 
 /// One tick of a control loop.

@@ -96,7 +96,7 @@ struct AccelerationScheme {
       return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
     } else {
       if constexpr (kUnit) {
-        // Where a self-motion is foreseen, this is the slow way near a singular posture, for any alpha.
+        // With one self-motion, only postures near a singularity come here. One instantiation serves every alpha.
         if constexpr (!kHasSelfMotion<M, N>) {
           if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd);
         }
@@ -161,14 +161,7 @@ struct AccelerationScheme {
           solutions.motion(solutions.shares(side_by_side<M, 1, Scalar>(even, weighted)));
       y = second<N, 1, Scalar>(solutions.without(side_by_side<N, 1, Scalar>(y, y)));
       y = entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + parts.coeff(i).second(); });
-      // In pairs, since is_finite() loads pairs: a load waits for two stores of single numbers.
-      Vector<N, Scalar> sum = weights.root(y);
-      const Eigen::Index n = sum.size();
-      for (Eigen::Index i = 0; i < n; i += 2) {
-        const Pair<Scalar> added = i + 1 < n ? firsts(parts.coeff(i), parts.coeff(i + 1)) : parts.coeff(i);
-        set_two_of(sum, i, two_of(sum, i) + added);
-      }
-      return sum;
+      return plus_first<N, Scalar>(weights.root(y), parts);
     });
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;

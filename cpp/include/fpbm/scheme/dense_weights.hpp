@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,15 +25,16 @@ class DenseWeights {
       const Eigen::Index i = cholesky.lost_pivot();
       validation::fail(validation::element("weights", i, i), W(i, i), "larger: W is not positive definite");
     }
-    root_ = W;
+    root_.resize(W.rows(), W.cols());
+    auto diagonal = filled<Vector<N, Scalar>>(W.rows());  // Of W⁻¹.
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
-      Vector<N, Scalar> axis = filled<Vector<N, Scalar>>(W.rows());
+      auto axis = filled<Vector<N, Scalar>>(W.rows());
       axis(j) = Scalar(1);
-      set_column(root_, j, cholesky.inverse_root(axis));
+      const Vector<N, Scalar> column = cholesky.inverse_root(axis);
+      set_column(root_, j, column);
+      for (Eigen::Index i = 0; i < W.rows(); ++i) diagonal(i) += column(i) * column(i);
     }
-    const Matrix<N, N, Scalar> inverse = gram_of(root_);
-    Scalar largest = inverse(0, 0);
-    for (Eigen::Index i = 1; i < W.rows(); ++i) largest = std::max(largest, inverse(i, i));
+    const Scalar largest = largest_magnitude(diagonal);
     const Scalar scale = std::sqrt(largest);
     root_ = entrywise(root_, [&](Eigen::Index i) { return root_.coeff(i) / scale; });
     weights_ = entrywise(W, [&](Eigen::Index i) { return largest * W.coeff(i); });

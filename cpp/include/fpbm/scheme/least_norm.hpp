@@ -8,7 +8,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/one_self_motion.hpp"
-#include "fpbm/singular/damping.hpp"
+#include "fpbm/singular/damped_gram.hpp"
 
 namespace fpbm {
 

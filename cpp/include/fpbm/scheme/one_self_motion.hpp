@@ -9,7 +9,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/linalg/total.hpp"
 #include "fpbm/objective/null_space.hpp"
-#include "fpbm/singular/damping.hpp"
+#include "fpbm/singular/damped_gram.hpp"
 
 /// Where an arm has one joint more than its task has rows, there is one self-motion, J v = 0, and every law is
 /// u = p + γ v with any p that does the task: J is solved itself, and the condition of JJᵀ does not enter.

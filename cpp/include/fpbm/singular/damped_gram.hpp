@@ -1,0 +1,174 @@
+#pragma once
+
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/core/unrolled.hpp"
+#include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/lower_gram.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/row_factor.hpp"
+#include "fpbm/singular/damping.hpp"
+#include "fpbm/singular/lost_directions.hpp"
+
+namespace fpbm {
+
+/// Lower bound on σ_min(J), tight within a factor √M: 1/√tr((JJᵀ)⁻¹). At a singular posture it is 0 or round-off, of
+/// the order of √epsilon ‖J‖_F.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
+  using std::sqrt;
+  Cholesky<M, Scalar> cholesky;
+  if (cholesky.factor(lower_gram(J)) != Status::kOk) return Scalar(0);
+  return Scalar(1) / sqrt(cholesky.inverse_trace());
+}
+
+/// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
+template <int kTurns, int M, int N, typename Scalar>
+[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
+  const Scalar* column = J.data();
+  Vector<M, Scalar> squares;
+  for (int i = 0; i < M; ++i) squares.coeffRef(i) = column[i] * column[i];
+  for (Eigen::Index j = 1; j < extent<N>(J.cols()); ++j) {
+    column += M;
+    for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
+  }
+  Scalar sum = squares.coeff(0);
+  for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
+  if constexpr (kTurns > 0) {
+    Scalar turns = squares.coeff(M - kTurns);
+    for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
+    sum += length * length * turns;
+  }
+  return sum;
+}
+
+/// J C with C Cᵀ = W⁻¹, and the Gram matrix JW⁻¹Jᵀ, solved; damped where J is nearly singular. With Value =
+/// Pair<Scalar>, of two with different W side by side. Rows of J count in metres: D multiplies the last kTurns rows,
+/// which are angular, by length [m].
+template <int M, int N, typename Value, int kTurns = 0>
+class DampedGram {
+ public:
+  using Scalar = typename ScalarOf<Value>::type;
+
+  /// J must outlive it.
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
+             const Scalar& length = Scalar(1)) noexcept
+      : damping_(damping), J_(J), length_(length) {}
+  DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
+             const Scalar& length = Scalar(1)) = delete;
+
+  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
+  /// Returns kDamped where Δ is not zero, or why there is no factor.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
+    rows_ = rows;
+    for (int i = kLengths; i < M; ++i) {
+      for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
+    }
+    const Status status = factor_.factor(rows_);
+    if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
+
+    // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
+    const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
+    const Scalar bound = threshold * inverse_bound;
+    const Mask<Scalar> regular = bound * first(factor_.inverse_trace()) <= Scalar(1);
+    if constexpr (kInLanes<Scalar>) {
+      factor_.set_nan_unless(regular);
+      return status;
+    } else {
+      return status == Status::kOk && regular ? status : damped(threshold, status);
+    }
+  }
+
+  /// The solutions: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b, is motion(shares(b)); (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
+  template <bool kDamped>
+  struct Solutions {
+    const DampedGram& of;
+
+    [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+      const Vector<M, Value> scaled = of.in_metres(b);
+      if constexpr (kDamped) return of.damped_.solve(scaled);
+      return of.factor_.shares(scaled);
+    }
+    /// a − motion(shares(J C a)), of a motion itself.
+    [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
+      if constexpr (kDamped) {
+        const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
+        return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
+      }
+      return of.factor_.without(a);
+    }
+    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return product(of.rows_, shares);
+      return of.factor_.sum(shares);
+    }
+    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
+      if constexpr (kDamped) return of.in_metres(shares);
+      return of.in_metres(of.factor_.back(shares));
+    }
+  };
+
+  /// f(solutions): compiled for both kinds, so that the usual one has no branches in it.
+  template <typename F>
+  [[nodiscard, gnu::always_inline]] auto solved(const F& f) const noexcept {
+    if constexpr (!kInLanes<Scalar>) {
+      if (damps()) return f(Solutions<true>{*this});
+    }
+    return f(Solutions<false>{*this});
+  }
+
+  /// Whether Δ is not zero.
+  [[nodiscard]] bool damps() const noexcept {
+    if constexpr (kInLanes<Scalar>) {
+      return false;
+    } else {
+      return lost_ > Scalar(0);
+    }
+  }
+
+  /// Additional damping of the null space [1/s].
+  [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
+
+ private:
+  static constexpr int kLengths = M - kTurns;
+
+  /// D b.
+  [[nodiscard]] Vector<M, Value> in_metres(const Vector<M, Value>& b) const noexcept {
+    Vector<M, Value> scaled = b;
+    for (int i = kLengths; i < M; ++i) scaled(i) *= Value(length_);
+    return scaled;
+  }
+
+  [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
+    Matrix<M, M, Scalar> even = gram_of(J_);
+    for (int i = kLengths; i < M; ++i) {
+      for (int j = 0; j < M; ++j) even(j, i) *= length_;
+    }
+    for (int i = kLengths; i < M; ++i) {
+      for (int j = 0; j < M; ++j) even(i, j) *= length_;
+    }
+    const LostDirections<M, Scalar> lost(even, threshold);
+    lost_ = lost.count;
+    if (!(lost_ > Scalar(0))) return undamped;
+    Matrix<M, M, Value> gram;  // Its lower triangle.
+    for (int i = 0; i < M; ++i) {
+      const Vector<N, Value> row = column(rows_, i);
+      for (int j = 0; j <= i; ++j) {
+        gram(i, j) = entrywise(row, [&](Eigen::Index k) { return row.coeff(k) * rows_.coeff(k, j); }).sum() +
+                     Value(lost.delta(i, j));
+      }
+    }
+    const Status status = damped_.factor(gram);
+    return status == Status::kOk ? Status::kDamped : status;
+  }
+
+  SingularDamping<Scalar> damping_;
+  const Matrix<M, N, Scalar>& J_;
+  Scalar length_;
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ
+  RowFactor<M, N, Value> factor_;  ///< Of DJC.
+  Cholesky<M, Value> damped_;      ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
+  Scalar lost_{0};                 ///< tr Δ/ε²: about the number of lost directions.
+};
+
+}  // namespace fpbm
