@@ -22,7 +22,7 @@ STARTS = 4  # Lines that the search starts from.
 APART = 0.9  # Cosine of the least angle between two of them.
 BALL = 0.1  # Capsules shorter than this are started from twice, once made longer; points fill a ball of radius 1.
 ACTIVE = 40  # Points that the search sees at first; those that it leaves outside join them.
-MARKS = (np.sqrt(2.0), np.pi)  # Different points have different marks, and the result is made to contain all points.
+MARKS = (np.sqrt(2.0), np.pi)  # Without a common measure, so that points of equal marks are equal but for round-off.
 ROOM = 1e-12  # Of the radius, as a share of the coordinates: rounding in whoever computes a distance.
 
 
@@ -87,7 +87,7 @@ def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     bare = points[radii == 0.0]
     if len(bare) > 4:
-        # Edges share their ends: points of one mark are taken for one point.
+        # Edges share their ends. Points of equal marks count once: the capsule is enlarged to contain all in the end.
         mark = bare[:, 0] + MARKS[0] * bare[:, 1] + MARKS[1] * bare[:, 2]
         bare = bare[np.sort(np.unique(mark, return_index=True)[1])]
         with suppress(spatial.QhullError):  # They are flat, and few as a rule.
@@ -120,7 +120,7 @@ def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
 
 
 def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
-    """A small capsule of each direction (D, 3): its line goes about through the middle of the points' shadow."""
+    """A small capsule for each direction (D, 3): its axis passes near the centre of the points' projection."""
     shadows = points - (directions @ points.T)[:, :, None] * directions[:, None, :]  # (D, N, 3)
     middles = shadows.mean(axis=1)
     each = np.arange(len(directions))

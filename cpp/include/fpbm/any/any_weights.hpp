@@ -10,7 +10,7 @@ namespace fpbm {
 
 /// Weights of any kind behind one type, of run-time size: a law is then compiled once for all three.
 class AnyWeights {
-  /// f(weights), of whichever kind. Of std::visit() a compiler makes some hundred classes and functions.
+  /// f(weights) with the weights held. std::visit() would instantiate about a hundred classes and functions a call.
   template <typename F>
   auto held(const F& f) const {
     if (const auto* diagonal = std::get_if<DiagonalWeights<Eigen::Dynamic>>(&weights_)) return f(*diagonal);

@@ -24,10 +24,11 @@ struct Kinematics {
 template <typename Space, int N>
 inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
 
-/// Number of the last rows of J that the schemes count by a length. If N is a run-time number, positions in space and
-/// poses in the plane share one instantiation: the last row of a position counts by 1 m.
+/// Number of the last rows of J that the schemes multiply by a length [m]: the angular ones. If N is a run-time number,
+/// positions in space and poses in the plane share one instantiation: the last row of a position is multiplied by 1.
 template <typename Space, int N>
-inline constexpr int kScaledRows = N == Eigen::Dynamic&& Space::kRows == 3 ? 1 : Space::kTurns;
+inline constexpr int kScaledRows = (N == Eigen::Dynamic && Space::kRows == 3) ? 1 : Space::kTurns;
+/// The length [m] that the schemes multiply those rows by.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Scalar scale_of_rows(const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);
