@@ -152,7 +152,7 @@ test-python: $(VENV)/package $(VENV)/test $(VENV)/peers
 
 # Capsules of every robot's meshes, and whether its home posture keeps the default margin.
 homes: $(VENV)/package $(VENV)/test $(VENV)/peers
-	FPBM_ALL_HOMES=1 $(BIN)/python -m pytest tests/python/test_home_postures.py --numprocesses $(JOBS)
+	FPBM_ALL_HOMES=1 $(BIN)/python -m pytest tests/python/test_home_postures.py tests/python/test_capsules.py --numprocesses $(JOBS)
 
 test-view: page $(VENV)/package $(VENV)/test $(VENV)/browser
 	tools/need.sh chromium
@@ -230,14 +230,15 @@ wheel: sdist
 clean:
 	rm -rf build dist $(VENV) demo
 
-# The package with its command line, and the tools of a dependency group in pyproject.toml.
+# The package with its command line, and the tools of a dependency group in pyproject.toml. Modules that are imported are
+# compiled then; to compile all takes longer.
 $(VENV)/package: $(PACKAGE)
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install '$(or $(WHEEL),.)[cli]'
 	@touch $@
 
 $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)/package
-	$(BIN)/python -m pip install --quiet --group $(notdir $@)
+	$(BIN)/python -m pip install --quiet --no-compile --group $(notdir $@)
 	@touch $@
 
 # What makes distributions and what cross-compiles need no package installed.
@@ -256,8 +257,8 @@ $(VENV)/bench: pyproject.toml | $(VENV)/package
 # version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
-	-for group in peers franka; do $(BIN)/python -m pip install --quiet --group $$group; done
-	-$(BIN)/python -m pip install --quiet --no-deps ManipulaPy==1.4.2 airo-models==0.0.12 rtb-data==2.0.0 robosuite==1.5.2
+	-for group in peers franka; do $(BIN)/python -m pip install --quiet --no-compile --group $$group; done
+	-$(BIN)/python -m pip install --quiet --no-compile --no-deps ManipulaPy==1.4.2 airo-models==0.0.12 rtb-data==2.0.0 robosuite==1.5.2
 	-$(if $(filter $(call SUFFIX,/usr/bin/python3),$(call SUFFIX,$(BIN)/python)),\
 	  tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,$(BIN)/python):python3-pykdl)
 	@touch $@

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int N = Eigen::Dynamic;
 constexpr int kSeconds = 40;
-constexpr int kTargets = trials(6);  // Of each arm; docs/realtime.md says what 144 give.
+/// Of each arm; docs/realtime.md says what 144 give.
+const int kTargets = trials(6, 3);
 
 /// Of each joint, in place of the arm's own where these are infinite.
 [[nodiscard]] JointLimits<N> bounded(JointLimits<N> limits, double acceleration) {

@@ -166,11 +166,11 @@ TEST(Limits, of_a_tick_are_within_the_bounds) {
 TEST(Limits, hold_on_a_planar_arm) {
   Random random(7);
   roll_every_scheme<Position<2>>("planar, 4 joints", PlanarArm<4>(Vector<4>::Ones()), narrow_limits<4>(4, random),
-                                 trials(500));
+                                 trials(500, 200));
 }
 TEST(Limits, hold_on_the_panda) {
   const SerialArm<7> panda(presets::panda());
-  roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), trials(500));
+  roll_every_scheme<Pose>("Panda, pose", panda, panda.limits(), trials(500, 200));
 }
 TEST(Limits, hold_on_a_rail) {
   const AnyArm<Position<3>> rail = any_arm(panda_on_rail());

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from test_capsules import ARMS, ROBOTS, fitted, outside, with_robots
+from test_capsules import ARMS, ROBOTS, fitted, heavy, outside, with_robots
 from test_preset_capsules import load_tool, needs_clone, urdf_of
 
 import fpbm_cpp as fp
@@ -27,13 +27,12 @@ from fpbm_cpp.io.urdf_shapes import Shape, read_shapes
 
 pytest.importorskip("trimesh")
 
-# A fit takes from 10 s to a minute of processor time: every day one of each kind, all of them by `make homes`.
-EVERY_DAY = {"ur5e", "z1"}
-every_home = pytest.mark.skipif("FPBM_ALL_HOMES" not in os.environ, reason="takes minutes: make homes")
+# The other robots by `make homes`.
+EVERY_DAY = {"ur5e", "panda with its hand"}
 
 
 def some(names: Iterable[str]) -> list[object]:
-    return [name if name in EVERY_DAY else pytest.param(name, marks=every_home) for name in names]
+    return [name if name in EVERY_DAY else pytest.param(name, marks=heavy) for name in names]
 
 
 PI = np.pi
@@ -138,7 +137,7 @@ def test_required_postures_are_accepted(name: str) -> None:
 
 @with_robots
 def test_postures_that_are_accepted_anyway_change_nothing(once) -> None:
-    urdf, tip, _, homes = OTHERS["z1"]
+    urdf, tip, _, homes = OTHERS["panda with its hand"]
     assert fp.Clearance.from_urdf(ROBOTS / urdf, tip, postures=homes) == once(fitted, urdf, tip, None, 2)
 
 
@@ -184,10 +183,10 @@ def test_group_states_are_required(tmp_path: Path) -> None:
 
 
 @with_robots
-def test_pieces_of_cut_triangles_are_inside() -> None:
+def test_pieces_of_cut_triangles_are_inside(once) -> None:
     """Every triangle of a link's meshes is covered: points that fill it are each in some capsule."""
     urdf, tip, _, _ = OTHERS["panda with its hand"]
-    found = capsules_of(ROBOTS / urdf, tip)
+    found = once(fitted, urdf, tip, None, 2).capsules
     assert max(len([c for c in found if c.name == name]) for name in {c.name for c in found}) == 3
     trimesh = pytest.importorskip("trimesh")
     places = read_places(ROBOTS / urdf, tip)[2]
@@ -203,7 +202,7 @@ def test_pieces_of_cut_triangles_are_inside() -> None:
 
 @with_robots
 def test_the_same_each_time(once) -> None:
-    """Every day of an arm whose fit is quick: the z1 is fitted twice for postures that are accepted anyway, above."""
+    """Every day of an arm whose fit is quick."""
     urdf, tip, base, most = (*OTHERS["z1"][:3], 2) if "FPBM_ALL_HOMES" in os.environ else ARMS["ur5"]
     assert tuple(capsules_of(ROBOTS / urdf, tip, base, per_link=most)) == tuple(
         once(fitted, urdf, tip, base, most).capsules
@@ -222,7 +221,7 @@ CLOSE = {
 
 
 @with_robots
-@pytest.mark.parametrize("name", CLOSE)
+@pytest.mark.parametrize("name", [pytest.param("z1", marks=heavy), "tiago"])
 def test_links_that_touch_are_refused(name: str, once) -> None:
     (urdf, tip, base, _), message = CLOSE[name]
     arm = fp.SerialArm.from_urdf(ROBOTS / urdf, tip, base)

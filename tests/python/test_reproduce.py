@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import replace
 from itertools import pairwise
@@ -22,10 +23,14 @@ def paper() -> cases.Paper:
     return cases.load()
 
 
+def reproduced(folder: Path) -> Reproduction:
+    return reproduce(folder / "made" / "here")
+
+
 @pytest.fixture(scope="session")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    out = tmp_path_factory.mktemp("reproduction") / "made" / "here"
-    return reproduce(out)
+def done(once, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    folder = tmp_path_factory.getbasetemp()
+    return once(reproduced, folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder)
 
 
 @pytest.fixture(scope="session")
