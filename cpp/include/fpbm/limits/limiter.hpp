@@ -1,5 +1,8 @@
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include "fpbm/limits/box_in_time.hpp"
 #include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/braking.hpp"
@@ -7,6 +10,7 @@
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_given_up.hpp"
+#include "fpbm/limits/task_levels.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 
@@ -26,6 +30,9 @@ class Limiter {
  public:
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
+  /// Saturated, or SaturatedLevels.
+  template <typename Tasks>
+  using Found = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits) : limits_(limits), unit_(limits.bounds().acceleration) {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
@@ -38,22 +45,22 @@ class Limiter {
   /// The motion within the limits for a desired qdd, or qd at velocity level, where the state's qd is the last command.
   /// last: acceleration of the last tick, which bounds on jerk start from.
   ///
+  /// tasks: the Jacobian of one task level, or TaskLevels, which are saturated level by level (SaturationByLevel).
   /// rows: further bounds on the motion (RowProjection), kept as far as the limits admit.
-  template <int M, int P = 0>
-  [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const JointVector& desired, const JointVector& last,
-                                            const Rows<N, P, Scalar>& rows = {}) const noexcept {
+  template <typename Tasks, int P = 0>
+  [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                    const JointVector& last, const Rows<N, P, Scalar>& rows = {}) const noexcept {
     if constexpr (P > 0) {
-      if (!rows.admit(desired)) return beside(rows, J, state, desired, last);
+      if (!rows.admit(desired)) return beside(rows, tasks, state, desired, last);
     }
-    return bounded(J, state, desired, last, rows);
+    return bounded(tasks, state, desired, last, rows);
   }
 
   /// The motion for an arm whose last acceleration does not matter: without bounds on jerk, or at rest.
-  template <int M>
-  [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const JointVector& desired) const noexcept {
-    return motion(J, state, desired, JointVector::Zero(state.q.size()));
+  template <typename Tasks>
+  [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state,
+                                    const JointVector& desired) const noexcept {
+    return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
   /// The motion that brings the arm to rest, or one near to it that rows admit.
@@ -67,10 +74,11 @@ class Limiter {
   /// motion() for one that rows do not admit: the nearest that they do comes in its place. Self-motion costs little, so
   /// that joints go around a row where they can and the tip slides along it where they cannot. But where self-motion
   /// can do next to nothing, what the tip has to give up costs less still, else joints would rush for that little.
-  template <int M, int P>
-  [[nodiscard]] Saturated<N, Scalar> beside(const Rows<N, P, Scalar>& rows, const Matrix<M, N, Scalar>& J,
-                                            const JointState& state, const JointVector& desired,
-                                            const JointVector& last) const noexcept {
+  template <typename Tasks, int P>
+  [[nodiscard]] Found<Tasks> beside(const Rows<N, P, Scalar>& rows, const Tasks& tasks, const JointState& state,
+                                    const JointVector& desired, const JointVector& last) const noexcept {
+    const auto& J = first_level(tasks);
+    constexpr int M = std::decay_t<decltype(J)>::RowsAtCompileTime;
     const Scalar mu = kSelfMotion * squared_norm(J);
     const auto [given_up, self_motion] = task_given_up(J, mu, rows, desired);
     const Scalar square = squared_norm(given_up);
@@ -85,55 +93,72 @@ class Limiter {
     }
     RowProjection<M, N, P, Scalar> projection(J, B, rows);
     const JointVector wanted = projection(desired);
-    Saturated<N, Scalar> found = bounded(J, state, wanted, last, rows);
+    Found<Tasks> found = bounded(tasks, state, wanted, last, rows);
     found.rows |= projection.active();
     const JointVector change = entrywise(wanted, [&](Eigen::Index i) { return wanted.coeff(i) - desired.coeff(i); });
-    const Scalar lost = norm(product(J, change));
-    const Scalar task = norm(product(J, desired));
-    if (lost > kUnseen * task) found.scale *= lost < task ? Scalar(1) - lost / task : Scalar(0);
+    const auto kept = [&](const auto& level) noexcept {
+      const Scalar lost = norm(product(level, change));
+      const Scalar task = norm(product(level, desired));
+      if (!(lost > kUnseen * task)) return Scalar(1);
+      return lost < task ? Scalar(1) - lost / task : Scalar(0);
+    };
+    found.scale *= kept(J);
+    if constexpr (kByLevel<Tasks>) {
+      found.scales[0] = found.scale;
+      tasks.each_lower([&](std::size_t k, const auto& level) noexcept { found.scales[k] *= kept(level); });
+    }
     return found;
   }
 
   /// motion() for one that rows admit, or nearly.
-  template <int M, int P>
-  [[nodiscard]] Saturated<N, Scalar> bounded(const Matrix<M, N, Scalar>& J, const JointState& state,
-                                             const JointVector& desired, const JointVector& last,
-                                             const Rows<N, P, Scalar>& rows) const noexcept {
+  template <typename Tasks, int P>
+  [[nodiscard]] Found<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                     const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
     const Box<N, Scalar> box = limits_.box(state, last);
-    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
-    NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit_, rows);
-    if (!limits_.bounds_jerk()) return within(saturation, J, state, box, rows, desired);
-    const Saturated<N, Scalar> found =
-        within(saturation, J, state, box_in_time(limits_, state, last, box), rows, desired);
+    if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
+    auto saturation = saturation_of(tasks, unit_, rows);
+    if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
+    const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
     return toward(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
   }
 
   /// The motion within bounds that does as much as possible of a desired one.
-  template <int M, int P>
-  [[nodiscard]] Saturated<N, Scalar> within(NullSpaceSaturation<M, N, Scalar, P>& saturation,
-                                            const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                            const JointVector& desired) const noexcept {
-    if (box.contains(desired)) return {desired, Scalar(1), 0, 0};
+  template <typename Saturation, typename Tasks, int P>
+  [[nodiscard]] Found<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
+                                    const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                                    const JointVector& desired) const noexcept {
+    if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
-    auto found = saturation(box, rest, desired);
-    if (found.scale < Scalar(1)) yield(J, state, box, rows, desired, found);
-    if (!is_finite(found.u)) found = {rest, Scalar(0), found.joints, found.passes, found.rows};
+    Found<Tasks> found = saturation(box, rest, desired);
+    if (found.scale < Scalar(1)) yield(first_level(tasks), state, box, rows, desired, found);
+    if (!is_finite(found.u)) return failed(rest, found);
+    if constexpr (kByLevel<Tasks>) saturation.resolve_lower(box, desired, found);
     return found;
   }
 
   /// From the motion of a tick without jerk as far toward a goal as bounds allow. found: what the goal does of the
   /// task.
-  template <int M, int P>
-  [[nodiscard]] Saturated<N, Scalar> toward(NullSpaceSaturation<M, N, Scalar, P>& saturation, const Box<N, Scalar>& box,
-                                            const Rows<N, P, Scalar>& rows, const JointVector& steady,
-                                            const JointVector& goal, const Saturated<N, Scalar>& found) const noexcept {
-    if (box.contains(goal) && rows.admit(goal)) return {goal, found.scale, found.joints, found.passes, found.rows};
+  template <typename Saturation, typename Result, int P>
+  [[nodiscard]] Result toward(Saturation& saturation, const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                              const JointVector& steady, const JointVector& goal, const Result& found) const noexcept {
+    Result next = found;
+    next.u = goal;
+    if (box.contains(goal) && rows.admit(goal)) return next;
     const JointVector from = rows.near(steady, box);
-    Saturated<N, Scalar> next = saturation(box, from, goal);
-    if (!is_finite(next.u)) return {from, Scalar(0), next.joints, next.passes, next.rows};
-    next.scale *= found.scale;
+    next = saturation(box, from, goal);
+    if (!is_finite(next.u)) return failed(from, next);
+    if constexpr (!std::is_same_v<Result, Saturated<N, Scalar>>) saturation.resolve_lower(box, goal, next);
+    multiply_scales(next, found);
     return next;
+  }
+
+  /// In place of a motion that is not finite, one that does nothing of the tasks.
+  template <typename Result>
+  [[nodiscard]] static Result failed(const JointVector& u, Result found) noexcept {
+    found.u = u;
+    found.scale = Scalar(0);
+    if constexpr (!std::is_same_v<Result, Saturated<N, Scalar>>) found.scales.fill(Scalar(0));
+    return found;
   }
 
   /// The motions of a tick of some accelerations.
@@ -184,6 +209,9 @@ class Limiter {
     const Scalar share = rows.share(found.u, to);
     found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });
   }
+
+  template <typename Tasks>
+  static constexpr bool kByLevel = !std::is_same_v<Found<Tasks>, Saturated<N, Scalar>>;
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.
   static constexpr Scalar kGivenUp = Scalar(1e-3);     ///< Price of what the task gives up, as a share of the rest.

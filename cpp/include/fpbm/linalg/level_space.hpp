@@ -53,6 +53,15 @@ class LevelSpace {
                     });
   }
 
+  /// Z Zᵀ v, the part of v in the null space.
+  [[nodiscard]] Column project(const Column& v) const noexcept {
+    Column x = v;
+    for (Eigen::Index k = 0; k < rank_; ++k) reflect(k, x);
+    x.head(rank_).setZero();
+    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, x);
+    return x;
+  }
+
   /// Z, n × (n − rank).
   [[nodiscard]] Basis basis() const noexcept {
     Basis Z = Basis::Zero(size(), size() - rank_);

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "fpbm/limits/saturation.hpp"
+#include "fpbm/limits/task_levels.hpp"
+#include "fpbm/linalg/level_space.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
+#include "fpbm/singular/damped_level.hpp"
+
+namespace fpbm {
+
+/// Saturation of a desired motion u* level by level, each in the null space of the levels above:
+///
+///   v = u* − u_{k−1},   p = Z Zᵀ v,   d = u_{k−1} + p + Z (J_k Z)⁺ J_k (v − p),   Z = Z_{k−1}
+///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible.
+///
+/// u* stands for the commands, b_k = J_k u*, and for the preferred null-space motion. J_k d = J_k u*. If every higher
+/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (DampedLevel). The first level is that
+/// of NullSpaceSaturation: J u* and the null-space motion of u* together.
+template <int N, typename Scalar, int P, int... M>
+class SaturationByLevel {
+ public:
+  using JointVector = Vector<N, Scalar>;
+  static constexpr int kLevels = static_cast<int>(sizeof...(M));
+  using Result = SaturatedLevels<N, Scalar, kLevels>;
+
+  /// unit: one unit of each joint's motion, such as its bound on acceleration.
+  SaturationByLevel(const TaskLevels<N, Scalar, M...>& levels, const JointVector& unit,
+                    const Rows<N, P, Scalar>& rows = {}) noexcept
+      : levels_(levels), unit_(unit), rows_(rows), first_(levels.first(), unit, rows) {}
+
+  /// Resolves the first level from rest, a motion within the bounds.
+  [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
+                                  const JointVector& desired) noexcept {
+    Result result{first_(box, rest, desired), {}};
+    result.scales[0] = result.scale;
+    return result;
+  }
+
+  /// Resolves the levels below from the motion of the first. No J_k u of a higher level changes.
+  void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
+    LevelSpace<N, Scalar> space(unit_.size());
+    add(space, levels_.first());
+    bool whole = result.scale == Scalar(1);
+    levels_.each_lower([&](std::size_t k, const auto& J) noexcept {
+      const JointVector goal =
+          whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
+      if (whole) add(space, J);
+      result.scales[k] = Scalar(1);
+      if (!goal.allFinite()) {
+        result.scales[k] = Scalar(0);
+      } else if (box.contains(goal) && rows_.admit(goal)) {
+        result.u = goal;
+      } else {
+        NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space, unit_, rows_);
+        const Saturated<N, Scalar> found = saturation(box, result.u, goal);
+        result.scales[k] = found.u.allFinite() ? found.scale : Scalar(0);
+        if (found.u.allFinite()) result.u = found.u;
+        result.joints |= found.joints;
+        result.rows |= found.rows;
+        result.passes += found.passes;
+      }
+      whole = whole && result.scales[k] == Scalar(1);
+    });
+  }
+
+ private:
+  template <int Mk>
+  [[nodiscard]] Matrix<Mk, N, Scalar> in_units(const Matrix<Mk, N, Scalar>& J) const noexcept {
+    Matrix<Mk, N, Scalar> scaled = J;
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit_.coeff(j);
+    }
+    return scaled;
+  }
+
+  template <int Mk>
+  void add(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J) const noexcept {
+    (void)space.add(in_units(J), filled<Vector<Mk, Scalar>>(J.rows()));
+  }
+
+  /// (d − u)/unit for v = u* − u. Adds the level to the space.
+  template <int Mk>
+  [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J,
+                                       const JointVector& v) const noexcept {
+    const Matrix<Mk, N, Scalar> scaled = in_units(J);
+    const JointVector in_unit = v.cwiseQuotient(unit_);
+    const JointVector projected = space.project(in_unit);
+    const JointVector outside = in_unit - projected;
+    const Vector<Mk, Scalar> r = product(scaled, outside);
+    DampedLevel<Mk, Scalar> damped(kRadius * kRadius * squared_norm(scaled));
+    return projected + space.add(scaled, r, damped);
+  }
+
+  /// Radius of the damping of a level that higher ones have left short, as a share of ‖J_k‖_F: that of the resolution
+  /// without limits (ByLevels).
+  static constexpr Scalar kRadius = Scalar(0.05);
+
+  TaskLevels<N, Scalar, M...> levels_;
+  JointVector unit_;
+  Rows<N, P, Scalar> rows_;
+  NullSpaceSaturation<std::get<0>(std::array{M...}), N, Scalar, P> first_;
+};
+
+/// saturation_of() for several levels.
+template <int N, typename Scalar, int P, int... M>
+[[nodiscard]] SaturationByLevel<N, Scalar, P, M...> saturation_of(const TaskLevels<N, Scalar, M...>& levels,
+                                                                  const Vector<N, Scalar>& unit,
+                                                                  const Rows<N, P, Scalar>& rows) noexcept {
+  return {levels, unit, rows};
+}
+
+}  // namespace fpbm

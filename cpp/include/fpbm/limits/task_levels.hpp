@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/limits/saturated.hpp"
+
+namespace fpbm {
+
+/// Jacobians of task levels in the order of their priority: J₁ (M₁ × n) … J_K (M_K × n), all rows in metres.
+template <int N, typename Scalar, int... M>
+class TaskLevels {
+ public:
+  static constexpr int kLevels = static_cast<int>(sizeof...(M));
+
+  explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) {}
+
+  [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
+
+  /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first.
+  template <typename F>
+  void each_lower(F&& f) const noexcept {
+    each_from(f, std::make_index_sequence<sizeof...(M) - 1>{});
+  }
+
+ private:
+  template <typename F, std::size_t... k>
+  void each_from(F& f, std::index_sequence<k...>) const noexcept {
+    (f(k + 1, std::get<k + 1>(J_)), ...);
+  }
+
+  std::tuple<Matrix<M, N, Scalar>...> J_;
+};
+
+/// A joint motion within a box that resolves task levels.
+template <int N, typename Scalar, int K>
+struct SaturatedLevels : Saturated<N, Scalar> {
+  std::array<Scalar, K> scales;  ///< s_k of each level. The first is scale.
+};
+
+/// A matrix stands for one level.
+template <int M, int N, typename Scalar>
+[[nodiscard]] const Matrix<M, N, Scalar>& first_level(const Matrix<M, N, Scalar>& J) noexcept {
+  return J;
+}
+template <int N, typename Scalar, int... M>
+[[nodiscard]] const auto& first_level(const TaskLevels<N, Scalar, M...>& levels) noexcept {
+  return levels.first();
+}
+
+/// A motion that every level has the same scale in.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
+                                              Scalar scale) noexcept {
+  return {u, scale, 0, 0};
+}
+template <int N, typename Scalar, int... M>
+[[nodiscard]] SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> with_scale(const TaskLevels<N, Scalar, M...>&,
+                                                                                    const Vector<N, Scalar>& u,
+                                                                                    Scalar scale) noexcept {
+  SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> result{{u, scale, 0, 0}, {}};
+  result.scales.fill(scale);
+  return result;
+}
+
+/// Multiplies the scales of a motion by those of the motion that was its goal.
+template <int N, typename Scalar>
+void multiply_scales(Saturated<N, Scalar>& motion, const Saturated<N, Scalar>& goal) noexcept {
+  motion.scale *= goal.scale;
+}
+template <int N, typename Scalar, int K>
+void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevels<N, Scalar, K>& goal) noexcept {
+  motion.scale *= goal.scale;
+  for (std::size_t k = 0; k < motion.scales.size(); ++k) motion.scales[k] *= goal.scales[k];
+}
+
+}  // namespace fpbm
