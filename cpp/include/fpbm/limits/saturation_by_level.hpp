@@ -113,4 +113,17 @@ template <int N, typename Scalar, int P, int... M>
   return {levels, unit, rows};
 }
 
+/// The part of a motion that changes no level.
+template <int N, typename Scalar, int... M>
+[[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, M...>& levels,
+                                                  const Vector<N, Scalar>& v) noexcept {
+  LevelSpace<N, Scalar> space(v.size());
+  const auto add = [&](std::size_t, const auto& J) noexcept {
+    (void)space.add(J, filled<Vector<std::decay_t<decltype(J)>::RowsAtCompileTime, Scalar>>(J.rows()));
+  };
+  add(0, levels.first());
+  levels.each_lower(add);
+  return space.project(v);
+}
+
 }  // namespace fpbm

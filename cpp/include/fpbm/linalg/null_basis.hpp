@@ -104,4 +104,11 @@ template <int M, int N, typename Scalar>
   return Z;
 }
 
+/// Z Zᵀ v with the null_basis() Z of J.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> null_space_motion(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& v) noexcept {
+  const auto Z = null_basis<M, N, Scalar>(J);
+  return Z.lazyProduct(Z.transpose().lazyProduct(v).eval());
+}
+
 }  // namespace fpbm

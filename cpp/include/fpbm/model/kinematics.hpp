@@ -34,6 +34,15 @@ template <typename Space, int N, typename Scalar>
   return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);
 }
 
+/// J of the first task level, and its number of rows.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] const Matrix<Space::kRows, N, Scalar>& first_rows(
+    const Kinematics<Space, N, Scalar>& kinematics) noexcept {
+  return kinematics.J;
+}
+template <typename Space>
+inline constexpr int kFirstRows = Space::kRows;
+
 /// J with all rows in metres: angles count by the arm's length.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/product_space.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -31,22 +32,32 @@ class Correction {
     error_ = error;
     excess_ = filled<Twist>(Space::kRows);
     length_ = length;
-    far_ = bring_near<kLengths>(error.data(), error_bound_ * length, excess_.data());
-    if constexpr (Space::kTurns > 0) {
-      far_ = bring_near<Space::kTurns>(error.data() + kLengths, error_bound_, excess_.data() + kLengths) || far_;
-    }
+    far_ = false;
+    moved_ = false;
+    each_part<Space>([&](auto space, int row, bool first) noexcept {
+      using Part = decltype(space);
+      constexpr int kLengths = Part::kRows - Part::kTurns;
+      const Scalar* const from = error.data() + row;
+      Scalar* const to = excess_.data() + row;
+      bool far = false;
+      if constexpr (kLengths > 0) far = bring_near<kLengths>(from, error_bound_ * length, to);
+      if constexpr (Part::kTurns > 0)
+        far = bring_near<Part::kTurns>(from + kLengths, error_bound_, to + kLengths) || far;
+      moved_ = moved_ || far;
+      far_ = far_ || (first && far);
+    });
   }
 
-  /// Whether the target lies beyond error_bound.
+  /// Whether the target, of the first level, lies beyond error_bound.
   [[nodiscard]] bool far() const noexcept { return far_; }
   /// Whether it changes a reference.
-  [[nodiscard]] bool active() const noexcept { return far_ || gain_ != Scalar(0); }
+  [[nodiscard]] bool active() const noexcept { return moved_ || gain_ != Scalar(0); }
   /// What begin() was told.
   [[nodiscard]] const Twist& error() const noexcept { return error_; }
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
-    if (far_) {
+    if (moved_) {
       const Twist back = entrywise(excess_, [&](Eigen::Index i) { return -excess_.coeff(i); });
       reference.x = Space::template displace<Scalar>(reference.x, back);
     }
@@ -61,16 +72,12 @@ class Correction {
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) += dt_ * error_(i);
-    Twist even = integral_;  // In arm lengths and radians.
-    for (int i = 0; i < kLengths; ++i) even(i) /= length_;
-    const Scalar size = gain_ * norm(even);
+    const Scalar size = gain_ * norm(in_lengths<Space>(integral_, length_));
     if (!(size > bound_)) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;
   }
 
  private:
-  static constexpr int kLengths = Space::kRows - Space::kTurns;
-
   /// The part of an error of some rows beyond a bound; whether there is one, or the error is not a number.
   template <int kRows>
   [[nodiscard]] static bool bring_near(const Scalar* error, Scalar bound, Scalar* excess) noexcept {
@@ -87,6 +94,7 @@ class Correction {
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;
+  bool moved_ = false;         ///< Some target is brought nearer.
   Scalar length_ = Scalar(1);  ///< Of the arm [m].
   Twist error_ = filled<Twist>(Space::kRows);
   Twist excess_ = filled<Twist>(Space::kRows);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/clearance/unguarded.hpp"
+#include "fpbm/core/product_space.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
@@ -60,8 +61,10 @@ class LimitedState {
   /// The result of a tick in which nothing has happened yet.
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
-    return {state.q, state.qd,  filled<JointVector>(state.q.size()), Status::kOk, Scalar(1),
-            0,       Scalar(0), filled<Twist>(Space::kRows)};
+    Result result{state.q, state.qd,  filled<JointVector>(state.q.size()), Status::kOk, Scalar(1),
+                  0,       Scalar(0), filled<Twist>(Space::kRows)};
+    if constexpr (kIsProduct<Space>) result.scales.fill(Scalar(1));
+    return result;
   }
 
   /// Whether a state is finite and far enough from overflow to brake from.
@@ -109,10 +112,16 @@ class LimitedState {
         share = slow_down(loop, limits(), correction_(now), state_.q, field);
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
-      // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
-      const JointVector middle =
-          entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });
-      loop.arm.kinematics(middle, loop.kinematics);
+      if constexpr (kLevelsOf < Space >> 1) {
+        if (!failed(result.status))
+          result.status = worse(result.status, expect(loop, correction_(ahead(now, dt_ / 2)), desired));
+        if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
+      } else {
+        // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
+        const JointVector middle =
+            entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });
+        loop.arm.kinematics(middle, loop.kinematics);
+      }
       const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
       if (share < Scalar(1)) {
         result.scale *= share;
@@ -153,9 +162,15 @@ class LimitedState {
                                                    Result& result) const noexcept {
     const bool braking = stopping_ || result.status >= Status::kStalled;
     const bool gives_way = result.status == Status::kStalled;
-    const auto found = braking ? limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{})
-                               : limiter_.motion(jacobian_in_metres(kinematics), state, desired, last, rows);
+    const auto tasks = jacobian_in_metres(kinematics);
+    auto found = with_scale(tasks, state.qd, Scalar(0));
+    if (braking) {
+      found.u = limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{}).u;
+    } else {
+      found = limiter_.motion(tasks, state, desired, last, rows);
+    }
     result.scale = found.scale;
+    if constexpr (kIsProduct<Space>) result.scales = found.scales;
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) {
       result.status = guard_.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
@@ -166,6 +181,23 @@ class LimitedState {
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
 
+  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration. The
+  /// step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion they would disturb
+  /// the higher levels by J̇ q̇.
+  template <typename Loop, typename Target>
+  [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
+    const Scalar half = dt_ / Scalar(2);
+    JointState middle = state_;
+    for (Eigen::Index i = 0; i < middle.q.size(); ++i) {
+      middle.q(i) += half * (state_.qd(i) + half / Scalar(2) * last_(i));
+      middle.qd(i) += half * last_(i);
+    }
+    typename Loop::X dx = Loop::packed(middle);
+    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
+    if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
+    return status;
+  }
+
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
   template <typename Arm>
   [[nodiscard]] JointVector self_motion_away(const Arm& arm, const JointVector& end) noexcept {
@@ -173,8 +205,7 @@ class LimitedState {
         entrywise(end, [&](Eigen::Index i) { return (state_.q.coeff(i) + end.coeff(i)) / Scalar(2); });
     Kinematics<Space, N, Scalar> kinematics;
     arm.kinematics(middle, kinematics);
-    const auto Z = null_basis<kLimitedRows<Space, N>, N, Scalar>(jacobian_in_metres(kinematics));
-    return Z.lazyProduct(Z.transpose().lazyProduct(guard_.away(state_.q)).eval());
+    return null_space_motion(jacobian_in_metres(kinematics), guard_.away(state_.q));
   }
 
   /// The motion of a tick: its mean acceleration, or its velocity at velocity level.

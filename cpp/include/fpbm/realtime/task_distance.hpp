@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fpbm/core/product_space.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {
 
 /// Distance in a task space that has lengths and angles: ‖(Δp/length, Δφ)‖, with the arm's characteristic length [m]
-/// and angles in radians.
+/// and angles in radians. Of a stack, the tasks of the first level count.
 template <typename Space, typename Scalar>
 struct TaskDistance {
   using Twist = Vector<Space::kRows, Scalar>;
@@ -21,7 +22,11 @@ struct TaskDistance {
   [[nodiscard]] static Scalar step(Scalar distance) noexcept { return std::min(kProgress, distance / Scalar(4)); }
 
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {
-    for (int i = 0; i < Space::kRows - Space::kTurns; ++i) twist(i) /= length;
+    each_part<Space>([&](auto space, int row, bool first) noexcept {
+      using Part = decltype(space);
+      for (int i = row; i < row + Part::kRows - Part::kTurns; ++i) twist(i) /= length;
+      for (int i = row; !first && i < row + Part::kRows; ++i) twist(i) = Scalar(0);
+    });
     using std::sqrt;
     return sqrt(entrywise(twist, [&](Eigen::Index i) { return twist.coeff(i) * twist.coeff(i); }).sum());
   }

@@ -4,6 +4,7 @@
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/require_stable.hpp"
+#include "fpbm/realtime/stack_references.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_references.hpp"
 #include "fpbm/scheme/set_damping.hpp"
@@ -67,7 +68,7 @@ class Tracker {
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
     limits.require_viable(start, qdd0);
     validation::require_non_negative("null_damping", options.null_damping);
-    give_damping(scheme_, options.damping(arm.dof(), Space::kRows));
+    give_damping(scheme_, options.damping(arm.dof(), kFirstRows<Space>));
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     Kinematics<Space, N, Scalar> kinematics;
@@ -101,6 +102,20 @@ class Tracker {
     return result;
   }
 
+  /// One tick of a stack, with a source of references for each task in the order of the stack: a Reference, a
+  /// PathFollower or a TargetFilter.
+  template <typename First, typename Second, typename... Others>
+  Result tick(First& first, Second& second, Others&... others) noexcept {
+    const Result result = advance(
+        References::of([&](Scalar t) noexcept { return joined<Space>(t, first, second, others...); }, kept_.dt()));
+    const bool follows = !kept_.stopping();
+    const Scalar dt = kept_.dt();
+    advance_source(first, dt, follows);
+    advance_source(second, dt, follows);
+    (advance_source(others, dt, follows), ...);
+    return result;
+  }
+
   /// One tick toward references.
   Result advance(References references) noexcept {
     const JointState& state = kept_.state();
@@ -126,6 +141,7 @@ class Tracker {
     JointState next{column(x, 0), state.qd};
     if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
+    if constexpr (kIsProduct<Space>) result.report_lower_levels();
     return result;
   }
 
@@ -209,7 +225,7 @@ class Tracker {
   using X = typename Loop::X;
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
-    result.sigma = least_singular_value_bound(kinematics.J);
+    result.sigma = least_singular_value_bound(first_rows(kinematics));
     result.error = Space::template difference<Scalar>(reference.x, kinematics.tip);
     kept_.correction().begin(result.error, kinematics.length);
   }

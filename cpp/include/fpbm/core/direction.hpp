@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/core/rotation.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/sums.hpp"
+
+namespace fpbm {
+
+/// Task space of directions: unit vectors, which turn with an angular velocity in the base frame's axes [rad].
+struct Direction {
+  static constexpr int kRows = 3;
+  static constexpr int kTurns = 3;
+  static constexpr int kSize = 3;
+
+  template <typename Scalar>
+  using Point = Vector<3, Scalar>;
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> origin() noexcept {
+    return {Scalar(0), Scalar(0), Scalar(1)};
+  }
+
+  /// x ⊖ y: the rotation vector of the smallest rotation from y to x, at right angles to both. Of opposite directions,
+  /// a rotation by π about some axis at right angles to y.
+  template <typename Scalar>
+  [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    using std::atan2;
+    Vector<3, Scalar> axis = cross(y, x);
+    const Scalar sine = norm(axis);
+    const Scalar cosine = dot(x, y);
+    if (!(sine > Scalar(0))) {
+      if (!(cosine < Scalar(0))) return axis;
+      Eigen::Index least = 0;
+      for (Eigen::Index i = 1; i < 3; ++i) {
+        if (std::abs(y(i)) < std::abs(y(least))) least = i;
+      }
+      Vector<3, Scalar> aside(Scalar(0), Scalar(0), Scalar(0));
+      aside(least) = Scalar(1);
+      axis = normalized(cross(y, aside));
+      return entrywise(axis, [&](Eigen::Index i) { return static_cast<Scalar>(kPi) * axis.coeff(i); });
+    }
+    const Scalar share = atan2(sine, cosine) / sine;
+    return entrywise(axis, [&](Eigen::Index i) { return share * axis.coeff(i); });
+  }
+
+  /// y ⊕ d: y turned by the rotation vector d.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<3, Scalar>& d) noexcept {
+    return times(rotation(d), y);
+  }
+
+  /// y turned as the z axis turns to x.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
+    return displace<Scalar>(y, difference<Scalar>(x, origin<Scalar>()));
+  }
+
+  template <typename Scalar>
+  static void store(const Point<Scalar>& x, Scalar* out) noexcept {
+    for (int i = 0; i < 3; ++i) out[i] = x(i);
+  }
+
+ private:
+  static constexpr double kPi = 3.14159265358979323846;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "fpbm/core/rotation.hpp"
+#include "fpbm/core/rotation_vector.hpp"
+#include "fpbm/core/types.hpp"
+
+namespace fpbm {
+
+/// Task space of orientations: rotation matrices, with angular velocities in the base frame's axes [rad].
+struct Orientation {
+  static constexpr int kRows = 3;
+  static constexpr int kTurns = 3;
+  static constexpr int kSize = 9;
+
+  template <typename Scalar>
+  using Point = Matrix<3, 3, Scalar>;
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> origin() noexcept {
+    return identity<Point<Scalar>>();
+  }
+
+  /// x ⊖ y: the rotation vector of x yᵀ.
+  template <typename Scalar>
+  [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    return rotation_between(x, y);
+  }
+
+  /// y ⊕ d: y turned by the rotation vector d.
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<3, Scalar>& d) noexcept {
+    return times(rotation(d), y);
+  }
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
+    return times(x, y);
+  }
+
+  /// Row by row.
+  template <typename Scalar>
+  static void store(const Point<Scalar>& x, Scalar* out) noexcept {
+    for (int i = 0; i < 9; ++i) out[i] = x(i / 3, i % 3);
+  }
+};
+
+}  // namespace fpbm

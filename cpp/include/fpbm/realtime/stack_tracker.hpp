@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/limits/saturation_by_level.hpp"
+#include "fpbm/realtime/stack_references.hpp"
+#include "fpbm/realtime/tracker.hpp"
+#include "fpbm/scheme/by_levels.hpp"
+#include "fpbm/task/stack_kinematics.hpp"
+
+namespace fpbm {
+
+/// Result of a tick of a stack. status, scale and sigma are those of the first level, unless only a lower level is
+/// slowed: then status is kSlowed.
+template <typename... Levels, int N, typename Scalar>
+struct Tick<StackSpace<Levels...>, N, Scalar> {
+  Vector<N, Scalar> q;
+  Vector<N, Scalar> qd;
+  Vector<N, Scalar> qdd;
+  Status status;
+  Scalar scale;
+  std::uint32_t saturated;
+  Scalar sigma;
+  Vector<StackSpace<Levels...>::kRows, Scalar> error;  ///< x ⊖ f(q) of each task at the tick's start [m, rad].
+  std::array<Scalar, sizeof...(Levels)> scales{};      ///< Share of each level that the limits left.
+
+  void report_lower_levels() noexcept {
+    for (const Scalar s : scales) {
+      if (s < Scalar(1)) status = worse(status, Status::kSlowed);
+    }
+  }
+};
+
+/// A Tracker of a stack of tasks. Throws std::invalid_argument as Tracker does, where a task does not suit the robot,
+/// and where the scheme has feedback gains of its own (ByLevels).
+template <typename Robot, typename... Levels, typename Scheme, typename Start>
+[[nodiscard]] auto stack_tracker(const Robot& robot, const Stack<Levels...>& stack, const Scheme& scheme,
+                                 const Start& start, const TrackerOptions<typename Robot::Scalar>& options = {}) {
+  using Tasks = Stack<Levels...>;
+  using Space = typename Tasks::Space;
+  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>>(
+      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme, stack), start, options);
+}
+
+}  // namespace fpbm

@@ -1,0 +1,138 @@
+#pragma once
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/linalg/level_space.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
+#include "fpbm/realtime/require_stable.hpp"
+#include "fpbm/singular/damped_level.hpp"
+#include "fpbm/task/stack_kinematics.hpp"
+
+namespace fpbm {
+
+/// A scheme for a stack of tasks. The scheme's law resolves the first level. Each level below acts in the null space of
+/// the levels above (Siciliano and Slotine 1991):
+///
+///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
+///
+/// with the command of each task, S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) less J̇ qd, or S (xd + k (x ⊖ f(q))) at velocity
+/// level. Directions that the posture or higher levels take away from a level are damped (DampedLevel). What no task
+/// determines is the null-space motion of the scheme's answer.
+template <typename Scheme, typename Stack_>
+struct ByLevels {
+  using Scalar = typename Stack_::Scalar;
+  static constexpr Level kLevel = Scheme::kLevel;
+  static constexpr int kDof = Scheme::kDof;
+  using JointVector = Vector<kDof, Scalar>;
+  using Space = typename Stack_::Space;
+
+  Scheme scheme;
+  Stack_ stack;
+  Scalar radius;  ///< ε of the damping of the lower levels, as a share of ‖J_k‖_F.
+
+  /// Throws std::invalid_argument where the scheme has feedback gains, which the tasks have, or the radius is not in
+  /// [0, 1].
+  ByLevels(const Scheme& scheme_, const Stack_& stack_, Scalar radius_ = Scalar(0.05))
+      : scheme(scheme_), stack(stack_), radius(radius_) {
+    if constexpr (kHasGains<Scheme>) {
+      if (scheme.k1 != Scalar(0)) validation::fail("k1", scheme.k1, "0: each task of a stack has its own");
+      if (scheme.k2 != Scalar(0)) validation::fail("k2", scheme.k2, "0: each task of a stack has its own");
+    }
+    if constexpr (kHasGain<Scheme>) {
+      if (scheme.k != Scalar(0)) validation::fail("k", scheme.k, "0: each task of a stack has its own");
+    }
+    validation::require_fraction("radius", radius);
+  }
+
+  void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
+
+  /// Joint accelerations, or velocities. A level whose references are not finite is left out. Leaves u unchanged where
+  /// the first level fails.
+  [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
+                               const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
+                               JointVector& u) const noexcept {
+    JointVector result;
+    LevelSpace<kDof, Scalar> space(state.q.size());
+    Status status = Status::kOk;
+    each_level([&](auto k) noexcept {
+      constexpr int kIndex = decltype(k)::value;
+      const auto& [J, Jd] = std::get<kIndex>(kinematics.levels);
+      constexpr int M = Stack_::kRows[kIndex];
+      Reference<Position<M>, Scalar> command = Reference<Position<M>, Scalar>::hold(filled<Vector<M, Scalar>>(M));
+      command_level<kIndex>(kinematics, reference, command);
+      if constexpr (kIndex == 0) {
+        const Kinematics<Position<M>, kDof, Scalar> rows{filled<Vector<M, Scalar>>(M), J, Jd};
+        result = filled<JointVector>(state.q.size());
+        status = scheme.resolve(rows, command, state, result);
+        if constexpr (Stack_::kLevels > 1) (void)space.add(J, filled<Vector<M, Scalar>>(M));
+      } else {
+        if (failed(status) || space.rank() == space.size()) return;
+        Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
+        r -= product(J, result);
+        if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
+        if (!r.allFinite()) return;
+        DampedLevel<M, Scalar> damped(radius * radius * squared_norm(J));
+        result += space.add(J, r, damped);
+      }
+    });
+    if (failed(status)) return status;
+    if (!is_finite(result)) return Status::kNotFinite;
+    u = result;
+    return status;
+  }
+
+ private:
+  template <typename F>
+  static void each_level(F&& f) noexcept {
+    each_level(f, std::make_index_sequence<Stack_::kLevels>{});
+  }
+  template <typename F, std::size_t... k>
+  static void each_level(F& f, std::index_sequence<k...>) noexcept {
+    (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
+  }
+
+  /// The commands of a level's tasks: xd, and at acceleration level xdd, without J̇ qd.
+  template <int k, int M>
+  void command_level(const Kinematics<Space, kDof, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
+                     Reference<Position<M>, Scalar>& command) const noexcept {
+    Space::each([&](auto space, auto i, int row) noexcept {
+      using Part = decltype(space);
+      constexpr int kTask = static_cast<int>(decltype(i)::value);
+      if constexpr (Stack_::level(kTask) == k) {
+        const auto& task = std::get<kTask>(stack.tasks());
+        const auto& [S, velocity] = std::get<kTask>(kinematics.tasks);
+        using Twist = Vector<Part::kRows, Scalar>;
+        const Twist error =
+            Part::template difference<Scalar>(std::get<kTask>(reference.x), std::get<kTask>(kinematics.tip));
+        const Twist xd = reference.xd.template segment<Part::kRows>(row);
+        const Twist xdd = reference.xdd.template segment<Part::kRows>(row);
+        constexpr int kRows = std::decay_t<decltype(task)>::kRows;
+        const auto put = [&](Vector<M, Scalar>& to, const Twist& twist) noexcept {
+          to.template segment<kRows>(Stack_::row(kTask)) = S.lazyProduct(twist);
+        };
+        if constexpr (kLevel == Level::kAcceleration) {
+          put(command.xd, xd);
+          put(command.xdd, entrywise(xd, [&, &v = velocity](Eigen::Index j) {
+                return xdd.coeff(j) + task.gains.k1 * (xd.coeff(j) - v.coeff(j)) + task.gains.k2 * error.coeff(j);
+              }));
+        } else {
+          put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.gains.k2 * error.coeff(j); }));
+        }
+      }
+    });
+  }
+};
+
+/// require_stable() for the gains of all tasks, and for the scheme. The tracker's integral acts on every task.
+template <typename Scheme, typename Stack_, typename Scalar>
+void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
+  by_levels.stack.each([&](const auto& task, auto) {
+    constexpr Level kLevel = Scheme::kLevel;
+    const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
+    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
+  });
+  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
+}
+
+}  // namespace fpbm

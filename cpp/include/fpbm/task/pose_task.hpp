@@ -1,0 +1,33 @@
+#pragma once
+
+#include "fpbm/core/space.hpp"
+#include "fpbm/task/task_gains.hpp"
+
+namespace fpbm {
+
+/// Pose of a frame. For fewer rows, put a PositionTask and an AxisTask side by side on a level.
+template <typename Scalar_ = double>
+struct PoseTask {
+  using Scalar = Scalar_;
+  using Space = Pose;
+  static constexpr int kRows = 6;
+
+  LinkFrame<Scalar> frame;
+  TaskGains<Scalar> gains;
+
+  template <typename Robot>
+  void require_robot(const Robot& robot) const {
+    robot.require_link("frame", frame.link);
+  }
+
+  template <typename Robot>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Transform<Scalar>& x,
+                Matrix<6, Robot::kDof, Scalar>& J, Matrix<6, Robot::kDof, Scalar>& Jd,
+                Matrix<6, 6, Scalar>& S) const noexcept {
+    x = robot.frame(state, frame.link, frame.offset);
+    robot.jacobian(state, frame.link, x.p, J, Jd);
+    S = identity<Matrix<6, 6, Scalar>>();
+  }
+};
+
+}  // namespace fpbm

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/core/space.hpp"
+#include "fpbm/task/task_gains.hpp"
+
+namespace fpbm {
+
+/// Position of a frame's origin: M of its coordinates, along the base frame's axes or the frame's own.
+///
+/// A task is data: which frame of the robot, which rows, which gains. A Stack evaluates tasks:
+///
+///   x(state)       point of the Space, of which references are points
+///   J, J̇           in the Space's rows
+///   S(state)       selection: the task's rows are S J, and S applied to a twist of the Space
+template <int M = 3, typename Scalar_ = double>
+struct PositionTask {
+  using Scalar = Scalar_;
+  using Space = Position<3>;
+  static constexpr int kRows = M;
+
+  LinkFrame<Scalar> frame;
+  TaskGains<Scalar> gains;
+  std::array<int, M> rows = first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
+  bool in_frame = false;                   ///< Along the frame's axes; otherwise the base frame's.
+
+  /// Throws std::invalid_argument where the task does not suit a robot.
+  template <typename Robot>
+  void require_robot(const Robot& robot) const {
+    robot.require_link("frame", frame.link);
+    for (const int row : rows) {
+      if (row < 0 || row > 2) validation::fail("rows", row, "0, 1 or 2");
+    }
+  }
+
+  template <typename Robot>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
+                Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
+                Matrix<M, 3, Scalar>& S) const noexcept {
+    const Transform<Scalar> at = robot.frame(state, frame.link, frame.offset);
+    Matrix<6, Robot::kDof, Scalar> all;
+    Matrix<6, Robot::kDof, Scalar> rates;
+    robot.jacobian(state, frame.link, at.p, all, rates);
+    x = at.p;
+    J = all.template topRows<3>();
+    Jd = rates.template topRows<3>();
+    for (int i = 0; i < M; ++i) {
+      const int row = rows[static_cast<std::size_t>(i)];
+      for (int j = 0; j < 3; ++j) S(i, j) = in_frame ? at.R(j, row) : Scalar(row == j ? 1 : 0);
+    }
+  }
+
+ private:
+  [[nodiscard]] static std::array<int, M> first_rows() noexcept {
+    static_assert(M >= 1 && M <= 3, "a position has 1 to 3 rows");
+    std::array<int, M> rows{};
+    for (int i = 0; i < M; ++i) rows[static_cast<std::size_t>(i)] = i;
+    return rows;
+  }
+};
+
+}  // namespace fpbm

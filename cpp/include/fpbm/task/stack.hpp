@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "fpbm/core/product_space.hpp"
+#include "fpbm/task/reference.hpp"
+#include "fpbm/task/task_gains.hpp"
+
+namespace fpbm {
+
+/// Tasks side by side on one level.
+template <typename... Tasks>
+struct TaskLevel {
+  static constexpr int kRows = (Tasks::kRows + ...);
+  std::tuple<Tasks...> tasks;
+
+  explicit TaskLevel(const Tasks&... tasks_) : tasks(tasks_...) {}
+};
+
+namespace stack_detail {
+
+template <typename Task>
+struct AsLevel {
+  using type = TaskLevel<Task>;
+};
+template <typename... Tasks>
+struct AsLevel<TaskLevel<Tasks...>> {
+  using type = TaskLevel<Tasks...>;
+};
+
+template <typename Tuple>
+inline constexpr int kSize = static_cast<int>(std::tuple_size_v<Tuple>);
+
+template <typename Task>
+[[nodiscard]] std::tuple<Task> tasks_of(const Task& task) {
+  return std::tuple<Task>(task);
+}
+template <typename... Tasks>
+[[nodiscard]] const std::tuple<Tasks...>& tasks_of(const TaskLevel<Tasks...>& level) noexcept {
+  return level.tasks;
+}
+
+template <typename... Levels>
+using TasksOf = decltype(std::tuple_cat(std::declval<Levels>().tasks...));
+
+template <int First, typename Tuple>
+struct SpaceOf;
+template <int First, typename... Tasks>
+struct SpaceOf<First, std::tuple<Tasks...>> {
+  using type = ProductSpace<First, typename Tasks::Space...>;
+};
+
+}  // namespace stack_detail
+
+/// Task space of a stack: points of all tasks, those of higher levels first.
+template <typename First, typename... Lower>
+struct StackSpace
+    : stack_detail::SpaceOf<stack_detail::kSize<decltype(First::tasks)>, stack_detail::TasksOf<First, Lower...>>::type {
+};
+
+template <typename... Levels>
+inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof...(Levels));
+
+/// Tasks on levels in strict priority: Stack(TaskLevel(a, b), c) has a and b side by side, and c below both. A level of
+/// one task needs no TaskLevel.
+///
+/// Immutable but for the tasks' parameters. All sizes are known at compile time.
+template <typename... Levels>
+class Stack {
+ public:
+  static constexpr int kLevels = static_cast<int>(sizeof...(Levels));
+  using Tasks = stack_detail::TasksOf<Levels...>;
+  static constexpr int kTasks = stack_detail::kSize<Tasks>;
+  using Scalar = typename std::tuple_element_t<0, Tasks>::Scalar;
+  using Space = StackSpace<Levels...>;
+  using Point = typename Space::template Point<Scalar>;
+
+  template <typename... Given, typename = std::enable_if_t<(!std::is_same_v<Given, Stack> && ...)>>
+  explicit Stack(const Given&... levels) : tasks_(std::tuple_cat(stack_detail::tasks_of(levels)...)) {}
+
+  [[nodiscard]] const Tasks& tasks() const noexcept { return tasks_; }
+  [[nodiscard]] Tasks& tasks() noexcept { return tasks_; }
+
+  /// Rows of each level.
+  static constexpr std::array<int, kLevels> kRows{Levels::kRows...};
+
+  /// Level of task i.
+  [[nodiscard]] static constexpr int level(int i) noexcept {
+    constexpr std::array<int, kLevels> kCounts{stack_detail::kSize<decltype(Levels::tasks)>...};
+    int k = 0;
+    while (i >= kCounts[static_cast<std::size_t>(k)]) i -= kCounts[static_cast<std::size_t>(k++)];
+    return k;
+  }
+  /// First row of task i on its level.
+  [[nodiscard]] static constexpr int row(int i) noexcept { return row_of(i, std::make_index_sequence<kTasks>{}); }
+
+  /// Throws std::invalid_argument where a task does not suit a robot.
+  template <typename Robot>
+  void require_robot(const Robot& robot) const {
+    std::apply([&](const auto&... task) { (task.require_robot(robot), ...); }, tasks_);
+  }
+
+  /// Calls f(task, i) for each task, with its index as a type.
+  template <typename F>
+  void each(F&& f) const noexcept {
+    each(f, std::make_index_sequence<kTasks>{});
+  }
+
+ private:
+  template <typename F, std::size_t... i>
+  void each(F& f, std::index_sequence<i...>) const noexcept {
+    (f(std::get<i>(tasks_), std::integral_constant<int, static_cast<int>(i)>{}), ...);
+  }
+
+  template <std::size_t... i>
+  [[nodiscard]] static constexpr int row_of(int task, std::index_sequence<i...>) noexcept {
+    constexpr std::array<int, kTasks> kTaskRows{std::tuple_element_t<i, Tasks>::kRows...};
+    int row = 0;
+    for (int j = task - 1; j >= 0 && level(j) == level(task); --j) row += kTaskRows[static_cast<std::size_t>(j)];
+    return row;
+  }
+
+  Tasks tasks_;
+};
+
+template <typename... Levels>
+Stack(const Levels&...) -> Stack<typename stack_detail::AsLevel<Levels>::type...>;
+
+}  // namespace fpbm

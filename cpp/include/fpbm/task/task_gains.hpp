@@ -1,0 +1,29 @@
+#pragma once
+
+#include "fpbm/core/validation.hpp"
+
+namespace fpbm {
+
+/// Feedback gains of a task: its error e obeys ë + k₁ė + k₂e = 0, or ė + k e = 0 at velocity level.
+template <typename Scalar = double>
+struct TaskGains {
+  Scalar k1;  ///< Of the velocity [1/s]; not used at velocity level.
+  Scalar k2;  ///< Of the position [1/s²], or k [1/s] at velocity level.
+
+  /// For acceleration level. Throws std::invalid_argument where a gain is negative or not finite.
+  TaskGains(Scalar k1_, Scalar k2_) : k1(k1_), k2(k2_) {
+    validation::require_non_negative("k1", k1);
+    validation::require_non_negative("k2", k2);
+  }
+  /// For velocity level.
+  explicit TaskGains(Scalar k) : k1(0), k2(k) { validation::require_non_negative("k", k); }
+};
+
+/// A frame fixed to a link of a robot.
+template <typename Scalar>
+struct LinkFrame {
+  int link;                       ///< As Robot counts them; Robot::kTip is the tip.
+  Transform<Scalar> offset = {};  ///< The frame in that of the link.
+};
+
+}  // namespace fpbm
