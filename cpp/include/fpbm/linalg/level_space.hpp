@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/solve_trapezoidal.hpp"
 
 namespace fpbm {
 
@@ -20,7 +22,10 @@ class LevelSpace {
       Eigen::Matrix<Scalar, N, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<N>>;
 
   /// No levels: the null space is ℝⁿ.
-  explicit LevelSpace(Eigen::Index n) noexcept : V_(n, n), beta_(n) {}
+  explicit LevelSpace(Eigen::Index n) noexcept {
+    V_.resize(n, n);
+    beta_.resize(n);
+  }
 
   [[nodiscard]] Eigen::Index size() const noexcept { return V_.rows(); }
   [[nodiscard]] Eigen::Index rank() const noexcept { return rank_; }
@@ -33,7 +38,7 @@ class LevelSpace {
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
     return add_with(A, r,
                     [](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
-                      solve(T, first, count, result);
+                      solve_trapezoidal(T, first, count, result);
                     });
   }
 
@@ -49,25 +54,27 @@ class LevelSpace {
                       for (Eigen::Index i = 0; i < count; ++i) {
                         for (Eigen::Index j = i; j < M; ++j) L(j, i) = T(first + i, j);
                       }
-                      if (!solver(L, result)) solve(T, first, count, result);
+                      if (!solver(L, result)) solve_trapezoidal(T, first, count, result);
                     });
   }
 
   /// Z Zᵀ v, the part of v in the null space.
   [[nodiscard]] Column project(const Column& v) const noexcept {
     Column x = v;
-    for (Eigen::Index k = 0; k < rank_; ++k) reflect(k, x);
-    x.head(rank_).setZero();
-    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, x);
+    for (Eigen::Index k = 0; k < rank_; ++k) reflect(k, x.data());
+    for (Eigen::Index i = 0; i < rank_; ++i) x.coeffRef(i) = Scalar(0);
+    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, x.data());
     return x;
   }
 
   /// Z, n × (n − rank).
   [[nodiscard]] Basis basis() const noexcept {
-    Basis Z = Basis::Zero(size(), size() - rank_);
+    Basis Z;
+    Z.resize(size(), size() - rank_);
     for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-      Z(rank_ + j, j) = Scalar(1);
-      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, Z.col(j));
+      Scalar* const z = Z.data() + j * size();
+      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank_ + j ? 1 : 0);
+      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, z);
     }
     return Z;
   }
@@ -77,105 +84,63 @@ class LevelSpace {
   template <int M, typename Solved>
   [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r,
                                 const Solved& solved) noexcept {
+    using std::swap;
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank_;
-    using Rows = Eigen::Matrix<Scalar, N, M, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<M>>;
-    Rows T = A.transpose();  // Becomes QᵀAᵀ: one column for each row of A.
-    Vector<M, Scalar> least(m);
+    Matrix<N, M, Scalar> T = transpose_of(A);  // Becomes QᵀAᵀ: one column for each row of A.
+    const auto row = [&](Eigen::Index j) noexcept { return T.data() + j * n; };
+    Vector<M, Scalar> least;
+    least.resize(m);
     for (Eigen::Index j = 0; j < m; ++j) {
-      least(j) = kDependent * T.col(j).norm();
-      for (Eigen::Index k = 0; k < first; ++k) reflect(k, T.col(j));
+      least.coeffRef(j) = kDependent * length_of(row(j), n);
+      for (Eigen::Index k = 0; k < first; ++k) reflect(k, row(j));
     }
     Vector<M, Scalar> result = r;
     while (rank_ < n && rank_ - first < m) {
       const Eigen::Index k = rank_ - first;
-      const Eigen::Index remaining = n - rank_;
       Eigen::Index next = -1;
       Scalar most(1);  // Largest length of a row's remainder, in units of the least that counts.
       for (Eigen::Index j = k; j < m; ++j) {
-        const Scalar part = T.col(j).tail(remaining).norm();
-        if (part > most * least(j)) {
-          most = part / least(j);
+        const Scalar part = length_of(row(j) + rank_, n - rank_);
+        if (part > most * least.coeff(j)) {
+          most = part / least.coeff(j);
           next = j;
         }
       }
       if (next < 0) break;
-      T.col(k).swap(T.col(next));
-      std::swap(least(k), least(next));
-      std::swap(result(k), result(next));
-      add_reflection(T.col(k));
-      for (Eigen::Index j = k; j < m; ++j) reflect(rank_, T.col(j));
+      for (Eigen::Index i = 0; next != k && i < n; ++i) swap(row(k)[i], row(next)[i]);
+      swap(least.coeffRef(k), least.coeffRef(next));
+      swap(result.coeffRef(k), result.coeffRef(next));
+      add_reflection(row(k) + rank_);
+      for (Eigen::Index j = k; j < m; ++j) reflect(rank_, row(j));
       ++rank_;
     }
     const Eigen::Index count = rank_ - first;
-    Column y = Column::Zero(n);
     solved(T, first, count, result);
-    y.segment(first, count) = result.head(count);
-    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y);
+    Column y = filled<Column>(n);
+    for (Eigen::Index i = 0; i < count; ++i) y.coeffRef(first + i) = result.coeff(i);
+    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y.data());
     return y;
   }
 
-  /// Adds the reflection that makes the entries of a column below rank() zero.
-  template <typename Entries>
-  void add_reflection(const Entries& column) noexcept {
+  /// Adds the reflection that makes all but the first of some entries zero: those of a column from row rank() on.
+  void add_reflection(const Scalar* entries) noexcept {
     const Eigen::Index remaining = size() - rank_;
-    auto v = V_.col(rank_).tail(remaining);
-    const Scalar length = column.tail(remaining).norm();
-    v = column.tail(remaining) / length;
-    const Scalar head = v(0);
-    v(0) += head < Scalar(0) ? Scalar(-1) : Scalar(1);
-    beta_(rank_) = Scalar(1) / (Scalar(1) + std::abs(head));
+    Scalar* const v = V_.data() + rank_ * size() + rank_;
+    const Scalar length = length_of(entries, remaining);
+    for (Eigen::Index i = 0; i < remaining; ++i) v[i] = entries[i] / length;
+    beta_.coeffRef(rank_) = Scalar(1) / (Scalar(1) + std::abs(v[0]));
+    v[0] += v[0] < Scalar(0) ? Scalar(-1) : Scalar(1);
   }
 
-  /// Applies reflection k.
-  template <typename Entries>
-  void reflect(Eigen::Index k, Entries&& x) const noexcept {
-    const Eigen::Index remaining = size() - k;
-    const auto v = V_.col(k).tail(remaining);
-    const Scalar along = beta_(k) * v.dot(x.tail(remaining));
-    x.tail(remaining) -= along * v;
-  }
-
-  /// Solves L w = r, by least squares if L has more rows than columns; w replaces the first entries of r. Row j of L
-  /// starts at entry `first` of column j of T. The upper square block of L is lower triangular.
-  template <typename Rows, typename Values>
-  static void solve(const Rows& T, Eigen::Index first, Eigen::Index count, Values& r) noexcept {
-    const Eigen::Index m = T.cols();
-    if (m == count) {
-      for (Eigen::Index i = 0; i < count; ++i) {
-        for (Eigen::Index j = 0; j < i; ++j) r(i) -= T(first + j, i) * r(j);
-        r(i) /= T(first + i, i);
-      }
-      return;
-    }
-    // L = Q₂ R₂ by the modified Gram-Schmidt method, with each column orthogonalised twice for round-off.
-    using Square =
-        Eigen::Matrix<Scalar, Rows::ColsAtCompileTime, Rows::ColsAtCompileTime, Eigen::ColMajor | Eigen::DontAlign,
-                      Rows::MaxColsAtCompileTime, Rows::MaxColsAtCompileTime>;
-    Square Q(m, m);
-    Square R = Square::Zero(m, m);
-    Values w = Values::Zero(m);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      auto q = Q.col(k);
-      q = T.row(first + k).transpose();
-      for (int round = 0; round < 2; ++round) {
-        for (Eigen::Index i = 0; i < k; ++i) {
-          const Scalar along = Q.col(i).dot(q);
-          R(i, k) += along;
-          q -= along * Q.col(i);
-        }
-      }
-      R(k, k) = q.norm();
-      q /= R(k, k);
-      w(k) = q.dot(r);
-      r -= w(k) * q;
-    }
-    for (Eigen::Index k = count; k-- > 0;) {
-      for (Eigen::Index i = k + 1; i < count; ++i) w(k) -= R(k, i) * w(i);
-      w(k) /= R(k, k);
-    }
-    r = w;
+  /// Applies reflection k to n entries.
+  void reflect(Eigen::Index k, Scalar* x) const noexcept {
+    const Scalar* const v = V_.data() + k * size();
+    Scalar along(0);
+    for (Eigen::Index i = k; i < size(); ++i) along += v[i] * x[i];
+    along *= beta_.coeff(k);
+    for (Eigen::Index i = k; i < size(); ++i) x[i] -= along * v[i];
   }
 
   /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/realtime/limited_state.hpp"
+#include "fpbm/realtime/lower_levels.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/realtime/require_stable.hpp"
@@ -56,6 +57,7 @@ class Tracker {
       : arm_(arm),
         scheme_(scheme),
         kept_(options, limits, start, qdd0, guard),
+        lower_levels_(options.stall_time, options.dt),
         measured_(limits, options.measured_delay),
         answer_(qdd0) {
     scheme.require_dof(arm.dof());
@@ -125,8 +127,16 @@ class Tracker {
     X x = Loop::packed(state);
     X dx = x;
     loop.update(x);
+    [[maybe_unused]] const auto target = references.stages[0].x;
+    if constexpr (kLevelsOf < Space >> 1) {
+      lower_levels_.update(target, loop.kinematics.tip, loop.kinematics.length);
+      for (Target& stage : references.stages) stage = lower_levels_(stage);
+    }
     const Target now = references.stages[0];
     watch(loop.kinematics, now, result);
+    if constexpr (kLevelsOf < Space >> 1) {
+      result.error = Space::template difference<Scalar>(target, loop.kinematics.tip);
+    }
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
     }
@@ -233,6 +243,7 @@ class Tracker {
   Arm arm_;
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
+  std::conditional_t<(kLevelsOf<Space> > 1), LowerLevels<Space, Scalar>, NoLowerLevels> lower_levels_;
   Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };

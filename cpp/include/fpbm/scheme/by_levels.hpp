@@ -101,7 +101,7 @@ struct ByLevels {
       constexpr int kTask = static_cast<int>(decltype(i)::value);
       if constexpr (Stack_::level(kTask) == k) {
         const auto& task = std::get<kTask>(stack.tasks());
-        const auto& [S, velocity] = std::get<kTask>(kinematics.tasks);
+        const auto& evaluated = std::get<kTask>(kinematics.tasks);
         using Twist = Vector<Part::kRows, Scalar>;
         const Twist error =
             Part::template difference<Scalar>(std::get<kTask>(reference.x), std::get<kTask>(kinematics.tip));
@@ -109,12 +109,13 @@ struct ByLevels {
         const Twist xdd = reference.xdd.template segment<Part::kRows>(row);
         constexpr int kRows = std::decay_t<decltype(task)>::kRows;
         const auto put = [&](Vector<M, Scalar>& to, const Twist& twist) noexcept {
-          to.template segment<kRows>(Stack_::row(kTask)) = S.lazyProduct(twist);
+          to.template segment<kRows>(Stack_::row(kTask)) = evaluated.S.lazyProduct(twist);
         };
         if constexpr (kLevel == Level::kAcceleration) {
           put(command.xd, xd);
-          put(command.xdd, entrywise(xd, [&, &v = velocity](Eigen::Index j) {
-                return xdd.coeff(j) + task.gains.k1 * (xd.coeff(j) - v.coeff(j)) + task.gains.k2 * error.coeff(j);
+          put(command.xdd, entrywise(xd, [&](Eigen::Index j) {
+                return xdd.coeff(j) + task.gains.k1 * (xd.coeff(j) - evaluated.xd.coeff(j)) +
+                       task.gains.k2 * error.coeff(j);
               }));
         } else {
           put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.gains.k2 * error.coeff(j); }));
