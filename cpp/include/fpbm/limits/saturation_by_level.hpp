@@ -97,7 +97,7 @@ class SaturationByLevel {
 
   /// Radius of the damping of a level that higher ones have left short, as a share of ‖J_k‖_F: that of the resolution
   /// without limits (ByLevels).
-  static constexpr Scalar kRadius = Scalar(0.05);
+  static constexpr Scalar kRadius = Scalar(0.1);
 
   TaskLevels<N, Scalar, M...> levels_;
   JointVector unit_;

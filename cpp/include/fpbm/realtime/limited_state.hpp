@@ -84,7 +84,7 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk()) next.q = moved(rate(state_.qd, next.qd));
+      if (limits().bounds_jerk() || kLevelsOf < Space >> 1) next.q = moved(rate(state_.qd, next.qd));
     } else {
       next.qd = rate(state_.q, next.q);
     }

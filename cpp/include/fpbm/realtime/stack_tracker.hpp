@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "fpbm/limits/saturation_by_level.hpp"
 #include "fpbm/realtime/stack_references.hpp"
@@ -24,7 +25,14 @@ struct Tick<StackSpace<Levels...>, N, Scalar> {
   Vector<StackSpace<Levels...>::kRows, Scalar> error;  ///< x ⊖ f(q) of each task at the tick's start [m, rad].
   std::array<Scalar, sizeof...(Levels)> scales{};      ///< Share of each level that the limits left.
 
+  /// A level with a reference that is not finite is not resolved: its scale is 0.
   void report_lower_levels() noexcept {
+    StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
+      constexpr int k = Stack<Levels...>::level(static_cast<int>(decltype(i)::value));
+      for (int j = row; j < row + decltype(space)::kRows; ++j) {
+        if (!std::isfinite(error(j))) scales[k] = Scalar(0);
+      }
+    });
     for (const Scalar s : scales) {
       if (s < Scalar(1)) status = worse(status, Status::kSlowed);
     }

@@ -1,0 +1,425 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/orientation_task.hpp"
+#include "fpbm/task/pose_task.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/posture_task.hpp"
+#include "support/arms.hpp"
+#include "support/random.hpp"
+
+/// Stacks of tasks in strict priority: tasks are what they say they are, no level disturbs a higher one, and no bound
+/// is exceeded.
+namespace fpbm::test::stack_laws {
+namespace {
+
+constexpr int kTip = Robot<7>::kTip;
+constexpr double kTick = 1e-3;
+
+[[nodiscard]] const Robot<7>& panda() {
+  static const Robot<7> robot(presets::panda());
+  return robot;
+}
+[[nodiscard]] auto balanced() {
+  return Balanced<7>(0.6, DiagonalWeights<7>(Vector<7>(Vector<7>::Ones())), NullSpace<7>().with_damping(2.0));
+}
+[[nodiscard]] Vector<7> random_posture(Random& random) {
+  const auto& limits = panda().limits();
+  Vector<7> q;
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    q(i) = limits.lower(i) + random.uniform(0.15, 0.85) * (limits.upper(i) - limits.lower(i));
+  }
+  return q;
+}
+
+/// Tip level, position, height of the elbow, posture.
+[[nodiscard]] auto level_tip() {
+  const TaskGains<> gains(10.0, 25.0);
+  return Stack(AxisTask<>{{kTip}, gains}, PositionTask<>{{kTip}, gains}, PositionTask<1>{{4}, gains, {2}},
+               PostureTask<7>{TaskGains<>(4.0, 4.0)});
+}
+[[nodiscard]] auto by_velocity() {
+  const TaskGains<> gains(5.0);
+  return Stack(PoseTask<>{{kTip}, gains}, PositionTask<>{{4}, gains}, PostureTask<7>{TaskGains<>(2.0)});
+}
+
+template <int N>
+void expect_kinematics_of(const Chain<>& chain) {
+  const Robot<N> robot(chain);
+  const SerialArm<N> arm(chain);
+  EXPECT_NEAR(robot.length(), arm.length(), 1e-12);
+  Random random(1);
+  for (int trial = 0; trial < trials(100); ++trial) {
+    const Vector<N> q = random.uniform(robot.dof(), -2.0, 2.0);
+    const Vector<N> qd = random.uniform(robot.dof(), -2.0, 2.0);
+    RobotState<N> state;
+    robot.update(q, qd, state);
+    Kinematics<Pose, N> expected;
+    arm.kinematics(q, qd, expected);
+    const Transform<> tip = robot.frame(state, Robot<N>::kTip, {});
+    Matrix<6, N> J;
+    Matrix<6, N> Jd;
+    robot.jacobian(state, Robot<N>::kTip, tip.p, J, Jd);
+    EXPECT_LT((tip.p - expected.tip.p).norm() + (tip.R - expected.tip.R).norm(), 1e-12);
+    EXPECT_LT((J - expected.J).norm(), 1e-12);
+    EXPECT_LT((Jd - expected.Jd).norm(), 1e-11);
+  }
+}
+
+TEST(Robot, has_the_kinematics_of_serial_arms) {
+  for (const Chain<>& chain : {presets::ur5e(), presets::iiwa14(), panda_on_rail()}) {
+    expect_kinematics_of<Eigen::Dynamic>(chain);
+  }
+  expect_kinematics_of<7>(presets::panda());
+}
+
+TEST(Robot, places_its_links_at_their_joints_frames) {
+  const Chain<> chain = panda_on_rail();
+  const Robot<Eigen::Dynamic> robot(chain);
+  Random random(2);
+  const Vector<Eigen::Dynamic> q = random.uniform(robot.dof(), -1.0, 1.0);
+  RobotState<Eigen::Dynamic> state;
+  robot.update(q, q, state);
+  Transform<> at;
+  for (int i = 0; i < robot.dof(); ++i) {
+    const auto& joint = chain.joints[static_cast<std::size_t>(i)];
+    const Vector<3> axis = joint.axis.normalized();
+    const bool slides = joint.type == JointType::kPrismatic;
+    Transform<> moved;
+    if (slides) {
+      moved.p = q(i) * axis;
+    } else {
+      moved.R = rotation(Vector<3>(q(i) * axis));
+    }
+    at = at * joint.placement * moved;
+    const Transform<> link = robot.frame(state, i + 1, {});
+    EXPECT_LT((link.p - at.p).norm() + (link.R - at.R).norm(), 1e-12) << i;
+  }
+}
+
+/// S J and S J̇ of a task by central differences of its point and of J.
+template <typename Task>
+void expect_derivatives(const Task& task) {
+  using Space = typename Task::Space;
+  struct At {
+    typename Space::template Point<double> x;
+    Matrix<Space::kRows, 7> J;
+    Matrix<Space::kRows, 7> Jd;
+    Matrix<Task::kRows, Space::kRows> S;
+  };
+  task.require_robot(panda());
+  const auto at = [&](const Vector<7>& q, const Vector<7>& qd) {
+    RobotState<7> state;
+    panda().update(q, qd, state);
+    At result;
+    task.evaluate(panda(), state, result.x, result.J, result.Jd, result.S);
+    return result;
+  };
+  Random random(3);
+  for (int trial = 0; trial < trials(50); ++trial) {
+    const Vector<7> q = random_posture(random);
+    const Vector<7> qd = random.uniform(7, -1.0, 1.0);
+    const At here = at(q, qd);
+    const double h = 1e-6;
+    Matrix<Task::kRows, 7> J;
+    for (int j = 0; j < 7; ++j) {
+      const Vector<7> step = h * Vector<7>::Unit(j);
+      const Vector<Space::kRows> change =
+          Space::template difference<double>(at(q + step, qd).x, at(q - step, qd).x) / (2.0 * h);
+      J.col(j) = here.S * change;
+    }
+    EXPECT_LT((here.S * here.J - J).norm(), 1e-8);
+    const Matrix<Space::kRows, 7> rate = (at(q + h * qd, qd).J - at(q - h * qd, qd).J) / (2.0 * h);
+    EXPECT_LT((here.Jd - rate).norm(), 1e-7);
+  }
+}
+
+TEST(Task, has_the_rows_of_its_point_s_derivative) {
+  Transform<> offset;
+  offset.p = Vector<3>(0.1, -0.2, 0.05);
+  offset.R = rotation(Vector<3>(0.3, 0.5, -0.2));
+  const TaskGains<> gains(1.0, 1.0);
+  for (const int link : {kTip, 0, 3, 7}) {
+    SCOPED_TRACE(link);
+    const LinkFrame<double> frame{link, offset};
+    expect_derivatives(PositionTask<>{frame, gains});
+    expect_derivatives(PositionTask<2>{frame, gains, {2, 0}, true});
+    expect_derivatives(OrientationTask<>{frame, gains});
+    expect_derivatives(PoseTask<>{frame, gains});
+    expect_derivatives(AxisTask<>{frame, gains, Vector<3>(0.0, 2.0, 1.0)});
+  }
+  expect_derivatives(PostureTask<3>{gains, {6, 0, 3}});
+}
+
+TEST(Direction, difference_turns_one_to_the_other) {
+  Random random(4);
+  for (int trial = 0; trial < trials(1000); ++trial) {
+    const Vector<3> x = Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
+    Vector<3> y = Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
+    if (trial % 10 == 0) y = -x;
+    if (trial % 10 == 1) y = x;
+    const Vector<3> d = Direction::difference<double>(x, y);
+    EXPECT_LT((Direction::displace<double>(y, d) - x).norm(), 1e-7);
+    EXPECT_LT(std::abs(d.dot(y)), 1e-12);
+  }
+}
+
+TEST(Stack, of_one_level_is_the_tracker_of_that_task) {
+  const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+  const Stack stack(PoseTask<>{{kTip}, {10.0, 25.0}});
+  auto tracker = stack_tracker(panda(), stack, balanced(), q0);
+  const auto scheme =
+      FPBM<7>(0.6, DiagonalWeights<7>(Vector<7>(Vector<7>::Ones())), 10.0, 25.0, NullSpace<7>().with_damping(2.0));
+  Tracker expected(SerialArm<7>(presets::panda()), Pose{}, scheme, q0);
+  const WithRotation path(InPlane(Path(Circle(0.3), 1.5), Vector<3>::UnitY(), Vector<3>::UnitZ()));
+  PathFollower follower(path, expected.tip());
+  int limited = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Reference<Pose> reference = follower.ahead(0.0);
+    auto joined = Reference<decltype(stack)::Space>::hold({reference.x});
+    joined.xd = reference.xd;
+    joined.xdd = reference.xdd;
+    const auto one = expected.tick(reference);
+    const auto same = tracker.tick(joined);
+    follower.advance(kTick);
+    limited += one.scale < 1.0 ? 1 : 0;
+    ASSERT_LT((one.q - same.q).norm(), 1e-12);
+    ASSERT_NEAR(one.scale, same.scale, 1e-9);
+    ASSERT_EQ(one.status, same.status);
+  }
+  EXPECT_GT(limited, 100);
+}
+
+/// Random levels of 1, 2 and 3 rows.
+struct Levels {
+  Matrix<2, 7> first;
+  Matrix<1, 7> second;
+  Matrix<3, 7> third;
+
+  explicit Levels(Random& random)
+      : first(random.uniform(2, 7, -1.0, 1.0)),
+        second(random.uniform(1, 7, -1.0, 1.0)),
+        third(random.uniform(3, 7, -1.0, 1.0)) {}
+};
+
+/// Motions of one, two and three levels within bounds, with rows and bounds on jerk.
+template <Level kLevel>
+void expect_no_interference() {
+  JointLimits<7> bounds = panda().limits();
+  const Limits<kLevel, 7> limits(bounds, kTick);
+  const Limiter<kLevel, 7> limiter(limits);
+  Random random(5);
+  double worst = 0.0;
+  int limited[3] = {};
+  for (int trial = 0; trial < trials(3000); ++trial) {
+    const Levels levels(random);
+    State<7> state{random_posture(random), Vector<7>(0.02 * random.uniform(7, -1.0, 1.0))};
+    const Vector<7> last = trial % 2 == 0 ? Vector<7>(Vector<7>::Zero()) : Vector<7>(random.uniform(7, -0.5, 0.5));
+    const double size = random.uniform(0.2, 3.0);
+    Vector<7> desired = size * bounds.acceleration.cwiseProduct(Vector<7>(random.uniform(7, -1.0, 1.0)));
+    if constexpr (kLevel == Level::kVelocity) desired *= kTick;
+    Rows<7, 2> rows{random.uniform(7, 2, -1.0, 1.0), {}, trial % 3};
+    for (int k = 0; k < 2; ++k) {
+      rows.b(k) = random.uniform(0.1, 1.0) * std::abs(rows.g.col(k).dot(desired)) + 0.1 * kTick;
+    }
+    const auto three = limiter.motion(TaskLevels<7, double, 2, 1, 3>(levels.first, levels.second, levels.third), state,
+                                      desired, last, rows);
+    const auto two =
+        limiter.motion(TaskLevels<7, double, 2, 1>(levels.first, levels.second), state, desired, last, rows);
+    const auto one = limiter.motion(levels.first, state, desired, last, rows);
+    const double unit = desired.norm() + one.u.norm();
+    worst =
+        std::max({worst, (levels.first * (three.u - one.u)).norm() / unit,
+                  (levels.first * (two.u - one.u)).norm() / unit, (levels.second * (three.u - two.u)).norm() / unit});
+    const Box<7> box = limits.box(state, last);
+    EXPECT_TRUE(box.contains(three.u));
+    // Rows are kept as far as the motion without jerk keeps them.
+    const Vector<7> steady = kLevel == Level::kAcceleration ? last : Vector<7>(state.qd + kTick * last);
+    const Vector<7> from = rows.near(box.nearest(steady), box);
+    for (int k = 0; k < rows.count; ++k) {
+      EXPECT_LE(rows.excess(k, three.u), std::max({rows.excess(k, one.u), rows.excess(k, from), 0.0}) + 1e-9 * unit);
+    }
+    EXPECT_EQ(three.scales[0], three.scale);
+    EXPECT_NEAR(three.scale, one.scale, 1e-12);
+    for (std::size_t k = 0; k < 3; ++k) limited[k] += three.scales[k] < 1.0 ? 1 : 0;
+  }
+  std::printf("higher levels differ by %.1e; limited %d, %d, %d\n", worst, limited[0], limited[1], limited[2]);
+  EXPECT_LT(worst, 1e-10);
+  EXPECT_GT(limited[0], trials(100));
+  EXPECT_GT(limited[2], limited[0]);
+}
+
+TEST(Stack, no_level_disturbs_a_higher_one_within_limits) {
+  expect_no_interference<Level::kAcceleration>();
+  expect_no_interference<Level::kVelocity>();
+}
+
+TEST(Stack, no_level_disturbs_a_higher_one) {
+  const auto stack = level_tip();
+  const RobotTasks tasks(panda(), stack);
+  const RobotTasks fewer(panda(), Stack(std::get<0>(stack.tasks()), std::get<1>(stack.tasks())));
+  const ByLevels scheme(balanced(), stack);
+  const ByLevels without(balanced(), fewer.stack());
+  Random random(6);
+  for (int trial = 0; trial < trials(500); ++trial) {
+    const State<7> state{random_posture(random), Vector<7>(random.uniform(7, -1.0, 1.0))};
+    Kinematics<decltype(stack)::Space, 7> kinematics;
+    tasks.kinematics(state.q, state.qd, kinematics);
+    auto reference = Reference<decltype(stack)::Space>::hold(kinematics.tip);
+    reference.xdd = random.uniform(reference.xdd.size(), -1.0, 1.0);
+    Kinematics<std::decay_t<decltype(fewer.stack())>::Space, 7> few;
+    fewer.kinematics(state.q, state.qd, few);
+    auto same = Reference<std::decay_t<decltype(fewer.stack())>::Space>::hold(few.tip);
+    same.xdd = reference.xdd.head<6>();
+    Vector<7> u;
+    Vector<7> alone;
+    ASSERT_EQ(scheme.resolve(kinematics, reference, state, u), Status::kOk);
+    ASSERT_EQ(without.resolve(few, same, state, alone), Status::kOk);
+    const double unit = 1.0 + u.norm() + alone.norm();
+    EXPECT_LT((std::get<0>(kinematics.levels).J * (u - alone)).norm(), 1e-10 * unit);
+    EXPECT_LT((std::get<1>(kinematics.levels).J * (u - alone)).norm(), 1e-10 * unit);
+  }
+}
+
+/// A cup is carried level while the position, the elbow and the posture meet their limits.
+TEST(Stack, keeps_its_first_level_while_lower_ones_are_limited) {
+  const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+  auto tracker = stack_tracker(panda(), level_tip(), balanced(), q0);
+  const auto x0 = tracker.tip();
+  const auto upright = Reference<Direction>::hold(std::get<0>(x0));
+  const auto place = Reference<Position<3>>::hold(std::get<1>(x0) + Vector<3>(0.2, 0.3, -0.1));
+  const auto height = Reference<Position<3>>::hold(std::get<2>(x0) + Vector<3>(0.0, 0.0, 0.1));
+  const auto posture = Reference<JointSpace<7>>::hold(q0);
+  double worst = 0.0;
+  int limited = 0;
+  double away = 0.0;
+  for (int i = 0; i < 8000; ++i) {
+    const auto tick = tracker.tick(upright, place, height, posture);
+    worst = std::max(worst, tick.error.head<3>().norm());
+    limited += tick.scale == 1.0 && tick.status == Status::kSlowed ? 1 : 0;
+    away = tick.error.segment<3>(3).norm();
+  }
+  std::printf("tilt %.1e rad, %d ticks with limited lower levels\n", worst, limited);
+  EXPECT_LT(worst, 1e-5);
+  EXPECT_GT(limited, 50);
+  EXPECT_LT(away, 1e-6);
+}
+
+/// Excess over the bounds on position, velocity, acceleration and jerk by differences of q, as shares of the bounds.
+class Excess {
+ public:
+  Excess(const JointLimits<7>& bounds, const Vector<7>& q0) : bounds_(bounds), q_(q0) {}
+
+  void see(const Vector<7>& q, const Vector<7>& qd) {
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      const double acceleration = (qd(i) - qd_(i)) / kTick;
+      worst = std::max({worst, q(i) - bounds_.upper(i), bounds_.lower(i) - q(i),
+                        std::abs(q(i) - q_(i)) / kTick / bounds_.velocity(i) - 1.0,
+                        std::abs(acceleration) / bounds_.acceleration(i) - 1.0,
+                        std::abs(acceleration - last_(i)) / kTick / bounds_.jerk(i) - 1.0});
+      last_(i) = acceleration;
+    }
+    q_ = q;
+    qd_ = qd;
+  }
+  double worst = -1.0;
+
+ private:
+  JointLimits<7> bounds_;
+  Vector<7> q_;
+  Vector<7> qd_ = Vector<7>::Zero();
+  Vector<7> last_ = Vector<7>::Zero();
+};
+
+template <typename Tasks, typename Scheme>
+void expect_to_keep_bounds(const std::string& name, const Tasks& stack, const Scheme& scheme) {
+  using Space = typename Tasks::Space;
+  constexpr int kSeconds = 40;
+  int moving = 0;
+  double worst = -1.0;
+  const int motions = trials(30, 5);
+  for (int k = 0; k < motions; ++k) {
+    Random random(static_cast<std::uint32_t>(100 + k));
+    const Vector<7> q0 = random_posture(random);
+    auto tracker = stack_tracker(panda(), stack, scheme, q0);
+    Excess excess(panda().limits(), q0);
+    const auto jump = [&](double size) {
+      const Vector<Space::kRows> by = random.uniform(Space::kRows, -size, size);
+      return Reference<Space>::hold(Space::template displace<double>(tracker.tip(), by));
+    };
+    auto reference = jump(1.2);
+    double speed = 0.0;
+    for (int i = 0; i < 1000 * kSeconds; ++i) {
+      if (i == 500 || i == 900) reference = jump(0.6);
+      if (i == 1500) reference = jump(1.2);
+      const auto tick = tracker.tick(reference);
+      excess.see(tick.q, tick.qd);
+      if (i >= 1000 * (kSeconds - 1)) speed = std::max(speed, tick.qd.cwiseAbs().maxCoeff());
+      ASSERT_TRUE(tick.q.allFinite());
+    }
+    moving += speed > 1e-3 ? 1 : 0;
+    reference = jump(1.2);
+    for (int i = 0; i < 3000; ++i) {
+      if (i == 300) tracker.stop();
+      const auto tick = tracker.tick(reference);
+      excess.see(tick.q, tick.qd);
+      speed = tick.qd.norm();
+    }
+    EXPECT_LT(speed, 1e-9) << k;
+    worst = std::max(worst, excess.worst);
+  }
+  std::printf("%s: %d motions, bounds exceeded by %.1e, %d not at rest\n", name.c_str(), motions, worst, moving);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_EQ(moving, 0);
+}
+
+TEST(Stack, keeps_every_bound_and_comes_to_rest_by_acceleration) {
+  expect_to_keep_bounds("acceleration", level_tip(), balanced());
+}
+TEST(Stack, keeps_every_bound_and_comes_to_rest_by_velocity) {
+  expect_to_keep_bounds("velocity", by_velocity(), MVN<7>());
+}
+
+TEST(Stack, a_level_without_a_finite_reference_stops_alone) {
+  const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+  auto tracker = stack_tracker(panda(), level_tip(), balanced(), q0);
+  const auto x0 = tracker.tip();
+  const auto upright = Reference<Direction>::hold(std::get<0>(x0));
+  const auto place = Reference<Position<3>>::hold(std::get<1>(x0) + Vector<3>(0.0, 0.1, 0.0));
+  auto height = Reference<Position<3>>::hold(std::get<2>(x0));
+  height.x(2) = std::numeric_limits<double>::quiet_NaN();
+  const auto posture = Reference<JointSpace<7>>::hold(q0);
+  for (int i = 0; i < 4000; ++i) {
+    const auto tick = tracker.tick(upright, place, height, posture);
+    ASSERT_TRUE(tick.q.allFinite());
+    ASSERT_EQ(tick.scales[2], 0.0);
+    ASSERT_FALSE(failed(tick.status));
+  }
+  EXPECT_LT((std::get<1>(tracker.tip()) - place.x).norm(), 1e-6);
+  height.x = std::get<2>(tracker.tip());
+  EXPECT_EQ(tracker.tick(upright, place, height, posture).scales[2], 1.0);
+}
+
+TEST(Stack, refuses_what_does_not_suit) {
+  const Vector<7> q0 = 0.5 * (panda().limits().lower + panda().limits().upper);
+  const TaskGains<> gains(10.0, 25.0);
+  EXPECT_THROW(RobotTasks(panda(), Stack(PoseTask<>{{8}, gains})), std::invalid_argument);
+  EXPECT_THROW(RobotTasks(panda(), Stack(PositionTask<1>{{kTip}, gains, {3}})), std::invalid_argument);
+  EXPECT_THROW(RobotTasks(panda(), Stack(PostureTask<1>{gains, {7}})), std::invalid_argument);
+  EXPECT_THROW(RobotTasks(panda(), Stack(AxisTask<>{{kTip}, gains, Vector<3>::Zero()})), std::invalid_argument);
+  EXPECT_THROW(TaskGains<>(-1.0, 1.0), std::invalid_argument);
+  const Stack stack(PositionTask<>{{kTip}, gains});
+  EXPECT_THROW(ByLevels(FPBM<7>(0.6, UnitWeights{}, 10.0, 25.0), stack), std::invalid_argument);
+  const Stack stiff(PositionTask<>{{kTip}, TaskGains<>(10.0, 1e8)});
+  EXPECT_THROW((void)stack_tracker(panda(), stiff, balanced(), q0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fpbm::test::stack_laws
