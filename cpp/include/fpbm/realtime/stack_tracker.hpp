@@ -50,4 +50,18 @@ template <typename Robot, typename... Levels, typename Scheme, typename Start>
       RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme, stack), start, options);
 }
 
+/// The same within given limits, with shapes that the robot keeps clear of (Guard). qdd0: acceleration of the tick
+/// before.
+template <typename Robot, typename... Levels, typename Scheme, int N, typename Scalar, typename Guard_>
+[[nodiscard]] auto stack_tracker(const Robot& robot, const Stack<Levels...>& stack, const Scheme& scheme,
+                                 const State<N, Scalar>& start, const TrackerOptions<Scalar>& options,
+                                 const Limits<Scheme::kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qdd0,
+                                 const Guard_& guard) {
+  using Tasks = Stack<Levels...>;
+  using Space = typename Tasks::Space;
+  return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, Guard_>(
+      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme, stack), start, options, limits,
+      qdd0, guard);
+}
+
 }  // namespace fpbm
