@@ -265,8 +265,8 @@ TEST(Stack, no_level_disturbs_a_higher_one) {
   const auto stack = level_tip();
   const RobotTasks tasks(panda(), stack);
   const RobotTasks fewer(panda(), Stack(std::get<0>(stack.tasks()), std::get<1>(stack.tasks())));
-  const ByLevels scheme(balanced(), stack);
-  const ByLevels without(balanced(), fewer.stack());
+  const ByLevels<decltype(balanced()), std::decay_t<decltype(stack)>> scheme(balanced());
+  const ByLevels<decltype(balanced()), std::decay_t<decltype(fewer.stack())>> without(balanced());
   Random random(6);
   for (int trial = 0; trial < trials(500); ++trial) {
     const State<7> state{random_posture(random), Vector<7>(random.uniform(7, -1.0, 1.0))};
@@ -407,6 +407,44 @@ TEST(Stack, a_level_without_a_finite_reference_stops_alone) {
   EXPECT_EQ(tracker.tick(upright, place, height, posture).scales[2], 1.0);
 }
 
+/// Levels are enabled and disabled while the robot moves: no bound is exceeded, and what is enabled is done.
+TEST(Stack, levels_are_enabled_and_disabled_at_run_time) {
+  const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+  auto tracker = stack_tracker(panda(), level_tip(), balanced(), q0);
+  const auto x0 = tracker.tip();
+  const auto upright = Reference<Direction>::hold(std::get<0>(x0));
+  const auto place = Reference<Position<3>>::hold(std::get<1>(x0) + Vector<3>(0.2, 0.3, -0.1));
+  const auto height = Reference<Position<3>>::hold(std::get<2>(x0));
+  const auto posture = Reference<JointSpace<7>>::hold(q0);
+  Excess excess(panda().limits(), q0);
+  const auto run = [&](int ticks) {
+    double tilt = 0.0;
+    for (int i = 0; i < ticks; ++i) {
+      const auto tick = tracker.tick(upright, place, height, posture);
+      excess.see(tick.q, tick.qd);
+      tilt = std::max(tilt, tick.error.head<3>().norm());
+    }
+    return tilt;
+  };
+  const auto away = [&] { return (std::get<1>(tracker.tip()) - place.x).norm(); };
+  double tilt = run(300);
+  tracker.enable(1, false);
+  tracker.enable(2, false);
+  tilt = std::max(tilt, run(6000));
+  EXPECT_LT((tracker.state().q - q0).norm(), 0.05);  // The posture brings it back.
+  EXPECT_GT(away(), 0.2);
+  tracker.enable(1, true);
+  for (int i = 0; i < 20; ++i) {  // Restless.
+    tracker.enable(2 + i % 2, i % 3 == 0);
+    tilt = std::max(tilt, run(50));
+  }
+  tracker.enable(2, false);
+  tilt = std::max(tilt, run(5000));
+  EXPECT_LT(away(), 1e-6);
+  EXPECT_LT(tilt, 1e-5);
+  EXPECT_LT(excess.worst, 1e-9);
+}
+
 TEST(Stack, refuses_what_does_not_suit) {
   const Vector<7> q0 = 0.5 * (panda().limits().lower + panda().limits().upper);
   const TaskGains<> gains(10.0, 25.0);
@@ -416,7 +454,7 @@ TEST(Stack, refuses_what_does_not_suit) {
   EXPECT_THROW(RobotTasks(panda(), Stack(AxisTask<>{{kTip}, gains, Vector<3>::Zero()})), std::invalid_argument);
   EXPECT_THROW(TaskGains<>(-1.0, 1.0), std::invalid_argument);
   const Stack stack(PositionTask<>{{kTip}, gains});
-  EXPECT_THROW(ByLevels(FPBM<7>(0.6, UnitWeights{}, 10.0, 25.0), stack), std::invalid_argument);
+  EXPECT_THROW((void)stack_tracker(panda(), stack, FPBM<7>(0.6, UnitWeights{}, 10.0, 25.0), q0), std::invalid_argument);
   const Stack stiff(PositionTask<>{{kTip}, TaskGains<>(10.0, 1e8)});
   EXPECT_THROW((void)stack_tracker(panda(), stiff, balanced(), q0), std::invalid_argument);
 }

@@ -36,6 +36,7 @@ class SaturationByLevel {
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                   const JointVector& desired) noexcept {
     Result result{first_(box, rest, desired), {}};
+    result.scales.fill(Scalar(1));
     result.scales[0] = result.scale;
     return result;
   }

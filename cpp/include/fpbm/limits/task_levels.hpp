@@ -17,11 +17,14 @@ class TaskLevels {
  public:
   static constexpr int kLevels = static_cast<int>(sizeof...(M));
 
-  explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) {}
+  explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) { enabled_.fill(true); }
+  /// enabled: levels that are not enabled are left out. The first one is enabled.
+  explicit TaskLevels(const std::array<bool, sizeof...(M)>& enabled, const Matrix<M, N, Scalar>&... J) noexcept
+      : enabled_(enabled), J_(J...) {}
 
   [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
 
-  /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first.
+  /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first that are enabled.
   template <typename F>
   void each_lower(F&& f) const noexcept {
     each_from(f, std::make_index_sequence<sizeof...(M) - 1>{});
@@ -30,9 +33,10 @@ class TaskLevels {
  private:
   template <typename F, std::size_t... k>
   void each_from(F& f, std::index_sequence<k...>) const noexcept {
-    (f(k + 1, std::get<k + 1>(J_)), ...);
+    ((enabled_[k + 1] ? f(k + 1, std::get<k + 1>(J_)) : void()), ...);
   }
 
+  std::array<bool, sizeof...(M)> enabled_;
   std::tuple<Matrix<M, N, Scalar>...> J_;
 };
 

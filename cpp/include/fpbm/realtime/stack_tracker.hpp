@@ -46,8 +46,9 @@ template <typename Robot, typename... Levels, typename Scheme, typename Start>
                                  const Start& start, const TrackerOptions<typename Robot::Scalar>& options = {}) {
   using Tasks = Stack<Levels...>;
   using Space = typename Tasks::Space;
+  require_stable_tasks<Scheme::kLevel>(stack, TickOfGains<typename Robot::Scalar>{options.dt, options.integral_gain});
   return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>>(
-      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme, stack), start, options);
+      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options);
 }
 
 /// The same within given limits, with shapes that the robot keeps clear of (Guard). qdd0: acceleration of the tick
@@ -59,9 +60,10 @@ template <typename Robot, typename... Levels, typename Scheme, int N, typename S
                                  const Guard_& guard) {
   using Tasks = Stack<Levels...>;
   using Space = typename Tasks::Space;
+  require_stable_tasks<Scheme::kLevel>(stack, TickOfGains<typename Robot::Scalar>{options.dt, options.integral_gain});
   return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, Guard_>(
-      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme, stack), start, options, limits,
-      qdd0, guard);
+      RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options, limits, qdd0,
+      guard);
 }
 
 }  // namespace fpbm

@@ -129,7 +129,7 @@ class Tracker {
     loop.update(x);
     [[maybe_unused]] const auto target = references.stages[0].x;
     if constexpr (kLevelsOf < Space >> 1) {
-      lower_levels_.update(target, loop.kinematics.tip, loop.kinematics.length);
+      lower_levels_.update(target, loop.kinematics);
       for (Target& stage : references.stages) stage = lower_levels_(stage);
     }
     const Target now = references.stages[0];
@@ -217,6 +217,12 @@ class Tracker {
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  /// Enables or disables a lower level k ≥ 1 of a stack. The commands stay within all bounds.
+  void enable(int k, bool on) noexcept {
+    static_assert(kIsProduct<Space>, "only a stack has levels to enable");
+    arm_.stack().enable(k, on);
+    lower_levels_.release();
+  }
 
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
   [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }

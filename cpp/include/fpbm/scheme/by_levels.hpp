@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/space.hpp"
 #include "fpbm/core/status.hpp"
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/product.hpp"
@@ -32,13 +33,11 @@ struct ByLevels {
   static constexpr Scalar kRadius = Scalar(0.1);
 
   Scheme scheme;
-  Stack_ stack;
   Scalar radius;  ///< ε of the damping of the lower levels, as a share of ‖J_k‖_F.
 
   /// Throws std::invalid_argument where the scheme has feedback gains, which the tasks have, or the radius is not in
   /// [0, 1].
-  ByLevels(const Scheme& scheme_, const Stack_& stack_, Scalar radius_ = kRadius)
-      : scheme(scheme_), stack(stack_), radius(radius_) {
+  explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kRadius) : scheme(scheme_), radius(radius_) {
     if constexpr (kHasGains<Scheme>) {
       if (scheme.k1 != Scalar(0)) validation::fail("k1", scheme.k1, "0: each task of a stack has its own");
       if (scheme.k2 != Scalar(0)) validation::fail("k2", scheme.k2, "0: each task of a stack has its own");
@@ -71,7 +70,7 @@ struct ByLevels {
         status = scheme.resolve(rows, command, state, result);
         if constexpr (Stack_::kLevels > 1) (void)space.add(J, filled<Vector<M, Scalar>>(M));
       } else {
-        if (failed(status) || space.rank() == space.size()) return;
+        if (failed(status) || !kinematics.enabled[kIndex] || space.rank() == space.size()) return;
         Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
         r -= product(J, result);
         if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
@@ -104,41 +103,37 @@ struct ByLevels {
       using Part = decltype(space);
       constexpr int kTask = static_cast<int>(decltype(i)::value);
       if constexpr (Stack_::level(kTask) == k) {
-        const auto& task = std::get<kTask>(stack.tasks());
-        const auto& evaluated = std::get<kTask>(kinematics.tasks);
+        const auto& task = std::get<kTask>(kinematics.tasks);
         using Twist = Vector<Part::kRows, Scalar>;
         const Twist error =
             Part::template difference<Scalar>(std::get<kTask>(reference.x), std::get<kTask>(kinematics.tip));
         const Twist xd = reference.xd.template segment<Part::kRows>(row);
         const Twist xdd = reference.xdd.template segment<Part::kRows>(row);
-        constexpr int kRows = std::decay_t<decltype(task)>::kRows;
+        constexpr int kRows = std::tuple_element_t<kTask, typename Stack_::Tasks>::kRows;
         const auto put = [&](Vector<M, Scalar>& to, const Twist& twist) noexcept {
-          to.template segment<kRows>(Stack_::row(kTask)) = evaluated.S.lazyProduct(twist);
+          to.template segment<kRows>(Stack_::row(kTask)) = task.S.lazyProduct(twist);
         };
         if constexpr (kLevel == Level::kAcceleration) {
           put(command.xd, xd);
           put(command.xdd, entrywise(xd, [&](Eigen::Index j) {
-                return xdd.coeff(j) + task.gains.k1 * (xd.coeff(j) - evaluated.xd.coeff(j)) +
-                       task.gains.k2 * error.coeff(j);
+                return xdd.coeff(j) + task.k1 * (xd.coeff(j) - task.xd.coeff(j)) + task.k2 * error.coeff(j);
               }));
         } else {
-          put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.gains.k2 * error.coeff(j); }));
+          put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); }));
         }
       }
     });
   }
 };
 
-/// require_stable() for the gains of all tasks, and for the scheme. The tracker's integral acts on every task.
-template <typename Scheme, typename Stack_, typename Scalar>
-void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
+/// Throws std::invalid_argument where a tick does not damp the error of a task with its gains.
+template <Level kLevel, typename... Levels, typename Scalar>
+void require_stable_tasks(const Stack<Levels...>& stack, const TickOfGains<Scalar>& tick) {
   const auto require = [&](const auto& task) {
-    constexpr Level kLevel = Scheme::kLevel;
     const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
     require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
   };
-  std::apply([&](const auto&... task) { (require(task), ...); }, by_levels.stack.tasks());
-  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
+  std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
 }
 
 }  // namespace fpbm

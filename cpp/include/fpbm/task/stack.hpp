@@ -67,7 +67,8 @@ inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof.
 /// Tasks on levels in strict priority: Stack(TaskLevel(a, b), c) has a and b side by side, and c below both. A level of
 /// one task needs no TaskLevel.
 ///
-/// Immutable but for the tasks' parameters. All sizes are known at compile time.
+/// Tasks may change their parameters, and levels may be disabled, from tick to tick. All sizes are known at compile
+/// time.
 template <typename... Levels>
 class Stack {
  public:
@@ -97,6 +98,10 @@ class Stack {
   /// First row of task i on its level.
   [[nodiscard]] static constexpr int row(int i) noexcept { return row_of(i, std::make_index_sequence<kTasks>{}); }
 
+  /// Enables or disables level k ≥ 1; a disabled level is left out. Levels begin enabled.
+  void enable(int k, bool on) noexcept { enabled_[static_cast<std::size_t>(k)] = on || k == 0; }
+  [[nodiscard]] const std::array<bool, kLevels>& enabled() const noexcept { return enabled_; }
+
   /// Throws std::invalid_argument where a task does not suit a robot.
   template <typename Robot>
   void require_robot(const Robot& robot) const {
@@ -123,7 +128,10 @@ class Stack {
     return row;
   }
 
+  [[nodiscard]] static constexpr std::array<bool, kLevels> all() noexcept { return {(Levels::kRows > 0)...}; }
+
   Tasks tasks_;
+  std::array<bool, kLevels> enabled_ = all();
 };
 
 template <typename... Levels>

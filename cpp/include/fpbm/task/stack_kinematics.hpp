@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <type_traits>
 
@@ -18,10 +19,12 @@ struct LevelRows {
   Matrix<M, N, Scalar> Jd;
 };
 
-/// What a task adds to its rows: its selection S, in metres, and its velocity J qd in the rows of its space.
+/// What a task adds to its rows: its gains, its selection S, in metres, and its velocity J qd in the rows of its space.
 template <typename Task>
 struct TaskState {
   using Scalar = typename Task::Scalar;
+  Scalar k1;
+  Scalar k2;
   Matrix<Task::kRows, Task::Space::kRows, Scalar> S;
   Vector<Task::Space::kRows, Scalar> xd;
 };
@@ -54,7 +57,13 @@ struct StackKinematics {
   typename Stack_::Point tip;  ///< x of each task.
   Levels levels;
   typename stack_detail::StatesOf<typename Stack_::Tasks>::type tasks;
-  Scalar length = Scalar(1);  ///< The robot's characteristic length [m].
+  /// Whether the level of task i is enabled.
+  [[nodiscard]] bool is_enabled(std::size_t i) const noexcept {
+    return enabled[static_cast<std::size_t>(Stack_::level(static_cast<int>(i)))];
+  }
+
+  std::array<bool, Stack_::kLevels> enabled;  ///< Whether a level is to be resolved. The first one always is.
+  Scalar length = Scalar(1);                  ///< The robot's characteristic length [m].
 };
 
 template <typename... Levels, int N, typename Scalar>
@@ -72,8 +81,9 @@ template <typename... Levels, int N, typename Scalar>
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
     const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  return std::apply([](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(rows.J...); },
-                    kinematics.levels);
+  return std::apply(
+      [&](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.J...); },
+      kinematics.levels);
 }
 
 /// A robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
@@ -90,6 +100,7 @@ class RobotTasks {
   [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
   [[nodiscard]] const Robot_& robot() const noexcept { return robot_; }
   [[nodiscard]] const Stack_& stack() const noexcept { return stack_; }
+  [[nodiscard]] Stack_& stack() noexcept { return stack_; }
   [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
 
   /// At (q, qd).
@@ -97,11 +108,14 @@ class RobotTasks {
     typename Robot_::State state;
     robot_.update(q, qd, state);
     out.length = robot_.length();
+    out.enabled = stack_.enabled();
     stack_.each([&](const auto& task, auto i) noexcept {
       using Task = std::decay_t<decltype(task)>;
       constexpr int kIndex = decltype(i)::value;
       constexpr int kSpace = Task::Space::kRows;
-      auto& [S, xd] = std::get<kIndex>(out.tasks);
+      auto& [k1, k2, S, xd] = std::get<kIndex>(out.tasks);
+      k1 = task.gains.k1;
+      k2 = task.gains.k2;
       Matrix<kSpace, kDof, Scalar> J;
       Matrix<kSpace, kDof, Scalar> Jd;
       task.evaluate(robot_, state, std::get<kIndex>(out.tip), J, Jd, S);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/validation.hpp"
 
 namespace fpbm {
