@@ -13,6 +13,10 @@
 #include "fpbm/any/any_scheme.hpp"
 #include "fpbm/core/lanes.hpp"
 #include "fpbm/limits/level_saturation.hpp"
+#include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/posture_task.hpp"
 #include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
@@ -249,6 +253,28 @@ TEST(NoAllocation, in_task_levels) {
   EXPECT_EQ(damped, 1.0);
   EXPECT_GT(first, 0.0);
   EXPECT_LT(second, 1.0);
+}
+
+/// A stack of tasks, pressed against its limits, with a level that is disabled.
+TEST(NoAllocation, in_a_stack) {
+  const Robot<7> robot(presets::panda());
+  constexpr int kTip = Robot<7>::kTip;
+  const TaskGains<> gains(10.0, 25.0);
+  const Stack stack(AxisTask<>{{kTip}, gains}, PositionTask<>{{kTip}, gains}, PostureTask<7>{gains});
+  const auto scheme = Balanced<7>(0.6, UnitWeights{}, NullSpace<7>().with_damping(2.0));
+  auto tracker = stack_tracker(robot, stack, scheme, Vector<7>(panda_ready()));
+  auto [axis, place, posture] = tracker.tip();
+  const auto upright = Reference<Direction>::hold(axis);
+  const auto far = Reference<Position<3>>::hold(place + Vector<3>(0.5, 0.5, 0.0));
+  const auto home = Reference<JointSpace<7>>::hold(posture);
+  int slowed = 0;
+  const AllocationWatch watch;
+  for (int i = 0; i < kSteps; ++i) {
+    if (i == kSteps / 2) tracker.enable(2, false);
+    slowed += tracker.tick(upright, far, home).status == Status::kSlowed ? 1 : 0;
+  }
+  EXPECT_EQ(watch.count().total(), 0);
+  EXPECT_GT(slowed, 0);
 }
 
 /// A motion that has to stop does so without an allocation as well.

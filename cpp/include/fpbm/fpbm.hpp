@@ -67,6 +67,7 @@
 #include "fpbm/limits/task_levels.hpp"
 #include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
+#include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/inverse_trace.hpp"

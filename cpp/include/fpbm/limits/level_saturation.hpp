@@ -49,7 +49,8 @@ class LevelSaturation {
     });
   }
 
-  /// tr Δ/ε² of the last level: about the number of its lost directions. 0 if the level was not damped.
+  /// tr Δ/ε² of the last level, about the number of its lost directions, and the number of its dependent rows. 0
+  /// without damping.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
   /// u_k of the last level.

@@ -4,17 +4,25 @@
 #include <utility>
 
 #include "fpbm/limits/box_in_time.hpp"
-#include "fpbm/limits/box_least_squares.hpp"
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_given_up.hpp"
 #include "fpbm/limits/task_levels.hpp"
+#include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
+
+/// The saturation of a task.
+template <int M, int N, typename Scalar, int P>
+[[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
+                                                                 const Vector<N, Scalar>& unit,
+                                                                 const Rows<N, P, Scalar>& rows) noexcept {
+  return {J, unit, rows};
+}
 
 /// Makes any scheme keep the joint limits: takes the scheme's answer, returns a motion within the limits.
 ///
@@ -130,7 +138,7 @@ class Limiter {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
     Found<Tasks> found = saturation(box, rest, desired);
-    if (found.scale < Scalar(1)) yield(first_level(tasks), state, box, rows, desired, found);
+    if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
     if (!is_finite(found.u)) return failed(rest, found);
     if constexpr (kByLevel<Tasks>) saturation.resolve_lower(box, desired, found);
     return found;
@@ -187,29 +195,6 @@ class Limiter {
     }
   }
 
-  /// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (yielded − found), where s is the scale and s₀ =
-  /// kLittle the scale below which the arm yields. At velocity level s is the share of the task's velocity that is
-  /// left.
-  template <int M, int P>
-  void yield(const Matrix<M, N, Scalar>& J, const JointState& state, const Box<N, Scalar>& box,
-             const Rows<N, P, Scalar>& rows, const JointVector& desired, Saturated<N, Scalar>& found) const noexcept {
-    const Vector<M, Scalar> task = product(J, desired);
-    Scalar scale = found.scale;
-    if constexpr (kLevel == Level::kVelocity) scale = dot(product(J, found.u), task) / squared_norm(task);
-    const Scalar left = scale > Scalar(0) ? scale / kLittle : Scalar(0);
-    if (!(left < Scalar(1))) return;
-    const Scalar yields = Scalar(1) - left * left;
-    const Scalar mu = kRadius * kRadius * squared_norm(J);
-    const JointVector rest = entrywise(
-        state.qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * state.qd(i) : Scalar(0); });
-    const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
-    const JointVector blended =
-        entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
-    const JointVector to = box.nearest(blended);  // Round-off may leave the box.
-    const Scalar share = rows.share(found.u, to);
-    found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });
-  }
-
   template <typename Tasks>
   static constexpr bool kByLevel = !std::is_same_v<Found<Tasks>, Saturated<N, Scalar>>;
 
@@ -217,9 +202,6 @@ class Limiter {
   static constexpr Scalar kGivenUp = Scalar(1e-3);     ///< Price of what the task gives up, as a share of the rest.
   static constexpr Scalar kServes = Scalar(0.1);       ///< From here on self-motion serves: ‖Nv‖² / ‖v‖².
   static constexpr Scalar kUnseen = Scalar(0.01);      ///< Share of the task that may be lost unreported.
-  static constexpr Scalar kLittle = Scalar(0.1);       ///< s₀, the scale below which the arm yields.
-  static constexpr Scalar kRadius = Scalar(0.1);       ///< Damping of the least squares, as a share of ‖J‖_F.
-  static constexpr Scalar kDamping = Scalar(10);       ///< Damping of what the least squares leave free [1/s].
 
   Limits<kLevel, N, Scalar> limits_;
   JointVector unit_;  ///< Unit of each joint's motion in the null space.

@@ -195,12 +195,4 @@ class NullSpaceSaturation {
   Held held_;
 };
 
-/// The saturation of a task.
-template <int M, int N, typename Scalar, int P>
-[[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
-                                                                 const Vector<N, Scalar>& unit,
-                                                                 const Rows<N, P, Scalar>& rows) noexcept {
-  return {J, unit, rows};
-}
-
 }  // namespace fpbm

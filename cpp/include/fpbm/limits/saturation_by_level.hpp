@@ -47,10 +47,10 @@ class SaturationByLevel {
     add(space, levels_.first());
     bool whole = result.scale == Scalar(1);
     levels_.each_lower([&](std::size_t k, const auto& J) noexcept {
+      if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
           whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
       if (whole) add(space, J);
-      result.scales[k] = Scalar(1);
       if (!goal.allFinite()) {
         result.scales[k] = Scalar(0);
       } else if (box.contains(goal) && rows_.admit(goal)) {

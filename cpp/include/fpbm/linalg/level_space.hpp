@@ -43,9 +43,9 @@ class LevelSpace {
   }
 
   /// Adds the level A. With A Z = L Qᵀ, L lower triangular (trapezoidal if rows are dependent) and QᵀQ = I, calls
-  /// solver(L, r). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y of add(A,
-  /// r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A Z are
-  /// zero.
+  /// solver(L, r, rank of A Z). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y
+  /// of add(A, r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A
+  /// Z are zero.
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     return add_with(A, r,
@@ -54,7 +54,7 @@ class LevelSpace {
                       for (Eigen::Index i = 0; i < count; ++i) {
                         for (Eigen::Index j = i; j < M; ++j) L(j, i) = T(first + i, j);
                       }
-                      if (!solver(L, result)) solve_trapezoidal(T, first, count, result);
+                      if (!solver(L, result, count)) solve_trapezoidal(T, first, count, result);
                     });
   }
 

@@ -2,6 +2,7 @@
 
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 
 namespace fpbm {
@@ -11,16 +12,21 @@ namespace fpbm {
 ///   w = Lᵀ (L Lᵀ + Δ)⁻¹ r,
 ///
 /// where Δ is the spectral function of LostDirections for ε. Δ is zero for the directions of which the posture and the
-/// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
+/// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r. If rows are
+/// dependent, so that L has fewer columns than rows, w = (LᵀL + Δ)⁻¹ Lᵀ r, which is the same: the eigenvalues of L Lᵀ
+/// and LᵀL are.
 template <int M, typename Scalar>
 class DampedLevel {
  public:
   /// epsilon_squared: ε², in the squared unit of A.
   explicit DampedLevel(Scalar epsilon_squared) noexcept : epsilon_squared_(epsilon_squared) {}
 
-  /// Replaces r by w and returns true. If no direction is lost, leaves r as given and returns false.
-  [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r) noexcept {
-    const Matrix<M, M, Scalar> gram = gram_of(L);
+  /// Replaces r by w and returns true. If no direction is lost but by dependent rows, leaves r as given and returns
+  /// false. columns: number of columns of L; the others are zero.
+  [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r, Eigen::Index columns) noexcept {
+    const bool dependent = columns < M;
+    lost_ = static_cast<Scalar>(M - columns);
+    const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : gram_of(L);
     Cholesky<M, Scalar> cholesky;
     // σ_min² ≥ 1/tr((L Lᵀ)⁻¹) settles most levels without a decomposition into eigenvectors.
     const bool regular = cholesky.factor(gram) == Status::kOk;
@@ -28,15 +34,33 @@ class DampedLevel {
     const LostDirections<M, Scalar> directions(gram, epsilon_squared_);
     if (!(directions.count > Scalar(0))) return false;
     if (cholesky.factor(sum_of(gram, directions.delta)) != Status::kOk) return false;
-    lost_ = directions.count;
-    r = transpose_times(L, cholesky.solve(r));
+    lost_ += directions.count;
+    r = dependent ? cholesky.solve(transpose_times(L, r)) : transpose_times(L, cholesky.solve(r));
     return true;
   }
 
-  /// tr Δ/ε²: about the number of lost directions. 0 if the level is not damped.
+  /// tr Δ/ε², about the number of lost directions, and the number of dependent rows.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
  private:
+  /// LᵀL. For columns that are zero, a large eigenvalue apart from the others.
+  [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
+                                                     Eigen::Index columns) const noexcept {
+    auto gram = filled<Matrix<M, M, Scalar>>(M);
+    Scalar trace = epsilon_squared_;
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      for (Eigen::Index j = 0; j < columns; ++j) {
+        gram.coeffRef(i, j) = sum_over(column(L, i), [&](Eigen::Index k) { return L.coeff(k, i) * L.coeff(k, j); });
+      }
+      trace += gram.coeff(i, i);
+    }
+    for (Eigen::Index i = columns; i < M; ++i) gram.coeffRef(i, i) = kApart * trace;
+    return gram;
+  }
+
+  /// The inverse of such an eigenvalue is lost in tr((LᵀL)⁻¹).
+  static constexpr Scalar kApart = Scalar(1e3);
+
   Scalar epsilon_squared_;
   Scalar lost_{0};
 };
