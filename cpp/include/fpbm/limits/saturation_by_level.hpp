@@ -1,7 +1,8 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <tuple>
 
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_levels.hpp"
@@ -30,7 +31,11 @@ class SaturationByLevel {
   /// unit: one unit of each joint's motion, such as its bound on acceleration.
   SaturationByLevel(const TaskLevels<N, Scalar, M...>& levels, const JointVector& unit,
                     const Rows<N, P, Scalar>& rows = {}) noexcept
-      : levels_(levels), unit_(unit), rows_(rows), first_(levels.first(), unit, rows) {}
+      : levels_(levels),
+        unit_(unit),
+        rows_(rows),
+        above_(space_of(levels.first(), unit)),
+        first_(first_saturation(levels.first(), above_, unit, rows)) {}
 
   /// Resolves the first level from rest, a motion within the bounds.
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
@@ -43,14 +48,13 @@ class SaturationByLevel {
 
   /// Resolves the levels below from the motion of the first. No J_k u of a higher level changes.
   void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
-    LevelSpace<N, Scalar> space(unit_.size());
-    add(space, levels_.first());
+    LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
     levels_.each_lower([&](std::size_t k, const auto& J) noexcept {
       if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
           whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
-      if (whole) add(space, J);
+      if (whole) add(space, J, unit_);
       if (!goal.allFinite()) {
         result.scales[k] = Scalar(0);
       } else if (box.contains(goal) && rows_.admit(goal)) {
@@ -69,25 +73,46 @@ class SaturationByLevel {
   }
 
  private:
+  /// Of the first level. One level alone is saturated as a task without levels.
+  using First = NullSpaceSaturation<kLevels == 1 ? std::get<0>(std::array{M...}) : Eigen::Dynamic, N, Scalar, P>;
+
+  template <int M1>
+  [[nodiscard]] static LevelSpace<N, Scalar> space_of(const Matrix<M1, N, Scalar>& J,
+                                                      const JointVector& unit) noexcept {
+    LevelSpace<N, Scalar> space(unit.size());
+    if constexpr (kLevels > 1) add(space, J, unit);
+    return space;
+  }
+  template <int M1>
+  [[nodiscard]] static First first_saturation(const Matrix<M1, N, Scalar>& J, const LevelSpace<N, Scalar>& space,
+                                              const JointVector& unit, const Rows<N, P, Scalar>& rows) noexcept {
+    if constexpr (kLevels == 1) {
+      return {J, unit, rows};
+    } else {
+      return {space, unit, rows};
+    }
+  }
+
   template <int Mk>
-  [[nodiscard]] Matrix<Mk, N, Scalar> in_units(const Matrix<Mk, N, Scalar>& J) const noexcept {
+  [[nodiscard]] static Matrix<Mk, N, Scalar> in_units(const Matrix<Mk, N, Scalar>& J,
+                                                      const JointVector& unit) noexcept {
     Matrix<Mk, N, Scalar> scaled = J;
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit_.coeff(j);
+      for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit.coeff(j);
     }
     return scaled;
   }
 
   template <int Mk>
-  void add(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J) const noexcept {
-    (void)space.add(in_units(J), filled<Vector<Mk, Scalar>>(J.rows()));
+  static void add(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J, const JointVector& unit) noexcept {
+    (void)space.add(in_units(J, unit), filled<Vector<Mk, Scalar>>(J.rows()));
   }
 
   /// (d − u)/unit for v = u* − u. Adds the level to the space.
   template <int Mk>
   [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J,
                                        const JointVector& v) const noexcept {
-    const Matrix<Mk, N, Scalar> scaled = in_units(J);
+    const Matrix<Mk, N, Scalar> scaled = in_units(J, unit_);
     const JointVector in_unit = v.cwiseQuotient(unit_);
     const JointVector projected = space.project(in_unit);
     const JointVector outside = in_unit - projected;
@@ -103,7 +128,8 @@ class SaturationByLevel {
   TaskLevels<N, Scalar, M...> levels_;
   JointVector unit_;
   Rows<N, P, Scalar> rows_;
-  NullSpaceSaturation<std::get<0>(std::array{M...}), N, Scalar, P> first_;
+  LevelSpace<N, Scalar> above_;  ///< Of the first level.
+  First first_;
 };
 
 /// saturation_of() for several levels.
