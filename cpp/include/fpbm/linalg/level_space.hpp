@@ -24,6 +24,7 @@ class LevelSpace {
   /// No levels: the null space is ℝⁿ.
   explicit LevelSpace(Eigen::Index n) noexcept {
     V_.resize(n, n);
+    for (Eigen::Index i = 0; i < V_.size(); ++i) V_.coeffRef(i) = Scalar(0);
     beta_.resize(n);
   }
 
@@ -137,10 +138,13 @@ class LevelSpace {
   /// Applies reflection k to n entries.
   void reflect(Eigen::Index k, Scalar* x) const noexcept {
     const Scalar* const v = V_.data() + k * size();
+    // Of a fixed size, all entries: the zeros above row k cost less than a loop of run-time length.
+    const Eigen::Index begin = N == Eigen::Dynamic ? k : 0;
+    const Eigen::Index end = N == Eigen::Dynamic ? size() : N;
     Scalar along(0);
-    for (Eigen::Index i = k; i < size(); ++i) along += v[i] * x[i];
+    for (Eigen::Index i = begin; i < end; ++i) along += v[i] * x[i];
     along *= beta_.coeff(k);
-    for (Eigen::Index i = k; i < size(); ++i) x[i] -= along * v[i];
+    for (Eigen::Index i = begin; i < end; ++i) x[i] -= along * v[i];
   }
 
   /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of

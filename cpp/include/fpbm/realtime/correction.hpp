@@ -41,8 +41,9 @@ class Correction {
       Scalar* const to = excess_.data() + row;
       bool far = false;
       if constexpr (kLengths > 0) far = bring_near<kLengths>(from, error_bound_ * length, to);
-      if constexpr (Part::kTurns > 0)
+      if constexpr (Part::kTurns > 0) {
         far = bring_near<Part::kTurns>(from + kLengths, error_bound_, to + kLengths) || far;
+      }
       moved_ = moved_ || far;
       far_ = far_ || (first && far);
     });

@@ -113,8 +113,9 @@ class LimitedState {
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       if constexpr (kLevelsOf < Space >> 1) {
-        if (!failed(result.status))
+        if (!failed(result.status)) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt_ / 2)), desired));
+        }
         if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
       } else {
         // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.

@@ -28,9 +28,9 @@ struct Tick<StackSpace<Levels...>, N, Scalar> {
   /// A level with a reference that is not finite is not resolved: its scale is 0.
   void report_lower_levels() noexcept {
     StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
-      constexpr int k = Stack<Levels...>::level(static_cast<int>(decltype(i)::value));
+      constexpr int kLevel = Stack<Levels...>::level(static_cast<int>(decltype(i)::value));
       for (int j = row; j < row + decltype(space)::kRows; ++j) {
-        if (!std::isfinite(error(j))) scales[k] = Scalar(0);
+        if (!std::isfinite(error(j))) scales[kLevel] = Scalar(0);
       }
     });
     for (const Scalar s : scales) {

@@ -15,6 +15,7 @@ struct AxisTask {
   using Scalar = Scalar_;
   using Space = Direction;
   static constexpr int kRows = 2;
+  static constexpr bool kWhole = false;
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;

@@ -11,6 +11,7 @@ struct OrientationTask {
   using Scalar = Scalar_;
   using Space = Orientation;
   static constexpr int kRows = 3;
+  static constexpr bool kWhole = true;
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;

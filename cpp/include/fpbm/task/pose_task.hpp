@@ -11,6 +11,7 @@ struct PoseTask {
   using Scalar = Scalar_;
   using Space = Pose;
   static constexpr int kRows = 6;
+  static constexpr bool kWhole = true;
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;

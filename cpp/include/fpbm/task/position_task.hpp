@@ -14,11 +14,13 @@ namespace fpbm {
 ///   x(state)       point of the Space, of which references are points
 ///   J, J̇           in the Space's rows
 ///   S(state)       selection: the task's rows are S J, and S applied to a twist of the Space
+///   kWhole         whether S is the identity
 template <int M = 3, typename Scalar_ = double>
 struct PositionTask {
   using Scalar = Scalar_;
   using Space = Position<3>;
   static constexpr int kRows = M;
+  static constexpr bool kWhole = false;
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;

@@ -13,6 +13,7 @@ struct PostureTask {
   using Scalar = Scalar_;
   using Space = JointSpace<M>;
   static constexpr int kRows = M;
+  static constexpr bool kWhole = true;
 
   TaskGains<Scalar> gains;
   std::array<int, M> joints = first_joints();  ///< Each once, from 0.

@@ -124,8 +124,12 @@ class RobotTasks {
       }
       xd = product(J, qd);
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      level.J.template middleRows<Task::kRows>(Stack_::row(kIndex)) = S.lazyProduct(J);
-      level.Jd.template middleRows<Task::kRows>(Stack_::row(kIndex)) = S.lazyProduct(Jd);
+      for (Eigen::Index j = 0; j < J.cols(); ++j) {
+        for (int row = 0; row < Task::kRows; ++row) {
+          level.J.coeffRef(Stack_::row(kIndex) + row, j) = selected<Task>(S, J, row, j);
+          level.Jd.coeffRef(Stack_::row(kIndex) + row, j) = selected<Task>(S, Jd, row, j);
+        }
+      }
     });
   }
 
@@ -135,6 +139,15 @@ class RobotTasks {
   }
 
  private:
+  /// An entry of S A.
+  template <typename Task, typename Selection, typename Rows>
+  [[nodiscard]] static Scalar selected(const Selection& S, const Rows& A, int row, Eigen::Index j) noexcept {
+    if constexpr (Task::kWhole) return S.coeff(row, row) * A.coeff(row, j);
+    Scalar sum(0);
+    for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(row, k) * A.coeff(k, j);
+    return sum;
+  }
+
   Robot_ robot_;
   Stack_ stack_;
 };
