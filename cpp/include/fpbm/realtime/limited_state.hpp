@@ -84,7 +84,7 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || kLevelsOf < Space >> 1) next.q = moved(rate(state_.qd, next.qd));
+      if (limits().bounds_jerk() || kLevelsOf<Space> != 1) next.q = moved(rate(state_.qd, next.qd));
     } else {
       next.qd = rate(state_.q, next.q);
     }
@@ -112,7 +112,7 @@ class LimitedState {
         share = slow_down(loop, limits(), correction_(now), state_.q, field);
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
-      if constexpr (kLevelsOf < Space >> 1) {
+      if constexpr (kLevelsOf<Space> != 1) {
         if (!failed(result.status)) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt_ / 2)), desired));
         }

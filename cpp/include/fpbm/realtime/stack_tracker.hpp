@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "fpbm/limits/saturation_by_level.hpp"
+#include "fpbm/limits/task_levels.hpp"
+#include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/realtime/stack_references.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/by_levels.hpp"
@@ -39,6 +42,37 @@ struct Tick<StackSpace<Levels...>, N, Scalar> {
   }
 };
 
+/// The levels' J, for the limits.
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
+    const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+  return std::apply(
+      [&](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.J...); },
+      kinematics.levels);
+}
+
+/// Throws std::invalid_argument where a scheme has feedback gains, which the tasks of a stack have.
+template <typename Scheme>
+void require_no_gains(const Scheme& scheme) {
+  if constexpr (kHasGains<Scheme>) {
+    if (scheme.k1 != 0) validation::fail("k1", scheme.k1, "0: each task of a stack has its own");
+    if (scheme.k2 != 0) validation::fail("k2", scheme.k2, "0: each task of a stack has its own");
+  }
+  if constexpr (kHasGain<Scheme>) {
+    if (scheme.k != 0) validation::fail("k", scheme.k, "0: each task of a stack has its own");
+  }
+}
+
+/// Throws std::invalid_argument where a tick does not damp the error of a task with its gains.
+template <Level kLevel, typename... Levels, typename Scalar>
+void require_stable_tasks(const Stack<Levels...>& stack, const TickOfGains<Scalar>& tick) {
+  const auto require = [&](const auto& task) {
+    const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
+    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
+  };
+  std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
+}
+
 /// A Tracker of a stack of tasks. Throws std::invalid_argument as Tracker does, where a task does not suit the robot,
 /// and where the scheme has feedback gains of its own (ByLevels).
 template <typename Robot, typename... Levels, typename Scheme, typename Start>
@@ -46,6 +80,7 @@ template <typename Robot, typename... Levels, typename Scheme, typename Start>
                                  const Start& start, const TrackerOptions<typename Robot::Scalar>& options = {}) {
   using Tasks = Stack<Levels...>;
   using Space = typename Tasks::Space;
+  require_no_gains(scheme);
   require_stable_tasks<Scheme::kLevel>(stack, TickOfGains<typename Robot::Scalar>{options.dt, options.integral_gain});
   return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>>(
       RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options);
@@ -60,6 +95,7 @@ template <typename Robot, typename... Levels, typename Scheme, int N, typename S
                                  const Guard_& guard) {
   using Tasks = Stack<Levels...>;
   using Space = typename Tasks::Space;
+  require_no_gains(scheme);
   require_stable_tasks<Scheme::kLevel>(stack, TickOfGains<typename Robot::Scalar>{options.dt, options.integral_gain});
   return Tracker<RobotTasks<Robot, Tasks>, Space, ByLevels<Scheme, Tasks>, Guard_>(
       RobotTasks<Robot, Tasks>(robot, stack), Space{}, ByLevels<Scheme, Tasks>(scheme), start, options, limits, qdd0,

@@ -128,13 +128,13 @@ class Tracker {
     X dx = x;
     loop.update(x);
     [[maybe_unused]] const auto target = references.stages[0].x;
-    if constexpr (kLevelsOf < Space >> 1) {
+    if constexpr (kLevelsOf<Space> != 1) {
       lower_levels_.update(target, loop.kinematics);
       for (Target& stage : references.stages) stage = lower_levels_(stage);
     }
     const Target now = references.stages[0];
     watch(loop.kinematics, now, result);
-    if constexpr (kLevelsOf < Space >> 1) {
+    if constexpr (kLevelsOf<Space> != 1) {
       result.error = Space::template difference<Scalar>(target, loop.kinematics.tip);
     }
     if (correction.active()) {
@@ -249,7 +249,7 @@ class Tracker {
   Arm arm_;
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
-  std::conditional_t<(kLevelsOf<Space> > 1), LowerLevels<Space, Scalar>, NoLowerLevels> lower_levels_;
+  std::conditional_t<kLevelsOf<Space> != 1, LowerLevels<Space, Scalar>, NoLowerLevels> lower_levels_;
   Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };

@@ -6,7 +6,6 @@
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
-#include "fpbm/realtime/require_stable.hpp"
 #include "fpbm/singular/damped_level.hpp"
 #include "fpbm/task/stack_kinematics.hpp"
 
@@ -35,16 +34,9 @@ struct ByLevels {
   Scheme scheme;
   Scalar radius;  ///< ε of the damping of the lower levels, as a share of ‖J_k‖_F.
 
-  /// Throws std::invalid_argument where the scheme has feedback gains, which the tasks have, or the radius is not in
+  /// scheme: without feedback gains, which the tasks have. Throws std::invalid_argument where the radius is not in
   /// [0, 1].
   explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kRadius) : scheme(scheme_), radius(radius_) {
-    if constexpr (kHasGains<Scheme>) {
-      if (scheme.k1 != Scalar(0)) validation::fail("k1", scheme.k1, "0: each task of a stack has its own");
-      if (scheme.k2 != Scalar(0)) validation::fail("k2", scheme.k2, "0: each task of a stack has its own");
-    }
-    if constexpr (kHasGain<Scheme>) {
-      if (scheme.k != Scalar(0)) validation::fail("k", scheme.k, "0: each task of a stack has its own");
-    }
     validation::require_fraction("radius", radius);
   }
 
@@ -125,15 +117,5 @@ struct ByLevels {
     });
   }
 };
-
-/// Throws std::invalid_argument where a tick does not damp the error of a task with its gains.
-template <Level kLevel, typename... Levels, typename Scalar>
-void require_stable_tasks(const Stack<Levels...>& stack, const TickOfGains<Scalar>& tick) {
-  const auto require = [&](const auto& task) {
-    const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
-    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
-  };
-  std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
-}
 
 }  // namespace fpbm

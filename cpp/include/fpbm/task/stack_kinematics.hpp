@@ -4,7 +4,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include "fpbm/limits/task_levels.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/robot.hpp"
@@ -75,15 +74,6 @@ inline constexpr int kFirstRows<StackSpace<First, Lower...>> = First::kRows;
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] const auto& first_rows(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   return std::get<0>(kinematics.levels).J;
-}
-
-/// The levels' J, for the limits.
-template <typename... Levels, int N, typename Scalar>
-[[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
-    const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  return std::apply(
-      [&](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.J...); },
-      kinematics.levels);
 }
 
 /// A robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
