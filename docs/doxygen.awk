@@ -11,6 +11,9 @@ sub(/^namespace fpbm::/, "namespace ") { }
 /^struct Eigen::/ { held = ""; skipping = 1 }
 skipping { if (/^\};/) skipping = 0; next }
 
+# A deduction guide looks like a function with the name of its class.
+/^[A-Z][A-Za-z]*\(.*\) -> .*;$/ { held = ""; next }
+
 { printf "%s%s", held, line($0); held = "" }
 
 # A formula on a line of its own stays on it.
