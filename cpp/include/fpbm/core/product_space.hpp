@@ -1,21 +1,12 @@
 #pragma once
 
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
+#include "fpbm/core/parts.hpp"
 #include "fpbm/core/types.hpp"
 
 namespace fpbm {
-
-template <typename Space, typename = void>
-inline constexpr bool kIsProduct = false;
-template <typename Space>
-inline constexpr bool kIsProduct<Space, std::void_t<decltype(Space::kProduct)>> = true;
-
-/// Number of task levels.
-template <typename Space>
-inline constexpr int kLevelsOf = 1;
 
 /// Task space of several tasks: a point of each. Rows are those of the spaces one after another.
 ///
@@ -25,7 +16,6 @@ struct ProductSpace {
   static constexpr bool kProduct = true;
   static constexpr int kFirst = First;
   static constexpr int kRows = (Spaces::kRows + ...);
-  static constexpr int kSize = (Spaces::kSize + ...);
 
   template <typename Scalar>
   using Point = std::tuple<typename Spaces::template Point<Scalar>...>;
@@ -71,26 +61,5 @@ struct ProductSpace {
     ((f(Spaces{}, std::integral_constant<std::size_t, i>{}, row), row += Spaces::kRows), ...);
   }
 };
-
-/// The single space itself, or the spaces of a product: calls f(space, row, first), where row is the index of its first
-/// row, and first says whether it belongs to the first level.
-template <typename Space, typename F>
-void each_part(F&& f) noexcept {
-  if constexpr (kIsProduct<Space>) {
-    Space::each([&](auto space, auto i, int row) noexcept { f(space, row, decltype(i)::value < Space::kFirst); });
-  } else {
-    f(Space{}, 0, true);
-  }
-}
-
-/// A displacement with its lengths in units of a length [m].
-template <typename Space, int M, typename Scalar>
-[[nodiscard]] Vector<M, Scalar> in_lengths(Vector<M, Scalar> twist, Scalar length) noexcept {
-  each_part<Space>([&](auto space, int row, bool) noexcept {
-    using Part = decltype(space);
-    for (int i = row; i < row + Part::kRows - Part::kTurns; ++i) twist(i) /= length;
-  });
-  return twist;
-}
 
 }  // namespace fpbm

@@ -6,23 +6,15 @@
 #include "fpbm/limits/box_in_time.hpp"
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/limits.hpp"
+#include "fpbm/limits/one_level.hpp"
 #include "fpbm/limits/row_projection.hpp"
-#include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_given_up.hpp"
-#include "fpbm/limits/task_levels.hpp"
+#include "fpbm/limits/toward_goal.hpp"
 #include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
-
-/// The saturation of a task.
-template <int M, int N, typename Scalar, int P>
-[[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
-                                                                 const Vector<N, Scalar>& unit,
-                                                                 const Rows<N, P, Scalar>& rows) noexcept {
-  return {J, unit, rows};
-}
 
 /// Makes any scheme keep the joint limits: takes the scheme's answer, returns a motion within the limits.
 ///
@@ -38,7 +30,7 @@ class Limiter {
  public:
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
-  /// Saturated, or SaturatedLevels.
+  /// Saturated, or SaturatedLevels for TaskLevels.
   template <typename Tasks>
   using Found = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
@@ -79,8 +71,8 @@ class Limiter {
   }
 
  private:
-  /// motion() for one that rows do not admit: the nearest that they do comes in its place. Self-motion costs little, so
-  /// that joints go around a row where they can and the tip slides along it where they cannot. But where self-motion
+  /// motion() for a motion that rows do not admit: the nearest that they admit replaces it. Self-motion costs little,
+  /// so that joints go around a row where they can and the tip slides along it where they cannot. But where self-motion
   /// can do next to nothing, what the tip has to give up costs less still, else joints would rush for that little.
   template <typename Tasks, int P>
   [[nodiscard]] Found<Tasks> beside(const Rows<N, P, Scalar>& rows, const Tasks& tasks, const JointState& state,
@@ -104,17 +96,12 @@ class Limiter {
     Found<Tasks> found = bounded(tasks, state, wanted, last, rows);
     found.rows |= projection.active();
     const JointVector change = entrywise(wanted, [&](Eigen::Index i) { return wanted.coeff(i) - desired.coeff(i); });
-    const auto kept = [&](const auto& level) noexcept {
+    multiply_scales(found, tasks, [&](const auto& level) noexcept {
       const Scalar lost = norm(product(level, change));
       const Scalar task = norm(product(level, desired));
       if (!(lost > kUnseen * task)) return Scalar(1);
       return lost < task ? Scalar(1) - lost / task : Scalar(0);
-    };
-    found.scale *= kept(J);
-    if constexpr (kByLevel<Tasks>) {
-      found.scales[0] = found.scale;
-      tasks.each_lower([&](std::size_t k, const auto& level) noexcept { found.scales[k] *= kept(level); });
-    }
+    });
     return found;
   }
 
@@ -127,7 +114,7 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
     const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
-    return toward(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
   }
 
   /// The motion within bounds that does as much as possible of a desired one.
@@ -139,33 +126,12 @@ class Limiter {
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
     Found<Tasks> found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
-    if (!is_finite(found.u)) return failed(rest, found);
-    if constexpr (kByLevel<Tasks>) saturation.resolve_lower(box, desired, found);
-    return found;
-  }
-
-  /// From the motion of a tick without jerk as far toward a goal as bounds allow. found: what the goal does of the
-  /// task.
-  template <typename Saturation, typename Result, int P>
-  [[nodiscard]] Result toward(Saturation& saturation, const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                              const JointVector& steady, const JointVector& goal, const Result& found) const noexcept {
-    Result next = found;
-    next.u = goal;
-    if (box.contains(goal) && rows.admit(goal)) return next;
-    const JointVector from = rows.near(steady, box);
-    next = saturation(box, from, goal);
-    if (!is_finite(next.u)) return failed(from, next);
-    if constexpr (!std::is_same_v<Result, Saturated<N, Scalar>>) saturation.resolve_lower(box, goal, next);
-    multiply_scales(next, found);
-    return next;
-  }
-
-  /// In place of a motion that is not finite, one that does nothing of the tasks.
-  template <typename Result>
-  [[nodiscard]] static Result failed(const JointVector& u, Result found) noexcept {
-    found.u = u;
-    found.scale = Scalar(0);
-    if constexpr (!std::is_same_v<Result, Saturated<N, Scalar>>) found.scales.fill(Scalar(0));
+    if (is_finite(found.u)) {
+      resolve_lower(saturation, box, desired, found);
+    } else {
+      found.u = rest;
+      set_scale(found, Scalar(0));
+    }
     return found;
   }
 
@@ -194,9 +160,6 @@ class Limiter {
       return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
     }
   }
-
-  template <typename Tasks>
-  static constexpr bool kByLevel = !std::is_same_v<Found<Tasks>, Saturated<N, Scalar>>;
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.
   static constexpr Scalar kGivenUp = Scalar(1e-3);     ///< Price of what the task gives up, as a share of the rest.

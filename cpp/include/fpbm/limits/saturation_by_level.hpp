@@ -19,8 +19,8 @@ namespace fpbm {
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible.
 ///
 /// u* stands for the commands, b_k = J_k u*, and for the preferred null-space motion. J_k d = J_k u*. If every higher
-/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (DampedLevel). The first level is that
-/// of NullSpaceSaturation: J u* and the null-space motion of u* together.
+/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (DampedLevel, kLevelRadius). The
+/// first level is that of NullSpaceSaturation: J u* and the null-space motion of u* together.
 template <int N, typename Scalar, int P, int... M>
 class SaturationByLevel {
  public:
@@ -41,7 +41,7 @@ class SaturationByLevel {
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                   const JointVector& desired) noexcept {
     Result result{first_(box, rest, desired), {}};
-    result.scales.fill(Scalar(1));
+    result.scales.fill(Scalar(1));  // Of a level that is left out, or that the higher levels determine.
     result.scales[0] = result.scale;
     return result;
   }
@@ -54,7 +54,7 @@ class SaturationByLevel {
       if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
           whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
-      if (whole) add(space, J, unit_);
+      if (whole) space.add(in_units(J, unit_));
       if (!goal.allFinite()) {
         result.scales[k] = Scalar(0);
       } else if (box.contains(goal) && rows_.admit(goal)) {
@@ -80,7 +80,7 @@ class SaturationByLevel {
   [[nodiscard]] static LevelSpace<N, Scalar> space_of(const Matrix<M1, N, Scalar>& J,
                                                       const JointVector& unit) noexcept {
     LevelSpace<N, Scalar> space(unit.size());
-    if constexpr (kLevels > 1) add(space, J, unit);
+    if constexpr (kLevels > 1) space.add(in_units(J, unit));
     return space;
   }
   template <int M1>
@@ -103,11 +103,6 @@ class SaturationByLevel {
     return scaled;
   }
 
-  template <int Mk>
-  static void add(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J, const JointVector& unit) noexcept {
-    (void)space.add(in_units(J, unit), filled<Vector<Mk, Scalar>>(J.rows()));
-  }
-
   /// (d − u)/unit for v = u* − u. Adds the level to the space.
   template <int Mk>
   [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J,
@@ -117,13 +112,9 @@ class SaturationByLevel {
     const JointVector projected = space.project(in_unit);
     const JointVector outside = in_unit - projected;
     const Vector<Mk, Scalar> r = product(scaled, outside);
-    DampedLevel<Mk, Scalar> damped(kRadius * kRadius * squared_norm(scaled));
+    DampedLevel<Mk, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar> * squared_norm(scaled));
     return projected + space.add(scaled, r, damped);
   }
-
-  /// Radius of the damping of a level that higher ones have left short, as a share of ‖J_k‖_F: that of the resolution
-  /// without limits (ByLevels).
-  static constexpr Scalar kRadius = Scalar(0.1);
 
   TaskLevels<N, Scalar, M...> levels_;
   JointVector unit_;
@@ -140,16 +131,19 @@ template <int N, typename Scalar, int P, int... M>
   return {levels, unit, rows};
 }
 
+template <int N, typename Scalar, int P, int... M>
+void resolve_lower(const SaturationByLevel<N, Scalar, P, M...>& saturation, const Box<N, Scalar>& box,
+                   const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(M)>& found) noexcept {
+  saturation.resolve_lower(box, desired, found);
+}
+
 /// The part of a motion that changes no level.
 template <int N, typename Scalar, int... M>
 [[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, M...>& levels,
                                                   const Vector<N, Scalar>& v) noexcept {
   LevelSpace<N, Scalar> space(v.size());
-  const auto add = [&](std::size_t, const auto& J) noexcept {
-    (void)space.add(J, filled<Vector<std::decay_t<decltype(J)>::RowsAtCompileTime, Scalar>>(J.rows()));
-  };
-  add(0, levels.first());
-  levels.each_lower(add);
+  space.add(levels.first());
+  levels.each_lower([&](std::size_t, const auto& J) noexcept { space.add(J); });
   return space.project(v);
 }
 

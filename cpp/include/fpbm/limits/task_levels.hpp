@@ -15,8 +15,6 @@ namespace fpbm {
 template <int N, typename Scalar, int... M>
 class TaskLevels {
  public:
-  static constexpr int kLevels = static_cast<int>(sizeof...(M));
-
   explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) { enabled_.fill(true); }
   /// enabled: levels that are not enabled are left out. The first one is enabled.
   explicit TaskLevels(const std::array<bool, sizeof...(M)>& enabled, const Matrix<M, N, Scalar>&... J) noexcept
@@ -46,40 +44,37 @@ struct SaturatedLevels : Saturated<N, Scalar> {
   std::array<Scalar, K> scales;  ///< s_k of each level. The first is scale.
 };
 
-/// A matrix stands for one level.
-template <int M, int N, typename Scalar>
-[[nodiscard]] const Matrix<M, N, Scalar>& first_level(const Matrix<M, N, Scalar>& J) noexcept {
-  return J;
-}
 template <int N, typename Scalar, int... M>
 [[nodiscard]] const auto& first_level(const TaskLevels<N, Scalar, M...>& levels) noexcept {
   return levels.first();
 }
 
-/// A motion that every level has the same scale in.
-template <int M, int N, typename Scalar>
-[[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
-                                              Scalar scale) noexcept {
-  return {u, scale, 0, 0};
+/// As for one level (one_level.hpp).
+template <int N, typename Scalar, int K>
+void set_scale(SaturatedLevels<N, Scalar, K>& motion, Scalar scale) noexcept {
+  motion.scale = scale;
+  motion.scales.fill(scale);
 }
+
 template <int N, typename Scalar, int... M>
-[[nodiscard]] SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> with_scale(const TaskLevels<N, Scalar, M...>&,
-                                                                                    const Vector<N, Scalar>& u,
-                                                                                    Scalar scale) noexcept {
+[[nodiscard]] auto with_scale(const TaskLevels<N, Scalar, M...>&, const Vector<N, Scalar>& u, Scalar scale) noexcept {
   SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> result{{u, scale, 0, 0}, {}};
-  result.scales.fill(scale);
+  set_scale(result, scale);
   return result;
 }
 
-/// Multiplies the scales of a motion by those of the motion that was its goal.
-template <int N, typename Scalar>
-void multiply_scales(Saturated<N, Scalar>& motion, const Saturated<N, Scalar>& goal) noexcept {
-  motion.scale *= goal.scale;
-}
 template <int N, typename Scalar, int K>
-void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevels<N, Scalar, K>& goal) noexcept {
-  motion.scale *= goal.scale;
-  for (std::size_t k = 0; k < motion.scales.size(); ++k) motion.scales[k] *= goal.scales[k];
+void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevels<N, Scalar, K>& other) noexcept {
+  for (std::size_t k = 0; k < motion.scales.size(); ++k) motion.scales[k] *= other.scales[k];
+  motion.scale = motion.scales[0];
+}
+
+template <int N, typename Scalar, int... M, typename Share>
+void multiply_scales(SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))>& motion,
+                     const TaskLevels<N, Scalar, M...>& levels, const Share& share) noexcept {
+  motion.scales[0] *= share(levels.first());
+  levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= share(J); });
+  motion.scale = motion.scales[0];
 }
 
 }  // namespace fpbm

@@ -59,6 +59,13 @@ class LevelSpace {
                     });
   }
 
+  /// Adds the level A, without a solution.
+  template <int M>
+  void add(const Matrix<M, N, Scalar>& A) noexcept {
+    auto r = filled<Vector<M, Scalar>>(A.rows());
+    (void)triangular(A, r);
+  }
+
   /// Z Zᵀ v, the part of v in the null space.
   [[nodiscard]] Column project(const Column& v) const noexcept {
     Column x = v;
@@ -83,13 +90,25 @@ class LevelSpace {
  private:
   /// Adds the level A and returns y = Q w, where solved(T, first, count, r) replaces the first entries of r by w.
   template <int M, typename Solved>
-  [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r,
-                                const Solved& solved) noexcept {
+  [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, Vector<M, Scalar> r, const Solved& solved) noexcept {
+    const Eigen::Index first = rank_;
+    const Matrix<N, M, Scalar> T = triangular(A, r);
+    const Eigen::Index count = rank_ - first;
+    solved(T, first, count, r);
+    Column y = filled<Column>(size());
+    for (Eigen::Index i = 0; i < count; ++i) y.coeffRef(first + i) = r.coeff(i);
+    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y.data());
+    return y;
+  }
+
+  /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots, as r afterwards.
+  template <int M>
+  [[nodiscard]] Matrix<N, M, Scalar> triangular(const Matrix<M, N, Scalar>& A, Vector<M, Scalar>& r) noexcept {
     using std::swap;
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank_;
-    Matrix<N, M, Scalar> T = transpose_of(A);  // Becomes QᵀAᵀ: one column for each row of A.
+    Matrix<N, M, Scalar> T = transpose_of(A);
     const auto row = [&](Eigen::Index j) noexcept { return T.data() + j * n; };
     Vector<M, Scalar> least;
     least.resize(m);
@@ -97,7 +116,6 @@ class LevelSpace {
       least.coeffRef(j) = kDependent * length_of(row(j), n);
       for (Eigen::Index k = 0; k < first; ++k) reflect(k, row(j));
     }
-    Vector<M, Scalar> result = r;
     while (rank_ < n && rank_ - first < m) {
       const Eigen::Index k = rank_ - first;
       Eigen::Index next = -1;
@@ -112,17 +130,12 @@ class LevelSpace {
       if (next < 0) break;
       for (Eigen::Index i = 0; next != k && i < n; ++i) swap(row(k)[i], row(next)[i]);
       swap(least.coeffRef(k), least.coeffRef(next));
-      swap(result.coeffRef(k), result.coeffRef(next));
+      swap(r.coeffRef(k), r.coeffRef(next));
       add_reflection(row(k) + rank_);
       for (Eigen::Index j = k; j < m; ++j) reflect(rank_, row(j));
       ++rank_;
     }
-    const Eigen::Index count = rank_ - first;
-    solved(T, first, count, result);
-    Column y = filled<Column>(n);
-    for (Eigen::Index i = 0; i < count; ++i) y.coeffRef(first + i) = result.coeff(i);
-    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y.data());
-    return y;
+    return T;
   }
 
   /// Adds the reflection that makes all but the first of some entries zero: those of a column from row rank() on.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/sincos.hpp"
@@ -14,13 +13,15 @@
 
 namespace fpbm {
 
-/// State of a robot, which tasks read: where its links are, and how they turn. Robot::update() fills it.
+/// State of a robot, which tasks read: placements in the base frame, and angular velocities in its axes.
+/// Robot::update() fills it.
 template <int N, typename Scalar = double>
 struct RobotState {
   Vector<N, Scalar> q;                                        ///< [rad] or [m]
   Vector<N, Scalar> qd;                                       ///< [rad/s] or [m/s]
   std::array<Transform<Scalar>, kCapacity<N> + 1> placement;  ///< Of the base and each joint; z is the joint's axis.
   Matrix<3, N, Scalar> w;  ///< Column i: angular velocity of the link that joint i moves [rad/s].
+  bool moves = true;       ///< False: qd was not given, J̇ is not needed.
 };
 
 /// A chain of N joints, whose links tasks refer to. Immutable.
@@ -74,10 +75,17 @@ class Robot {
     }
   }
 
-  /// Positions of all joints and links at (q, qd).
+  /// Placements of all joints at q, for tasks at velocity level: their J̇ is left as it is.
+  void update(const Vector<N, Scalar>& q, State& state) const noexcept {
+    update(q, filled<Vector<N, Scalar>>(dof_), state);
+    state.moves = false;
+  }
+
+  /// Placements and angular velocities of all joints at (q, qd).
   void update(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd, State& state) const noexcept {
     state.q = q;
     state.qd = qd;
+    state.moves = true;
     const Vector<N, Scalar> angles = entrywise(q, [&](Eigen::Index i) { return turns_.coeff(i) * q.coeff(i); });
     Vector<N, Scalar> sines(dof_);
     Vector<N, Scalar> cosines(dof_);
@@ -105,45 +113,75 @@ class Robot {
     }
   }
 
-  /// A frame fixed to a link, at offset in the link's frame.
-  [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& offset) const noexcept {
-    const Transform<Scalar>& end = link == kTip ? tip_ : ends_[index(link)];
-    return state.placement[index(joints_before(link))] * (end * offset);
+  /// A frame fixed to a link, at offset in the link's frame, seen from the link's joint. Constant: for the constructor
+  /// of what asks for frame() at every tick.
+  [[nodiscard]] Transform<Scalar> in_joint(int link, const Transform<Scalar>& offset) const noexcept {
+    return (link == kTip ? tip_ : ends_[index(link)]) * offset;
+  }
+  /// That frame in the base frame. seen: in_joint().
+  [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
+    return state.placement[index(joints_before(link))] * seen;
   }
 
-  /// J and J̇ of a frame of a link with its origin at p: linear rows first, then angular, in the base frame's axes.
+  /// J and J̇ of a frame of a link with its origin at p, in the base frame's axes: linear rows [m], or linear and then
+  /// angular ones [rad].
   ///
   /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a joint that turns, [z; 0] for one that slides. That of J̇ is
   /// [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md). Columns of joints beyond the link are 0.
-  void jacobian(const State& state, int link, const Vector3& p, Matrix<6, N, Scalar>& J,
-                Matrix<6, N, Scalar>& Jd) const noexcept {
-    J.setZero(6, dof_);
-    Jd.setZero(6, dof_);
+  template <int M>
+  void jacobian(const State& state, int link, const Vector3& p, Matrix<M, N, Scalar>& J,
+                Matrix<M, N, Scalar>& Jd) const noexcept {
+    static_assert(M == 3 || M == 6, "a frame has 3 linear rows, and 3 angular ones");
+    start(link, state, J, Jd);
     Vector3 u(Scalar(0), Scalar(0), Scalar(0));
     for (Eigen::Index i = joints_before(link); i-- > 0;) {
       const Transform<Scalar>& placement = state.placement[index(i + 1)];
-      const Vector3 z = placement.R.col(2);
+      const Vector3 z = column(placement.R, 2);
       const Vector3 lever = entrywise(p, [&](Eigen::Index k) { return p.coeff(k) - placement.p.coeff(k); });
-      const bool turns = turns_.coeff(i) > Scalar(0);
-      const Vector3 l = turns ? cross(z, lever) : z;
+      const Vector3 l = turns_.coeff(i) > Scalar(0) ? cross(z, lever) : z;
       const Vector3 a = entrywise(z, [&](Eigen::Index k) { return turns_.coeff(i) * z.coeff(k); });
+      store(J, 0, i, l);
+      if constexpr (M == 6) store(J, 3, i, a);
+      if (!state.moves) continue;
       const Vector3 w = column(state.w, i);
       const Vector3 turning = cross(w, l);
       const Vector3 carried = cross(a, u);
-      const Vector3 ad = cross(w, a);
-      for (int k = 0; k < 3; ++k) {
-        J.coeffRef(k, i) = l.coeff(k);
-        J.coeffRef(3 + k, i) = a.coeff(k);
-        Jd.coeffRef(k, i) = turning.coeff(k) + carried.coeff(k);
-        Jd.coeffRef(3 + k, i) = ad.coeff(k);
-        u.coeffRef(k) += state.qd.coeff(i) * l.coeff(k);
-      }
+      store(Jd, 0, i, entrywise(l, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }));
+      if constexpr (M == 6) store(Jd, 3, i, cross(w, a));
+      u = entrywise(u, [&](Eigen::Index k) { return u.coeff(k) + state.qd.coeff(i) * l.coeff(k); });
+    }
+  }
+
+  /// The angular rows of jacobian() [rad].
+  void angular_jacobian(const State& state, int link, Matrix<3, N, Scalar>& J,
+                        Matrix<3, N, Scalar>& Jd) const noexcept {
+    start(link, state, J, Jd);
+    for (Eigen::Index i = joints_before(link); i-- > 0;) {
+      const Vector3 z = column(state.placement[index(i + 1)].R, 2);
+      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return turns_.coeff(i) * z.coeff(k); });
+      store(J, 0, i, a);
+      if (state.moves) store(Jd, 0, i, cross(column(state.w, i), a));
     }
   }
 
  private:
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] Eigen::Index joints_before(int link) const noexcept { return link == kTip ? dof_ : link; }
+
+  /// Gives J and J̇ their size, and zeros in the columns of joints beyond a link.
+  template <int M>
+  void start(int link, const State& state, Matrix<M, N, Scalar>& J, Matrix<M, N, Scalar>& Jd) const noexcept {
+    J.resize(M, dof_);
+    Jd.resize(M, dof_);
+    for (Eigen::Index j = joints_before(link); j < dof_; ++j) {
+      for (int i = 0; i < M; ++i) J.coeffRef(i, j) = Scalar(0);
+      for (int i = 0; state.moves && i < M; ++i) Jd.coeffRef(i, j) = Scalar(0);
+    }
+  }
+  template <int M>
+  static void store(Matrix<M, N, Scalar>& to, int row, Eigen::Index j, const Vector3& from) noexcept {
+    for (int k = 0; k < 3; ++k) to.coeffRef(row + k, j) = from.coeff(k);
+  }
 
   Eigen::Index dof_;
   std::array<Transform<Scalar>, kCapacity<N>> steps_;     ///< From a joint's frame to the next joint's, at zero.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
+
 #include "fpbm/core/level.hpp"
-#include "fpbm/core/product_space.hpp"
+#include "fpbm/core/parts.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -72,7 +74,9 @@ class Correction {
   /// Call at the end of a tick that did the whole task.
   void integrate() noexcept {
     if (gain_ == Scalar(0) || far_) return;
-    for (int i = 0; i < Space::kRows; ++i) integral_(i) += dt_ * error_(i);
+    for (int i = 0; i < Space::kRows; ++i) {
+      if (std::isfinite(error_(i))) integral_(i) += dt_ * error_(i);  // A lower level may have no finite reference.
+    }
     const Scalar size = gain_ * norm(in_lengths<Space>(integral_, length_));
     if (!(size > bound_)) return;
     for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fpbm/clearance/unguarded.hpp"
-#include "fpbm/core/product_space.hpp"
+#include "fpbm/core/parts.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/rows.hpp"
 #include "fpbm/linalg/null_basis.hpp"
@@ -11,6 +11,7 @@
 #include "fpbm/realtime/progress.hpp"
 #include "fpbm/realtime/slow_down.hpp"
 #include "fpbm/realtime/tick.hpp"
+#include "fpbm/realtime/tick_motion.hpp"
 
 namespace fpbm {
 
@@ -28,7 +29,7 @@ class LimitedState {
   /// From a state after a tick of acceleration qdd0. Throws std::invalid_argument where an option is out of range.
   LimitedState(const TrackerOptions<Scalar>& options, const JointLimits& limits, const JointState& start,
                const JointVector& qdd0, const Guard_& guard)
-      : dt_(options.dt),
+      : motion_{options.dt},
         correction_(options),
         limiter_(limits),
         guard_(guard),
@@ -41,7 +42,7 @@ class LimitedState {
     progress_.begin_at(state_.q, tip, length);
   }
 
-  [[nodiscard]] Scalar dt() const noexcept { return dt_; }
+  [[nodiscard]] Scalar dt() const noexcept { return motion_.dt; }
   [[nodiscard]] const JointState& state() const noexcept { return state_; }
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& last() const noexcept { return last_; }
@@ -61,15 +62,15 @@ class LimitedState {
   /// The result of a tick in which nothing has happened yet.
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
-    Result result{state.q, state.qd,  filled<JointVector>(state.q.size()), Status::kOk, Scalar(1),
-                  0,       Scalar(0), filled<Twist>(Space::kRows)};
+    Result result{{state.q, state.qd, filled<JointVector>(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0),
+                   filled<Twist>(Space::kRows)}};
     if constexpr (kIsProduct<Space>) result.scales.fill(Scalar(1));
     return result;
   }
 
   /// Whether a state is finite and far enough from overflow to brake from.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
-    const Scalar rate = Scalar(4) / dt_;
+    const Scalar rate = Scalar(4) / dt();
     return is_finite(state.q) &&
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
@@ -84,37 +85,38 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || kLevelsOf<Space> != 1) next.q = moved(rate(state_.qd, next.qd));
+      if (limits().bounds_jerk() || kLevelsOf<Space> != 1)
+        next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
     } else {
-      next.qd = rate(state_.q, next.q);
+      next.qd = motion_.rate(state_.q, next.q);
     }
     if constexpr (kGuarded) {
       if (guard_.draws_away() && !failed(result.status)) {
-        next = after(motion_to(next) + self_motion_away(loop.arm, next.q));
+        next = motion_.after(state_, motion_.between(state_, next) + self_motion_away(loop.arm, next.q));
       }
-      guard_.bound_tip_speed(limits(), state_, motion_to(next), rows);
+      guard_.bound_tip_speed(limits(), state_, motion_.between(state_, next), rows);
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
     const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);
     if (progress_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
     if (recovering) {
       const Box<N, Scalar> box = limits().box(state_, last_);
-      next = after(rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
+      next = motion_.after(state_, rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
       result.status = Status::kRecovering;
-      result.scale = Scalar(0);
+      multiply_scale(result, Scalar(0));
     } else if (stopping_ || result.status >= Status::kStalled || !limits().admits(state_, next, last_) ||
-               !rows.admit(motion_to(next))) {
+               !rows.admit(motion_.between(state_, next))) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
-        desired = rate(state_.qd, next.qd);
+        desired = motion_.rate(state_.qd, next.qd);
       } else if (!failed(result.status)) {
         share = slow_down(loop, limits(), correction_(now), state_.q, field);
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       if constexpr (kLevelsOf<Space> != 1) {
         if (!failed(result.status)) {
-          result.status = worse(result.status, expect(loop, correction_(ahead(now, dt_ / 2)), desired));
+          result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));
         }
         if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
       } else {
@@ -125,23 +127,23 @@ class LimitedState {
       }
       const JointVector u = limited(loop.kinematics, state_, last_, desired, rows, result);
       if (share < Scalar(1)) {
-        result.scale *= share;
+        multiply_scale(result, share);
         result.status = worse(result.status, Status::kSlowed);
       }
-      next = after(u);
+      next = motion_.after(state_, u);
     }
     if constexpr (kGuarded) {
       const bool braking = stopping_ || failed(result.status);
       if (!guard_.empty() && (braking || !guard_.accepts(limits(), state_, next))) {
         const JointVector qdd = guard_.stop(limits(), state_, last_);
-        next = after(kSecondOrder ? qdd : JointVector(state_.qd + dt_ * qdd));
-        result.scale = Scalar(0);
+        next = motion_.after(state_, kSecondOrder ? qdd : JointVector(state_.qd + dt() * qdd));
+        multiply_scale(result, Scalar(0));
         if (!braking) result.status = Status::kBlocked;
       }
     }
     result.q = next.q;
     result.qd = next.qd;
-    result.qdd = last_ = rate(state_.qd, next.qd);
+    result.qdd = last_ = motion_.rate(state_.qd, next.qd);
     const JointVector q = state_.q;
     state_ = next;
     if (stopping_ || failed(result.status)) return;
@@ -170,8 +172,7 @@ class LimitedState {
     } else {
       found = limiter_.motion(tasks, state, desired, last, rows);
     }
-    result.scale = found.scale;
-    if constexpr (kIsProduct<Space>) result.scales = found.scales;
+    take_scale(result, found);
     result.saturated = found.joints;
     if (found.scale < Scalar(1) && !braking) {
       result.status = guard_.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
@@ -187,12 +188,7 @@ class LimitedState {
   /// the higher levels by J̇ q̇.
   template <typename Loop, typename Target>
   [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
-    const Scalar half = dt_ / Scalar(2);
-    JointState middle = state_;
-    for (Eigen::Index i = 0; i < middle.q.size(); ++i) {
-      middle.q(i) += half * (state_.qd(i) + half / Scalar(2) * last_(i));
-      middle.qd(i) += half * last_(i);
-    }
+    const JointState middle = motion_.middle(state_, last_);
     typename Loop::X dx = Loop::packed(middle);
     const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
     if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
@@ -209,33 +205,7 @@ class LimitedState {
     return null_space_motion(jacobian_in_metres(kinematics), guard_.away(state_.q));
   }
 
-  /// The motion of a tick: its mean acceleration, or its velocity at velocity level.
-  [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept {
-    return kSecondOrder ? rate(state_.qd, next.qd) : next.qd;
-  }
-
-  /// The state after a tick of some motion.
-  [[nodiscard]] JointState after(const JointVector& u) const noexcept {
-    if constexpr (kSecondOrder) return {moved(u), plus(state_.qd, u)};
-    return {plus(state_.q, u), u};
-  }
-
-  /// The position after a tick of constant acceleration.
-  [[nodiscard]] JointVector moved(const JointVector& qdd) const noexcept {
-    const Scalar half = dt_ / Scalar(2);
-    return plus(state_.q, entrywise(qdd, [&](Eigen::Index i) { return state_.qd.coeff(i) + half * qdd.coeff(i); }));
-  }
-
-  /// from + dt change.
-  [[nodiscard]] JointVector plus(const JointVector& from, const JointVector& change) const noexcept {
-    return entrywise(from, [&](Eigen::Index i) { return from.coeff(i) + dt_ * change.coeff(i); });
-  }
-  /// (to − from)/dt.
-  [[nodiscard]] JointVector rate(const JointVector& from, const JointVector& to) const noexcept {
-    return entrywise(from, [&](Eigen::Index i) { return (to.coeff(i) - from.coeff(i)) / dt_; });
-  }
-
-  Scalar dt_;
+  TickMotion<kLevel, N, Scalar> motion_;
   Correction<kLevel, Space, Scalar> correction_;
   Limiter<kLevel, N, Scalar> limiter_;
   Guard_ guard_;

@@ -5,19 +5,24 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
-#include "fpbm/core/product_space.hpp"
+#include "fpbm/linalg/sums.hpp"
+#include "fpbm/realtime/no_lower_levels.hpp"
+#include "fpbm/realtime/shape_watch.hpp"
 #include "fpbm/realtime/task_distance.hpp"
 #include "fpbm/task/reference.hpp"
+#include "fpbm/task/stack.hpp"
 
 namespace fpbm {
 
 /// Brings the lower levels of a stack to rest if their targets cannot be reached.
 ///
-/// In each window of stall_time, the largest error of each task counts. If no target has moved by 0.002 (TaskDistance),
-/// and no task's largest error is below that of every earlier window by 1/16, each task of a lower level with
-/// an error above 0.0001 is held at its current point. A target that moves, of any level, releases all tasks. Without
-/// it, an arm that is limited may oscillate in the null space of the higher levels.
+/// The largest error of each task in a window of stall_time counts. If no target has moved by 0.002 (TaskDistance), and
+/// no task has a largest error below those of all earlier windows by 1/16, each task of a lower level with an error
+/// above 0.0001 is held at its current point. All tasks are released if a target of any level or a shape near the arm
+/// moves, and in a tick that does not follow the references. Tasks that are not held could oscillate in the null space
+/// of the higher levels while limits slow them.
 template <typename Space, typename Scalar = double>
 class LowerLevels {
  public:
@@ -25,19 +30,42 @@ class LowerLevels {
 
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { begin_window(); }
 
-  /// A reference in which the points that are held replace those of their tasks.
-  [[nodiscard]] Reference<Space, Scalar> operator()(Reference<Space, Scalar> reference) const noexcept {
-    if (!any_held_) return reference;
+  /// Call at the start of a tick, with the kinematics of the state. The points that are held replace those of their
+  /// tasks in the references, from which the correction begins anew.
+  template <typename References, typename Kinematics, typename Correction>
+  void hold(References& references, const Kinematics& kinematics, Correction& correction) noexcept {
+    update(references.stages[0].x, kinematics);
+    if (!any_held_) return;
+    for (auto& stage : references.stages) replace(stage);
+    correction.begin(Space::template difference<Scalar>(references.stages[0].x, kinematics.tip), kinematics.length);
+  }
+
+  /// Call at the end of a tick. follows: the arm follows the references. qd: joint velocities [rad/s]. room: a measure
+  /// of the distances of shapes near the arm [m]. length: the robot's characteristic length [m].
+  template <typename JointVector>
+  void end_tick(bool follows, const JointVector& qd, Scalar room, Scalar length) noexcept {
+    const bool at_rest = largest_magnitude(qd) <= kRest;
+    if (!follows || (any_held_ && shapes_.moved(at_rest, room, kMoved * length))) release();
+  }
+
+  /// All tasks follow their references.
+  void release() noexcept {
+    held_.fill(false);
+    any_held_ = false;
+    shapes_.reset();
+    begin_window();
+  }
+
+ private:
+  void replace(Reference<Space, Scalar>& reference) const noexcept {
     Space::each([&](auto space, auto i, int row) noexcept {
       constexpr std::size_t kIndex = decltype(i)::value;
       if (!held_[kIndex]) return;
       std::get<kIndex>(reference.x) = std::get<kIndex>(point_);
       for (int j = row; j < row + decltype(space)::kRows; ++j) reference.xd(j) = reference.xdd(j) = Scalar(0);
     });
-    return reference;
   }
 
-  /// Call at the start of a tick, with the points of the tasks in `kinematics`.
   template <typename Kinematics>
   void update(const Point& target, const Kinematics& kinematics) noexcept {
     const Point& x = kinematics.tip;
@@ -48,7 +76,7 @@ class LowerLevels {
       constexpr std::size_t kIndex = decltype(i)::value;
       using Distance = TaskDistance<Part, Scalar>;
       const auto& goal = std::get<kIndex>(target);
-      moved = moved || Distance::between(goal, std::get<kIndex>(target_), length) > Distance::kProgress;
+      moved = moved || Distance::between(goal, std::get<kIndex>(target_), length) > kMoved;
       const auto& aim = held_[kIndex] ? std::get<kIndex>(point_) : goal;
       const Scalar error = Distance::between(aim, std::get<kIndex>(x), length);
       done_[kIndex] = !(error > kSmall) || !kinematics.is_enabled(kIndex);
@@ -62,14 +90,6 @@ class LowerLevels {
     if (time_ > stall_time_) end_window(x);
   }
 
-  /// All tasks follow their targets.
-  void release() noexcept {
-    held_.fill(false);
-    any_held_ = false;
-    begin_window();
-  }
-
- private:
   void end_window(const Point& x) noexcept {
     bool progress = false;
     bool all_done = true;
@@ -100,6 +120,9 @@ class LowerLevels {
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+  /// Least displacement that counts as a motion of a target or of shapes, as in TaskDistance.
+  static constexpr Scalar kMoved = Scalar(2e-3);
+  static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest velocity of a joint of an arm at rest [rad/s].
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector.
   /// As for an arm that crawls (StallDetector): an error that decays by 1/16 in each window of 2 s reaches 1 % in 143
   /// s.
@@ -113,14 +136,14 @@ class LowerLevels {
   std::array<bool, kTasks> done_{};
   std::array<Scalar, kTasks> peak_{};   ///< Largest errors in the window,
   std::array<Scalar, kTasks> least_{};  ///< and the least of earlier windows.
+  ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
   Point point_ = Space::template origin<Scalar>();  ///< Of the tasks that are held.
 };
 
-/// A single task has no lower levels.
-struct NoLowerLevels {
-  template <typename Scalar>
-  NoLowerLevels(Scalar, Scalar) noexcept {}
+template <typename... Levels, typename Scalar>
+struct LowerLevelsOf<StackSpace<Levels...>, Scalar> {
+  using type = std::conditional_t<(sizeof...(Levels) == 1), NoLowerLevels, LowerLevels<StackSpace<Levels...>, Scalar>>;
 };
 
 }  // namespace fpbm

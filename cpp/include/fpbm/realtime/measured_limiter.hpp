@@ -58,20 +58,15 @@ class MeasuredLimiter {
   [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
 
   /// As Limiter::motion().
-  template <int M, int P>
-  [[nodiscard]] Saturated<N, Scalar> motion(const Matrix<M, N, Scalar>& J, const JointState& state,
-                                            const JointVector& desired, const JointVector& last,
-                                            const Rows<N, P, Scalar>& rows) const noexcept {
-    const Saturated<N, Scalar> found = limiter_.motion(J, state, desired, last, rows);
+  template <typename Tasks, int P>
+  [[nodiscard]] auto motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                            const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
+    const auto found = limiter_.motion(tasks, state, desired, last, rows);
     if (!bounds_jerk_) return found;
     const Box<N, Scalar> box = in_reach(limits().box(state), last);
     if (box.contains(found.u) && rows.admit(found.u)) return found;
-    const JointVector from = rows.near(box.nearest(last), box);
-    NullSpaceSaturation<M, N, Scalar, P> saturation(J, unit_, rows);
-    Saturated<N, Scalar> next = saturation(box, from, found.u);
-    if (!next.u.allFinite()) return {from, Scalar(0), next.joints, next.passes, next.rows};
-    next.scale *= found.scale;
-    return next;
+    auto saturation = saturation_of(tasks, unit_, rows);
+    return toward_goal(saturation, box, rows, box.nearest(last), found.u, found);
   }
 
   /// As Limiter::brake(). The last of the speed decays as exp(−t/D), with a low-pass filter of time constant D/2

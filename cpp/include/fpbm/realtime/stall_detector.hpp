@@ -6,6 +6,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/validation.hpp"
+#include "fpbm/realtime/shape_watch.hpp"
 #include "fpbm/realtime/task_distance.hpp"
 
 namespace fpbm {
@@ -58,16 +59,12 @@ class StallDetector {
   /// One more tick of an arm that has stalled. True if shapes near the arm have moved since it came to rest, so that
   /// the arm is to try again. room: a measure of their distances [m].
   [[nodiscard]] bool wait(bool at_rest, Scalar room, Scalar length) noexcept {
-    using std::abs;
-    if (rests_ && abs(room - room_) > Distance::kProgress * length) return true;
-    if (at_rest && !rests_) room_ = room;
-    rests_ = rests_ || at_rest;
-    return false;
+    return shapes_.moved(at_rest, room, Distance::kProgress * length);
   }
 
   /// The arm is to try again.
   void reset() noexcept {
-    rests_ = false;
+    shapes_.reset();
     least_ = std::numeric_limits<Scalar>::infinity();
     waited_ = Scalar(0);
   }
@@ -88,8 +85,7 @@ class StallDetector {
   Scalar dt_;
   Scalar waited_ = Scalar(0);  ///< Without progress [s].
   Scalar least_ = std::numeric_limits<Scalar>::infinity();
-  bool rests_ = false;       ///< Since it stalled, it has come to rest.
-  Scalar room_ = Scalar(0);  ///< When it did.
+  ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fpbm/core/product_space.hpp"
+#include "fpbm/core/parts.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 
 namespace fpbm {

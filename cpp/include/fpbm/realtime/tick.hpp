@@ -9,18 +9,35 @@
 
 namespace fpbm {
 
+/// Result of one tick of a control loop, of a task whose errors have so many rows.
+template <int Rows, int N, typename Scalar>
+struct TickOfRows {
+  Vector<N, Scalar> q;         ///< Command for the tick's end [rad], or [m] for a prismatic joint.
+  Vector<N, Scalar> qd;        ///< Its velocity [rad/s].
+  Vector<N, Scalar> qdd;       ///< Mean acceleration over the tick [rad/s²].
+  Status status;               ///< Where it failed, why the arm brakes.
+  Scalar scale;                ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
+  std::uint32_t saturated;     ///< Bit i is set where joint i is on a bound.
+  Scalar sigma;                ///< Lower bound on σ_min(J) at the tick's start, tight within a factor √M.
+  Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
+};
+
 /// Result of one tick of a control loop.
 template <typename Space, int N, typename Scalar = double>
-struct Tick {
-  Vector<N, Scalar> q;                 ///< Command for the tick's end [rad], or [m] for a prismatic joint.
-  Vector<N, Scalar> qd;                ///< Its velocity [rad/s].
-  Vector<N, Scalar> qdd;               ///< Mean acceleration over the tick [rad/s²].
-  Status status;                       ///< Where it failed, why the arm brakes.
-  Scalar scale;                        ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
-  std::uint32_t saturated;             ///< Bit i is set where joint i is on a bound.
-  Scalar sigma;                        ///< Lower bound on σ_min(J) at the tick's start, tight within a factor √M.
-  Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
-};
+struct Tick : TickOfRows<Space::kRows, N, Scalar> {};
+
+/// Multiplies the scale of a tick, and takes over the scale of a motion.
+template <typename Space, int N, typename Scalar>
+void multiply_scale(Tick<Space, N, Scalar>& tick, Scalar share) noexcept {
+  tick.scale *= share;
+}
+template <typename Space, int N, typename Scalar, typename Motion>
+void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {
+  tick.scale = motion.scale;
+}
+/// Reports levels below the first: none.
+template <typename Space, int N, typename Scalar>
+void report_lower_levels(Tick<Space, N, Scalar>&) noexcept {}
 
 template <typename Scalar = double>
 struct TrackerOptions {

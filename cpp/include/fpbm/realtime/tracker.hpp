@@ -1,18 +1,17 @@
 #pragma once
 
 #include "fpbm/realtime/limited_state.hpp"
-#include "fpbm/realtime/lower_levels.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
-#include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/realtime/measured_tick.hpp"
+#include "fpbm/realtime/no_lower_levels.hpp"
+#include "fpbm/realtime/reference_sources.hpp"
 #include "fpbm/realtime/require_stable.hpp"
-#include "fpbm/realtime/stack_references.hpp"
 #include "fpbm/realtime/tick.hpp"
 #include "fpbm/realtime/tick_references.hpp"
 #include "fpbm/scheme/set_damping.hpp"
 #include "fpbm/sim/closed_loop.hpp"
 #include "fpbm/sim/rk4.hpp"
 #include "fpbm/singular/damped_gram.hpp"
-#include "fpbm/task/target_filter.hpp"
 
 /// One tick of a control loop.
 ///
@@ -86,35 +85,16 @@ class Tracker {
 
   /// One tick toward a reference, which continues at constant acceleration until the tick's end.
   Result tick(const Target& reference) noexcept {
-    return advance(References::of([&](Scalar seconds) noexcept { return ahead(reference, seconds); }, kept_.dt()));
+    return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, kept_.dt()));
   }
 
-  /// One tick behind a path follower, whose clock advances.
-  template <typename Path>
-  Result tick(PathFollower<Path>& follower) noexcept {
-    const Result result = advance(References::of([&](Scalar t) noexcept { return follower.ahead(t); }, kept_.dt()));
-    if (!kept_.stopping()) follower.advance(kept_.dt());
-    return result;
-  }
-
-  /// One tick behind a filter of targets, which goes on where the arm stops, too.
-  Result tick(TargetFilter<Space, Scalar>& filter) noexcept {
-    const Result result = advance(References::of([&](Scalar t) noexcept { return filter.ahead(t); }, kept_.dt()));
-    filter.advance();
-    return result;
-  }
-
-  /// One tick of a stack, with a source of references for each task in the order of the stack: a Reference, a
-  /// PathFollower or a TargetFilter.
-  template <typename First, typename Second, typename... Others>
-  Result tick(First& first, Second& second, Others&... others) noexcept {
-    const Result result = advance(
-        References::of([&](Scalar t) noexcept { return joined<Space>(t, first, second, others...); }, kept_.dt()));
-    const bool follows = !kept_.stopping();
-    const Scalar dt = kept_.dt();
-    advance_source(first, dt, follows);
-    advance_source(second, dt, follows);
-    (advance_source(others, dt, follows), ...);
+  /// One tick behind a source of references: a PathFollower, whose clock advances unless the arm stops, or a
+  /// TargetFilter, which continues. A stack has a source for each task, in the order of the stack, or References.
+  template <typename... Sources>
+  Result tick(Sources&... sources) noexcept {
+    const Result result =
+        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, kept_.dt()));
+    (advance_source(sources, kept_.dt(), kept_.stopping()), ...);
     return result;
   }
 
@@ -127,16 +107,9 @@ class Tracker {
     X x = Loop::packed(state);
     X dx = x;
     loop.update(x);
-    [[maybe_unused]] const auto target = references.stages[0].x;
-    if constexpr (kLevelsOf<Space> != 1) {
-      lower_levels_.update(target, loop.kinematics);
-      for (Target& stage : references.stages) stage = lower_levels_(stage);
-    }
+    watch(loop.kinematics, references.stages[0], result);
+    lower_levels_.hold(references, loop.kinematics, kept_.correction());
     const Target now = references.stages[0];
-    watch(loop.kinematics, now, result);
-    if constexpr (kLevelsOf<Space> != 1) {
-      result.error = Space::template difference<Scalar>(target, loop.kinematics.tip);
-    }
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
     }
@@ -151,7 +124,9 @@ class Tracker {
     JointState next{column(x, 0), state.qd};
     if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
-    if constexpr (kIsProduct<Space>) result.report_lower_levels();
+    report_lower_levels(result);
+    lower_levels_.end_tick(!kept_.stopping() && !failed(result.status), kept_.state().qd, Scalar(guard().room()),
+                           correction.length());
     return result;
   }
 
@@ -175,11 +150,10 @@ class Tracker {
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
-    const auto& limits = measured_.limits();
     Result result = kept_.idle(measured);
     if (!kept_.moderate(measured)) {
       result.status = Status::kNotFinite;
-      result.scale = Scalar(0);
+      multiply_scale(result, Scalar(0));
       result.qdd = answer_ = fade(kept_.limits(), answer_);
       return result;
     }
@@ -187,41 +161,30 @@ class Tracker {
     X dx = Loop::packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);
-    auto rows = guard().rows(limits, measured);
     result.status = loop.resolve(kept_.correction()(reference), dx);
-    if constexpr (kGuarded) {
-      // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
-      guard().bound_tip_speed(limits, measured, loop.qdd, rows);
-      const Scalar share = kept_.dt() / limits.tick();
-      if (share < Scalar(1)) guard().bound_tip_speed(limits, measured, share * loop.qdd, rows);
-    }
-    const bool braking = kept_.stopping() || result.status >= Status::kStalled;
-    const auto found = braking
-                           ? measured_.brake(measured, answer_)
-                           : measured_.motion(jacobian_in_metres(loop.kinematics), measured, loop.qdd, answer_, rows);
-    result.scale = found.scale;
-    result.saturated = found.joints;
-    if (found.scale < Scalar(1) && !braking) {
-      result.status = guard().is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
-    }
-    result.qdd = answer_ = found.u;
-    if (result.status == Status::kOk) kept_.correction().integrate();
+    result.qdd = answer_ = limit_measured(loop, measured_, kept_, measured, answer_, result);
+    report_lower_levels(result);
     return result;
   }
 
   /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called.
   void stop() noexcept { kept_.stop(); }
-  void resume() noexcept { kept_.resume(); }
+  void resume() noexcept {
+    kept_.resume();
+    lower_levels_.release();
+  }
 
   [[nodiscard]] const JointState& state() const noexcept { return kept_.state(); }
   /// Acceleration of the last tick.
   [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
-  /// Enables or disables a lower level k ≥ 1 of a stack. The commands stay within all bounds.
-  void enable(int k, bool on) noexcept {
+  /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
+  /// within all bounds. False, without an effect, if there is no lower level k.
+  bool enable(int k, bool on) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to enable");
-    arm_.stack().enable(k, on);
+    if (!arm_.enable(k, on)) return false;
     lower_levels_.release();
+    return true;
   }
 
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
@@ -249,7 +212,7 @@ class Tracker {
   Arm arm_;
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
-  std::conditional_t<kLevelsOf<Space> != 1, LowerLevels<Space, Scalar>, NoLowerLevels> lower_levels_;
+  typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
   Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };

@@ -16,9 +16,9 @@ namespace fpbm {
 ///
 ///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
 ///
-/// with the command of each task, S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) less J̇ qd, or S (xd + k (x ⊖ f(q))) at velocity
-/// level. Directions that the posture or higher levels take away from a level are damped (DampedLevel). What no task
-/// determines is the null-space motion of the scheme's answer.
+/// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
+/// level, all rows in metres. Directions that the posture or higher levels take away from a level are damped
+/// (DampedLevel). What no task determines is the null-space motion of the scheme's answer.
 template <typename Scheme, typename Stack_>
 struct ByLevels {
   using Scalar = typename Stack_::Scalar;
@@ -27,23 +27,19 @@ struct ByLevels {
   using JointVector = Vector<kDof, Scalar>;
   using Space = typename Stack_::Space;
 
-  /// Default of the radius: at 0.05, 4 of 60 arms with unreachable targets tremble at velocity level, at 0.1 none
-  /// (`fpbm_tests --gtest_filter='Stack.*_comes_to_rest*'` prints them).
-  static constexpr Scalar kRadius = Scalar(0.1);
-
   Scheme scheme;
   Scalar radius;  ///< ε of the damping of the lower levels, as a share of ‖J_k‖_F.
 
   /// scheme: without feedback gains, which the tasks have. Throws std::invalid_argument where the radius is not in
   /// [0, 1].
-  explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kRadius) : scheme(scheme_), radius(radius_) {
+  explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kLevelRadius<Scalar>) : scheme(scheme_), radius(radius_) {
     validation::require_fraction("radius", radius);
   }
 
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
-  /// Joint accelerations, or velocities. A level whose references are not finite is left out. Leaves u unchanged where
-  /// the first level fails.
+  /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is left out. Leaves u
+  /// unchanged where the first level fails.
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u) const noexcept {
@@ -60,7 +56,7 @@ struct ByLevels {
         const Kinematics<Position<M>, kDof, Scalar> rows{filled<Vector<M, Scalar>>(M), J, Jd};
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve(rows, command, state, result);
-        if constexpr (Stack_::kLevels > 1) (void)space.add(J, filled<Vector<M, Scalar>>(M));
+        if constexpr (Stack_::kLevels > 1) space.add(J);
       } else {
         if (failed(status) || !kinematics.enabled[kIndex] || space.rank() == space.size()) return;
         Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;

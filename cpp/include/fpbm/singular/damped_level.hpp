@@ -7,17 +7,24 @@
 
 namespace fpbm {
 
+/// Radius of the damping of lower levels: ε as a share of ‖J_k‖_F.
+template <typename Scalar>
+inline constexpr Scalar kLevelRadius = Scalar(0.1);
+
 /// Solves a task level that is nearly singular, or nearly contradicts higher levels. With A = L Qᵀ (LevelSpace::add),
 ///
 ///   w = Lᵀ (L Lᵀ + Δ)⁻¹ r,
 ///
 /// where Δ is the spectral function of LostDirections for ε. Δ is zero for the directions of which the posture and the
-/// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r. If rows are
-/// dependent, so that L has fewer columns than rows, w = (LᵀL + Δ)⁻¹ Lᵀ r, which is the same: the eigenvalues of L Lᵀ
-/// and LᵀL are.
+/// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
+///
+/// If rows are dependent, L has fewer columns than rows, and w = (LᵀL + Δ)⁻¹ Lᵀ r. Both forms are equal, since L Lᵀ and
+/// LᵀL have the same eigenvalues but for zeros.
 template <int M, typename Scalar>
 class DampedLevel {
  public:
+  static_assert(M != Eigen::Dynamic, "a damped level has a number of rows that is known at compile time");
+
   /// epsilon_squared: ε², in the squared unit of A.
   explicit DampedLevel(Scalar epsilon_squared) noexcept : epsilon_squared_(epsilon_squared) {}
 
@@ -43,7 +50,7 @@ class DampedLevel {
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
  private:
-  /// LᵀL. For columns that are zero, a large eigenvalue apart from the others.
+  /// LᵀL. Each column of L that is zero gets an eigenvalue that is large, so that it does not count as lost.
   [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
                                                      Eigen::Index columns) const noexcept {
     auto gram = filled<Matrix<M, M, Scalar>>(M);
@@ -58,7 +65,7 @@ class DampedLevel {
     return gram;
   }
 
-  /// The inverse of such an eigenvalue is lost in tr((LᵀL)⁻¹).
+  /// That eigenvalue as a share of tr(LᵀL) + ε²: its inverse adds at most 1 % to tr((LᵀL)⁻¹) with ten such columns.
   static constexpr Scalar kApart = Scalar(1e3);
 
   Scalar epsilon_squared_;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "fpbm/core/direction.hpp"
+#include "fpbm/model/link.hpp"
+#include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
@@ -11,7 +13,8 @@ namespace fpbm {
 /// velocity along two unit vectors b₁, b₂ of the frame at right angles to a: S = [b₁ b₂]ᵀ. At velocity level the angle
 /// θ between a and d obeys θ̇ + kθ = 0 from everywhere but θ = π.
 template <typename Scalar_ = double>
-struct AxisTask {
+class AxisTask {
+ public:
   using Scalar = Scalar_;
   using Space = Direction;
   static constexpr int kRows = 2;
@@ -19,31 +22,35 @@ struct AxisTask {
 
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;
-  Vector<3, Scalar> axis = {Scalar(0), Scalar(0), Scalar(1)};  ///< In the frame; its length does not matter.
 
-  template <typename Robot>
-  void require_robot(const Robot& robot) const {
-    robot.require_link("frame", frame.link);
+  /// axis: in the frame; its length does not matter. Throws std::invalid_argument where it is zero or not finite.
+  AxisTask(const LinkFrame<Scalar>& frame_, const TaskGains<Scalar>& gains_,
+           const Vector<3, Scalar>& axis = {Scalar(0), Scalar(0), Scalar(1)})
+      : frame(frame_), gains(gains_) {
     validation::require_finite("axis", axis);
     if (!(norm(axis) > Scalar(0))) validation::reject("axis", " is zero: must point somewhere");
+    to_axis_ = z_to(axis);
+  }
+
+  template <typename Robot>
+  void bind(const Robot& robot) {
+    frame.bind(robot);
   }
 
   template <typename Robot>
   void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
                 Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
                 Matrix<2, 3, Scalar>& S) const noexcept {
-    const Transform<Scalar> at = robot.frame(state, frame.link, frame.offset);
-    Matrix<6, Robot::kDof, Scalar> all;
-    Matrix<6, Robot::kDof, Scalar> rates;
-    robot.jacobian(state, frame.link, at.p, all, rates);
-    const Matrix<3, 3, Scalar> aligned = times(at.R, z_to(axis));  // Its third column is a.
-    x = column(aligned, 2);
-    J = all.template bottomRows<3>();
-    Jd = rates.template bottomRows<3>();
+    const Matrix<3, 3, Scalar> axes = times(frame.at(robot, state).R, to_axis_);  // b₁, b₂ and a.
+    x = column(axes, 2);
+    robot.angular_jacobian(state, frame.link(), J, Jd);
     for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 3; ++j) S(i, j) = aligned(j, i);
+      for (int j = 0; j < 3; ++j) S(i, j) = axes(j, i);
     }
   }
+
+ private:
+  Matrix<3, 3, Scalar> to_axis_;  ///< In the frame: b₁, b₂ and the axis.
 };
 
 }  // namespace fpbm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/space.hpp"
+#include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
@@ -17,16 +18,16 @@ struct PoseTask {
   TaskGains<Scalar> gains;
 
   template <typename Robot>
-  void require_robot(const Robot& robot) const {
-    robot.require_link("frame", frame.link);
+  void bind(const Robot& robot) {
+    frame.bind(robot);
   }
 
   template <typename Robot>
   void evaluate(const Robot& robot, const typename Robot::State& state, Transform<Scalar>& x,
                 Matrix<6, Robot::kDof, Scalar>& J, Matrix<6, Robot::kDof, Scalar>& Jd,
                 Matrix<6, 6, Scalar>& S) const noexcept {
-    x = robot.frame(state, frame.link, frame.offset);
-    robot.jacobian(state, frame.link, x.p, J, Jd);
+    x = frame.at(robot, state);
+    robot.jacobian(state, frame.link(), x.p, J, Jd);
     S = identity<Matrix<6, 6, Scalar>>();
   }
 };

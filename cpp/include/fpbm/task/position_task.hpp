@@ -3,18 +3,19 @@
 #include <array>
 
 #include "fpbm/core/space.hpp"
+#include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
 /// Position of a frame's origin: M of its coordinates, along the base frame's axes or the frame's own.
 ///
-/// A task is data: which frame of the robot, which rows, which gains. A Stack evaluates tasks:
+/// A task is data: which frame of the robot, which rows, which gains. RobotTasks calls bind() in its constructor, and
+/// evaluate() in every state, for the task's
 ///
-///   x(state)       point of the Space, of which references are points
-///   J, J̇           in the Space's rows
-///   S(state)       selection: the task's rows are S J, and S applied to a twist of the Space
-///   kWhole         whether S is the identity
+///   x      point of the Space, in the base frame, as references have it
+///   J, J̇   in the Space's rows, along the base frame's axes [m, rad]; J̇ if the state moves
+///   S      selection: the task's rows are S J. If kWhole, S is the identity.
 template <int M = 3, typename Scalar_ = double>
 struct PositionTask {
   using Scalar = Scalar_;
@@ -29,24 +30,18 @@ struct PositionTask {
 
   /// Throws std::invalid_argument where the task does not suit a robot.
   template <typename Robot>
-  void require_robot(const Robot& robot) const {
-    robot.require_link("frame", frame.link);
-    for (const int row : rows) {
-      if (row < 0 || row > 2) validation::fail("rows", row, "0, 1 or 2");
-    }
+  void bind(const Robot& robot) {
+    frame.bind(robot);
+    require_different("rows", rows, 3);
   }
 
   template <typename Robot>
   void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
                 Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
                 Matrix<M, 3, Scalar>& S) const noexcept {
-    const Transform<Scalar> at = robot.frame(state, frame.link, frame.offset);
-    Matrix<6, Robot::kDof, Scalar> all;
-    Matrix<6, Robot::kDof, Scalar> rates;
-    robot.jacobian(state, frame.link, at.p, all, rates);
+    const Transform<Scalar> at = frame.at(robot, state);
     x = at.p;
-    J = all.template topRows<3>();
-    Jd = rates.template topRows<3>();
+    robot.jacobian(state, frame.link(), at.p, J, Jd);
     for (int i = 0; i < M; ++i) {
       const int row = rows[static_cast<std::size_t>(i)];
       for (int j = 0; j < 3; ++j) S(i, j) = in_frame ? at.R(j, row) : Scalar(row == j ? 1 : 0);

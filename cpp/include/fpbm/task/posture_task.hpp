@@ -3,6 +3,7 @@
 #include <array>
 
 #include "fpbm/core/joint_space.hpp"
+#include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
@@ -19,10 +20,8 @@ struct PostureTask {
   std::array<int, M> joints = first_joints();  ///< Each once, from 0.
 
   template <typename Robot>
-  void require_robot(const Robot& robot) const {
-    for (const int joint : joints) {
-      if (joint < 0 || joint >= robot.dof()) validation::fail("joints", joint, "0 to ", robot.dof() - 1);
-    }
+  void bind(const Robot& robot) const {
+    require_different("joints", joints, robot.dof());
   }
 
   template <typename Robot>
@@ -30,7 +29,7 @@ struct PostureTask {
                 Matrix<M, Robot::kDof, Scalar>& J, Matrix<M, Robot::kDof, Scalar>& Jd,
                 Matrix<M, M, Scalar>& S) const noexcept {
     J.setZero(M, robot.dof());
-    Jd.setZero(M, robot.dof());
+    if (state.moves) Jd.setZero(M, robot.dof());
     for (int i = 0; i < M; ++i) {
       const int joint = joints[static_cast<std::size_t>(i)];
       x(i) = state.q(joint);

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "fpbm/core/product_space.hpp"
-#include "fpbm/task/reference.hpp"
-#include "fpbm/task/task_gains.hpp"
+#include "fpbm/core/validation.hpp"
 
 namespace fpbm {
 
@@ -67,8 +66,7 @@ inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof.
 /// Tasks on levels in strict priority: Stack(TaskLevel(a, b), c) has a and b side by side, and c below both. A level of
 /// one task needs no TaskLevel.
 ///
-/// Tasks may change their parameters, and levels may be disabled, from tick to tick. All sizes are known at compile
-/// time.
+/// Lower levels may be disabled from tick to tick. All sizes are known at compile time.
 template <typename... Levels>
 class Stack {
  public:
@@ -83,7 +81,6 @@ class Stack {
   explicit Stack(const Given&... levels) : tasks_(std::tuple_cat(stack_detail::tasks_of(levels)...)) {}
 
   [[nodiscard]] const Tasks& tasks() const noexcept { return tasks_; }
-  [[nodiscard]] Tasks& tasks() noexcept { return tasks_; }
 
   /// Rows of each level.
   static constexpr std::array<int, kLevels> kRows{Levels::kRows...};
@@ -98,14 +95,26 @@ class Stack {
   /// First row of task i on its level.
   [[nodiscard]] static constexpr int row(int i) noexcept { return row_of(i, std::make_index_sequence<kTasks>{}); }
 
-  /// Enables or disables level k ≥ 1; a disabled level is left out. Levels begin enabled.
-  void enable(int k, bool on) noexcept { enabled_[static_cast<std::size_t>(k)] = on || k == 0; }
+  /// Enables or disables level k, counted from 0. The first level is always enabled. False if there is no lower level
+  /// k.
+  bool enable(int k, bool on) noexcept {
+    if (k < 1 || k >= kLevels) return false;
+    enabled_[static_cast<std::size_t>(k)] = on;
+    return true;
+  }
   [[nodiscard]] const std::array<bool, kLevels>& enabled() const noexcept { return enabled_; }
 
-  /// Throws std::invalid_argument where a task does not suit a robot.
+  /// Binds the tasks to a robot. Throws std::invalid_argument where a task does not suit the robot, or a level has more
+  /// rows than the robot has joints.
   template <typename Robot>
-  void require_robot(const Robot& robot) const {
-    std::apply([&](const auto&... task) { (task.require_robot(robot), ...); }, tasks_);
+  void bind(const Robot& robot) {
+    for (std::size_t k = 0; k < kRows.size(); ++k) {
+      if (kRows[k] > robot.dof()) {
+        validation::fail(validation::element("rows of level", static_cast<Eigen::Index>(k)), kRows[k], "at most ",
+                         robot.dof(), ", the number of joints: move a task to another level");
+      }
+    }
+    std::apply([&](auto&... task) { (task.bind(robot), ...); }, tasks_);
   }
 
   /// Calls f(task, i) for each task, with its index as a type.

@@ -16,6 +16,11 @@ template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
+
+  void resize(Eigen::Index dof) noexcept {
+    J.resize(M, dof);
+    Jd.resize(M, dof);
+  }
 };
 
 /// What a task adds to its rows: its gains, its selection S, in metres, and its velocity J qd in the rows of its space.
@@ -53,9 +58,10 @@ struct StackKinematics {
   using Scalar = typename Stack_::Scalar;
   using Levels = typename stack_detail::RowsOf<N, Stack_>::type;
 
-  typename Stack_::Point tip;  ///< x of each task.
+  typename Stack_::Point tip;  ///< x of each task, in the base frame.
   Levels levels;
   typename stack_detail::StatesOf<typename Stack_::Tasks>::type tasks;
+
   /// Whether the level of task i is enabled.
   [[nodiscard]] bool is_enabled(std::size_t i) const noexcept {
     return enabled[static_cast<std::size_t>(Stack_::level(static_cast<int>(i)))];
@@ -85,23 +91,38 @@ class RobotTasks {
   using State = Kinematics<typename Stack_::Space, kDof, Scalar>;
 
   /// Throws std::invalid_argument where a task does not suit the robot.
-  RobotTasks(const Robot_& robot, const Stack_& stack) : robot_(robot), stack_(stack) { stack.require_robot(robot); }
+  RobotTasks(const Robot_& robot, const Stack_& stack) : robot_(robot), stack_(stack) { stack_.bind(robot_); }
 
   [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
   [[nodiscard]] const Robot_& robot() const noexcept { return robot_; }
   [[nodiscard]] const Stack_& stack() const noexcept { return stack_; }
-  [[nodiscard]] Stack_& stack() noexcept { return stack_; }
+  /// As Stack::enable().
+  bool enable(int k, bool on) noexcept { return stack_.enable(k, on); }
   [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
 
   /// At (q, qd).
   void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd, State& out) const noexcept {
     typename Robot_::State state;
     robot_.update(q, qd, state);
+    evaluate(state, out);
+  }
+
+  /// At q, for velocity level: does not touch J̇.
+  void kinematics(const Vector<kDof, Scalar>& q, State& out) const noexcept {
+    typename Robot_::State state;
+    robot_.update(q, state);
+    evaluate(state, out);
+  }
+
+ private:
+  void evaluate(const typename Robot_::State& state, State& out) const noexcept {
     out.length = robot_.length();
     out.enabled = stack_.enabled();
+    std::apply([&](auto&... level) { (level.resize(robot_.dof()), ...); }, out.levels);
     stack_.each([&](const auto& task, auto i) noexcept {
       using Task = std::decay_t<decltype(task)>;
       constexpr int kIndex = decltype(i)::value;
+      constexpr int kRow = Stack_::row(kIndex);
       constexpr int kSpace = Task::Space::kRows;
       auto& [k1, k2, S, xd] = std::get<kIndex>(out.tasks);
       k1 = task.gains.k1;
@@ -112,30 +133,28 @@ class RobotTasks {
       for (int j = kSpace - Task::Space::kTurns; j < kSpace; ++j) {
         for (int row = 0; row < Task::kRows; ++row) S(row, j) *= out.length;
       }
-      xd = product(J, qd);
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      for (Eigen::Index j = 0; j < J.cols(); ++j) {
-        for (int row = 0; row < Task::kRows; ++row) {
-          level.J.coeffRef(Stack_::row(kIndex) + row, j) = selected<Task>(S, J, row, j);
-          level.Jd.coeffRef(Stack_::row(kIndex) + row, j) = selected<Task>(S, Jd, row, j);
-        }
-      }
+      select<Task, kRow>(S, J, level.J);
+      if (!state.moves) return;
+      select<Task, kRow>(S, Jd, level.Jd);
+      xd = product(J, state.qd);
     });
   }
 
-  /// At q, for velocity level.
-  void kinematics(const Vector<kDof, Scalar>& q, State& out) const noexcept {
-    kinematics(q, filled<Vector<kDof, Scalar>>(q.size()), out);
-  }
-
- private:
-  /// An entry of S A.
-  template <typename Task, typename Selection, typename Rows>
-  [[nodiscard]] static Scalar selected(const Selection& S, const Rows& A, int row, Eigen::Index j) noexcept {
-    if constexpr (Task::kWhole) return S.coeff(row, row) * A.coeff(row, j);
-    Scalar sum(0);
-    for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(row, k) * A.coeff(k, j);
-    return sum;
+  /// Writes S A to the rows of `to` from kRow on.
+  template <typename Task, int kRow, typename Selection, typename Rows, typename LevelMatrix>
+  static void select(const Selection& S, const Rows& A, LevelMatrix& to) noexcept {
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      for (int i = 0; i < Task::kRows; ++i) {
+        if constexpr (Task::kWhole) {
+          to.coeffRef(kRow + i, j) = S.coeff(i, i) * A.coeff(i, j);
+        } else {
+          Scalar sum(0);
+          for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(i, k) * A.coeff(k, j);
+          to.coeffRef(kRow + i, j) = sum;
+        }
+      }
+    }
   }
 
   Robot_ robot_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "fpbm/core/rotation.hpp"
 #include "fpbm/core/validation.hpp"
 
 namespace fpbm {
@@ -18,13 +17,6 @@ struct TaskGains {
   }
   /// For velocity level.
   explicit TaskGains(Scalar k) : k1(0), k2(k) { validation::require_non_negative("k", k); }
-};
-
-/// A frame fixed to a link of a robot.
-template <typename Scalar>
-struct LinkFrame {
-  int link;                       ///< As Robot counts them; Robot::kTip is the tip.
-  Transform<Scalar> offset = {};  ///< The frame in that of the link.
 };
 
 }  // namespace fpbm

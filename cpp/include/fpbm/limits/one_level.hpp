@@ -1,0 +1,50 @@
+#pragma once
+
+#include "fpbm/limits/saturation.hpp"
+
+/// The Jacobian of one task as the only task level: the functions by which Limiter resolves one level or TaskLevels.
+namespace fpbm {
+
+template <int M, int N, typename Scalar>
+[[nodiscard]] const Matrix<M, N, Scalar>& first_level(const Matrix<M, N, Scalar>& J) noexcept {
+  return J;
+}
+
+/// A motion u in which every level has the same scale.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
+                                              Scalar scale) noexcept {
+  return {u, scale, 0, 0};
+}
+
+/// Sets the scale of every level.
+template <int N, typename Scalar>
+void set_scale(Saturated<N, Scalar>& motion, Scalar scale) noexcept {
+  motion.scale = scale;
+}
+
+/// Multiplies the scale of each level by that of another motion.
+template <int N, typename Scalar>
+void multiply_scales(Saturated<N, Scalar>& motion, const Saturated<N, Scalar>& other) noexcept {
+  motion.scale *= other.scale;
+}
+
+/// Multiplies the scale of each level by share(J) of its Jacobian.
+template <int M, int N, typename Scalar, typename Share>
+void multiply_scales(Saturated<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const Share& share) noexcept {
+  motion.scale *= share(J);
+}
+
+template <int M, int N, typename Scalar, int P>
+[[nodiscard]] NullSpaceSaturation<M, N, Scalar, P> saturation_of(const Matrix<M, N, Scalar>& J,
+                                                                 const Vector<N, Scalar>& unit,
+                                                                 const Rows<N, P, Scalar>& rows) noexcept {
+  return {J, unit, rows};
+}
+
+/// Resolves the levels below the first: none.
+template <int M, int N, typename Scalar, int P>
+void resolve_lower(const NullSpaceSaturation<M, N, Scalar, P>&, const Box<N, Scalar>&, const Vector<N, Scalar>&,
+                   const Saturated<N, Scalar>&) noexcept {}
+
+}  // namespace fpbm

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <type_traits>
+
+#include "fpbm/clearance/unguarded.hpp"
+#include "fpbm/core/status.hpp"
+#include "fpbm/realtime/tick.hpp"
+
+namespace fpbm {
+
+/// Ends a tick of Tracker::resolve_measured(): the acceleration within the limits for a measured state, after the
+/// answer `last`. loop: the kinematics and the scheme's acceleration in that state. result has the scheme's status.
+template <typename Loop, typename Limiter, typename Kept, typename Space, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> limit_measured(const Loop& loop, const Limiter& limiter, Kept& kept,
+                                               const State<N, Scalar>& measured, const Vector<N, Scalar>& last,
+                                               Tick<Space, N, Scalar>& result) noexcept {
+  const auto& limits = limiter.limits();
+  auto& guard = kept.guard();
+  auto rows = guard.rows(limits, measured);
+  if constexpr (Kept::kGuarded) {
+    // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
+    guard.bound_tip_speed(limits, measured, loop.qdd, rows);
+    const Scalar share = kept.dt() / limits.tick();
+    if (share < Scalar(1)) guard.bound_tip_speed(limits, measured, share * loop.qdd, rows);
+  }
+  const auto tasks = jacobian_in_metres(loop.kinematics);
+  auto found = with_scale(tasks, last, Scalar(0));
+  const bool braking = kept.stopping() || result.status >= Status::kStalled;
+  if (braking) {
+    found.u = limiter.brake(measured, last).u;
+  } else {
+    found = limiter.motion(tasks, measured, loop.qdd, last, rows);
+  }
+  take_scale(result, found);
+  result.saturated = found.joints;
+  if (found.scale < Scalar(1) && !braking) {
+    result.status = guard.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
+  }
+  if (result.status == Status::kOk) kept.correction().integrate();
+  return found.u;
+}
+
+}  // namespace fpbm

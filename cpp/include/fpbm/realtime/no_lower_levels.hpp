@@ -1,0 +1,22 @@
+#pragma once
+
+namespace fpbm {
+
+/// In a Tracker of a single task, the place of LowerLevels.
+struct NoLowerLevels {
+  template <typename Scalar>
+  NoLowerLevels(Scalar, Scalar) noexcept {}
+
+  template <typename References, typename Kinematics, typename Correction>
+  static void hold(const References&, const Kinematics&, const Correction&) noexcept {}
+  template <typename JointVector, typename Scalar>
+  static void end_tick(bool, const JointVector&, Scalar, Scalar) noexcept {}
+  static void release() noexcept {}
+};
+
+template <typename Space, typename Scalar>
+struct LowerLevelsOf {
+  using type = NoLowerLevels;
+};
+
+}  // namespace fpbm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "fpbm/realtime/path_follower.hpp"
+#include "fpbm/task/reference.hpp"
+#include "fpbm/task/target_filter.hpp"
+
+/// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower or a
+/// TargetFilter.
+namespace fpbm {
+
+/// The reference some seconds into the tick.
+template <typename Space, typename Scalar>
+[[nodiscard]] Reference<Space, Scalar> source_ahead(const Reference<Space, Scalar>& source, Scalar seconds) noexcept {
+  return ahead(source, seconds);
+}
+template <typename Source, typename Scalar>
+[[nodiscard]] auto source_ahead(const Source& source, Scalar seconds) noexcept {
+  return source.ahead(seconds);
+}
+
+/// Advances a source after a tick of dt [s]. stopping: the arm stops, so that a path follower waits. A filter of
+/// targets continues.
+template <typename Space, typename Scalar>
+void advance_source(const Reference<Space, Scalar>&, Scalar, bool) noexcept {}
+template <typename Path, typename Scalar>
+void advance_source(PathFollower<Path>& source, Scalar dt, bool stopping) noexcept {
+  if (!stopping) source.advance(dt);
+}
+template <typename Space, typename Scalar>
+void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool) noexcept {
+  source.advance();
+}
+
+/// The reference of a single task, from its source. StackSpace has an overload with a source for each task.
+template <typename Space, typename Scalar, typename Source>
+[[nodiscard]] Reference<Space, Scalar> joined(Space, Scalar seconds, const Source& source) noexcept {
+  return source_ahead(source, seconds);
+}
+
+}  // namespace fpbm

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+#include "fpbm/limits/task_levels.hpp"
+#include "fpbm/realtime/reference_sources.hpp"
+#include "fpbm/realtime/tick.hpp"
+#include "fpbm/task/stack_kinematics.hpp"
+
+namespace fpbm {
+
+/// Result of a tick of a stack. status, scale and sigma are those of the first level, unless only a lower level is
+/// slowed: then status is kSlowed. error: x ⊖ f(q) of each task.
+template <typename... Levels, int N, typename Scalar>
+struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>::kRows, N, Scalar> {
+  std::array<Scalar, sizeof...(Levels)> scales{};  ///< Share of each level that the limits left. The first is scale.
+};
+
+template <typename... Levels, int N, typename Scalar>
+void multiply_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, Scalar share) noexcept {
+  tick.scale *= share;
+  for (Scalar& scale : tick.scales) scale *= share;
+}
+template <typename... Levels, int N, typename Scalar, typename Motion>
+void take_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, const Motion& motion) noexcept {
+  tick.scale = motion.scale;
+  tick.scales = motion.scales;
+}
+
+/// A level with a reference that is not finite was left out: its scale is 0. If a lower level is slowed or left out,
+/// the status is at least kSlowed.
+template <typename... Levels, int N, typename Scalar>
+void report_lower_levels(Tick<StackSpace<Levels...>, N, Scalar>& tick) noexcept {
+  StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
+    constexpr int kLevel = Stack<Levels...>::level(static_cast<int>(decltype(i)::value));
+    for (int j = row; j < row + decltype(space)::kRows; ++j) {
+      if (!std::isfinite(tick.error(j))) tick.scales[kLevel] = Scalar(0);
+    }
+  });
+  for (const Scalar scale : tick.scales) {
+    if (scale < Scalar(1)) tick.status = worse(tick.status, Status::kSlowed);
+  }
+}
+
+/// The levels' Jacobians, for the limits.
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
+    const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+  return std::apply(
+      [&](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.J...); },
+      kinematics.levels);
+}
+
+/// The reference of a stack, from a source for each task in the order of the stack.
+template <typename... Levels, typename Scalar, typename... Sources>
+[[nodiscard]] auto joined(StackSpace<Levels...>, Scalar seconds, const Sources&... sources) noexcept {
+  using Space = StackSpace<Levels...>;
+  if constexpr (sizeof...(Sources) == 1 && (std::is_same_v<Sources, Reference<Space, Scalar>> && ...)) {
+    return ahead(sources..., seconds);
+  } else {
+    static_assert(sizeof...(Sources) == std::tuple_size_v<typename Space::template Point<Scalar>>,
+                  "a tick of a stack takes a source of references for each task");
+    const auto parts = std::make_tuple(source_ahead(sources, seconds)...);
+    Reference<Space, Scalar> all = Reference<Space, Scalar>::hold(Space::template origin<Scalar>());
+    Space::each([&](auto space, auto i, int row) noexcept {
+      using Part = decltype(space);
+      constexpr std::size_t kIndex = decltype(i)::value;
+      std::get<kIndex>(all.x) = std::get<kIndex>(parts).x;
+      all.xd.template segment<Part::kRows>(row) = std::get<kIndex>(parts).xd;
+      all.xdd.template segment<Part::kRows>(row) = std::get<kIndex>(parts).xdd;
+    });
+    return all;
+  }
+}
+
+}  // namespace fpbm

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "fpbm/core/level.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+
+namespace fpbm {
+
+/// How a constant motion moves the joints in a tick: an acceleration, or a velocity at velocity level.
+template <Level kLevel, int N, typename Scalar = double>
+struct TickMotion {
+  using JointVector = Vector<N, Scalar>;
+  using JointState = State<N, Scalar>;
+  static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+
+  Scalar dt;  ///< Length of the tick [s].
+
+  /// The mean motion from a state to another.
+  [[nodiscard]] JointVector between(const JointState& state, const JointState& next) const noexcept {
+    return kSecondOrder ? rate(state.qd, next.qd) : next.qd;
+  }
+
+  /// The state after a tick of a motion u.
+  [[nodiscard]] JointState after(const JointState& state, const JointVector& u) const noexcept {
+    if constexpr (kSecondOrder) return {moved(state, u), plus(state.qd, u, dt)};
+    return {plus(state.q, u, dt), u};
+  }
+
+  /// The position after a tick of constant acceleration.
+  [[nodiscard]] JointVector moved(const JointState& state, const JointVector& qdd) const noexcept {
+    const Scalar half = dt / Scalar(2);
+    return plus(state.q, entrywise(qdd, [&](Eigen::Index i) { return state.qd.coeff(i) + half * qdd.coeff(i); }), dt);
+  }
+
+  /// The state in the tick's middle at constant acceleration.
+  [[nodiscard]] JointState middle(const JointState& state, const JointVector& qdd) const noexcept {
+    const TickMotion half{dt / Scalar(2)};
+    return {half.moved(state, qdd), plus(state.qd, qdd, half.dt)};
+  }
+
+  /// (to − from)/dt.
+  [[nodiscard]] JointVector rate(const JointVector& from, const JointVector& to) const noexcept {
+    return entrywise(from, [&](Eigen::Index i) { return (to.coeff(i) - from.coeff(i)) / dt; });
+  }
+
+ private:
+  /// from + seconds change.
+  [[nodiscard]] static JointVector plus(const JointVector& from, const JointVector& change, Scalar seconds) noexcept {
+    return entrywise(from, [&](Eigen::Index i) { return from.coeff(i) + seconds * change.coeff(i); });
+  }
+};
+
+}  // namespace fpbm
