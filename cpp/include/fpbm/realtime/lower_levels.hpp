@@ -16,27 +16,35 @@
 
 namespace fpbm {
 
-/// Brings the lower levels of a stack to rest if their targets cannot be reached.
+/// Stops tasks of the lower levels of a stack that do not come nearer to their targets, so that the robot comes to
+/// rest.
 ///
 /// The largest error of each task in a window of stall_time counts. If no target has moved by 0.002 (TaskDistance), and
 /// no task has a largest error below those of all earlier windows by 1/16, each task of a lower level with an error
-/// above 0.0001 is held at its current point. All tasks are released if a target of any level or a shape near the arm
-/// moves, and in a tick that does not follow the references. Tasks that are not held could oscillate in the null space
-/// of the higher levels while limits slow them.
+/// above 0.0001 stops: its reference becomes its current point at zero velocity. All tasks follow their references
+/// again if a target of any level or a shape near the arm moves, and after a tick that does not follow the references.
+/// Otherwise such tasks could oscillate or drift in the null space of the higher levels while limits slow them.
 template <typename Space, typename Scalar = double>
 class LowerLevels {
  public:
   using Point = typename Space::template Point<Scalar>;
 
-  LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { begin_window(); }
+  LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
-  /// Call at the start of a tick, with the kinematics of the state. The points that are held replace those of their
-  /// tasks in the references, from which the correction begins anew.
+  /// Call at the start of a tick, with the kinematics of the state. Replaces the references of tasks that have stopped,
+  /// and begins the correction anew with their errors.
   template <typename References, typename Kinematics, typename Correction>
   void hold(References& references, const Kinematics& kinematics, Correction& correction) noexcept {
-    update(references.stages[0].x, kinematics);
-    if (!any_held_) return;
-    for (auto& stage : references.stages) replace(stage);
+    watch(references.stages[0].x, kinematics);
+    if (!any_stopped_) return;
+    for (auto& stage : references.stages) {
+      Space::each([&](auto space, auto i, int row) noexcept {
+        constexpr std::size_t kIndex = decltype(i)::value;
+        if (!stopped_[kIndex]) return;
+        std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
+        for (int j = row; j < row + decltype(space)::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+      });
+    }
     correction.begin(Space::template difference<Scalar>(references.stages[0].x, kinematics.tip), kinematics.length);
   }
 
@@ -44,101 +52,74 @@ class LowerLevels {
   /// of the distances of shapes near the arm [m]. length: the robot's characteristic length [m].
   template <typename JointVector>
   void end_tick(bool follows, const JointVector& qd, Scalar room, Scalar length) noexcept {
-    const bool at_rest = largest_magnitude(qd) <= kRest;
-    if (!follows || (any_held_ && shapes_.moved(at_rest, room, kMoved * length))) release();
+    if (!follows) return release();
+    if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, room, kMoved * length)) release();
   }
 
   /// All tasks follow their references.
   void release() noexcept {
-    held_.fill(false);
-    any_held_ = false;
+    stopped_.fill(false);
+    any_stopped_ = false;
     shapes_.reset();
-    begin_window();
+    least_.fill(std::numeric_limits<Scalar>::infinity());
+    peak_.fill(Scalar(0));
+    time_ = Scalar(0);
   }
 
  private:
-  void replace(Reference<Space, Scalar>& reference) const noexcept {
-    Space::each([&](auto space, auto i, int row) noexcept {
-      constexpr std::size_t kIndex = decltype(i)::value;
-      if (!held_[kIndex]) return;
-      std::get<kIndex>(reference.x) = std::get<kIndex>(point_);
-      for (int j = row; j < row + decltype(space)::kRows; ++j) reference.xd(j) = reference.xdd(j) = Scalar(0);
-    });
-  }
-
   template <typename Kinematics>
-  void update(const Point& target, const Kinematics& kinematics) noexcept {
-    const Point& x = kinematics.tip;
-    const Scalar length = kinematics.length;
+  void watch(const Point& target, const Kinematics& kinematics) noexcept {
     bool moved = false;
     Space::each([&](auto space, auto i, int) noexcept {
-      using Part = decltype(space);
       constexpr std::size_t kIndex = decltype(i)::value;
-      using Distance = TaskDistance<Part, Scalar>;
-      const auto& goal = std::get<kIndex>(target);
-      moved = moved || Distance::between(goal, std::get<kIndex>(target_), length) > kMoved;
-      const auto& aim = held_[kIndex] ? std::get<kIndex>(point_) : goal;
-      const Scalar error = Distance::between(aim, std::get<kIndex>(x), length);
-      done_[kIndex] = !(error > kSmall) || !kinematics.is_enabled(kIndex);
-      if (!done_[kIndex]) peak_[kIndex] = std::max(peak_[kIndex], error);
+      using Distance = TaskDistance<decltype(space), Scalar>;
+      const auto& x = std::get<kIndex>(target);
+      moved = moved || Distance::between(x, std::get<kIndex>(target_), kinematics.length) > kMoved;
+      const Scalar error = Distance::between(x, std::get<kIndex>(kinematics.tip), kinematics.length);
+      counts_[kIndex] = error > kSmall && kinematics.is_enabled(kIndex) && !stopped_[kIndex];
+      if (counts_[kIndex]) peak_[kIndex] = std::max(peak_[kIndex], error);
     });
     if (moved) {
       target_ = target;
       return release();
     }
     time_ += dt_;
-    if (time_ > stall_time_) end_window(x);
+    if (time_ > stall_time_) end_window();
   }
 
-  void end_window(const Point& x) noexcept {
+  /// The first window makes progress, since the least errors are infinite.
+  void end_window() noexcept {
     bool progress = false;
-    bool all_done = true;
     for (std::size_t i = 0; i < kTasks; ++i) {
-      // The first window of a task makes progress: its least error so far is infinite.
       progress = progress || peak_[i] < (Scalar(1) - kApproach) * least_[i];
-      all_done = all_done && done_[i];
+      least_[i] = std::min(least_[i], peak_[i]);
     }
-    for (std::size_t i = 0; i < kTasks; ++i) least_[i] = std::min(least_[i], peak_[i]);
     peak_.fill(Scalar(0));
     time_ = Scalar(0);
-    if (progress || all_done) return;
-    Space::each([&](auto, auto i, int) noexcept {
-      constexpr std::size_t kIndex = decltype(i)::value;
-      if (kIndex < Space::kFirst || done_[kIndex]) return;
-      held_[kIndex] = true;
-      std::get<kIndex>(point_) = std::get<kIndex>(x);
-    });
-    any_held_ = true;
-    begin_window();
-  }
-
-  void begin_window() noexcept {
-    least_.fill(kNone);
-    peak_.fill(Scalar(0));
-    time_ = Scalar(0);
+    for (std::size_t i = Space::kFirst; i < kTasks && !progress; ++i) {
+      stopped_[i] = stopped_[i] || counts_[i];
+      any_stopped_ = any_stopped_ || stopped_[i];
+    }
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
-  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
-  /// Least displacement that counts as a motion of a target or of shapes, as in TaskDistance.
+  /// Least displacement of a target or of shapes that counts, as TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
   static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest velocity of a joint of an arm at rest [rad/s].
-  static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector.
-  /// As for an arm that crawls (StallDetector): an error that decays by 1/16 in each window of 2 s reaches 1 % in 143
-  /// s.
+  static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
+  /// As for an arm that crawls (StallDetector): an error that decays by 1/16 in each window of 2 s is 1 % after 143 s.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;
   Scalar dt_;
-  Scalar time_{0};  ///< Of the window [s].
-  bool any_held_ = false;
-  std::array<bool, kTasks> held_{};
-  std::array<bool, kTasks> done_{};
-  std::array<Scalar, kTasks> peak_{};   ///< Largest errors in the window,
-  std::array<Scalar, kTasks> least_{};  ///< and the least of earlier windows.
+  Scalar time_;  ///< Since the window's start [s].
+  bool any_stopped_;
+  std::array<bool, kTasks> stopped_;
+  std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
+  std::array<Scalar, kTasks> peak_;    ///< Largest errors in the window,
+  std::array<Scalar, kTasks> least_;   ///< and the least of earlier windows.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
-  Point point_ = Space::template origin<Scalar>();  ///< Of the tasks that are held.
 };
 
 template <typename... Levels, typename Scalar>
