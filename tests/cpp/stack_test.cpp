@@ -482,6 +482,21 @@ TEST(Stack, has_a_source_of_references_for_each_task) {
   EXPECT_NEAR(follower.time(), 3.0, 1e-9);
 }
 
+/// A task that cannot be done stops and says so, and follows its target again when the target comes back.
+TEST(Stack, says_which_level_has_stopped) {
+  Cup cup(Vector<3>(0.6, 0.8, 0.2));
+  cup.run(20000);
+  auto tick = cup.tick();
+  EXPECT_LT(tick.qd.norm(), 1e-3);
+  EXPECT_EQ(tick.status, Status::kSlowed);
+  EXPECT_EQ(tick.scales[0], 1.0);
+  EXPECT_EQ(tick.scales[1], 0.0);
+  cup.place.x -= Vector<3>(0.5, 0.7, 0.2);
+  cup.run(6000);
+  EXPECT_LT(cup.away(), 1e-5);
+  EXPECT_EQ(cup.tick().scales[1], 1.0);
+}
+
 /// What holds lower levels while the robot stops or fails is forgotten: the same targets are reached afterwards.
 TEST(Stack, goes_on_after_a_stop_and_after_a_failure) {
   for (const bool fails : {false, true}) {
@@ -513,9 +528,52 @@ TEST(Stack, an_integral_outlasts_a_reference_that_is_not_finite) {
   cup.height.x(2) = std::numeric_limits<double>::quiet_NaN();
   cup.run(500);
   cup.height.x(2) = z;
-  cup.run(12000);
+  cup.run(40000);  // The slowest root of s³ + 10 s² + 25 s + 5 is −0.22.
   EXPECT_LT(cup.away(), 1e-5);
   EXPECT_EQ(cup.tick().scales[2], 1.0);
+}
+
+/// A coordinate that a task does not select has no error: a target for the height alone may lie anywhere.
+TEST(Stack, coordinates_that_are_not_selected_have_no_error) {
+  TrackerOptions<> options;
+  options.integral_gain = 5.0;
+  Cup near(Vector<3>(0.0, 0.1, 0.0), options);
+  Cup far(Vector<3>(0.0, 0.1, 0.0), options);
+  far.height.x.head<2>() += Vector<2>(3.0, -2.0);
+  for (int i = 0; i < 12000; ++i) {
+    const auto tick = far.tick();
+    EXPECT_LT((near.tick().q - tick.q).norm(), 1e-12) << i;
+    EXPECT_EQ(tick.error.segment<2>(6).norm(), 0.0) << i;
+  }
+}
+
+/// What the integral adds to the reference's acceleration after 10 s of errors: 0.01 rad of an axis, and of a place on
+/// the level below, of which the limits left a share.
+[[nodiscard]] Vector<6> integral(const Vector<3>& place, double share) {
+  using Space = Stack<TaskLevel<AxisTask<>>, TaskLevel<PositionTask<>>>::Space;
+  TrackerOptions<> options;
+  options.integral_gain = 5.0;
+  options.integral_bound = 0.1;
+  Correction<Level::kAcceleration, Space> correction(options);
+  Tick<Space, 7> tick{};
+  tick.scales = {1.0, share};
+  Vector<6> error;
+  error << 0.01, 0.0, 0.0, place;
+  for (int i = 0; i < 10000; ++i) {
+    correction.begin(error, 1.0);
+    correction.integrate(tick);
+  }
+  return correction(Reference<Space>::hold(Space::origin<double>())).xdd;
+}
+
+/// An error of a lower level that stays does not weaken the integral of a higher one. Each has the whole bound.
+TEST(Stack, has_an_integral_for_each_task) {
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  const Vector<3> far(0.0, 0.09, 0.0);
+  EXPECT_TRUE(integral(far, 1.0).isApprox((Vector<6>() << 0.1, 0.0, 0.0, 0.0, 0.1, 0.0).finished(), 1e-9));
+  EXPECT_EQ(integral(far, 0.5).tail<3>(), Vector<3>::Zero().eval());
+  EXPECT_EQ(integral(Vector<3>::Constant(missing), 1.0).tail<3>(), Vector<3>::Zero().eval());
+  EXPECT_NEAR(integral(Vector<3>::Constant(missing), 1.0)(0), 0.1, 1e-9);
 }
 
 /// Answers to measured states, one tick old, keep the first level while limits slow the others.

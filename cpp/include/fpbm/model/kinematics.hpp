@@ -43,6 +43,13 @@ template <typename Space, int N, typename Scalar>
 template <typename Space>
 inline constexpr int kFirstRows = Space::kRows;
 
+/// x ⊖ f(q), the error of the task [m, rad]. x: the target.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,
+                                                      const typename Space::template Point<Scalar>& x) noexcept {
+  return Space::template difference<Scalar>(x, kinematics.tip);
+}
+
 /// J with all rows in metres: angles count by the arm's length.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(

@@ -71,15 +71,20 @@ class Correction {
     return reference;
   }
 
-  /// Call at the end of a tick that did the whole task.
-  void integrate() noexcept {
+  /// Call at the end of a tick that did the whole first level. Each task has an integral and a bound of its own; that
+  /// of a lower level waits while the level is slowed or has no finite reference.
+  template <typename Result>
+  void integrate(const Result& tick) noexcept {
     if (gain_ == Scalar(0) || far_) return;
-    for (int i = 0; i < Space::kRows; ++i) {
-      if (std::isfinite(error_(i))) integral_(i) += dt_ * error_(i);  // A lower level may have no finite reference.
-    }
-    const Scalar size = gain_ * norm(in_lengths<Space>(integral_, length_));
-    if (!(size > bound_)) return;
-    for (int i = 0; i < Space::kRows; ++i) integral_(i) *= bound_ / size;
+    each_part<Space>([&](auto space, int row, bool first) noexcept {
+      using Part = decltype(space);
+      Vector<Part::kRows, Scalar> integral;
+      for (int i = 0; i < Part::kRows; ++i) integral(i) = integral_(row + i) + dt_ * error_(row + i);
+      const Scalar size = gain_ * norm(in_lengths<Part>(integral, length_));
+      if (!std::isfinite(size) || (!first && lower_scale(tick, row) < Scalar(1))) return;
+      const Scalar share = size > bound_ ? bound_ / size : Scalar(1);
+      for (int i = 0; i < Part::kRows; ++i) integral_(row + i) = share * integral(i);
+    });
   }
 
  private:

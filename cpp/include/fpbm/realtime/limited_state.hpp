@@ -85,8 +85,9 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || kLevelsOf<Space> != 1)
+      if (limits().bounds_jerk() || kLevelsOf<Space> != 1) {
         next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
+      }
     } else {
       next.qd = motion_.rate(state_.q, next.q);
     }
@@ -152,7 +153,7 @@ class LimitedState {
     if (result.status != Status::kOk || correction_.far()) {
       return progress_.missed(state_.q, limits().bounds().velocity, now.x, result, length, correction_.far());
     }
-    correction_.integrate();
+    correction_.integrate(result);
     progress_.done(q, now.x, result, length);
   }
 

@@ -10,6 +10,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/realtime/no_lower_levels.hpp"
 #include "fpbm/realtime/shape_watch.hpp"
+#include "fpbm/realtime/stack_tick.hpp"
 #include "fpbm/realtime/task_distance.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/stack.hpp"
@@ -31,21 +32,30 @@ class LowerLevels {
 
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
-  /// Call at the start of a tick, with the kinematics of the state. Replaces the references of tasks that have stopped,
-  /// and begins the correction anew with their errors.
+  /// Call at the start of a tick, with the kinematics of the state and the errors of the tasks there. Replaces the
+  /// references of tasks that have stopped, and begins the correction anew without their errors.
   template <typename References, typename Kinematics, typename Correction>
-  void hold(References& references, const Kinematics& kinematics, Correction& correction) noexcept {
-    watch(references.stages[0].x, kinematics);
+  void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,
+            Correction& correction) noexcept {
+    watch(references.stages[0].x, kinematics, error);
     if (!any_stopped_) return;
     for (auto& stage : references.stages) {
       Space::each([&](auto space, auto i, int row) noexcept {
         constexpr std::size_t kIndex = decltype(i)::value;
         if (!stopped_[kIndex]) return;
         std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
-        for (int j = row; j < row + decltype(space)::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+        for (int j = row; j < row + decltype(space)::kRows; ++j) error(j) = stage.xd(j) = stage.xdd(j) = Scalar(0);
       });
     }
-    correction.begin(Space::template difference<Scalar>(references.stages[0].x, kinematics.tip), kinematics.length);
+    correction.begin(error, kinematics.length);
+  }
+
+  /// Sets the scale of each level with a stopped task to 0.
+  template <typename... Levels, int N>
+  void report(Tick<StackSpace<Levels...>, N, Scalar>& tick) const noexcept {
+    for (std::size_t i = 0; i < kTasks; ++i) {
+      if (stopped_[i]) tick.scales[static_cast<std::size_t>(Stack<Levels...>::level(static_cast<int>(i)))] = Scalar(0);
+    }
   }
 
   /// Call at the end of a tick. follows: the arm follows the references. qd: joint velocities [rad/s]. room: a measure
@@ -68,14 +78,17 @@ class LowerLevels {
 
  private:
   template <typename Kinematics>
-  void watch(const Point& target, const Kinematics& kinematics) noexcept {
+  void watch(const Point& target, const Kinematics& kinematics, const Vector<Space::kRows, Scalar>& errors) noexcept {
     bool moved = false;
-    Space::each([&](auto space, auto i, int) noexcept {
+    Space::each([&](auto space, auto i, int row) noexcept {
       constexpr std::size_t kIndex = decltype(i)::value;
-      using Distance = TaskDistance<decltype(space), Scalar>;
-      const auto& x = std::get<kIndex>(target);
-      moved = moved || Distance::between(x, std::get<kIndex>(target_), kinematics.length) > kMoved;
-      const Scalar error = Distance::between(x, std::get<kIndex>(kinematics.tip), kinematics.length);
+      using Part = decltype(space);
+      using Distance = TaskDistance<Part, Scalar>;
+      const Scalar way = Distance::between(std::get<kIndex>(target), std::get<kIndex>(target_), kinematics.length);
+      moved = moved || way > kMoved;
+      Vector<Part::kRows, Scalar> part;
+      for (int j = 0; j < Part::kRows; ++j) part(j) = errors.coeff(row + j);
+      const Scalar error = Distance::norm(part, kinematics.length);
       counts_[kIndex] = error > kSmall && kinematics.is_enabled(kIndex) && !stopped_[kIndex];
       if (counts_[kIndex]) peak_[kIndex] = std::max(peak_[kIndex], error);
     });

@@ -36,7 +36,7 @@ template <typename Loop, typename Limiter, typename Kept, typename Space, int N,
   if (found.scale < Scalar(1) && !braking) {
     result.status = guard.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
   }
-  if (result.status == Status::kOk) kept.correction().integrate();
+  if (result.status == Status::kOk) kept.correction().integrate(result);
   return found.u;
 }
 

@@ -7,8 +7,10 @@ struct NoLowerLevels {
   template <typename Scalar>
   NoLowerLevels(Scalar, Scalar) noexcept {}
 
-  template <typename References, typename Kinematics, typename Correction>
-  static void hold(const References&, const Kinematics&, const Correction&) noexcept {}
+  template <typename References, typename Kinematics, typename Error, typename Correction>
+  static void hold(const References&, const Kinematics&, const Error&, const Correction&) noexcept {}
+  template <typename Tick>
+  static void report(const Tick&) noexcept {}
   template <typename JointVector, typename Scalar>
   static void end_tick(bool, const JointVector&, Scalar, Scalar) noexcept {}
   static void release() noexcept {}

@@ -13,10 +13,13 @@
 namespace fpbm {
 
 /// Result of a tick of a stack. status, scale and sigma are those of the first level, unless only a lower level is
-/// slowed: then status is kSlowed. error: x ⊖ f(q) of each task.
+/// slowed: then status is kSlowed. error: x ⊖ f(q) of each task; a coordinate that a task does not select has no error
+/// (task_error).
 template <typename... Levels, int N, typename Scalar>
 struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>::kRows, N, Scalar> {
-  std::array<Scalar, sizeof...(Levels)> scales{};  ///< Share of each level that the limits left. The first is scale.
+  /// Share of each level that the limits left; 0 if a task of the level has stopped (LowerLevels) or has no finite
+  /// reference. The first is scale.
+  std::array<Scalar, sizeof...(Levels)> scales{};
 };
 
 template <typename... Levels, int N, typename Scalar>
@@ -43,6 +46,15 @@ void report_lower_levels(Tick<StackSpace<Levels...>, N, Scalar>& tick) noexcept 
   for (const Scalar scale : tick.scales) {
     if (scale < Scalar(1)) tick.status = worse(tick.status, Status::kSlowed);
   }
+}
+
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] Scalar lower_scale(const Tick<StackSpace<Levels...>, N, Scalar>& tick, int row) noexcept {
+  Scalar scale(1);
+  StackSpace<Levels...>::each([&](auto, auto i, int first_row) noexcept {
+    if (first_row == row) scale = tick.scales[Stack<Levels...>::level(static_cast<int>(decltype(i)::value))];
+  });
+  return scale;
 }
 
 /// The levels' Jacobians, for the limits.

@@ -39,6 +39,12 @@ void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {
 template <typename Space, int N, typename Scalar>
 void report_lower_levels(Tick<Space, N, Scalar>&) noexcept {}
 
+/// Share of a task below the first level that the limits left. row: the first row of its error. There is none.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] Scalar lower_scale(const Tick<Space, N, Scalar>&, int) noexcept {
+  return Scalar(1);
+}
+
 template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
@@ -48,7 +54,7 @@ struct TrackerOptions {
   /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and removes the
   /// error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
   /// the task is slowed or damped, or its target farther than error_bound, and adds integral_bound at most
-  /// [characteristic lengths and radians per s², or per s].
+  /// [characteristic lengths and radians per s², or per s]. Each task of a stack has an integral.
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
   /// An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests

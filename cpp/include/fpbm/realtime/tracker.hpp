@@ -108,7 +108,7 @@ class Tracker {
     X dx = x;
     loop.update(x);
     watch(loop.kinematics, references.stages[0], result);
-    lower_levels_.hold(references, loop.kinematics, kept_.correction());
+    lower_levels_.hold(references, loop.kinematics, result.error, kept_.correction());
     const Target now = references.stages[0];
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
@@ -124,6 +124,7 @@ class Tracker {
     JointState next{column(x, 0), state.qd};
     if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
+    lower_levels_.report(result);
     report_lower_levels(result);
     lower_levels_.end_tick(!kept_.stopping() && !failed(result.status), kept_.state().qd, Scalar(guard().room()),
                            correction.length());
@@ -205,7 +206,7 @@ class Tracker {
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.sigma = least_singular_value_bound(first_rows(kinematics));
-    result.error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+    result.error = task_error(kinematics, reference.x);
     kept_.correction().begin(result.error, kinematics.length);
   }
 

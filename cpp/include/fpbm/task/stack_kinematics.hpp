@@ -82,6 +82,31 @@ template <typename... Levels, int N, typename Scalar>
   return std::get<0>(kinematics.levels).J;
 }
 
+/// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
+/// selected have no error. x: the targets.
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] auto task_error(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
+                              const typename StackSpace<Levels...>::template Point<Scalar>& x) noexcept {
+  using Space = StackSpace<Levels...>;
+  Vector<Space::kRows, Scalar> error = Space::template difference<Scalar>(x, kinematics.tip);
+  Space::each([&](auto space, auto i, int row) noexcept {
+    using Part = decltype(space);
+    if constexpr (!std::tuple_element_t<decltype(i)::value, typename Stack<Levels...>::Tasks>::kWhole) {
+      const auto& S = std::get<decltype(i)::value>(kinematics.tasks).S;
+      const Vector<Part::kRows, Scalar> whole = error.template segment<Part::kRows>(row);
+      const auto selected = product(S, whole);
+      for (int j = 0; j < Part::kRows; ++j) {
+        // The rows of S are orthonormal, times the length if the row is an angle.
+        const Scalar unit = j < Part::kRows - Part::kTurns ? Scalar(1) : kinematics.length;
+        Scalar sum(0);
+        for (Eigen::Index r = 0; r < S.rows(); ++r) sum += S.coeff(r, j) * selected.coeff(r);
+        error(row + j) = sum / (unit * unit);
+      }
+    }
+  });
+  return error;
+}
+
 /// A robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
 template <typename Robot_, typename Stack_>
 class RobotTasks {
