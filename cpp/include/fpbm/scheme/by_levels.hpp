@@ -7,6 +7,7 @@
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/damped_level.hpp"
+#include "fpbm/task/reference.hpp"
 #include "fpbm/task/stack_kinematics.hpp"
 
 namespace fpbm {
