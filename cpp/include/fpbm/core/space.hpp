@@ -38,7 +38,11 @@ struct Position {
 
   template <typename Scalar>
   [[nodiscard]] static Vector<M, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
-    return by_rows<M, Scalar>([&](const auto& rows) { return rows(x.data()) - rows(y.data()); });
+    if constexpr (M == Eigen::Dynamic) {
+      return entrywise(x, [&](Eigen::Index i) { return x.coeff(i) - y.coeff(i); });
+    } else {
+      return by_rows<M, Scalar>([&](const auto& rows) { return rows(x.data()) - rows(y.data()); });
+    }
   }
 
   template <typename Scalar>

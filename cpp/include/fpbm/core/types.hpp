@@ -25,18 +25,19 @@ using Matrix =
 template <int N, typename Scalar = double>
 using Vector = Matrix<N, 1, Scalar>;
 
-/// A matrix of equal entries, and the identity. Eigen's Constant(), Zero() and Identity() are expressions, each with a
-/// type of its own for a compiler to make.
+/// A matrix of equal entries, square if its number of columns is known at run time, and the identity. Eigen's
+/// Constant(), Zero() and Identity() are expressions, each with a type of its own for a compiler to make.
 template <typename Whole>
 [[nodiscard]] Whole filled(Eigen::Index rows, typename Whole::Scalar value = typename Whole::Scalar(0)) noexcept {
   Whole result;
-  result.resize(rows, Whole::ColsAtCompileTime);
+  constexpr Eigen::Index kColumns = Whole::ColsAtCompileTime;
+  result.resize(rows, kColumns == Eigen::Dynamic ? rows : kColumns);
   for (Eigen::Index i = 0; i < result.size(); ++i) result.coeffRef(i) = value;
   return result;
 }
 template <typename Square>
-[[nodiscard]] Square identity() noexcept {
-  auto result = filled<Square>(Square::RowsAtCompileTime);
+[[nodiscard]] Square identity(Eigen::Index rows = Square::RowsAtCompileTime) noexcept {
+  auto result = filled<Square>(rows);
   for (Eigen::Index i = 0; i < result.rows(); ++i) result.coeffRef(i, i) = typename Square::Scalar(1);
   return result;
 }

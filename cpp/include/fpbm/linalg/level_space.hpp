@@ -51,9 +51,10 @@ class LevelSpace {
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     return add_with(A, r,
                     [&](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
-                      auto L = filled<Matrix<M, M, Scalar>>(M);
+                      const Eigen::Index m = T.cols();
+                      auto L = filled<Matrix<M, M, Scalar>>(m);
                       for (Eigen::Index i = 0; i < count; ++i) {
-                        for (Eigen::Index j = i; j < M; ++j) L(j, i) = T(first + i, j);
+                        for (Eigen::Index j = i; j < m; ++j) L(j, i) = T(first + i, j);
                       }
                       if (!solver(L, result, count)) solve_trapezoidal(T, first, count, result);
                     });

@@ -29,23 +29,24 @@ class RowFactor {
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& At) noexcept {
     Q_ = At;
     const auto n = extent<N>(At.rows());
+    const auto m = rows();
     Value whole(Scalar(0));  // Σ|a_j|², by Pythagoras.
-    Value squares[M];
-    each(kFirst, kLast, [&](auto j) {
+    Value squares[kCapacity<M>];
+    each(kFirst, m, [&](auto j) {
       const Value square = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
       squares[j] = square;
       reciprocal_[j] = Value(Scalar(1)) / square;
       whole += square;
       each(kFirst, j, [&](Eigen::Index k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
-      each(next(j), kLast, [&](auto i) {
+      each(next(j), m, [&](auto i) {
         const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
         L_[i][j] = share;
         each(kFirst, n, [&](Eigen::Index k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
       });
     });
-    const Value smallest = Value(Scalar(kPivotTolerance)) * whole;
+    const Value smallest = Value(Scalar(kPivotTolerance / static_cast<Number<Scalar>>(Eigen::Index(m)))) * whole;
     Mask<Scalar> regular(true);
-    each(kFirst, kLast, [&](Eigen::Index j) { regular = regular && squares[j] > smallest; });
+    each(kFirst, m, [&](Eigen::Index j) { regular = regular && squares[j] > smallest; });
     if constexpr (kInLanes<Scalar>) {
       set_nan_unless(regular);
       return Status::kOk;
@@ -57,15 +58,15 @@ class RowFactor {
   /// Sets all solutions of a lane to NaN where its mask is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept {
     fpbm::set_nan_unless(truth, reciprocal_[0]);
-    fpbm::set_nan_unless(truth, reciprocal_[M - 1]);
+    fpbm::set_nan_unless(truth, reciprocal_[rows() - 1]);
   }
 
   /// D⁻¹L⁻¹b: what A⁺b takes of each column of Q.
   [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
     Vector<M, Value> s = b;
-    each(kFirst, kLast,
-         [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
-    each(kFirst, kLast, [&](Eigen::Index i) { s.coeffRef(i) *= reciprocal_[i]; });
+    const auto m = rows();
+    each(kFirst, m, [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
+    each(kFirst, m, [&](Eigen::Index i) { s.coeffRef(i) *= reciprocal_[i]; });
     return s;
   }
 
@@ -74,7 +75,7 @@ class RowFactor {
   [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
     Vector<N, Value> left = a;
-    each(kFirst, kLast, [&](Eigen::Index i) {
+    each(kFirst, rows(), [&](Eigen::Index i) {
       const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * left.coeff(k); }) * reciprocal_[i];
       each(kFirst, n, [&](Eigen::Index k) { left.coeffRef(k) -= share * Q_.coeff(k, i); });
     });
@@ -87,7 +88,7 @@ class RowFactor {
     y.resize(Q_.rows());
     each(kFirst, extent<N>(Q_.rows()), [&](Eigen::Index k) {
       Value at = s.coeff(0) * Q_.coeff(k, 0);
-      each(next(kFirst), kLast, [&](Eigen::Index i) { at += s.coeff(i) * Q_.coeff(k, i); });
+      each(next(kFirst), rows(), [&](Eigen::Index i) { at += s.coeff(i) * Q_.coeff(k, i); });
       y.coeffRef(k) = at;
     });
     return y;
@@ -96,15 +97,15 @@ class RowFactor {
   /// (AAᵀ)⁻¹b = L⁻ᵀs, given these shares of b.
   [[nodiscard]] Vector<M, Value> back(const Vector<M, Value>& s) const noexcept {
     Vector<M, Value> x = s;
-    for (int i = M - 2; i >= 0; --i) {
-      for (int j = M - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
+    for (Eigen::Index i = x.size() - 2; i >= 0; --i) {
+      for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
     }
     return x;
   }
 
   /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the least singular value of A, tight within a
   /// factor M.
-  [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, kLast); }
+  [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, rows()); }
 
  private:
   /// f(k) summed over the columns of A.
@@ -120,7 +121,7 @@ class RowFactor {
   }
 
   [[nodiscard, gnu::noinline]] static Status lost(const Matrix<N, M, Value>& At) noexcept {
-    for (int i = 0; i < M; ++i) {
+    for (Eigen::Index i = 0; i < At.cols(); ++i) {
       Value square(Scalar(0));
       for (Eigen::Index k = 0; k < At.rows(); ++k) square += At(k, i) * At(k, i);
       if (!is_finite(square)) return Status::kNotFinite;
@@ -128,15 +129,17 @@ class RowFactor {
     return Status::kSingular;
   }
 
-  /// Least square of a column of Q, relative to the sum of those of the rows of A, that is taken for more than
+  /// Least square of a column of Q, relative to the mean of those of the rows of A, that is taken for more than
   /// round-off.
-  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon() / M;
+  static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
-  static constexpr Constant<M> kLast{};
+
+  /// Number of rows of A.
+  [[nodiscard]] auto rows() const noexcept { return extent<M>(Q_.cols()); }
 
   Matrix<N, M, Value> Q_;
-  Value L_[M][M];        ///< Below the diagonal.
-  Value reciprocal_[M];  ///< 1 / D.
+  Value L_[kCapacity<M>][kCapacity<M>];  ///< Below the diagonal.
+  Value reciprocal_[kCapacity<M>];       ///< 1 / D.
 };
 
 }  // namespace fpbm

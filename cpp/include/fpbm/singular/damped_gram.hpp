@@ -8,6 +8,7 @@
 #include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/row_factor.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/damping.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 
@@ -25,22 +26,28 @@ template <int M, int N, typename Scalar>
 
 /// ‖DJ‖²_F, where D multiplies the last kTurns rows, which are angular, by length [m].
 template <int kTurns, int M, int N, typename Scalar>
-[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J, const Scalar& length) noexcept {
-  const Scalar* column = J.data();
-  Vector<M, Scalar> squares;
-  for (int i = 0; i < M; ++i) squares.coeffRef(i) = column[i] * column[i];
-  for (Eigen::Index j = 1; j < extent<N>(J.cols()); ++j) {
-    column += M;
-    for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
+[[nodiscard]] Scalar squared_norm_in_metres(const Matrix<M, N, Scalar>& J,
+                                            [[maybe_unused]] const Scalar& length) noexcept {
+  if constexpr (M == Eigen::Dynamic) {
+    static_assert(kTurns == 0, "rows of a number that is known at run time are in metres");
+    return squared_norm(J);
+  } else {
+    const Scalar* column = J.data();
+    Vector<M, Scalar> squares;
+    for (int i = 0; i < M; ++i) squares.coeffRef(i) = column[i] * column[i];
+    for (Eigen::Index j = 1; j < extent<N>(J.cols()); ++j) {
+      column += M;
+      for (int i = 0; i < M; ++i) squares.coeffRef(i) += column[i] * column[i];
+    }
+    Scalar sum = squares.coeff(0);
+    for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
+    if constexpr (kTurns > 0) {
+      Scalar turns = squares.coeff(M - kTurns);
+      for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
+      sum += length * length * turns;
+    }
+    return sum;
   }
-  Scalar sum = squares.coeff(0);
-  for (int i = 1; i < M - kTurns; ++i) sum += squares.coeff(i);
-  if constexpr (kTurns > 0) {
-    Scalar turns = squares.coeff(M - kTurns);
-    for (int i = M - kTurns + 1; i < M; ++i) turns += squares.coeff(i);
-    sum += length * length * turns;
-  }
-  return sum;
 }
 
 /// J C with C Cᵀ = W⁻¹, and the Gram matrix JW⁻¹Jᵀ, solved; damped where J is nearly singular. With Value =
@@ -62,7 +69,7 @@ class DampedGram {
   /// Returns kDamped where Δ is not zero, or why there is no factor.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
     rows_ = rows;
-    for (int i = kLengths; i < M; ++i) {
+    for (Eigen::Index i = lengths(); i < J_.rows(); ++i) {
       for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
     }
     const Status status = factor_.factor(rows_);
@@ -130,30 +137,33 @@ class DampedGram {
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
-  static constexpr int kLengths = M - kTurns;
+  /// Number of rows of J that are lengths.
+  [[nodiscard]] Eigen::Index lengths() const noexcept { return J_.rows() - kTurns; }
 
   /// D b.
   [[nodiscard]] Vector<M, Value> in_metres(const Vector<M, Value>& b) const noexcept {
     Vector<M, Value> scaled = b;
-    for (int i = kLengths; i < M; ++i) scaled(i) *= Value(length_);
+    for (Eigen::Index i = lengths(); i < J_.rows(); ++i) scaled(i) *= Value(length_);
     return scaled;
   }
 
   [[nodiscard, gnu::noinline]] Status damped(Scalar threshold, Status undamped) noexcept {
     Matrix<M, M, Scalar> even = gram_of(J_);
-    for (int i = kLengths; i < M; ++i) {
-      for (int j = 0; j < M; ++j) even(j, i) *= length_;
+    const Eigen::Index m = J_.rows();
+    for (Eigen::Index i = lengths(); i < m; ++i) {
+      for (Eigen::Index j = 0; j < m; ++j) even(j, i) *= length_;
     }
-    for (int i = kLengths; i < M; ++i) {
-      for (int j = 0; j < M; ++j) even(i, j) *= length_;
+    for (Eigen::Index i = lengths(); i < m; ++i) {
+      for (Eigen::Index j = 0; j < m; ++j) even(i, j) *= length_;
     }
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
     Matrix<M, M, Value> gram;  // Its lower triangle.
-    for (int i = 0; i < M; ++i) {
+    gram.resize(m, m);
+    for (Eigen::Index i = 0; i < m; ++i) {
       const Vector<N, Value> row = column(rows_, i);
-      for (int j = 0; j <= i; ++j) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
         gram(i, j) = entrywise(row, [&](Eigen::Index k) { return row.coeff(k) * rows_.coeff(k, j); }).sum() +
                      Value(lost.delta(i, j));
       }

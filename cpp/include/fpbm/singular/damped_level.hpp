@@ -23,16 +23,15 @@ inline constexpr Scalar kLevelRadius = Scalar(0.1);
 template <int M, typename Scalar>
 class DampedLevel {
  public:
-  static_assert(M != Eigen::Dynamic, "a damped level has a number of rows that is known at compile time");
-
   /// epsilon_squared: ε², in the squared unit of A.
   explicit DampedLevel(Scalar epsilon_squared) noexcept : epsilon_squared_(epsilon_squared) {}
 
   /// Replaces r by w and returns true. If no direction is lost but by dependent rows, leaves r as given and returns
   /// false. columns: number of columns of L; the others are zero.
   [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r, Eigen::Index columns) noexcept {
-    const bool dependent = columns < M;
-    lost_ = static_cast<Scalar>(M - columns);
+    const Eigen::Index m = L.rows();
+    const bool dependent = columns < m;
+    lost_ = static_cast<Scalar>(m - columns);
     const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : gram_of(L);
     Cholesky<M, Scalar> cholesky;
     // σ_min² ≥ 1/tr((L Lᵀ)⁻¹) settles most levels without a decomposition into eigenvectors.
@@ -53,7 +52,7 @@ class DampedLevel {
   /// LᵀL. Each column of L that is zero gets an eigenvalue that is large, so that it does not count as lost.
   [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
                                                      Eigen::Index columns) const noexcept {
-    auto gram = filled<Matrix<M, M, Scalar>>(M);
+    auto gram = filled<Matrix<M, M, Scalar>>(L.rows());
     Scalar trace = epsilon_squared_;
     for (Eigen::Index i = 0; i < columns; ++i) {
       for (Eigen::Index j = 0; j < columns; ++j) {
@@ -61,7 +60,7 @@ class DampedLevel {
       }
       trace += gram.coeff(i, i);
     }
-    for (Eigen::Index i = columns; i < M; ++i) gram.coeffRef(i, i) = kApart * trace;
+    for (Eigen::Index i = columns; i < L.rows(); ++i) gram.coeffRef(i, i) = kApart * trace;
     return gram;
   }
 

@@ -14,17 +14,18 @@ namespace fpbm {
 /// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};                                               ///< tr Δ/ε²: about the number of lost directions.
-  Matrix<M, M, Scalar> delta = filled<Matrix<M, M, Scalar>>(M);  ///< Δ
+  Scalar count{0};             ///< tr Δ/ε²: about the number of lost directions.
+  Matrix<M, M, Scalar> delta;  ///< Δ
 
-  LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept {
+  LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept
+      : delta(filled<Matrix<M, M, Scalar>>(gram.rows())) {
     const SymmetricEigen<M, Scalar> spectrum(gram);
-    for (int i = 0; i < M; ++i) {
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
       const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
-      for (int j = 0; j < M; ++j) {
-        for (int k = 0; k < M; ++k) {
+      for (Eigen::Index j = 0; j < gram.rows(); ++j) {
+        for (Eigen::Index k = 0; k < gram.rows(); ++k) {
           delta(j, k) += (share * epsilon_squared) * (spectrum.vectors(j, i) * spectrum.vectors(k, i));
         }
       }

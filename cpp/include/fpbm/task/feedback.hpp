@@ -27,18 +27,27 @@ template <typename Space, int N, typename Scalar>
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
     const State<N, Scalar>& state) noexcept {
   constexpr int M = Space::kRows;
-  const Scalar* const xdd = reference.xdd.data();
-  if (all_of(k1 + k2 == Scalar(0))) {
-    return by_rows<M, Scalar>(
-        [&](const auto& rows) { return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd); });
+  if constexpr (M == Eigen::Dynamic) {
+    const Vector<M, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+    const Vector<M, Scalar> xd = product(kinematics.J, state.qd);
+    const Vector<M, Scalar> drift = product(kinematics.Jd, state.qd);
+    return entrywise(xd, [&](Eigen::Index i) {
+      return reference.xdd.coeff(i) - drift.coeff(i) + k1 * (reference.xd.coeff(i) - xd.coeff(i)) + k2 * error.coeff(i);
+    });
+  } else {
+    const Scalar* const xdd = reference.xdd.data();
+    if (all_of(k1 + k2 == Scalar(0))) {
+      return by_rows<M, Scalar>(
+          [&](const auto& rows) { return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd); });
+    }
+    const Vector<M, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
+    return by_rows<M, Scalar>([&](const auto& rows) {
+      using Value = decltype(rows(xdd));
+      const Value velocity = rows(reference.xd.data()) - rows_of_product(rows, kinematics.J, state.qd);
+      return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd) + Value(k1) * velocity +
+             Value(k2) * rows(error.data());
+    });
   }
-  const Vector<M, Scalar> error = Space::template difference<Scalar>(reference.x, kinematics.tip);
-  return by_rows<M, Scalar>([&](const auto& rows) {
-    using Value = decltype(rows(xdd));
-    const Value velocity = rows(reference.xd.data()) - rows_of_product(rows, kinematics.J, state.qd);
-    return rows(xdd) - rows_of_product(rows, kinematics.Jd, state.qd) + Value(k1) * velocity +
-           Value(k2) * rows(error.data());
-  });
 }
 
 }  // namespace fpbm
