@@ -3,8 +3,11 @@
 /// Redundancy resolution for robot arms: include this, or the headers you need.
 
 #include "fpbm/any/any_arm.hpp"
+#include "fpbm/any/any_frame_task.hpp"
 #include "fpbm/any/any_path.hpp"
+#include "fpbm/any/any_posture_task.hpp"
 #include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/any_stack.hpp"
 #include "fpbm/any/any_time_law.hpp"
 #include "fpbm/any/any_weights.hpp"
 #include "fpbm/any/convert_path.hpp"

@@ -16,7 +16,7 @@ template <int N, typename Scalar, int... M>
 class TaskLevels {
  public:
   explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) { enabled_.fill(true); }
-  /// enabled: levels that are not enabled are left out. The first one is enabled.
+  /// enabled: levels that are not enabled, or have no rows, are left out. The first one is enabled.
   explicit TaskLevels(const std::array<bool, sizeof...(M)>& enabled, const Matrix<M, N, Scalar>&... J) noexcept
       : enabled_(enabled), J_(J...) {}
 
@@ -31,7 +31,7 @@ class TaskLevels {
  private:
   template <typename F, std::size_t... k>
   void each_from(F& f, std::index_sequence<k...>) const noexcept {
-    ((enabled_[k + 1] ? f(k + 1, std::get<k + 1>(J_)) : void()), ...);
+    ((enabled_[k + 1] && std::get<k + 1>(J_).rows() > 0 ? f(k + 1, std::get<k + 1>(J_)) : void()), ...);
   }
 
   std::array<bool, sizeof...(M)> enabled_;

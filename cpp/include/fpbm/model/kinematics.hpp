@@ -34,14 +34,12 @@ template <typename Space, int N, typename Scalar>
   return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);
 }
 
-/// J of the first task level, and its number of rows.
+/// J of the first task level.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] const Matrix<Space::kRows, N, Scalar>& first_rows(
     const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   return kinematics.J;
 }
-template <typename Space>
-inline constexpr int kFirstRows = Space::kRows;
 
 /// x ⊖ f(q), the error of the task [m, rad]. x: the target.
 template <typename Space, int N, typename Scalar>

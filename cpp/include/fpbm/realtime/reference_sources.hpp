@@ -1,5 +1,8 @@
 #pragma once
 
+#include <type_traits>
+
+#include "fpbm/core/parts.hpp"
 #include "fpbm/realtime/path_follower.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/target_filter.hpp"
@@ -32,7 +35,7 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool) noexcept 
 }
 
 /// The reference of a single task, from its source. StackSpace has an overload with a source for each task.
-template <typename Space, typename Scalar, typename Source>
+template <typename Space, typename Scalar, typename Source, typename = std::enable_if_t<!kIsProduct<Space>>>
 [[nodiscard]] Reference<Space, Scalar> joined(Space, Scalar seconds, const Source& source) noexcept {
   return source_ahead(source, seconds);
 }

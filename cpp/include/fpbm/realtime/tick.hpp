@@ -72,7 +72,7 @@ struct TrackerOptions {
   int measured_delay = 3;
 
   /// The damping for a scheme of an arm whose task has so many rows: without a null space, none of it.
-  [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, int rows) const noexcept {
+  [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, Eigen::Index rows) const noexcept {
     return {singular, dof > rows ? null_damping : Scalar(0)};
   }
 };

@@ -69,11 +69,11 @@ class Tracker {
     validation::require_joint_vector("qdd0", qdd0, arm.dof());
     limits.require_viable(start, qdd0);
     validation::require_non_negative("null_damping", options.null_damping);
-    give_damping(scheme_, options.damping(arm.dof(), kFirstRows<Space>));
-    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
-    if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
+    give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
+    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
+    if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     kept_.begin_at(kinematics.tip, kinematics.length);
   }
 

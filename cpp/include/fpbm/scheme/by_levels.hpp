@@ -51,15 +51,16 @@ struct ByLevels {
       constexpr int kIndex = decltype(k)::value;
       const auto& [J, Jd] = std::get<kIndex>(kinematics.levels);
       constexpr int M = Stack_::kRows[kIndex];
-      Reference<Position<M>, Scalar> command = Reference<Position<M>, Scalar>::hold(filled<Vector<M, Scalar>>(M));
+      const auto none = filled<Vector<M, Scalar>>(J.rows());
+      Reference<Position<M>, Scalar> command{none, none, none};
       command_level<kIndex>(kinematics, reference, command);
       if constexpr (kIndex == 0) {
-        const Kinematics<Position<M>, kDof, Scalar> rows{filled<Vector<M, Scalar>>(M), J, Jd};
+        const Kinematics<Position<M>, kDof, Scalar> rows{none, J, Jd};
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve(rows, command, state, result);
         if constexpr (Stack_::kLevels > 1) space.add(J);
       } else {
-        if (failed(status) || !kinematics.enabled[kIndex] || space.rank() == space.size()) return;
+        if (failed(status) || !kinematics.enabled[kIndex] || J.rows() == 0 || space.rank() == space.size()) return;
         Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
         r -= product(J, result);
         if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
@@ -88,19 +89,21 @@ struct ByLevels {
   template <int k, int M>
   void command_level(const Kinematics<Space, kDof, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
                      Reference<Position<M>, Scalar>& command) const noexcept {
+    Eigen::Index to_row = 0;
     Space::each([&](auto space, auto i, int row) noexcept {
       using Part = decltype(space);
       constexpr int kTask = static_cast<int>(decltype(i)::value);
       if constexpr (Stack_::level(kTask) == k) {
         const auto& task = std::get<kTask>(kinematics.tasks);
+        if (task.S.rows() == 0) return;
         using Twist = Vector<Part::kRows, Scalar>;
         const Twist error =
             Part::template difference<Scalar>(std::get<kTask>(reference.x), std::get<kTask>(kinematics.tip));
         const Twist xd = reference.xd.template segment<Part::kRows>(row);
         const Twist xdd = reference.xdd.template segment<Part::kRows>(row);
-        constexpr int kRows = std::tuple_element_t<kTask, typename Stack_::Tasks>::kRows;
         const auto put = [&](Vector<M, Scalar>& to, const Twist& twist) noexcept {
-          to.template segment<kRows>(Stack_::row(kTask)) = task.S.lazyProduct(twist);
+          const auto rows = product(task.S, twist);
+          for (Eigen::Index j = 0; j < rows.size(); ++j) to.coeffRef(to_row + j) = rows.coeff(j);
         };
         if constexpr (kLevel == Level::kAcceleration) {
           put(command.xd, xd);
@@ -110,6 +113,7 @@ struct ByLevels {
         } else {
           put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); }));
         }
+        to_row += task.S.rows();
       }
     });
   }

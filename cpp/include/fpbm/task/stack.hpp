@@ -10,10 +10,20 @@
 
 namespace fpbm {
 
+/// Number of rows of a task, which may be known at run time (Task::kRows = Eigen::Dynamic).
+template <typename Task>
+[[nodiscard]] constexpr int rows_of([[maybe_unused]] const Task& task) noexcept {
+  if constexpr (Task::kRows == Eigen::Dynamic) {
+    return task.rows();
+  } else {
+    return Task::kRows;
+  }
+}
+
 /// Tasks side by side on one level.
 template <typename... Tasks>
 struct TaskLevel {
-  static constexpr int kRows = (Tasks::kRows + ...);
+  static constexpr int kRows = ((Tasks::kRows == Eigen::Dynamic) || ...) ? Eigen::Dynamic : (Tasks::kRows + ...);
   std::tuple<Tasks...> tasks;
 
   explicit TaskLevel(const Tasks&... tasks_) : tasks(tasks_...) {}
@@ -82,7 +92,7 @@ class Stack {
 
   [[nodiscard]] const Tasks& tasks() const noexcept { return tasks_; }
 
-  /// Rows of each level.
+  /// Rows of each level, or Eigen::Dynamic.
   static constexpr std::array<int, kLevels> kRows{Levels::kRows...};
 
   /// Level of task i.
@@ -92,8 +102,12 @@ class Stack {
     while (i >= kCounts[static_cast<std::size_t>(k)]) i -= kCounts[static_cast<std::size_t>(k++)];
     return k;
   }
-  /// First row of task i on its level.
-  [[nodiscard]] static constexpr int row(int i) noexcept { return row_of(i, std::make_index_sequence<kTasks>{}); }
+  /// Number of rows of level k.
+  [[nodiscard]] int rows(int k) const noexcept {
+    int rows = 0;
+    each([&](const auto& task, auto i) noexcept { rows += level(decltype(i)::value) == k ? rows_of(task) : 0; });
+    return rows;
+  }
 
   /// Enables or disables level k, counted from 0. The first level is always enabled. False if there is no lower level
   /// k.
@@ -104,14 +118,15 @@ class Stack {
   }
   [[nodiscard]] const std::array<bool, kLevels>& enabled() const noexcept { return enabled_; }
 
-  /// Binds the tasks to a robot. Throws std::invalid_argument where a task does not suit the robot, or a level has more
-  /// rows than the robot has joints.
+  /// Binds the tasks to a robot. Throws std::invalid_argument where a task does not suit the robot, a level has more
+  /// rows than the robot has joints, or the first level has no rows.
   template <typename Robot>
   void bind(const Robot& robot) {
-    for (std::size_t k = 0; k < kRows.size(); ++k) {
-      if (kRows[k] > robot.dof()) {
-        validation::fail(validation::element("rows of level", static_cast<Eigen::Index>(k)), kRows[k], "at most ",
-                         robot.dof(), ", the number of joints: move a task to another level");
+    if (rows(0) == 0) validation::reject("stack", ": its first level has no task: must have one");
+    for (int k = 0; k < kLevels; ++k) {
+      if (rows(k) > robot.dof()) {
+        validation::fail(validation::element("rows of level", k), rows(k), "at most ", robot.dof(),
+                         ", the number of joints: move a task to another level");
       }
     }
     std::apply([&](auto&... task) { (task.bind(robot), ...); }, tasks_);
@@ -129,15 +144,7 @@ class Stack {
     (f(std::get<i>(tasks_), std::integral_constant<int, static_cast<int>(i)>{}), ...);
   }
 
-  template <std::size_t... i>
-  [[nodiscard]] static constexpr int row_of(int task, std::index_sequence<i...>) noexcept {
-    constexpr std::array<int, kTasks> kTaskRows{std::tuple_element_t<i, Tasks>::kRows...};
-    int row = 0;
-    for (int j = task - 1; j >= 0 && level(j) == level(task); --j) row += kTaskRows[static_cast<std::size_t>(j)];
-    return row;
-  }
-
-  [[nodiscard]] static constexpr std::array<bool, kLevels> all() noexcept { return {(Levels::kRows > 0)...}; }
+  [[nodiscard]] static constexpr std::array<bool, kLevels> all() noexcept { return {(Levels::kRows != 0)...}; }
 
   Tasks tasks_;
   std::array<bool, kLevels> enabled_ = all();

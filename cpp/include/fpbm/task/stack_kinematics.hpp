@@ -17,9 +17,9 @@ struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
 
-  void resize(Eigen::Index dof) noexcept {
-    J.resize(M, dof);
-    Jd.resize(M, dof);
+  void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
+    J.resize(rows, dof);
+    Jd.resize(rows, dof);
   }
 };
 
@@ -73,9 +73,6 @@ struct StackKinematics {
 
 template <typename... Levels, int N, typename Scalar>
 struct Kinematics<StackSpace<Levels...>, N, Scalar> : StackKinematics<Stack<Levels...>, N> {};
-
-template <typename First, typename... Lower>
-inline constexpr int kFirstRows<StackSpace<First, Lower...>> = First::kRows;
 
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] const auto& first_rows(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
@@ -143,11 +140,13 @@ class RobotTasks {
   void evaluate(const typename Robot_::State& state, State& out) const noexcept {
     out.length = robot_.length();
     out.enabled = stack_.enabled();
-    std::apply([&](auto&... level) { (level.resize(robot_.dof()), ...); }, out.levels);
+    int k = 0;
+    std::apply([&](auto&... level) { (level.resize(stack_.rows(k++), robot_.dof()), ...); }, out.levels);
+    int row = 0;  // Of the task on its level.
     stack_.each([&](const auto& task, auto i) noexcept {
       using Task = std::decay_t<decltype(task)>;
       constexpr int kIndex = decltype(i)::value;
-      constexpr int kRow = Stack_::row(kIndex);
+      if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
       constexpr int kSpace = Task::Space::kRows;
       auto& [k1, k2, S, xd] = std::get<kIndex>(out.tasks);
       k1 = task.gains.k1;
@@ -155,28 +154,31 @@ class RobotTasks {
       Matrix<kSpace, kDof, Scalar> J;
       Matrix<kSpace, kDof, Scalar> Jd;
       task.evaluate(robot_, state, std::get<kIndex>(out.tip), J, Jd, S);
+      if (rows_of(task) == 0) return;
       for (int j = kSpace - Task::Space::kTurns; j < kSpace; ++j) {
-        for (int row = 0; row < Task::kRows; ++row) S(row, j) *= out.length;
+        for (Eigen::Index r = 0; r < S.rows(); ++r) S(r, j) *= out.length;
       }
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      select<Task, kRow>(S, J, level.J);
-      if (!state.moves) return;
-      select<Task, kRow>(S, Jd, level.Jd);
-      xd = product(J, state.qd);
+      select<Task>(S, J, row, level.J);
+      if (state.moves) {
+        select<Task>(S, Jd, row, level.Jd);
+        xd = product(J, state.qd);
+      }
+      row += rows_of(task);
     });
   }
 
-  /// Writes S A to the rows of `to` from kRow on.
-  template <typename Task, int kRow, typename Selection, typename Rows, typename LevelMatrix>
-  static void select(const Selection& S, const Rows& A, LevelMatrix& to) noexcept {
+  /// Writes S A to the rows of `to` from `row` on.
+  template <typename Task, typename Selection, typename Rows, typename LevelMatrix>
+  static void select(const Selection& S, const Rows& A, int row, LevelMatrix& to) noexcept {
     for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      for (int i = 0; i < Task::kRows; ++i) {
+      for (Eigen::Index i = 0; i < S.rows(); ++i) {
         if constexpr (Task::kWhole) {
-          to.coeffRef(kRow + i, j) = S.coeff(i, i) * A.coeff(i, j);
+          to.coeffRef(row + i, j) = S.coeff(i, i) * A.coeff(i, j);
         } else {
           Scalar sum(0);
           for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(i, k) * A.coeff(k, j);
-          to.coeffRef(kRow + i, j) = sum;
+          to.coeffRef(row + i, j) = sum;
         }
       }
     }

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/core/direction.hpp"
+#include "fpbm/core/space.hpp"
+#include "fpbm/model/link.hpp"
+#include "fpbm/task/link_frame.hpp"
+#include "fpbm/task/task_gains.hpp"
+
+namespace fpbm {
+
+/// What a task controls of a frame.
+enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis };
+
+/// Task space of any task of a frame: poses, or directions, which are z axes of poses.
+struct FrameSpace {
+  static constexpr int kRows = 6;
+  static constexpr int kTurns = 3;
+  static constexpr int kSize = 16;
+
+  template <typename Scalar>
+  struct Point {
+    Transform<Scalar> at;
+    bool is_axis = false;
+  };
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> origin() noexcept {
+    return {};
+  }
+
+  /// As Pose, or of directions as Direction, without linear rows.
+  template <typename Scalar>
+  [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    if (!y.is_axis) return Pose::difference<Scalar>(x.at, y.at);
+    const Vector<3, Scalar> turn = Direction::difference<Scalar>(column(x.at.R, 2), column(y.at.R, 2));
+    auto result = filled<Vector<6, Scalar>>(6);
+    for (int i = 0; i < 3; ++i) result(3 + i) = turn(i);
+    return result;
+  }
+
+  template <typename Scalar>
+  [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
+    return {Pose::displace<Scalar>(y.at, d), y.is_axis};
+  }
+};
+
+/// A task of a frame whose kind and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask,
+/// and a pose of fewer rows.
+class AnyFrameTask {
+ public:
+  using Scalar = double;
+  using Space = FrameSpace;
+  static constexpr int kRows = Eigen::Dynamic;
+  static constexpr bool kWhole = false;
+  /// Which of x, y, z and the rotations about them a task selects. Of an axis, the last three are one choice.
+  using Selection = std::array<bool, 6>;
+
+  TaskGains<> gains = TaskGains<>(0.0, 0.0);
+
+  /// No task: no rows.
+  AnyFrameTask() = default;
+
+  /// selected: those of the rows that the kind has. in_frame: along the frame's axes, otherwise the base frame's.
+  /// axis: of kind kAxis, in the frame. Throws std::invalid_argument where no row is selected, or the axis is zero or
+  /// not finite.
+  AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
+               bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0})
+      : gains(gains_), frame_(frame), kind_(kind), in_frame_(in_frame) {
+    if (kind == FrameCoordinates::kAxis) {
+      validation::require_finite("axis", axis);
+      if (!(norm(axis) > 0.0)) validation::reject("axis", " is zero: must point somewhere");
+      to_axis_ = z_to(axis);
+      count_ = 2;
+      return;
+    }
+    for (int row = 0; row < 6; ++row) {
+      const bool linear = row < 3;
+      const bool has = linear ? kind != FrameCoordinates::kOrientation : kind != FrameCoordinates::kPosition;
+      if (has && selected[static_cast<std::size_t>(row)]) rows_[static_cast<std::size_t>(count_++)] = row;
+    }
+    if (count_ == 0) validation::reject("rows", " select no row of the task: must select one");
+  }
+
+  [[nodiscard]] FrameCoordinates kind() const noexcept { return kind_; }
+  [[nodiscard]] int rows() const noexcept { return count_; }
+
+  template <typename Robot>
+  void bind(const Robot& robot) {
+    frame_.bind(robot);
+  }
+
+  template <typename Robot>
+  void evaluate(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x,
+                Matrix<6, Robot::kDof>& J, Matrix<6, Robot::kDof>& Jd, Matrix<Eigen::Dynamic, 6>& S) const noexcept {
+    x.is_axis = kind_ == FrameCoordinates::kAxis;
+    S.resize(count_, 6);
+    if (count_ == 0) return;
+    x.at = frame_.at(robot, state);
+    robot.jacobian(state, frame_.link(), x.at.p, J, Jd);
+    if (x.is_axis) x.at.R = times(x.at.R, to_axis_);
+    for (int i = 0; i < count_; ++i) {
+      const int row = x.is_axis ? 3 + i : rows_[static_cast<std::size_t>(i)];
+      for (int j = 0; j < 6; ++j) {
+        const bool same_part = (row < 3) == (j < 3);
+        if (x.is_axis || in_frame_) {
+          S(i, j) = same_part ? x.at.R(j % 3, row % 3) : 0.0;
+        } else {
+          S(i, j) = row == j ? 1.0 : 0.0;
+        }
+      }
+    }
+  }
+
+ private:
+  LinkFrame<> frame_ = LinkFrame<>(0);
+  FrameCoordinates kind_ = FrameCoordinates::kPose;
+  bool in_frame_ = false;
+  int count_ = 0;
+  std::array<int, 6> rows_{};  ///< The selected ones.
+  Matrix<3, 3> to_axis_ = identity<Matrix<3, 3>>();
+};
+
+}  // namespace fpbm

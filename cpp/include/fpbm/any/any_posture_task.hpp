@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "fpbm/core/joint_space.hpp"
+#include "fpbm/task/link_frame.hpp"
+#include "fpbm/task/task_gains.hpp"
+
+namespace fpbm {
+
+/// PostureTask of joints that are known at run time.
+class AnyPostureTask {
+ public:
+  using Scalar = double;
+  using Space = JointSpace<kMaxDof>;
+  static constexpr int kRows = Eigen::Dynamic;
+  static constexpr bool kWhole = true;
+
+  TaskGains<> gains = TaskGains<>(0.0, 0.0);
+
+  /// No task: no rows.
+  AnyPostureTask() = default;
+
+  /// joints: each once, from 0. Throws std::invalid_argument where there are none, or more than kMaxDof.
+  AnyPostureTask(const std::vector<int>& joints, const TaskGains<>& gains_)
+      : gains(gains_), count_(static_cast<int>(joints.size())) {
+    if (count_ < 1 || count_ > kMaxDof) {
+      validation::fail("number of joints", count_, "from 1 to ", kMaxDof);
+    }
+    for (int i = 0; i < count_; ++i) joints_(i) = joints[static_cast<std::size_t>(i)];
+  }
+
+  [[nodiscard]] int rows() const noexcept { return count_; }
+
+  /// Throws std::invalid_argument where the robot has no such joint, or a joint is listed twice.
+  template <typename Robot>
+  void bind(const Robot& robot) const {
+    require_different("joints", std::vector<int>(joints_.data(), joints_.data() + count_), robot.dof());
+  }
+
+  template <typename Robot>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<kMaxDof>& x,
+                Matrix<kMaxDof, Robot::kDof>& J, Matrix<kMaxDof, Robot::kDof>& Jd,
+                Matrix<Eigen::Dynamic, kMaxDof>& S) const noexcept {
+    x = filled<Vector<kMaxDof>>(kMaxDof);
+    S.resize(count_, kMaxDof);
+    if (count_ == 0) return;
+    J.setZero(kMaxDof, robot.dof());
+    if (state.moves) Jd.setZero(kMaxDof, robot.dof());
+    S.setZero();
+    for (int i = 0; i < count_; ++i) {
+      x(i) = state.q(joints_(i));
+      J(i, joints_(i)) = 1.0;
+      S(i, i) = 1.0;
+    }
+  }
+
+ private:
+  int count_ = 0;
+  Eigen::Matrix<int, kMaxDof, 1, Eigen::DontAlign> joints_ = Eigen::Matrix<int, kMaxDof, 1, Eigen::DontAlign>::Zero();
+};
+
+}  // namespace fpbm

@@ -1,0 +1,140 @@
+#include "fpbm/any/any_stack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "fpbm/any/any_weights.hpp"
+#include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/pose_task.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/posture_task.hpp"
+#include "support/arms.hpp"
+
+/// Stacks of tasks that are known at run time move as those of fixed types.
+namespace fpbm::test::any_stack {
+namespace {
+
+constexpr int kTip = Robot<7>::kTip;
+constexpr int kDynamic = Eigen::Dynamic;
+using Weights = DiagonalWeights<kDynamic>;
+const AnyFrameTask::Selection kAll{true, true, true, true, true, true};
+const AnyFrameTask::Selection kHeight{false, false, true, false, false, false};
+const TaskGains<> kGains(10.0, 25.0);
+
+[[nodiscard]] AnyFrameTask frame_task(FrameCoordinates kind, int link, const AnyFrameTask::Selection& rows = kAll,
+                                      bool in_frame = false) {
+  return AnyFrameTask(kind, LinkFrame<>(link), kGains, rows, in_frame);
+}
+[[nodiscard]] AnyLevel level(const AnyFrameTask& first, const AnyFrameTask& second = {},
+                             const AnyPostureTask& posture = {}) {
+  return AnyLevel(first, second, posture);
+}
+[[nodiscard]] AnyLevel posture_level() {
+  return level({}, {}, AnyPostureTask({0, 1, 2, 3, 4, 5, 6}, TaskGains<>(4.0, 4.0)));
+}
+[[nodiscard]] AnyLevel no_level() {
+  return level({});
+}
+
+[[nodiscard]] Vector<7> start() {
+  return Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
+}
+
+template <typename Stack_>
+[[nodiscard]] auto fixed(const Stack_& stack) {
+  const auto scheme = Balanced<7>(0.6, DiagonalWeights<7>(Vector<7>(Vector<7>::LinSpaced(7, 1.0, 4.0))),
+                                  NullSpace<7>().with_damping(2.0));
+  return stack_tracker(Robot<7>(presets::panda()), stack, scheme, start());
+}
+[[nodiscard]] auto at_run_time(const AnyStack& stack) {
+  const AnyWeights weights(Weights(Vector<kDynamic>(Vector<7>::LinSpaced(7, 1.0, 4.0))));
+  const AccelerationScheme<kDynamic, double, AnyWeights> scheme(0.6, weights, 0.0, 0.0,
+                                                                NullSpace<kDynamic>().with_damping(2.0));
+  return stack_tracker(Robot<kDynamic>(presets::panda()), stack, scheme, Vector<kDynamic>(start()));
+}
+
+template <typename Tracker>
+[[nodiscard]] auto holding(const Tracker& tracker) {
+  using Target = typename Tracker::Target;
+  return Target::hold(tracker.tip());
+}
+
+/// An axis, a place and a height of a link, and a posture, on four levels.
+TEST(AnyStack, moves_as_a_stack_of_fixed_types) {
+  auto expected = fixed(Stack(AxisTask<>{{kTip}, kGains}, PositionTask<>{{kTip}, kGains},
+                              PositionTask<1>{{4}, kGains, {2}}, PostureTask<7>{TaskGains<>(4.0, 4.0)}));
+  auto tracker = at_run_time(AnyStack(level(frame_task(FrameCoordinates::kAxis, kTip)),
+                                      level(frame_task(FrameCoordinates::kPosition, kTip)),
+                                      level(frame_task(FrameCoordinates::kPosition, 4, kHeight)), posture_level()));
+  auto target = holding(expected);
+  auto any = holding(tracker);
+  std::get<1>(target.x) += Vector<3>(0.3, 0.4, -0.1);
+  std::get<3>(any.x).at.p += Vector<3>(0.3, 0.4, -0.1);
+  int slowed = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto tick = expected.tick(target);
+    const auto other = tracker.tick(any);
+    ASSERT_LT((tick.q - other.q).norm(), 1e-9) << i;
+    ASSERT_EQ(tick.status, other.status) << i;
+    for (std::size_t k = 0; k < 4; ++k) ASSERT_NEAR(tick.scales[k], other.scales[k], 1e-6) << i;
+    slowed += tick.status == Status::kSlowed ? 1 : 0;
+  }
+  EXPECT_GT(slowed, 10);
+}
+
+/// Tasks side by side, and levels that are left out.
+TEST(AnyStack, has_tasks_side_by_side) {
+  auto expected =
+      fixed(Stack(TaskLevel(PositionTask<>{{kTip}, kGains}, AxisTask<>{{kTip}, kGains}), PoseTask<>{{5}, kGains}));
+  auto tracker = at_run_time(
+      AnyStack(level(frame_task(FrameCoordinates::kPosition, kTip), frame_task(FrameCoordinates::kAxis, kTip)),
+               level(frame_task(FrameCoordinates::kPose, 5)), no_level(), no_level()));
+  auto target = holding(expected);
+  auto any = holding(tracker);
+  std::get<0>(target.x)(1) += 0.2;
+  std::get<0>(any.x).at.p(1) += 0.2;
+  for (int i = 0; i < 2000; ++i) {
+    const auto tick = expected.tick(target);
+    const auto other = tracker.tick(any);
+    ASSERT_LT((tick.q - other.q).norm(), 1e-9) << i;
+    ASSERT_EQ(other.scales[2], 1.0);
+  }
+}
+
+/// A pose whose rotation about the frame's z axis is free.
+TEST(AnyStack, has_poses_of_fewer_rows) {
+  auto tracker = at_run_time(
+      AnyStack(level(frame_task(FrameCoordinates::kPose, kTip, {true, true, true, true, true, false}, true)),
+               posture_level(), no_level(), no_level()));
+  auto target = holding(tracker);
+  const auto tip = std::get<0>(target.x).at;
+  std::get<0>(target.x).at.R = tip.R * rotation(Vector<3>(0.0, 0.0, 1.0));  // Turned about z: already there.
+  std::get<5>(target.x)(6) += 0.5;
+  for (int i = 0; i < 8000; ++i) (void)tracker.tick(target);
+  const auto reached = std::get<0>(tracker.tip()).at;
+  EXPECT_LT((reached.p - tip.p).norm(), 1e-6);
+  EXPECT_LT((reached.R.col(2) - tip.R.col(2)).norm(), 1e-6);
+  EXPECT_GT((reached.R.col(0) - tip.R.col(0)).norm(), 0.2);
+}
+
+TEST(AnyStack, refuses_what_does_not_suit) {
+  EXPECT_THROW(frame_task(FrameCoordinates::kOrientation, kTip, kHeight), std::invalid_argument);
+  EXPECT_THROW(AnyFrameTask(FrameCoordinates::kAxis, LinkFrame<>(0), kGains, kAll, false, Vector<3>::Zero()),
+               std::invalid_argument);
+  EXPECT_THROW(AnyPostureTask({}, kGains), std::invalid_argument);
+  EXPECT_THROW(AnyPostureTask(std::vector<int>(33, 0), kGains), std::invalid_argument);
+  const auto build = [](const AnyLevel& first) {
+    return at_run_time(AnyStack(first, no_level(), no_level(), no_level()));
+  };
+  EXPECT_THROW(build(level({}, {}, AnyPostureTask({0, 0}, kGains))), std::invalid_argument);
+  EXPECT_THROW(build(level({}, {}, AnyPostureTask({7}, kGains))), std::invalid_argument);
+  EXPECT_THROW(build(level(frame_task(FrameCoordinates::kPose, 8))), std::invalid_argument);
+  EXPECT_THROW(build(level(frame_task(FrameCoordinates::kPose, kTip), frame_task(FrameCoordinates::kPose, 4))),
+               std::invalid_argument);
+  EXPECT_THROW(build(no_level()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fpbm::test::any_stack
