@@ -1,7 +1,5 @@
 #include "scheme.hpp"
 
-#include "fpbm/any/any_weights.hpp"
-
 namespace fpbm::bindings {
 namespace {
 
@@ -12,6 +10,8 @@ constexpr int kOwnSize = std::is_same_v<Space, Position<2>> ? 4
                          : std::is_same_v<Space, Pose>      ? 7
                                                             : 0;
 
+}  // namespace
+
 AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof) {
   const auto checked = [dof](const auto& weights) {
     weights.require_dof(dof);
@@ -21,8 +21,6 @@ AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof) {
   if (const auto* W = std::get_if<Scheme::Dense>(&scheme.weights)) return checked(DenseWeights<kDynamic>(*W));
   return checked(UnitWeights{});
 }
-
-}  // namespace
 
 template <typename Space>
 EitherScheme<Space> Scheme::plain(const JointLimits<kDynamic>& limits) const {

@@ -6,6 +6,7 @@
 
 #include "arm.hpp"
 #include "fpbm/any/any_scheme.hpp"
+#include "fpbm/any/any_weights.hpp"
 #include "fpbm/scheme/acceleration_scheme.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
@@ -111,6 +112,9 @@ struct Scheme {
     return result;
   }
 };
+
+/// The weights of a scheme, behind one type. Throws std::invalid_argument where they are for another number of joints.
+AnyWeights any_weights(const Scheme& scheme, Eigen::Index dof);
 
 /// The parameters that are numbers, and 0 where they are not given.
 inline constexpr std::pair<const char*, double Scheme::*> kSchemeNumbers[] = {

@@ -120,7 +120,7 @@ TEST(AnyStack, has_poses_of_fewer_rows) {
 }
 
 TEST(AnyStack, refuses_what_does_not_suit) {
-  EXPECT_THROW(frame_task(FrameCoordinates::kOrientation, kTip, kHeight), std::invalid_argument);
+  EXPECT_THROW((void)frame_task(FrameCoordinates::kOrientation, kTip, kHeight), std::invalid_argument);
   EXPECT_THROW(AnyFrameTask(FrameCoordinates::kAxis, LinkFrame<>(0), kGains, kAll, false, Vector<3>::Zero()),
                std::invalid_argument);
   EXPECT_THROW(AnyPostureTask({}, kGains), std::invalid_argument);
@@ -128,12 +128,12 @@ TEST(AnyStack, refuses_what_does_not_suit) {
   const auto build = [](const AnyLevel& first) {
     return at_run_time(AnyStack(first, no_level(), no_level(), no_level()));
   };
-  EXPECT_THROW(build(level({}, {}, AnyPostureTask({0, 0}, kGains))), std::invalid_argument);
-  EXPECT_THROW(build(level({}, {}, AnyPostureTask({7}, kGains))), std::invalid_argument);
-  EXPECT_THROW(build(level(frame_task(FrameCoordinates::kPose, 8))), std::invalid_argument);
-  EXPECT_THROW(build(level(frame_task(FrameCoordinates::kPose, kTip), frame_task(FrameCoordinates::kPose, 4))),
+  EXPECT_THROW((void)build(level({}, {}, AnyPostureTask({0, 0}, kGains))), std::invalid_argument);
+  EXPECT_THROW((void)build(level({}, {}, AnyPostureTask({7}, kGains))), std::invalid_argument);
+  EXPECT_THROW((void)build(level(frame_task(FrameCoordinates::kPose, 8))), std::invalid_argument);
+  EXPECT_THROW((void)build(level(frame_task(FrameCoordinates::kPose, kTip), frame_task(FrameCoordinates::kPose, 4))),
                std::invalid_argument);
-  EXPECT_THROW(build(no_level()), std::invalid_argument);
+  EXPECT_THROW((void)build(no_level()), std::invalid_argument);
 }
 
 }  // namespace

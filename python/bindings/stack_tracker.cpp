@@ -1,0 +1,62 @@
+#include "stack_tracker.hpp"
+
+#include <stdexcept>
+
+#include "fpbm/clearance/guard.hpp"
+#include "fpbm/realtime/stack_tracker.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+/// StackTracker under a scheme of the library.
+template <typename Scheme_>
+class StackTrackerOf final : public StackTracker {
+  static constexpr Level kLevel = Scheme_::kLevel;
+  using TrackerGuard = Guard<kLevel, kDynamic>;
+
+ public:
+  StackTrackerOf(const Scheme_& scheme, const StackStart& from)
+      : tracker_(stack_tracker<TrackerGuard>(Robot<kDynamic>(from.chain), from.stack, scheme, from.start, from.options,
+                                             Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0,
+                                             TrackerGuard(from.clearance))) {}
+
+  Result advance(const TickReferences<Space>& references) noexcept override { return tracker_.advance(references); }
+  [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) override {
+    if constexpr (kLevel == Level::kAcceleration) {
+      return tracker_.resolve_measured(measured.q, measured.qd, reference);
+    } else {
+      throw std::invalid_argument("resolve_measured: a velocity-level scheme has no accelerations");
+    }
+  }
+
+  bool enable(int level, bool on) noexcept override { return tracker_.enable(level, on); }
+  void stop() noexcept override { tracker_.stop(); }
+  void resume() noexcept override { tracker_.resume(); }
+
+  [[nodiscard]] const State<kDynamic>& state() const noexcept override { return tracker_.state(); }
+  [[nodiscard]] const JointVector& acceleration() const noexcept override { return tracker_.acceleration(); }
+  [[nodiscard]] Point tip() const noexcept override { return tracker_.tip(); }
+  [[nodiscard]] Clearance<kDynamic>& clearance() noexcept override { return tracker_.guard().clearance(); }
+
+ private:
+  Tracker<RobotTasks<Robot<kDynamic>, AnyStack>, Space, ByLevels<Scheme_, AnyStack>, TrackerGuard> tracker_;
+};
+
+template <Level kLevel>
+std::unique_ptr<StackTracker> tracker_at(const Scheme& scheme, const StackStart& from) {
+  const auto law = scheme.law<kLevel>(any_weights(scheme, from.start.q.size()), from.limits);
+  return std::make_unique<StackTrackerOf<std::decay_t<decltype(law)>>>(law, from);
+}
+
+}  // namespace
+
+std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from) {
+  if (!scheme.is_plain()) {
+    validation::reject(scheme.second_task ? "second_task" : "manipulability_gain",
+                       " acts beside one task: must not be given with a stack");
+  }
+  return scheme.level == Level::kVelocity ? tracker_at<Level::kVelocity>(scheme, from)
+                                          : tracker_at<Level::kAcceleration>(scheme, from);
+}
+
+}  // namespace fpbm::bindings

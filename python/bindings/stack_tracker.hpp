@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+
+#include "fpbm/any/any_stack.hpp"
+#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/realtime/stack_tick.hpp"
+#include "fpbm/realtime/tick_references.hpp"
+#include "scheme.hpp"
+
+namespace fpbm::bindings {
+
+/// fpbm::stack_tracker() of any robot and tasks, under any scheme of either level, clear of shapes.
+class StackTracker {
+ public:
+  using Space = AnyStack::Space;
+  using Point = AnyStack::Point;
+  using Result = Tick<Space, kDynamic>;
+
+  StackTracker() = default;
+  StackTracker(const StackTracker&) = delete;
+  StackTracker& operator=(const StackTracker&) = delete;
+  virtual ~StackTracker() = default;
+
+  virtual Result advance(const TickReferences<Space>& references) noexcept = 0;
+  /// Throws std::invalid_argument where the scheme is of velocity level.
+  [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
+
+  virtual bool enable(int level, bool on) noexcept = 0;
+  virtual void stop() noexcept = 0;
+  virtual void resume() noexcept = 0;
+
+  [[nodiscard]] virtual const State<kDynamic>& state() const noexcept = 0;
+  [[nodiscard]] virtual const JointVector& acceleration() const noexcept = 0;
+  [[nodiscard]] virtual Point tip() const noexcept = 0;
+  [[nodiscard]] virtual Clearance<kDynamic>& clearance() noexcept = 0;
+};
+
+/// What a tracker of a stack starts from, apart from its scheme.
+struct StackStart {
+  const Chain<>& chain;
+  const AnyStack& stack;
+  const State<kDynamic>& start;
+  const TrackerOptions<>& options;
+  const JointLimits<kDynamic>& limits;
+  const JointVector& qdd0;
+  const Clearance<kDynamic>& clearance;
+};
+
+/// The tracker. Throws std::invalid_argument as fpbm::stack_tracker() does, and where an objective of the scheme needs
+/// a single task.
+std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from);
+
+}  // namespace fpbm::bindings
