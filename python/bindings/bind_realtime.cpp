@@ -7,6 +7,7 @@
 #include "clearance.hpp"
 #include "path.hpp"
 #include "scheme.hpp"
+#include "stack_loop.hpp"
 #include "target_filter.hpp"
 #include "tracker.hpp"
 
@@ -24,14 +25,34 @@ struct PyTick {
   double sigma;
   Array error;
   std::optional<PyNearest> nearest;
+  std::optional<Array> scales;     ///< Of a stack: of each level.
+  std::optional<py::dict> errors;  ///< Of a stack: of each task.
 };
 
 template <typename Space>
 PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNearest>& nearest) {
   py::array_t<bool> saturated(tick.q.size());
   for (Eigen::Index i = 0; i < tick.q.size(); ++i) saturated.mutable_at(i) = ((tick.saturated >> i) & 1U) != 0;
-  return {array_of(tick.q), array_of(tick.qd), array_of(tick.qdd),   tick.status, tick.scale,
-          saturated,        tick.sigma,        array_of(tick.error), nearest};
+  return {array_of(tick.q),
+          array_of(tick.qd),
+          array_of(tick.qdd),
+          tick.status,
+          tick.scale,
+          saturated,
+          tick.sigma,
+          array_of(tick.error),
+          nearest,
+          {},
+          {}};
+}
+
+/// Of a stack.
+PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const std::optional<PyNearest>& nearest) {
+  PyTick result = python_tick(tick, nearest);
+  result.error = loop.error(tick);
+  result.scales = loop.scales(tick);
+  result.errors = loop.errors(tick);
+  return result;
 }
 
 template <typename Space>
@@ -46,46 +67,87 @@ PyTick tick_at(Tracker& tracker, const JointVector& q, Take&& take) {
   return python_tick(take(), nearest);
 }
 
-struct PyFollower {
-  std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
-};
-
-/// A tracker with any task.
+/// A tracker with any task, or of a stack of tasks.
 class PyTracker {
   template <typename Space>
   using Held = std::unique_ptr<AnyTracker<Space>>;
-  using Any = std::variant<Held<Position<2>>, Held<PlanarPose>, Held<Position<3>>, Held<Pose>>;
+  using Stacked = std::unique_ptr<StackLoop>;
+  using Any = std::variant<Held<Position<2>>, Held<PlanarPose>, Held<Position<3>>, Held<Pose>, Stacked>;
 
-  /// Calls visitor(tracker, Space).
+  /// Calls visitor(tracker, Space) with the tracker of a single task. Throws std::invalid_argument with what a tracker
+  /// of a stack must be given.
   template <typename Visitor>
-  auto visit(Visitor&& visitor) const {
-    return std::visit([&](const auto& held) { return visitor(*held, space_of(*held)); }, any_);
+  auto visit(const char* remedy, Visitor&& visitor) const {
+    return std::visit(
+        [&](const auto& held) -> decltype(visitor(*std::get<0>(any_), Position<2>{})) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Stacked>) {
+            validation::reject("tracker", std::string(" has a stack of tasks: ") + remedy);
+          } else {
+            return visitor(*held, space_of(*held));
+          }
+        },
+        any_);
+  }
+  /// Calls visitor(tracker), also with the one of a stack.
+  template <typename Visitor>
+  auto visit_any(Visitor&& visitor) const {
+    return std::visit(
+        [&](const auto& held) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Stacked>) {
+            return visitor(held->tracker());
+          } else {
+            return visitor(*held);
+          }
+        },
+        any_);
   }
 
  public:
   PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-            const OptionalArray& qdd0, const std::string& task, const py::object& limits,
+            const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
             const TrackerOptions<>& options, const py::object& clearance)
-      : dof_(arm.dof()), dt_(options.dt), any_(arm.visit(task, [&](const auto& any, auto space) {
-          using Space = decltype(space);
-          State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
-          if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
-          const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
-          require_enough_joints<Space>(dof_);
-          return Any(
-              make_tracker<Space>(scheme, {any, start, options, limits.is_none() ? arm.limits() : joint_limits(limits),
-                                           before, clearance_of(arm, clearance)}));
-        })) {}
+      : dof_(arm.dof()), dt_(options.dt) {
+    State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
+    if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
+    const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
+    const JointLimits<kDynamic> bounds = limits.is_none() ? arm.limits() : joint_limits(limits);
+    const Clearance<kDynamic> shapes = clearance_of(arm, clearance);
+    if (!stack.is_none()) {
+      any_ = std::make_unique<StackLoop>(stack, scheme, arm, start, options, bounds, before, shapes);
+      return;
+    }
+    any_ = arm.visit(task, [&](const auto& any, auto space) {
+      using Space = decltype(space);
+      require_enough_joints<Space>(dof_);
+      return Any(make_tracker<Space>(scheme, {any, start, options, bounds, before, shapes}));
+    });
+  }
+
+  [[nodiscard]] PyTick tick(const py::dict& references) {
+    StackLoop& loop = stack();
+    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), loop.tracker().state().q);
+    return python_tick(loop, loop.tick(references), nearest);
+  }
+
+  [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const py::dict& references) {
+    StackLoop& loop = stack();
+    const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
+    const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), measured.q);
+    return python_tick(loop, loop.resolve_measured(measured, references), nearest);
+  }
+
+  void enable(int level, bool on) { stack().enable(level, on); }
+  [[nodiscard]] Array frame(const std::string& task) { return stack().frame(task); }
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit([&](auto& tracker, auto space) {
+    return visit(kByName, [&](auto& tracker, auto space) {
       const auto target = reference<decltype(space)>(x, xd, xdd);
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(target); });
     });
   }
 
   [[nodiscard]] PyTick tick(PyFollower& follower) {
-    return visit([&](auto& tracker, auto space) {
+    return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
       if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
@@ -93,7 +155,7 @@ class PyTracker {
   }
 
   [[nodiscard]] PyTick tick(PyTargetFilter& filter) {
-    return visit([&](auto& tracker, auto space) {
+    return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
       if (same == nullptr) validation::reject("filter", ": it is for another task");
       if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
@@ -103,15 +165,17 @@ class PyTracker {
 
   [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
                                         const OptionalArray& xd, const OptionalArray& xdd) {
-    return visit([&](auto& tracker, auto space) {
+    return visit(kByName, [&](auto& tracker, auto space) {
       const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
       const auto target = reference<decltype(space)>(x, xd, xdd);
       return tick_at(tracker, measured.q, [&] { return tracker.resolve_measured(measured, target); });
     });
   }
 
-  [[nodiscard]] PyFollower follow(const Path& path, double ramp) {
-    return visit([&](auto& tracker, auto space) -> PyFollower {
+  [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) {
+    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->follow(path, ramp, task);
+    if (task) validation::reject("task", " = '" + *task + "': must not be given where the tracker has one task");
+    return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
     });
@@ -119,29 +183,41 @@ class PyTracker {
 
   void move(const std::string& name, const Shape& shape, const ArrayLike& velocity) {
     const Vector<3> v = fixed_vector<3>(velocity, "velocity");
-    visit([&](auto& tracker, auto) { move_obstacle(tracker.clearance(), name, shape, v); });
+    visit_any([&](auto& tracker) { move_obstacle(tracker.clearance(), name, shape, v); });
   }
 
   void stop() {
-    visit([](auto& tracker, auto) { tracker.stop(); });
+    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->stop();
+    visit_any([](auto& tracker) { tracker.stop(); });
   }
   void resume() {
-    visit([](auto& tracker, auto) { tracker.resume(); });
+    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->resume();
+    visit_any([](auto& tracker) { tracker.resume(); });
   }
   [[nodiscard]] Array q() {
-    return visit([](auto& tracker, auto) { return array_of(tracker.state().q); });
+    return visit_any([](auto& tracker) { return array_of(tracker.state().q); });
   }
   [[nodiscard]] Array qd() {
-    return visit([](auto& tracker, auto) { return array_of(tracker.state().qd); });
+    return visit_any([](auto& tracker) { return array_of(tracker.state().qd); });
   }
   [[nodiscard]] Array qdd() {
-    return visit([](auto& tracker, auto) { return array_of(tracker.acceleration()); });
+    return visit_any([](auto& tracker) { return array_of(tracker.acceleration()); });
   }
-  [[nodiscard]] Array tip() {
-    return visit([](auto& tracker, auto) { return array_of(tracker.tip()); });
+  [[nodiscard]] py::object tip() {
+    if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->points();
+    return visit("", [](auto& tracker, auto) -> py::object { return array_of(tracker.tip()); });
   }
 
  private:
+  static constexpr const char* kByName = "must be given a dictionary of references by the names of the tasks";
+
+  /// Throws std::invalid_argument where the tracker has one task.
+  [[nodiscard]] StackLoop& stack() const {
+    const auto* stacked = std::get_if<Stacked>(&any_);
+    if (stacked == nullptr) validation::reject("tracker", " has one task: needs a stack of tasks for that");
+    return **stacked;
+  }
+
   template <typename Space>
   static Reference<Space> reference(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
     auto result = Reference<Space>::hold(point<Space>(x, "x"));
@@ -166,6 +242,11 @@ void bind_tick(py::module_& m) {
       .def_readonly("sigma", &PyTick::sigma,
                     "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
       .def_readonly("error", &PyTick::error, "x - f(q) at the tick's start [m, rad], shape (m,).")
+      .def_readonly("scales", &PyTick::scales,
+                    "Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.")
+      .def_readonly(
+          "errors", &PyTick::errors,
+          "Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.")
       .def_readonly(
           "nearest", &PyTick::nearest,
           "The two shapes that are to be kept apart and were nearest to one another at the tick's start; None\n"
@@ -207,7 +288,9 @@ qd0, qdd0 : array_like, shape (n,), optional
     Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
     zero unless given.
 task : str
-    'position' or 'pose'.
+    'position' or 'pose', of the tip.
+stack : Stack, optional
+    Several tasks in strict priority, which replace task. tick then takes a dictionary of references.
 dt : float
     Length of a tick [s].
 limits : JointLimits, optional
@@ -240,19 +323,20 @@ Raises
 ParameterError
     Where an argument is out of range, a limit is missing, or the start breaks one or is not clear.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
-                       const OptionalArray& qdd0, const std::string& task, double dt, const py::object& limits,
-                       double error_bound, double gain, double bound, double stall_time, double radius, double brake,
-                       double null_damping, bool recovery, int measured_delay, const py::object& clearance) {
+                       const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
+                       const py::object& limits, double error_bound, double gain, double bound, double stall_time,
+                       double radius, double brake, double null_damping, bool recovery, int measured_delay,
+                       const py::object& clearance) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
              options.measured_delay = measured_delay;
-             return PyTracker(arm, scheme, q0, qd0, qdd0, task, limits, options, clearance);
+             return PyTracker(arm, scheme, q0, qd0, qdd0, task, stack, limits, options, clearance);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
-           py::arg("qdd0") = none, py::arg("task") = "position", py::arg("dt") = 1e-3, py::arg("limits") = none,
-           py::arg("error_bound") = 0.1, py::arg("integral_gain") = 0.0, py::arg("integral_bound") = 1.0,
-           py::arg("stall_time") = TrackerOptions<>().stall_time,
+           py::arg("qdd0") = none, py::arg("task") = "position", py::arg("stack") = none, py::arg("dt") = 1e-3,
+           py::arg("limits") = none, py::arg("error_bound") = 0.1, py::arg("integral_gain") = 0.0,
+           py::arg("integral_bound") = 1.0, py::arg("stall_time") = TrackerOptions<>().stall_time,
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake(),
            py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
@@ -261,19 +345,39 @@ ParameterError
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
            "One tick behind a filter of targets, which goes on, also after stop.")
+      .def("tick", py::overload_cast<const py::dict&>(&PyTracker::tick), py::arg("references"),
+           R"(One tick of a stack toward references: a dictionary by the names of the tasks.
+
+Each value is a point x, (x, xd) or (x, xd, xdd), and of positions and poses also a PathFollower or a TargetFilter. x has
+shape (3,) of a position, (3, 3) of an orientation, (4, 4) of a pose, (3,) of an axis, (joints,) of a posture [m, rad]. A
+task that is not in the dictionary keeps its last target, at rest; at first, the point where it starts.)")
       .def("tick", py::overload_cast<const ArrayLike&, const OptionalArray&, const OptionalArray&>(&PyTracker::tick),
            py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
            R"(One tick toward a reference, at rest unless its velocity and acceleration are given.
 
 x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows first, in the base frame. Never fails:
 where no motion can be found the arm brakes, and the tick's status says why.)")
-      .def("resolve_measured", &PyTracker::resolve_measured, py::arg("q"), py::arg("qd"), py::arg("x"),
-           py::arg("xd") = none, py::arg("xdd") = none,
+      .def("resolve_measured",
+           py::overload_cast<const ArrayLike&, const ArrayLike&, const py::dict&>(&PyTracker::resolve_measured),
+           py::arg("q"), py::arg("qd"), py::arg("references"), "The same of a stack.")
+      .def("resolve_measured",
+           py::overload_cast<const ArrayLike&, const ArrayLike&, const ArrayLike&, const OptionalArray&,
+                             const OptionalArray&>(&PyTracker::resolve_measured),
+           py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
            R"(The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller to realise.
 
 The state may be up to measured_delay ticks old.)")
-      .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5,
-           "A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].")
+      .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5, py::arg("task") = none,
+           R"(A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+
+Of a stack, from where the task of that name is; it may be left out if one task alone is a position or a pose.)")
+      .def("enable", &PyTracker::enable, py::arg("level"), py::arg("on"),
+           R"(Resolves a level of a stack below the first, counted from 0, or leaves it out.
+
+Commands stay within all bounds.)")
+      .def("frame", &PyTracker::frame, py::arg("task"),
+           "Of a stack: the frame of the task of that name, in the base frame, shape (4, 4); of an axis task, z is the "
+           "axis.")
       .def(
           "move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
           R"(Moves an obstacle of the clearance: where it is now, and the velocity [m/s] at which it is expected to go on.
@@ -285,7 +389,9 @@ where no obstacle has that name, or the shape is of another kind.)")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")
       .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of its own state [rad/s].")
       .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of its last tick [rad/s^2].")
-      .def_property_readonly("tip", &PyTracker::tip, "Where the tip of its own state is, in the base frame [m].");
+      .def_property_readonly(
+          "tip", &PyTracker::tip,
+          "Where the tip of its own state is, in the base frame [m]; of a stack, where each task is, by name.");
 }
 
 }  // namespace fpbm::bindings

@@ -74,6 +74,7 @@ StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Arm& a
 }
 
 AnyStack StackLoop::build(const py::object& stack, const Scheme& scheme, const Arm& arm) {
+  if (!py::hasattr(stack, "levels")) validation::reject("stack", ": must be a Stack");
   constexpr std::size_t kLevels = AnyStack::kLevels;
   const auto levels = attribute<py::tuple>(stack, "levels");
   if (levels.size() > kLevels) {

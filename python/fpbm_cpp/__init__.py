@@ -5,7 +5,7 @@ schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration le
 FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, paths, schemes
+from . import arms, paths, schemes, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,
@@ -36,6 +36,7 @@ from .motion.sweeping import Sweep, sweep
 from .obstacle import Cuboid, HalfSpace
 from .paths import *
 from .schemes import *
+from .tasks import *
 from .tuning import Tuning, tune
 from .viewer import servo, view
 
@@ -46,4 +47,4 @@ __all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", 
 __all__ += ["SaturatedLevels", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
-__all__ += arms.__all__ + paths.__all__ + schemes.__all__
+__all__ += arms.__all__ + paths.__all__ + schemes.__all__ + tasks.__all__

@@ -479,6 +479,11 @@ class Tick:
         x - f(q) at the tick's start [m, rad], shape (m,).
         """
     @property
+    def errors(self) -> dict | None:
+        """
+        Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.
+        """
+    @property
     def nearest(self) -> Nearest | None:
         """
         The two shapes that are to be kept apart and were nearest to one another at the tick's start; None
@@ -508,6 +513,11 @@ class Tick:
     def scale(self) -> float:
         """
         How much of the task the limits left, from 0 to 1.
+        """
+    @property
+    def scales(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.
         """
     @property
     def sigma(self) -> float:
@@ -561,7 +571,9 @@ class Tracker:
         Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
         zero unless given.
     task : str
-        'position' or 'pose'.
+        'position' or 'pose', of the tip.
+    stack : Stack, optional
+        Several tasks in strict priority, which replace task. tick then takes a dictionary of references.
     dt : float
         Length of a tick [s].
     limits : JointLimits, optional
@@ -603,6 +615,7 @@ class Tracker:
         qd0: numpy.typing.ArrayLike | None = None,
         qdd0: numpy.typing.ArrayLike | None = None,
         task: str = "position",
+        stack: typing.Any = None,
         dt: typing.SupportsFloat | typing.SupportsIndex = 0.001,
         limits: typing.Any = None,
         error_bound: typing.SupportsFloat | typing.SupportsIndex = 0.1,
@@ -616,9 +629,23 @@ class Tracker:
         measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
         clearance: typing.Any = None,
     ) -> None: ...
-    def follow(self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5) -> PathFollower:
+    def enable(self, level: typing.SupportsInt | typing.SupportsIndex, on: bool) -> None:
+        """
+        Resolves a level of a stack below the first, counted from 0, or leaves it out.
+
+        Commands stay within all bounds.
+        """
+    def follow(
+        self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5, task: str | None = None
+    ) -> PathFollower:
         """
         A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+
+        Of a stack, from where the task of that name is; it may be left out if one task alone is a position or a pose.
+        """
+    def frame(self, task: str) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of a stack: the frame of the task of that name, in the base frame, shape (4, 4); of an axis task, z is the axis.
         """
     def move(self, name: str, shape: Shape, velocity: numpy.typing.ArrayLike = (0, 0, 0)) -> None:
         """
@@ -627,6 +654,12 @@ class Tracker:
         shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
         where no obstacle has that name, or the shape is of another kind.
         """
+    @typing.overload
+    def resolve_measured(self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict) -> Tick:
+        """
+        The same of a stack.
+        """
+    @typing.overload
     def resolve_measured(
         self,
         q: numpy.typing.ArrayLike,
@@ -659,6 +692,15 @@ class Tracker:
         One tick behind a filter of targets, which goes on, also after stop.
         """
     @typing.overload
+    def tick(self, references: dict) -> Tick:
+        """
+        One tick of a stack toward references: a dictionary by the names of the tasks.
+
+        Each value is a point x, (x, xd) or (x, xd, xdd), and of positions and poses also a PathFollower or a TargetFilter. x has
+        shape (3,) of a position, (3, 3) of an orientation, (4, 4) of a pose, (3,) of an axis, (joints,) of a posture [m, rad]. A
+        task that is not in the dictionary keeps its last target, at rest; at first, the point where it starts.
+        """
+    @typing.overload
     def tick(
         self,
         x: numpy.typing.ArrayLike,
@@ -687,9 +729,9 @@ class Tracker:
         Joint accelerations of its last tick [rad/s^2].
         """
     @property
-    def tip(self) -> numpy.typing.NDArray[numpy.float64]:
+    def tip(self) -> typing.Any:
         """
-        Where the tip of its own state is, in the base frame [m].
+        Where the tip of its own state is, in the base frame [m]; of a stack, where each task is, by name.
         """
 
 def advice(status: Status) -> str:

@@ -1,0 +1,172 @@
+"""Tasks of a robot, and stacks of them on levels in strict priority."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import KW_ONLY
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ._types import ArrayField, OptionalArrayField
+from .errors import not_one_of, wrong
+from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
+
+__all__ = ["AxisTask", "OrientationTask", "PoseTask", "PositionTask", "PostureTask", "Stack", "Task"]
+
+POSITION = ("x", "y", "z")
+ROTATION = ("rx", "ry", "rz")
+FRAME = "'tip', 'base', or a joint's name: the frame of the link that this joint moves, after its motion."
+OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="The task's frame, seen from that frame.")
+AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Whose axes the rows are along.")
+
+
+@data
+class Task(Data):
+    """A task of a stack: what all of them have.
+
+    At acceleration level, the error of a task obeys e'' + k1 e' + k2 e = 0; at velocity level, e' + k e = 0.
+    """
+
+    kind: ClassVar[str]
+    all_rows: ClassVar[tuple[str, ...]] = ()
+    _: KW_ONLY
+    name: str = parameter("Of its references and errors; that of its kind where empty.", default="")
+    k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
+    k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
+    k: float = parameter("Feedback gain at velocity level.", NOT_NEGATIVE, default=5.0, unit="1/s")
+
+    def _finish(self) -> None:
+        if not self.name:
+            object.__setattr__(self, "name", self.kind)
+        rows = getattr(self, "rows", None)
+        if rows is None:
+            return
+        if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):
+            raise wrong("rows", rows, f" = {rows!r:.80}: must be some of {', '.join(self.all_rows)}")
+        for i, row in enumerate(rows := tuple(rows)):
+            if row not in self.all_rows:
+                raise not_one_of("rows", row, self.all_rows)
+            if row in rows[:i]:
+                raise wrong("rows", rows, f" has {row!r} twice")
+        object.__setattr__(self, "rows", rows)
+
+
+@data
+class PositionTask(Task):
+    """The position of a frame's origin, or some of its coordinates. Its point has shape (3,) [m]."""
+
+    kind = "position"
+    all_rows = POSITION
+    frame: str = parameter(FRAME, default="tip")
+    _: KW_ONLY
+    rows: Sequence[str] = parameter("Some of x, y, z.", default=POSITION)
+    axes: str = parameter(like=AXES, default="base")
+    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+
+
+@data
+class OrientationTask(Task):
+    """The orientation of a frame, or some of its rotations. Its point has shape (3, 3)."""
+
+    kind = "orientation"
+    all_rows = ROTATION
+    frame: str = parameter(FRAME, default="tip")
+    _: KW_ONLY
+    rows: Sequence[str] = parameter("Some of rx, ry, rz.", default=ROTATION)
+    axes: str = parameter(like=AXES, default="base")
+    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+
+
+@data
+class PoseTask(Task):
+    """The pose of a frame, or some of its rows. Its point has shape (4, 4) [m].
+
+    With axes='frame', rows=('x', 'y', 'z', 'rx', 'ry') leave the rotation about the frame's z axis free.
+    """
+
+    kind = "pose"
+    all_rows = POSITION + ROTATION
+    frame: str = parameter(FRAME, default="tip")
+    _: KW_ONLY
+    rows: Sequence[str] = parameter("Some of x, y, z, rx, ry, rz.", default=POSITION + ROTATION)
+    axes: str = parameter(like=AXES, default="base")
+    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+
+
+@data
+class AxisTask(Task):
+    """The direction of an axis of a frame: 2 rows, the rotation about the axis is free. Its point has shape (3,)."""
+
+    kind = "axis"
+    frame: str = parameter(FRAME, default="tip")
+    axis: ArrayField = parameter("In the frame; its length does not matter.", default=(0, 0, 1), shape="(3,)")
+    _: KW_ONLY
+    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+
+    def _finish(self) -> None:
+        super()._finish()
+        if not np.any(self.axis):
+            raise wrong("axis", self.axis, " = 0: must point somewhere")
+
+
+@data
+class PostureTask(Task):
+    """Positions of all joints, or of some. Its point has shape (joints,) [rad]."""
+
+    kind = "posture"
+    q: OptionalArrayField = parameter("Its target; where it starts if not given.", default=None, shape="(n,)", unit="rad")
+    _: KW_ONLY
+    joints: Sequence[str] | None = parameter("Names of the joints; None: all.", default=None)
+
+    def _finish(self) -> None:
+        super()._finish()
+        if self.joints is None:
+            return
+        names = (self.joints,) if isinstance(self.joints, str) else tuple(self.joints)
+        if not names or len(set(names)) < len(names):
+            raise wrong("joints", self.joints, f" = {self.joints!r:.80}: must be names of joints, each once")
+        object.__setattr__(self, "joints", names)
+
+
+class Stack:
+    """Tasks on levels in strict priority: a lower level uses only the motion that the higher levels leave free.
+
+    Each argument is a level: a task, or a sequence of tasks side by side. At most 4 levels, each with at most two tasks of
+    frames and one PostureTask. Raises ParameterError for an empty level, and where two tasks have one name.
+    """
+
+    levels: tuple[tuple[Task, ...], ...]
+
+    def __init__(self, *levels: Task | Sequence[Task]) -> None:
+        made = tuple(tuple(level) if isinstance(level, (list, tuple)) else (level,) for level in levels)
+        if not made:
+            raise wrong("levels", levels, ": must be one at least")
+        names: list[str] = []
+        for k, level in enumerate(made):
+            if not level:
+                raise wrong(f"levels[{k}]", level, " is empty: must have a task")
+            for task in level:
+                if not isinstance(task, Task) or type(task) is Task:
+                    raise wrong(f"levels[{k}]", task, f" has {task!r:.80}: must be a task, or a sequence of tasks")
+                if task.name in names:
+                    raise wrong(f"levels[{k}]", task, f" has a second task of the name {task.name!r}: give it a name=")
+                names.append(task.name)
+        self.levels = made
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """All tasks, those of higher levels first."""
+        return tuple(task for level in self.levels for task in level)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Stack) and other.levels == self.levels
+
+    def __hash__(self) -> int:
+        return hash(self.levels)
+
+    def __repr__(self) -> str:
+        return f"Stack({', '.join(repr(level[0] if len(level) == 1 else list(level)) for level in self.levels)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Stack, self.levels
