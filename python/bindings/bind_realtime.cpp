@@ -26,7 +26,7 @@ struct PyTick {
   Array error;
   std::optional<PyNearest> nearest;
   std::optional<Array> scales;     ///< Of a stack: of each level.
-  std::optional<py::dict> errors;  ///< Of a stack: of each task.
+  std::optional<PyPoints> errors;  ///< Of a stack: of each task.
 };
 
 template <typename Space>
@@ -123,13 +123,13 @@ class PyTracker {
     });
   }
 
-  [[nodiscard]] PyTick tick(const py::dict& references) {
+  [[nodiscard]] PyTick tick(const PyReferences& references) {
     StackLoop& loop = stack();
     const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), loop.tracker().state().q);
     return python_tick(loop, loop.tick(references), nearest);
   }
 
-  [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const py::dict& references) {
+  [[nodiscard]] PyTick resolve_measured(const ArrayLike& q, const ArrayLike& qd, const PyReferences& references) {
     StackLoop& loop = stack();
     const State<kDynamic> measured{joint_vector(q, "q", dof_), joint_vector(qd, "qd", dof_)};
     const std::optional<PyNearest> nearest = nearest_at(loop.tracker().clearance(), measured.q);
@@ -345,7 +345,7 @@ ParameterError
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
            "One tick behind a filter of targets, which goes on, also after stop.")
-      .def("tick", py::overload_cast<const py::dict&>(&PyTracker::tick), py::arg("references"),
+      .def("tick", py::overload_cast<const PyReferences&>(&PyTracker::tick), py::arg("references"),
            R"(One tick of a stack toward references: a dictionary by the names of the tasks.
 
 Each value is a point x, (x, xd) or (x, xd, xdd), and of positions and poses also a PathFollower or a TargetFilter. x has
@@ -358,7 +358,7 @@ task that is not in the dictionary keeps its last target, at rest; at first, the
 x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows first, in the base frame. Never fails:
 where no motion can be found the arm brakes, and the tick's status says why.)")
       .def("resolve_measured",
-           py::overload_cast<const ArrayLike&, const ArrayLike&, const py::dict&>(&PyTracker::resolve_measured),
+           py::overload_cast<const ArrayLike&, const ArrayLike&, const PyReferences&>(&PyTracker::resolve_measured),
            py::arg("q"), py::arg("qd"), py::arg("references"), "The same of a stack.")
       .def("resolve_measured",
            py::overload_cast<const ArrayLike&, const ArrayLike&, const ArrayLike&, const OptionalArray&,

@@ -233,7 +233,7 @@ void StackLoop::put(const Task& task, const Source& source, double seconds, Refe
   put(task, target, to);
 }
 
-std::vector<std::pair<const StackLoop::Task*, StackLoop::Source>> StackLoop::read(const py::dict& references) {
+std::vector<std::pair<const StackLoop::Task*, StackLoop::Source>> StackLoop::read(const PyReferences& references) {
   std::vector<std::pair<const Task*, Source>> sources;
   std::vector<std::pair<const Task*, Target>> targets;
   for (const auto& [key, given] : references) {
@@ -249,7 +249,7 @@ std::vector<std::pair<const StackLoop::Task*, StackLoop::Source>> StackLoop::rea
   return sources;
 }
 
-StackLoop::Result StackLoop::tick(const py::dict& references) {
+StackLoop::Result StackLoop::tick(const PyReferences& references) {
   const auto sources = read(references);
   TickReferences<Space> stages = TickReferences<Space>::of([&](double t) noexcept { return ahead(held_, t); }, dt_);
   for (std::size_t i = 0; i < stages.stages.size(); ++i) {
@@ -263,7 +263,7 @@ StackLoop::Result StackLoop::tick(const py::dict& references) {
   return result;
 }
 
-StackLoop::Result StackLoop::resolve_measured(const State<kDynamic>& measured, const py::dict& references) {
+StackLoop::Result StackLoop::resolve_measured(const State<kDynamic>& measured, const PyReferences& references) {
   for (const auto& [task, source] : read(references)) put(*task, source, 0.0, held_);
   return tracker_->resolve_measured(measured, held_);
 }
@@ -302,8 +302,8 @@ void StackLoop::resume() noexcept {
   tracker_->resume();
 }
 
-py::dict StackLoop::points() const {
-  py::dict points;
+PyPoints StackLoop::points() const {
+  PyPoints points;
   const StackTracker::Point tip = tracker_->tip();
   for (const Task& task : tasks_) {
     Transform<> at;
@@ -344,8 +344,8 @@ Array StackLoop::scales(const Result& tick) const {
   return array_of(Eigen::Map<const Eigen::VectorXd>(tick.scales.data(), levels_));
 }
 
-py::dict StackLoop::errors(const Result& tick) const {
-  py::dict errors;
+PyPoints StackLoop::errors(const Result& tick) const {
+  PyPoints errors;
   for (const Task& task : tasks_) {
     JointVector part(task.size);
     at_task(task.index, [&](auto, auto, int row) noexcept {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <pybind11/typing.h>
+
 #include "arrays.hpp"
 #include "path.hpp"
 #include "stack_tracker.hpp"
@@ -14,6 +16,10 @@
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
+
+/// By the names of tasks: what each is to follow, and where it is.
+using PyReferences = py::typing::Dict<py::str, py::object>;
+using PyPoints = py::typing::Dict<py::str, Array>;
 
 struct PyFollower {
   std::variant<AnyFollower<Position<2>>, AnyFollower<PlanarPose>, AnyFollower<Position<3>>, AnyFollower<Pose>> any;
@@ -33,8 +39,8 @@ class StackLoop {
 
   /// One tick toward references: a dictionary of what Tracker.tick() takes, by the names of the tasks. A task that is
   /// not in it keeps its last target, at rest. Throws std::invalid_argument, before the tick, on a bad reference.
-  [[nodiscard]] Result tick(const py::dict& references);
-  [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const py::dict& references);
+  [[nodiscard]] Result tick(const PyReferences& references);
+  [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const PyReferences& references);
 
   /// A path laid out from where a task is now. task: its name, or none of the only one that follows paths.
   [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) const;
@@ -46,12 +52,12 @@ class StackLoop {
 
   [[nodiscard]] StackTracker& tracker() const noexcept { return *tracker_; }
   /// Where each task is, as references have it, by name.
-  [[nodiscard]] py::dict points() const;
+  [[nodiscard]] PyPoints points() const;
   /// The frame of a task, shape (4, 4); of an axis, its z axis is that.
   [[nodiscard]] Array frame(const std::string& task) const;
 
   [[nodiscard]] Array scales(const Result& tick) const;
-  [[nodiscard]] py::dict errors(const Result& tick) const;
+  [[nodiscard]] PyPoints errors(const Result& tick) const;
   /// The errors one after another.
   [[nodiscard]] Array error(const Result& tick) const;
 
@@ -79,7 +85,7 @@ class StackLoop {
   [[nodiscard]] Transform<> frame_of(const Task& task) const noexcept;
   [[nodiscard]] const Task& task_named(const std::string& name) const;
   /// The targets of references that are numbers, at the others' sources.
-  [[nodiscard]] std::vector<std::pair<const Task*, Source>> read(const py::dict& references);
+  [[nodiscard]] std::vector<std::pair<const Task*, Source>> read(const PyReferences& references);
   [[nodiscard]] Target target_of(const Task& task, const py::handle& given) const;
   [[nodiscard]] std::optional<Source> source_of(const Task& task, const py::handle& given) const;
   void put(const Task& task, const Target& target, Reference<Space>& to) const noexcept;

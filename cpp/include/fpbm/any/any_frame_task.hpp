@@ -5,6 +5,7 @@
 #include "fpbm/core/direction.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/model/link.hpp"
+#include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
@@ -99,7 +100,10 @@ class AnyFrameTask {
     if (count_ == 0) return;
     x.at = frame_.at(robot, state);
     robot.jacobian(state, frame_.link(), x.at.p, J, Jd);
-    if (x.is_axis) x.at.R = times(x.at.R, to_axis_);
+    if (x.is_axis) {
+      x.at.R = times(x.at.R, to_axis_);
+      if (state.moves) add_spin<6, Robot::kDof, double>(J, state.qd, column(x.at.R, 2), Jd);
+    }
     for (int i = 0; i < count_; ++i) {
       const int row = x.is_axis ? 3 + i : rows_[static_cast<std::size_t>(i)];
       for (int j = 0; j < 6; ++j) {

@@ -41,6 +41,12 @@ template <typename Space, int N, typename Scalar>
   return kinematics.J;
 }
 
+/// Whether there are task levels below the first.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] constexpr bool has_lower_levels(const Kinematics<Space, N, Scalar>&) noexcept {
+  return false;
+}
+
 /// x ⊖ f(q), the error of the task [m, rad]. x: the target.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,

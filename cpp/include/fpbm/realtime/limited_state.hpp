@@ -85,7 +85,7 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || kLevelsOf<Space> != 1) {
+      if (limits().bounds_jerk() || has_lower_levels(loop.kinematics)) {
         next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
       }
     } else {
@@ -115,12 +115,14 @@ class LimitedState {
         share = slow_down(loop, limits(), correction_(now), state_.q, field);
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
+      const bool several = has_lower_levels(loop.kinematics);
       if constexpr (kLevelsOf<Space> != 1) {
-        if (!failed(result.status)) {
+        if (several && !failed(result.status)) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));
+          if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
         }
-        if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
-      } else {
+      }
+      if (!several) {
         // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
         const JointVector middle =
             entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });

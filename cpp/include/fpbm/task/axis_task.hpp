@@ -1,17 +1,39 @@
 #pragma once
 
 #include "fpbm/core/direction.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/link.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
+/// Makes J̇ q̇ the drift of ω⊥, the angular velocity at right angles to an axis a:
+///
+///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
+///
+/// Without the last term, rotation about a, which lower levels determine, would disturb the motion of a. J, J̇: the last
+/// three rows are angular; those of J̇ are changed.
+template <int M, int N, typename Scalar>
+void add_spin(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Vector<3, Scalar>& a,
+              Matrix<M, N, Scalar>& Jd) noexcept {
+  const auto angular = [](const auto& rows, Eigen::Index j) noexcept {
+    return Vector<3, Scalar>(rows.coeff(M - 3, j), rows.coeff(M - 2, j), rows.coeff(M - 1, j));
+  };
+  const Vector<3, Scalar> turning = cross(angular(product(J, qd), 0), a);
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    const Scalar spin = dot(angular(J, j), a);
+    for (int i = 0; i < 3; ++i) Jd.coeffRef(M - 3 + i, j) -= spin * turning.coeff(i);
+  }
+}
+
 /// Alignment of an axis a of a frame with a direction d that may move: 2 rows. The rotation about the axis is free.
 ///
 /// The error is the rotation vector of the smallest rotation from a to d. The rows are the components of the angular
-/// velocity along two unit vectors b₁, b₂ of the frame at right angles to a: S = [b₁ b₂]ᵀ. At velocity level the angle
-/// θ between a and d obeys θ̇ + kθ = 0 from everywhere but θ = π.
+/// velocity along two unit vectors b₁, b₂ of the frame at right angles to a: S = [b₁ b₂]ᵀ. The angle θ between a and d
+/// obeys θ̇ + kθ = 0 at velocity level from everywhere but θ = π, and θ̈ + k₁θ̇ + k₂θ = 0 at acceleration level from
+/// rest, whatever the rotation about a: see add_spin().
 template <typename Scalar_ = double>
 class AxisTask {
  public:
@@ -44,6 +66,7 @@ class AxisTask {
     const Matrix<3, 3, Scalar> axes = times(frame.at(robot, state).R, to_axis_);  // b₁, b₂ and a.
     x = column(axes, 2);
     robot.angular_jacobian(state, frame.link(), J, Jd);
+    if (state.moves) add_spin(J, state.qd, x, Jd);
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 3; ++j) S(i, j) = axes(j, i);
     }

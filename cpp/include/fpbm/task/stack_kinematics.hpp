@@ -79,6 +79,11 @@ template <typename... Levels, int N, typename Scalar>
   return std::get<0>(kinematics.levels).J;
 }
 
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] bool has_lower_levels(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+  return std::apply([](const auto&, const auto&... lower) { return ((lower.J.rows() > 0) || ...); }, kinematics.levels);
+}
+
 /// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
 /// selected have no error. x: the targets.
 template <typename... Levels, int N, typename Scalar>

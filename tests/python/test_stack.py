@@ -1,0 +1,328 @@
+"""Stacks of tasks from Python: what they follow, what they keep, and that one level is the tracker of that task."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fpbm_cpp as fp
+
+DT = 1e-3
+READY = [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
+PLANAR_LIMITS = fp.JointLimits(lower=[-3.0] * 4, upper=[3.0] * 4, velocity=[2.0] * 4, acceleration=[10.0] * 4)
+
+
+@pytest.fixture(scope="module")
+def panda():
+    return fp.SerialArm.preset("panda")
+
+
+@pytest.fixture
+def balanced():
+    return fp.Balanced(0.6, [1, 2, 3, 4, 3, 2, 1], null_damping=2)
+
+
+def cup(**posture):
+    """Axis, place, height of the elbow, posture."""
+    return fp.Stack(
+        fp.AxisTask(name="upright"),
+        fp.PositionTask(name="place"),
+        fp.PositionTask("panda_joint4", rows=("z",), name="elbow"),
+        fp.PostureTask(k1=4, k2=4, **posture),
+    )
+
+
+def motion(tracker, references, ticks):
+    """Commands of some ticks, the start first, and the last tick."""
+    q, tick = [tracker.q], None
+    for _ in range(ticks):
+        tick = tracker.tick(references)
+        q.append(tick.q)
+    return np.array(q), tick
+
+
+def excess(limits, q, qd0=0.0):
+    """How far positions exceed the bounds of positions, velocities and accelerations, by differences."""
+    qd = np.diff(q, axis=0) / DT
+    qdd = np.diff(qd, axis=0) / DT
+    return max(
+        (limits.lower - q).max(),
+        (q - limits.upper).max(),
+        (np.abs(qd) - limits.velocity).max(),
+        (np.abs(qdd) - limits.acceleration).max() * 1e-3,  # Digits of q by dt^2.
+    )
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e", "iiwa14"])
+@pytest.mark.parametrize("task", ["position", "pose"])
+def test_one_level_is_the_tracker_of_that_task(name, task):
+    arm = fp.SerialArm.preset(name)
+    q0 = (arm.limits.lower.clip(-2) + arm.limits.upper.clip(max=2)) / 2 + 0.2
+    weights = np.arange(1.0, 1.0 + arm.dof)
+    kind = {"position": fp.PositionTask, "pose": fp.PoseTask}[task]
+    pairs = [
+        (fp.FPBM(0.6, weights, 10, 25, null_damping=2), fp.Balanced(0.6, weights, null_damping=2)),
+        (fp.WMVN(weights, k=5), fp.WMVN(weights)),
+    ]
+    for single, first in pairs:
+        expected = fp.Tracker(arm, single, q0, task=task)
+        tracker = fp.Tracker(arm, first, q0, stack=fp.Stack(kind()))
+        goal = np.array(expected.tip)
+        point = goal[:3, 3] if task == "pose" else goal
+        point += 0.2
+        for _ in range(2000):
+            tick, other = expected.tick(goal), tracker.tick({task: goal})
+            assert np.abs(tick.q - other.q).max() < 1e-9
+            assert tick.status == other.status
+        assert tick.scales is None and tick.errors is None
+        assert other.scales.shape == (1,) and np.abs(other.errors[task] - tick.error).max() < 1e-9
+
+
+def test_moves_a_cup(panda, balanced):
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup())
+    goal = tracker.tip["place"] + [0.2, 0.3, -0.1]
+    tilt = 0.0
+    for _ in range(8000):
+        tick = tracker.tick({"place": goal})
+        tilt = max(tilt, np.abs(tick.errors["upright"]).max())
+    assert tilt < 1e-5
+    assert np.abs(tick.errors["place"]).max() < 1e-6
+    assert set(tick.errors) == {"upright", "place", "elbow", "posture"}
+    assert tick.error.shape == (3 + 3 + 3 + 7,)
+    assert (tick.errors["elbow"][:2] == 0).all()
+    np.testing.assert_allclose(tracker.frame("upright")[:3, 2], tracker.tip["upright"])
+    np.testing.assert_allclose(tracker.frame("place"), panda.forward(tracker.q))
+    np.testing.assert_allclose(tracker.tip["posture"], tracker.q)
+
+
+def random_stack(rng, arm):
+    """One to four levels, some with two tasks."""
+    frames = ["tip", *arm.joint_names[1:]]
+    planar = isinstance(arm, fp.PlanarArm)
+
+    def task(name):
+        frame = str(rng.choice(frames))
+        if planar:
+            return fp.PositionTask(frame, rows=rng.choice(["x", "y"], rng.integers(1, 3), replace=False), name=name)
+        kind = rng.integers(4)
+        if kind == 0:
+            return fp.PositionTask(frame, rows=("x", "y", "z")[: rng.integers(1, 4)], axes="frame", name=name)
+        if kind == 1:
+            return fp.OrientationTask(frame, rows=("rx", "ry"), axes="frame", name=name)
+        return fp.AxisTask(frame, rng.normal(size=3), name=name) if kind == 2 else fp.PositionTask(frame, name=name)
+
+    levels = [[task(f"{k}.{i}") for i in range(rng.integers(1, 3))] for k in range(rng.integers(1, 4))]
+    if planar:
+        levels = [level[:1] for level in levels]
+    return fp.Stack(*levels, fp.PostureTask())
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e", "gen3", "planar"])
+@pytest.mark.parametrize("level", ["acceleration", "velocity"])
+def test_keeps_every_bound_and_stops(name, level):
+    rng = np.random.default_rng(sum(map(ord, name + level)))
+    arm = fp.PlanarArm([0.4, 0.3, 0.3, 0.2]) if name == "planar" else fp.SerialArm.preset(name)
+    limits = PLANAR_LIMITS if name == "planar" else arm.limits
+    scheme = fp.Balanced(0.6, np.ones(arm.dof)) if level == "acceleration" else fp.MVN()
+    for _ in range(3):
+        middle = (limits.lower.clip(-2) + limits.upper.clip(max=2)) / 2
+        stack = random_stack(rng, arm)
+        tracker = fp.Tracker(arm, scheme, middle + rng.uniform(-0.3, 0.3, arm.dof), stack=stack, limits=limits)
+        q = [tracker.q]
+        for _ in range(4):
+            references = {}
+            for each, x in tracker.tip.items():
+                task = next(task for task in stack.tasks if task.name == each)
+                if isinstance(task, fp.PositionTask):
+                    references[each] = x + rng.uniform(-0.8, 0.8, 3) * (1, 1, name != "planar")
+                elif isinstance(task, fp.AxisTask):
+                    references[each] = rng.normal(size=3)
+                elif isinstance(task, fp.OrientationTask):
+                    references[each] = x @ fp.rotation(rng.uniform(-1, 1, 3))
+            q.extend(motion(tracker, references, 500)[0][1:])
+            if len(stack.levels) > 1:
+                tracker.enable(len(stack.levels) - 1, bool(rng.integers(2)))
+        tracker.stop()
+        rest, tick = motion(tracker, {}, 2000)
+        q.extend(rest[1:])
+        assert excess(limits, np.array(q)) < 1e-9
+        assert np.abs(tick.qd).max() < 1e-9
+
+
+def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
+    first = fp.AxisTask(name="axis")
+    alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
+    both = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()))
+    axis = np.array(alone.tip["axis"]) + [0.05, 0.03, 0.0]
+    slowed = 0
+    for _ in range(3000):
+        expected = alone.tick({"axis": axis})
+        tick = both.tick({"axis": axis, "position": both.tip["position"] + [0.3, 0.5, 0.2]})
+        assert np.abs(expected.errors["axis"] - tick.errors["axis"]).max() < 1e-6
+        slowed += tick.scales[1] < 1
+    assert slowed > 50
+
+
+def test_tasks_follow_paths_and_filters(panda, balanced):
+    stack = fp.Stack(fp.PositionTask(name="tip", k1=20, k2=100), fp.PositionTask("panda_joint4", name="elbow"))
+    tracker = fp.Tracker(panda, balanced, READY, stack=stack)
+    follower = tracker.follow(fp.Circle(0.05, 3.0).in_plane("yz"), task="tip")
+    elbow = tracker.tip["elbow"]
+    target = fp.TargetFilter(elbow, velocity=0.2, acceleration=1.0, jerk=20.0)
+    target.push(elbow + [0.0, 0.02, 0.0])
+    worst = 0.0
+    for _ in range(3200):
+        tick = tracker.tick({"tip": follower, "elbow": target})
+        worst = max(worst, np.abs(tick.errors["tip"]).max())
+    assert follower.done and worst < 1e-5
+    assert np.abs(tracker.tip["elbow"] - elbow - [0.0, 0.02, 0.0]).max() < 1e-3
+    tracker.stop()
+    with pytest.raises(fp.ParameterError, match="several tasks follow paths"):
+        tracker.follow(fp.Circle(0.05, 3.0).in_plane("yz"))
+
+
+def test_a_task_without_a_reference_keeps_its_target(panda, balanced):
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup(q=np.add(READY, 0.1)))
+    goal = tracker.tip["place"] + [0.0, 0.1, 0.0]
+    tracker.tick({"place": (goal, [0.1, 0.0, 0.0], [0.0, 0.0, 0.0])})
+    _, tick = motion(tracker, {}, 6000)
+    np.testing.assert_allclose(tracker.tip["place"], goal, atol=1e-6)
+    np.testing.assert_allclose(tick.errors["posture"] + tracker.q, np.add(READY, 0.1), atol=1e-3)
+
+
+def test_a_free_rotation(panda, balanced):
+    welding = fp.PoseTask(rows=("x", "y", "z", "rx", "ry"), axes="frame", name="torch")
+    tracker = fp.Tracker(panda, balanced, READY, stack=fp.Stack(welding, fp.PostureTask(np.add(READY, [0] * 6 + [0.5]))))
+    start = tracker.frame("torch")
+    _, tick = motion(tracker, {}, 6000)
+    reached = tracker.frame("torch")
+    assert np.abs(reached[:3, 2:] - start[:3, 2:]).max() < 1e-6
+    assert np.abs(reached[:3, 0] - start[:3, 0]).max() > 0.2
+    assert tick.status == fp.Status.OK
+
+
+def test_offsets_and_joints(panda, balanced):
+    offset = np.eye(4)
+    offset[:3, 3] = 0.0, 0.1, 0.2
+    stack = fp.Stack(
+        fp.PoseTask(name="tool", offset=offset), fp.PostureTask([0.3], joints=("panda_joint1",), name="shoulder")
+    )
+    tracker = fp.Tracker(panda, balanced, READY, stack=stack)
+    np.testing.assert_allclose(tracker.frame("tool"), panda.forward(READY) @ offset, atol=1e-12)
+    assert tracker.tip["shoulder"].shape == (1,)
+    motion(tracker, {}, 6000)
+    np.testing.assert_allclose(tracker.frame("tool"), panda.forward(READY) @ offset, atol=1e-6)
+    assert tracker.q[0] > 0.05
+
+
+def test_answers_for_measured_states(panda, balanced):
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup(), measured_delay=0)
+    goal = tracker.tip["place"] + [0.1, 0.1, -0.1]
+    q, qd = np.array(READY), np.zeros(7)
+    for _ in range(6000):
+        tick = tracker.resolve_measured(q, qd, {"place": goal})
+        q, qd = q + DT * qd + DT**2 / 2 * tick.qdd, qd + DT * tick.qdd
+    assert np.abs(tick.errors["place"]).max() < 1e-6 and np.abs(tick.errors["upright"]).max() < 1e-3
+    np.testing.assert_array_equal(tracker.q, READY)
+    with pytest.raises(ValueError, match="velocity-level"):
+        fp.Tracker(panda, fp.MVN(), READY, stack=cup()).resolve_measured(q, qd, {})
+
+
+def test_keeps_clear_of_a_wall(panda, balanced):
+    wall = fp.HalfSpace((0, -1, 0), -0.25, name="wall")
+    clearance = fp.Clearance([fp.Capsule(7, (0, 0, 0), (0, 0, 0.1), 0.05)], [wall], margin=0.01)
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup(), clearance=clearance)
+    goal = tracker.tip["place"] + [0.0, 0.6, 0.0]
+    nearest = np.inf
+    for _ in range(9000):
+        tick = tracker.tick({"place": goal})
+        nearest = min(nearest, tick.nearest.distance)
+    assert 0.01 - 1e-9 < nearest < 0.02
+    assert np.abs(tick.errors["upright"]).max() < 1e-4 and np.abs(tick.qd).max() < 1e-3
+
+
+def test_stacks_are_values():
+    stack = cup(q=READY)
+    assert pickle.loads(pickle.dumps(stack)) == stack == eval(repr(stack), vars(fp))
+    assert hash(stack) == hash(cup(q=READY))
+    assert stack != fp.Stack(fp.PositionTask())
+    assert [task.name for task in stack.tasks] == ["upright", "place", "elbow", "posture"]
+    assert replace(fp.PoseTask(), name="grasp").name == "grasp"
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: fp.Stack(), "must be one at least"),
+        (lambda: fp.Stack([]), "levels.0. is empty"),
+        (lambda: fp.Stack(3), "must be a task"),
+        (lambda: fp.Stack(fp.PoseTask(), fp.PoseTask()), "a second task of the name 'pose'"),
+        (lambda: fp.PositionTask(rows=("x", "q")), "rows = 'q': must be one of"),
+        (lambda: fp.PositionTask(rows="xy"), "must be some of"),
+        (lambda: fp.PositionTask(rows=("x", "x")), "twice"),
+        (lambda: fp.PoseTask(axes="tool"), "axes = 'tool'"),
+        (lambda: fp.PositionTask(k2=-1), "k2 = -1"),
+        (lambda: fp.AxisTask(axis=(0, 0, 0)), "axis = 0"),
+        (lambda: fp.PostureTask(joints=()), "joints"),
+    ],
+)
+def test_wrong_tasks(make, message):
+    with pytest.raises(fp.ParameterError, match=message):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("stack", "message"),
+    [
+        (3, "stack: must be a Stack"),
+        (fp.Stack(fp.PoseTask("elbow")), "frame = 'elbow': must be 'tip', 'base', or"),
+        (fp.Stack(fp.PostureTask(joints=("elbow",))), "joints: the arm has no joint 'elbow'"),
+        (fp.Stack(fp.PostureTask([1, 2])), "posture"),
+        (fp.Stack([fp.PoseTask(), fp.PositionTask()]), "rows of level.0. = 9"),
+        (fp.Stack([fp.AxisTask(name=n) for n in "abc"]), "more than two tasks of frames"),
+        (fp.Stack([fp.PostureTask(name=n) for n in "ab"]), "more than one PostureTask"),
+        (fp.Stack(*(fp.PostureTask(name=n) for n in "abcde")), "number of levels = 5"),
+    ],
+)
+def test_stacks_that_do_not_suit_an_arm(panda, balanced, stack, message):
+    with pytest.raises(fp.ParameterError, match=message):
+        fp.Tracker(panda, balanced, READY, stack=stack)
+
+
+def test_wrong_schemes(panda):
+    weights = np.ones(7)
+    for scheme, message in [
+        (fp.FPBM(0.6, weights, 10, 25), "k1 = 10: must be 0: the tasks of a stack have gains"),
+        (fp.MVN(k=2), "k = 2: must be 0"),
+        (fp.Balanced(0.6, weights, manipulability_gain=1), "must not be given with a stack"),
+        (fp.Balanced(0.6, weights, second_task=fp.Gaze((0, 0, 1))), "must not be given with a stack"),
+    ]:
+        with pytest.raises(fp.ParameterError, match=message):
+            fp.Tracker(panda, scheme, READY, stack=cup())
+
+
+def test_wrong_references_change_nothing(panda, balanced):
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup())
+    place = tracker.tip["place"]
+    for references, message in [
+        ({"cup": place}, "task = 'cup': must be one of the stack's, 'upright'"),
+        ({"place": place[:2]}, "place has 2 entries"),
+        ({"place": place * np.nan}, r"place\[0\] = nan"),
+        ({"elbow": place + 1, "upright": (0, 0, 0)}, "upright is zero"),
+        ({"place": (place, [1, 2])}, "place's xd has 2 entries"),
+        ({"upright": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1)}, "another task than 'upright'"),
+        ({"place": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1, dt=2e-3)}, "filter's dt"),
+        (place, "must be given a dictionary"),
+    ]:
+        with pytest.raises(fp.ParameterError, match=message):
+            tracker.tick(references)
+    _, tick = motion(tracker, {}, 200)
+    np.testing.assert_allclose(tick.q, READY, atol=1e-9)
+    for wrong in (lambda: tracker.enable(0, False), lambda: tracker.enable(4, True), lambda: tracker.frame("posture")):
+        with pytest.raises(fp.ParameterError):
+            wrong()
+    single = fp.Tracker(panda, fp.MVN(), READY)
+    for wrong in (lambda: single.tick({}), lambda: single.enable(1, True), lambda: single.frame("tip")):
+        with pytest.raises(fp.ParameterError, match="has one task"):
+            wrong()
