@@ -479,7 +479,7 @@ class Tick:
         x - f(q) at the tick's start [m, rad], shape (m,).
         """
     @property
-    def errors(self) -> dict | None:
+    def errors(self) -> dict[str, numpy.typing.NDArray[numpy.float64]] | None:
         """
         Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.
         """
@@ -655,7 +655,9 @@ class Tracker:
         where no obstacle has that name, or the shape is of another kind.
         """
     @typing.overload
-    def resolve_measured(self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict) -> Tick:
+    def resolve_measured(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict[str, typing.Any]
+    ) -> Tick:
         """
         The same of a stack.
         """
@@ -692,7 +694,7 @@ class Tracker:
         One tick behind a filter of targets, which goes on, also after stop.
         """
     @typing.overload
-    def tick(self, references: dict) -> Tick:
+    def tick(self, references: dict[str, typing.Any]) -> Tick:
         """
         One tick of a stack toward references: a dictionary by the names of the tasks.
 

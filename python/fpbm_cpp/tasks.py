@@ -115,7 +115,9 @@ class PostureTask(Task):
     """Positions of all joints, or of some. Its point has shape (joints,) [rad]."""
 
     kind = "posture"
-    q: OptionalArrayField = parameter("Its target; where it starts if not given.", default=None, shape="(n,)", unit="rad")
+    q: OptionalArrayField = parameter(
+        "Its target; where it starts if not given.", default=None, shape="(n,)", unit="rad"
+    )
     _: KW_ONLY
     joints: Sequence[str] | None = parameter("Names of the joints; None: all.", default=None)
 
@@ -132,7 +134,7 @@ class PostureTask(Task):
 class Stack:
     """Tasks on levels in strict priority: a lower level uses only the motion that the higher levels leave free.
 
-    Each argument is a level: a task, or a sequence of tasks side by side. At most 4 levels, each with at most two tasks of
+    Each argument is a level: a task, or a list of tasks side by side. At most 4 levels, each with at most two tasks of
     frames and one PostureTask. Raises ParameterError for an empty level, and where two tasks have one name.
     """
 

@@ -75,8 +75,10 @@ def test_one_level_is_the_tracker_of_that_task(name, task):
             tick, other = expected.tick(goal), tracker.tick({task: goal})
             assert np.abs(tick.q - other.q).max() < 1e-9
             assert tick.status == other.status
-        assert tick.scales is None and tick.errors is None
-        assert other.scales.shape == (1,) and np.abs(other.errors[task] - tick.error).max() < 1e-9
+        assert tick.scales is None
+        assert tick.errors is None
+        assert other.scales.shape == (1,)
+        assert np.abs(other.errors[task] - tick.error).max() < 1e-9
 
 
 def test_moves_a_cup(panda, balanced):
@@ -154,7 +156,7 @@ def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
     first = fp.AxisTask(name="axis")
     alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
     both = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()))
-    axis = np.array(alone.tip["axis"]) + [0.05, 0.03, 0.0]
+    axis = [*np.array(alone.tip["axis"]), 0.05, 0.03, 0.0]
     slowed = 0
     for _ in range(3000):
         expected = alone.tick({"axis": axis})
@@ -170,12 +172,13 @@ def test_tasks_follow_paths_and_filters(panda, balanced):
     follower = tracker.follow(fp.Circle(0.05, 3.0).in_plane("yz"), task="tip")
     elbow = tracker.tip["elbow"]
     target = fp.TargetFilter(elbow, velocity=0.2, acceleration=1.0, jerk=20.0)
-    target.push(elbow + [0.0, 0.02, 0.0])
+    target.push([*elbow, 0.0, 0.02, 0.0])
     worst = 0.0
     for _ in range(3200):
         tick = tracker.tick({"tip": follower, "elbow": target})
         worst = max(worst, np.abs(tick.errors["tip"]).max())
-    assert follower.done and worst < 1e-5
+    assert follower.done
+    assert worst < 1e-5
     assert np.abs(tracker.tip["elbow"] - elbow - [0.0, 0.02, 0.0]).max() < 1e-3
     tracker.stop()
     with pytest.raises(fp.ParameterError, match="several tasks follow paths"):
@@ -193,7 +196,9 @@ def test_a_task_without_a_reference_keeps_its_target(panda, balanced):
 
 def test_a_free_rotation(panda, balanced):
     welding = fp.PoseTask(rows=("x", "y", "z", "rx", "ry"), axes="frame", name="torch")
-    tracker = fp.Tracker(panda, balanced, READY, stack=fp.Stack(welding, fp.PostureTask(np.add(READY, [0] * 6 + [0.5]))))
+    tracker = fp.Tracker(
+        panda, balanced, READY, stack=fp.Stack(welding, fp.PostureTask(np.add(READY, [0] * 6 + [0.5])))
+    )
     start = tracker.frame("torch")
     _, tick = motion(tracker, {}, 6000)
     reached = tracker.frame("torch")
@@ -223,7 +228,8 @@ def test_answers_for_measured_states(panda, balanced):
     for _ in range(6000):
         tick = tracker.resolve_measured(q, qd, {"place": goal})
         q, qd = q + DT * qd + DT**2 / 2 * tick.qdd, qd + DT * tick.qdd
-    assert np.abs(tick.errors["place"]).max() < 1e-6 and np.abs(tick.errors["upright"]).max() < 1e-3
+    assert np.abs(tick.errors["place"]).max() < 1e-6
+    assert np.abs(tick.errors["upright"]).max() < 1e-3
     np.testing.assert_array_equal(tracker.q, READY)
     with pytest.raises(ValueError, match="velocity-level"):
         fp.Tracker(panda, fp.MVN(), READY, stack=cup()).resolve_measured(q, qd, {})
@@ -239,7 +245,8 @@ def test_keeps_clear_of_a_wall(panda, balanced):
         tick = tracker.tick({"place": goal})
         nearest = min(nearest, tick.nearest.distance)
     assert 0.01 - 1e-9 < nearest < 0.02
-    assert np.abs(tick.errors["upright"]).max() < 1e-4 and np.abs(tick.qd).max() < 1e-3
+    assert np.abs(tick.errors["upright"]).max() < 1e-4
+    assert np.abs(tick.qd).max() < 1e-3
 
 
 def test_stacks_are_values():

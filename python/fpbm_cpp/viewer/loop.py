@@ -142,7 +142,8 @@ class ServoLoop:
     @property
     def tip(self) -> Array:
         """The tip, shaped as targets are [m, rad]."""
-        return self._tracker.tip
+        tip: Array = self._tracker.tip
+        return tip
 
     @property
     def target(self) -> Array:
