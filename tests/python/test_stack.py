@@ -156,7 +156,7 @@ def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
     first = fp.AxisTask(name="axis")
     alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
     both = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()))
-    axis = [*np.array(alone.tip["axis"]), 0.05, 0.03, 0.0]
+    axis = np.add(alone.tip["axis"], [0.05, 0.03, 0.0])
     slowed = 0
     for _ in range(3000):
         expected = alone.tick({"axis": axis})
@@ -172,7 +172,7 @@ def test_tasks_follow_paths_and_filters(panda, balanced):
     follower = tracker.follow(fp.Circle(0.05, 3.0).in_plane("yz"), task="tip")
     elbow = tracker.tip["elbow"]
     target = fp.TargetFilter(elbow, velocity=0.2, acceleration=1.0, jerk=20.0)
-    target.push([*elbow, 0.0, 0.02, 0.0])
+    target.push(np.add(elbow, [0.0, 0.02, 0.0]))
     worst = 0.0
     for _ in range(3200):
         tick = tracker.tick({"tip": follower, "elbow": target})
