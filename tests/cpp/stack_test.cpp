@@ -527,6 +527,18 @@ TEST(Stack, no_rotation_about_an_axis_disturbs_the_axis) {
   EXPECT_GT(spin, 0.2);
 }
 
+/// The integral of a task that has stopped moves nothing.
+TEST(Stack, a_stopped_task_has_no_integral) {
+  TrackerOptions<> options;
+  options.integral_gain = 5.0;
+  Cup cup(Vector<3>(0.6, 0.8, 0.2), options);
+  cup.run(40000);
+  EXPECT_LT(cup.tick().qd.norm(), 1e-3);
+  cup.place.x -= Vector<3>(0.5, 0.7, 0.2);
+  cup.run(40000);
+  EXPECT_LT(cup.away(), 1e-4);
+}
+
 /// What holds lower levels while the robot stops or fails is forgotten: the same targets are reached afterwards.
 TEST(Stack, goes_on_after_a_stop_and_after_a_failure) {
   for (const bool fails : {false, true}) {

@@ -309,6 +309,14 @@ def test_wrong_schemes(panda):
             fp.Tracker(panda, scheme, READY, stack=cup())
 
 
+def test_gains_are_checked(panda, balanced):
+    stack = fp.Stack(fp.PositionTask(k1=1, k2=2), fp.PostureTask())
+    fp.Tracker(panda, balanced, READY, stack=stack, integral_gain=1)
+    for wrong in ({"stack": stack, "integral_gain": 3}, {"stack": fp.Stack(fp.PositionTask(k1=1e4))}):
+        with pytest.raises(fp.ParameterError, match="gain|k1"):
+            fp.Tracker(panda, balanced, READY, **wrong)
+
+
 def test_wrong_references_change_nothing(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     place = tracker.tip["place"]

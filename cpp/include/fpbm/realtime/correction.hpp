@@ -71,6 +71,11 @@ class Correction {
     return reference;
   }
 
+  /// Sets the integral of some rows to zero.
+  void forget(int row, int rows) noexcept {
+    for (int i = row; i < row + rows; ++i) integral_(i) = Scalar(0);
+  }
+
   /// Call at the end of a tick that did the whole first level. Each task has an integral and a bound of its own; that
   /// of a lower level waits while the level is slowed or has no finite reference.
   template <typename Result>

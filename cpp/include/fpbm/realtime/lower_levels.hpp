@@ -33,7 +33,7 @@ class LowerLevels {
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
   /// Call at the start of a tick, with the kinematics of the state and the errors of the tasks there. Replaces the
-  /// references of tasks that have stopped, and begins the correction anew without their errors.
+  /// references of tasks that have stopped, and begins the correction anew without their errors and integrals.
   template <typename References, typename Kinematics, typename Correction>
   void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,
             Correction& correction) noexcept {
@@ -43,6 +43,7 @@ class LowerLevels {
       Space::each([&](auto space, auto i, int row) noexcept {
         constexpr std::size_t kIndex = decltype(i)::value;
         if (!stopped_[kIndex]) return;
+        correction.forget(row, decltype(space)::kRows);
         std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
         for (int j = row; j < row + decltype(space)::kRows; ++j) error(j) = stage.xd(j) = stage.xdd(j) = Scalar(0);
       });

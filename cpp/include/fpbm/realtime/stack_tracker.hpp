@@ -24,6 +24,7 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
   }
   if constexpr (kHasGain<Scheme>) require_none("k", scheme.k);
   const auto require = [&](const auto& task) {
+    if (rows_of(task) == 0) return;
     const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
     require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
   };
