@@ -20,11 +20,12 @@ namespace fpbm {
 /// Stops tasks of the lower levels of a stack that do not come nearer to their targets, so that the robot comes to
 /// rest.
 ///
-/// The largest error of each task in a window of stall_time counts. If no target has moved by 0.002 (TaskDistance), and
-/// no task has a largest error below those of all earlier windows by 1/16, each task of a lower level with an error
-/// above 0.0001 stops: its reference becomes its current point at zero velocity. All tasks follow their references
-/// again if a target of any level or a shape near the arm moves, and after a tick that does not follow the references.
-/// Otherwise such tasks could oscillate or drift in the null space of the higher levels while limits slow them.
+/// The largest error of each task in a window of stall_time counts. A task makes progress if its largest error is below
+/// those of all earlier windows by 1/16. If no target has moved by 0.002 (TaskDistance), and no task makes progress of
+/// more than 0.002, each task of a lower level that makes no progress and has an error above 0.0001 stops: its
+/// reference becomes its current point at zero velocity. All tasks follow their references again if a target of any
+/// level or a shape near the arm moves, and after a tick that does not follow the references. Otherwise such tasks
+/// could oscillate or drift in the null space of the higher levels while limits slow them.
 template <typename Space, typename Scalar = double>
 class LowerLevels {
  public:
@@ -105,7 +106,9 @@ class LowerLevels {
   void end_window() noexcept {
     bool progress = false;
     for (std::size_t i = 0; i < kTasks; ++i) {
-      progress = progress || peak_[i] < (Scalar(1) - kApproach) * least_[i];
+      const bool approaches = peak_[i] < (Scalar(1) - kApproach) * least_[i];
+      progress = progress || (approaches && peak_[i] < least_[i] - kMoved);
+      counts_[i] = counts_[i] && !approaches;
       least_[i] = std::min(least_[i], peak_[i]);
     }
     peak_.fill(Scalar(0));
@@ -117,7 +120,7 @@ class LowerLevels {
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
-  /// Least displacement of a target or of shapes that counts, as TaskDistance::kProgress.
+  /// Least displacement of a target or of shapes, and least progress, that counts, as TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
   static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest velocity of a joint of an arm at rest [rad/s].
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
