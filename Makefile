@@ -230,8 +230,8 @@ wheel: sdist
 clean:
 	rm -rf build dist $(VENV) demo
 
-# The package with its command line, and the tools of a dependency group in pyproject.toml. Modules that are imported are
-# compiled then; to compile all takes longer.
+# The package with its command line, and the tools of a dependency group in pyproject.toml. With --no-compile, Python compiles
+# a tool's module when a program first imports the module: the tests import few of them.
 $(VENV)/package: $(PACKAGE)
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install '$(or $(WHEEL),.)[cli]'
