@@ -8,6 +8,7 @@
 #include <string>
 
 #include "fpbm/limits/saturation.hpp"
+#include "fpbm/linalg/level_space.hpp"
 #include "support/linear_program.hpp"
 #include "support/random.hpp"
 
@@ -163,6 +164,19 @@ TEST(DegenerateSaturation, is_optimal) {
                 kind, all, below, worst, passes);
     EXPECT_EQ(below, 0) << kind;
   }
+}
+
+/// A basis of a null space is wrong by round-off error. That error moves no other joint: a joint that does not move in
+/// the null space, and is asked to leave its bound by 1e-14, blocks the task.
+TEST(DegenerateSaturation, round_off_error_of_the_basis_moves_no_joint) {
+  LevelSpace<3> space(3);
+  Matrix<2, 3> levels;
+  levels << 1.0, 0.0, 0.0, 0.0, 1.0, 2e-15;  // The null space: (0, −2e-15, 1).
+  space.add(levels);
+  NullSpaceSaturation<Eigen::Dynamic, 3, double> saturation(space, Vector<3>::Ones());
+  const Box<3> box{Vector<3>(-1.0, 0.0, -0.04), Vector<3>(1.0, 1.0, 0.0)};
+  const auto found = saturation(box, Vector<3>::Zero(), Vector<3>(0.0, -8e-15, 0.003));
+  EXPECT_EQ(found.u(2), 0.0);
 }
 
 }  // namespace

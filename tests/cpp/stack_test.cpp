@@ -427,7 +427,7 @@ void expect_to_keep_bounds(const std::string& name, const Chain<>& chain, const 
   }
   std::printf("%s: %d motions, bounds exceeded by %.1e, %d not at rest\n", name.c_str(), motions, worst, moving);
   EXPECT_LT(worst, 1e-9);
-  EXPECT_LE(moving, motions / 30);  // 2 of all 300 motions (docs/tasks.md).
+  EXPECT_LE(moving, motions / 30);  // 1 of all 300 motions (docs/tasks.md).
 }
 
 TEST(Stack, keeps_every_bound_and_comes_to_rest_by_acceleration) {

@@ -313,7 +313,7 @@ def test_gains_are_checked(panda, balanced):
     stack = fp.Stack(fp.PositionTask(k1=1, k2=2), fp.PostureTask())
     fp.Tracker(panda, balanced, READY, stack=stack, integral_gain=1)
     for wrong in ({"stack": stack, "integral_gain": 3}, {"stack": fp.Stack(fp.PositionTask(k1=1e4))}):
-        with pytest.raises(fp.ParameterError, match="gain|k1"):
+        with pytest.raises(fp.ParameterError, match=r"gain|k1"):
             fp.Tracker(panda, balanced, READY, **wrong)
 
 

@@ -24,6 +24,11 @@ class HeldJoints {
   /// less than 1.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
+  /// A joint whose part is shorter does not move in the null space: the part is the round-off error of a basis of
+  /// length
+  /// 1. Held by it, a motion of 1e-13 would move other joints by a whole tick's acceleration.
+  static constexpr Scalar kIdle = Scalar(64) * kEpsilon;
+
   /// Round-off error of Z: SelfMotion's is 5e-13 where J has a condition of 1e3.
   static constexpr Scalar kRoundOff = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-12) : Scalar(3e-5);
   /// The most that held joints may amplify a round-off error by, so that 1e-10 of the motion is off the task's line at
@@ -87,7 +92,9 @@ class HeldJoints {
       fixed_ |= bit(joint);
       return true;
     }
-    if (spare && outside <= kIndependent && rate <= outside * outside / kEpsilon) return add(joint, above);
+    if (spare && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
+      return add(joint, above);
+    }
     // A smaller share would let the other joint leave at a rate beyond kSteepest.
     return replace(Z, joint, above, share, std::max(kRoundOff, rate / kSteepest));
   }

@@ -8,7 +8,7 @@
 namespace fpbm {
 
 /// Radius of the damping of lower levels: ε as a share of ‖J_k‖_F. Of the 300 motions of Stack.keeps_every* with
-/// FPBM_ALL_TRIALS=1, 2 are not at rest after 40 s; with a radius of 0.05, 8.
+/// FPBM_ALL_TRIALS=1, 1 is not at rest after 40 s; with a radius of 0.05, 8.
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 
