@@ -152,6 +152,23 @@ def test_keeps_every_bound_and_stops(name, level):
         assert np.abs(tick.qd).max() < 1e-9
 
 
+def test_a_slow_approach_does_not_keep_lower_tasks_moving():
+    """A first level that settles by its integral: the second, which cannot be reached, would oscillate for 40 s."""
+    arm = fp.PlanarArm([0.4, 0.3, 0.3, 0.2])
+    stack = fp.Stack(
+        fp.PositionTask("joint_3", rows=("x", "y"), name="elbow"),
+        fp.PositionTask("joint_4", rows=("y",), name="wrist"),
+        fp.PostureTask(),
+    )
+    limits = replace(PLANAR_LIMITS, jerk=[600.0] * 4)
+    scheme = fp.Balanced(0.6, np.ones(4))
+    tracker = fp.Tracker(arm, scheme, [0.26, -0.29, 0.23, -0.07], stack=stack, limits=limits, integral_gain=1.0)
+    _, tick = motion(tracker, {"elbow": [0.26, 0.15, 0.0], "wrist": [0.71, 0.81, 0.0]}, 40000)
+    assert np.abs(tick.qd).max() < 1e-3
+    assert tick.scales[0] == 1
+    assert tick.scales[1] == 0
+
+
 def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
     first = fp.AxisTask(name="axis")
     alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
