@@ -114,7 +114,9 @@ AnyStack StackLoop::build(const py::object& stack, const Scheme& scheme, const A
           axis = fixed_vector<3>(ArrayLike(py::object(given.attr("axis"))), "axis");
         } else {
           constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
-          for (const py::handle row : given.attr("rows")) {
+          selected.fill(given.attr("rows").is_none());
+          for (const py::handle row :
+               given.attr("rows").is_none() ? py::tuple() : attribute<py::tuple>(given, "rows")) {
             const auto which = std::find(std::begin(kRows), std::end(kRows), py::cast<std::string>(row));
             selected[static_cast<std::size_t>(which - std::begin(kRows))] = true;
           }

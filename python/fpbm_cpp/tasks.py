@@ -29,7 +29,6 @@ class Task(Data):
     """
 
     kind: ClassVar[str]
-    all_rows: ClassVar[tuple[str, ...]] = ()
     _: KW_ONLY
     name: str = parameter("Of its references and errors; that of its kind where empty.", default="")
     k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
@@ -39,7 +38,31 @@ class Task(Data):
     def _finish(self) -> None:
         if not self.name:
             object.__setattr__(self, "name", self.kind)
-        rows = getattr(self, "rows", None)
+
+
+@data
+class FrameTask(Task):
+    """A task of a frame."""
+
+    frame: str = parameter(FRAME, default="tip")
+    _: KW_ONLY
+    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+
+
+@data
+class RowsTask(FrameTask):
+    """A task of a frame that selects rows."""
+
+    all_rows: ClassVar[tuple[str, ...]]
+    _: KW_ONLY
+    rows: Sequence[str] | None = parameter(
+        "Some of the rows x, y, z, rx, ry, rz that the task has; None: all.", default=None
+    )
+    axes: str = parameter(like=AXES, default="base")
+
+    def _finish(self) -> None:
+        super()._finish()
+        rows = self.rows
         if rows is None:
             return
         if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):
@@ -53,33 +76,23 @@ class Task(Data):
 
 
 @data
-class PositionTask(Task):
+class PositionTask(RowsTask):
     """The position of a frame's origin, or some of its coordinates. Its point has shape (3,) [m]."""
 
     kind = "position"
     all_rows = POSITION
-    frame: str = parameter(FRAME, default="tip")
-    _: KW_ONLY
-    rows: Sequence[str] = parameter("Some of x, y, z.", default=POSITION)
-    axes: str = parameter(like=AXES, default="base")
-    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
 
 
 @data
-class OrientationTask(Task):
+class OrientationTask(RowsTask):
     """The orientation of a frame, or some of its rotations. Its point has shape (3, 3)."""
 
     kind = "orientation"
     all_rows = ROTATION
-    frame: str = parameter(FRAME, default="tip")
-    _: KW_ONLY
-    rows: Sequence[str] = parameter("Some of rx, ry, rz.", default=ROTATION)
-    axes: str = parameter(like=AXES, default="base")
-    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
 
 
 @data
-class PoseTask(Task):
+class PoseTask(RowsTask):
     """The pose of a frame, or some of its rows. Its point has shape (4, 4) [m].
 
     With axes='frame', rows=('x', 'y', 'z', 'rx', 'ry') leave the rotation about the frame's z axis free.
@@ -87,22 +100,14 @@ class PoseTask(Task):
 
     kind = "pose"
     all_rows = POSITION + ROTATION
-    frame: str = parameter(FRAME, default="tip")
-    _: KW_ONLY
-    rows: Sequence[str] = parameter("Some of x, y, z, rx, ry, rz.", default=POSITION + ROTATION)
-    axes: str = parameter(like=AXES, default="base")
-    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
 
 
 @data
-class AxisTask(Task):
+class AxisTask(FrameTask):
     """The direction of an axis of a frame: 2 rows, the rotation about the axis is free. Its point has shape (3,)."""
 
     kind = "axis"
-    frame: str = parameter(FRAME, default="tip")
     axis: ArrayField = parameter("In the frame; its length does not matter.", default=(0, 0, 1), shape="(3,)")
-    _: KW_ONLY
-    offset: OptionalArrayField = parameter(like=OFFSET, default=None)
 
     def _finish(self) -> None:
         super()._finish()
@@ -149,7 +154,7 @@ class Stack:
             if not level:
                 raise wrong(f"levels[{k}]", level, " is empty: must have a task")
             for task in level:
-                if not isinstance(task, Task) or type(task) is Task:
+                if not isinstance(task, Task) or not hasattr(task, "kind"):
                     raise wrong(f"levels[{k}]", task, f" has {task!r:.80}: must be a task, or a sequence of tasks")
                 if task.name in names:
                     raise wrong(f"levels[{k}]", task, f" has a second task of the name {task.name!r}: give it a name=")
