@@ -14,11 +14,11 @@ namespace fpbm {
 /// What a task controls of a frame.
 enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis };
 
-/// Task space of any task of a frame: poses, or directions, which are z axes of poses.
+/// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows first,
+/// then angular, in the base frame's axes.
 struct FrameSpace {
   static constexpr int kRows = 6;
   static constexpr int kTurns = 3;
-  static constexpr int kSize = 16;
 
   template <typename Scalar>
   struct Point {
@@ -55,7 +55,7 @@ class AnyFrameTask {
   using Space = FrameSpace;
   static constexpr int kRows = Eigen::Dynamic;
   static constexpr bool kWhole = false;
-  /// Which of x, y, z and the rotations about them a task selects. Of an axis, the last three are one choice.
+  /// Which of x, y, z and the rotations about them a task selects.
   using Selection = std::array<bool, 6>;
 
   TaskGains<> gains = TaskGains<>(0.0, 0.0);
@@ -63,9 +63,9 @@ class AnyFrameTask {
   /// No task: no rows.
   AnyFrameTask() = default;
 
-  /// selected: those of the rows that the kind has. in_frame: along the frame's axes, otherwise the base frame's.
-  /// axis: of kind kAxis, in the frame. Throws std::invalid_argument where no row is selected, or the axis is zero or
-  /// not finite.
+  /// selected: rows that the kind does not have are ignored; kAxis ignores all. in_frame: along the frame's axes,
+  /// otherwise the base frame's. axis: in the frame, read by kAxis alone. Throws std::invalid_argument where no row is
+  /// selected, or the axis is zero or not finite.
   AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
                bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0})
       : gains(gains_), frame_(frame), kind_(kind), in_frame_(in_frame) {
@@ -84,7 +84,6 @@ class AnyFrameTask {
     if (count_ == 0) validation::reject("rows", " select no row of the task: must select one");
   }
 
-  [[nodiscard]] FrameCoordinates kind() const noexcept { return kind_; }
   [[nodiscard]] int rows() const noexcept { return count_; }
 
   template <typename Robot>

@@ -25,8 +25,7 @@ class HeldJoints {
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
   /// A joint whose part is shorter does not move in the null space: the part is the round-off error of a basis of
-  /// length
-  /// 1. Held by it, a motion of 1e-13 would move other joints by a whole tick's acceleration.
+  /// unit length. Otherwise, to hold a joint against a motion of 1e-13, other joints would move up to their bounds.
   static constexpr Scalar kIdle = Scalar(64) * kEpsilon;
 
   /// Round-off error of Z: SelfMotion's is 5e-13 where J has a condition of 1e3.

@@ -76,7 +76,7 @@ class Correction {
     for (int i = row; i < row + rows; ++i) integral_(i) = Scalar(0);
   }
 
-  /// Call at the end of a tick that did the whole first level. Each task has an integral and a bound of its own; that
+  /// Call at the end of a tick that did the whole first level. Each task has its own integral and bound. The integral
   /// of a lower level waits while the level is slowed or has no finite reference.
   template <typename Result>
   void integrate(const Result& tick) noexcept {

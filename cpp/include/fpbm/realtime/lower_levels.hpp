@@ -17,8 +17,7 @@
 
 namespace fpbm {
 
-/// Stops tasks of the lower levels of a stack that do not come nearer to their targets, so that the robot comes to
-/// rest.
+/// Stops tasks of the lower levels of a stack that do not approach their targets, so that the robot stops.
 ///
 /// The largest error of each task in a window of stall_time counts. A task makes progress if its largest error is below
 /// those of all earlier windows by 1/16. If no target has moved by 0.002 (TaskDistance), and no task makes progress of
@@ -86,8 +85,9 @@ class LowerLevels {
       constexpr std::size_t kIndex = decltype(i)::value;
       using Part = decltype(space);
       using Distance = TaskDistance<Part, Scalar>;
-      const Scalar way = Distance::between(std::get<kIndex>(target), std::get<kIndex>(target_), kinematics.length);
-      moved = moved || way > kMoved;
+      const Scalar displacement =
+          Distance::between(std::get<kIndex>(target), std::get<kIndex>(target_), kinematics.length);
+      moved = moved || displacement > kMoved;
       Vector<Part::kRows, Scalar> part;
       for (int j = 0; j < Part::kRows; ++j) part(j) = errors.coeff(row + j);
       const Scalar error = Distance::norm(part, kinematics.length);

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Makes J̇ q̇ the drift of ω⊥, the angular velocity at right angles to an axis a:
+/// Makes J̇ q̇ [rad/s²] the drift of ω⊥, the angular velocity at right angles to an axis a of the frame:
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
