@@ -18,7 +18,7 @@ class LinkFrame {
   [[nodiscard]] int link() const noexcept { return link_; }
   [[nodiscard]] const Transform<Scalar>& offset() const noexcept { return offset_; }
 
-  /// Call before frame(). Throws std::invalid_argument where the robot has no such link.
+  /// Call before at(). Throws std::invalid_argument where the robot has no such link.
   template <typename Robot>
   void bind(const Robot& robot) {
     robot.require_link("frame", link_);
