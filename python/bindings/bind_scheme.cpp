@@ -8,30 +8,6 @@
 namespace fpbm::bindings {
 namespace {
 
-/// ("point", arm, x, k1, k2) or ("direction", d, k1, k2).
-SecondTaskData second_task_of(const py::tuple& given) {
-  const auto gain = [&](std::size_t i, const char* name) {
-    const auto value = py::cast<double>(given[given.size() - i]);
-    validation::require_non_negative(name, value);
-    return value;
-  };
-  const double k1 = gain(2, "k1");
-  const double k2 = gain(1, "k2");
-  if (py::cast<std::string>(given[0]) == "direction") {
-    const Vector<3> d = fixed_vector<3>(ArrayLike(py::object(given[1])), "direction");
-    if (d.isZero(0.0)) validation::fail("direction", 0.0, "longer: it must point somewhere");
-    return {SecondTaskData::Direction{d}, k1, k2};
-  }
-  const ArrayLike x{py::object(given[2])};
-  return py::cast<const Arm&>(given[1]).visit("position", [&](const auto& arm, auto space) -> SecondTaskData {
-    using Space = decltype(space);
-    if constexpr (std::is_same_v<Space, Position<2>> || std::is_same_v<Space, Position<3>>) {
-      return {SecondTaskData::Point<Space>{arm, point<Space>(x, "x")}, k1, k2};
-    }
-    validation::reject("arm", ": must have positions");
-  });
-}
-
 /// A trial run checks all parameters against each other, for as many joints as they tell of.
 void check(const Scheme& scheme) {
   Eigen::Index dof = 2;
@@ -75,7 +51,6 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
   for (const auto& [key, member] : kSchemeNumbers) scheme.*member = number(key);
   scheme.rest_posture = vector("rest_posture");
   scheme.c = vector("c");
-  if (const auto task = given("second_task")) scheme.second_task = second_task_of(py::cast<py::tuple>(*task));
   const SingularDamping<> singular(number("singular_radius"), number("singular_brake"));
   if (singular.radius() != 0.0) scheme.singular = singular;
   check(scheme);

@@ -1,6 +1,7 @@
 #include "bindings.hpp"
+#include "clearance.hpp"
 #include "motion_arrays.hpp"
-#include "path.hpp"
+#include "read_stack.hpp"
 
 namespace fpbm::bindings {
 namespace {
@@ -10,15 +11,15 @@ using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 
 /// A whole motion, run without the interpreter's lock; within limits where there are options of them.
 Outcomes rollout(const Arm& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
-                 double dt, double hold, const std::string& task, const std::optional<LimitedOptions>& options) {
+                 double dt, double hold, const std::string& task, const py::object& options) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  const std::optional<Limited> limited = limited_of(options, arm);
+  const std::optional<Limited> limited = limited_of(options, arm, path);
   return arm.visit(task, [&](const auto& any, auto space) -> Outcomes {
     using Space = decltype(space);
-    require_enough_joints<Space>(arm.dof());
+    if (!limited || limited->stack == nullptr) require_enough_joints<Space>(arm.dof());
     const AnyPath<Space> same = path.as<Space>();
-    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited.has_value(), keeps_clear(options));
+    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited ? &*limited : nullptr);
     const Output<Space> output = arrays.output();
     const Motion<Space> motion{any, same, scheme, start, grid};
     RolloutResult<kDynamic> result;
@@ -31,6 +32,26 @@ Outcomes rollout(const Arm& arm, const Path& path, const Scheme& scheme, const A
 }
 
 }  // namespace
+
+std::optional<Limited> limited_of(const py::object& given, const Arm& arm, const Path& path) {
+  if (given.is_none()) return std::nullopt;
+  const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
+  const py::object limits = given.attr("limits");
+  const py::object clearance = given.attr("clearance");
+  Limited limited{limits.is_none() ? arm.limits() : joint_limits(limits),
+                  {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
+                   SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
+                  clearance_of(arm, clearance),
+                  !clearance.is_none()};
+  if (const py::object stack = given.attr("stack"); !stack.is_none()) {
+    StackPlan plan = read_stack(stack, arm);
+    const StackTask& task = plan.follower(py::cast<std::string>(given.attr("task")));
+    const auto follows = static_cast<int>(&task - plan.tasks.data());
+    LedPath led = task.kind == TaskKind::kPose ? LedPath(path.as<Pose>()) : LedPath(path.as<Position<3>>());
+    limited.stack = std::make_shared<const StackOptions>(StackOptions{plan, follows, std::move(led)});
+  }
+  return limited;
+}
 
 void bind_sim(py::module_& m) {
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),

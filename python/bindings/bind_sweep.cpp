@@ -39,13 +39,13 @@ JointVector row(const Array& rows, py::ssize_t i) {
 /// Checks all that a sweep is made of, and returns its starts as rows and the samples of each motion.
 py::typing::Tuple<Array, int> check_sweep(const Arm& arm, const Path& path, const Schemes& schemes,
                                           const ArrayLike& q0s, double dt, double hold, const std::string& task,
-                                          const std::optional<LimitedOptions>& options) {
+                                          const py::object& options) {
   const Array rows = starts(q0s, arm.dof());
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  const std::optional<Limited> limited = limited_of(options, arm);
+  const std::optional<Limited> limited = limited_of(options, arm, path);
   arm.visit(task, [&](const auto& any, auto space) {
     using Space = decltype(space);
-    require_enough_joints<Space>(arm.dof());
+    if (!limited || limited->stack == nullptr) require_enough_joints<Space>(arm.dof());
     const AnyPath<Space> same = path.as<Space>();
     const JointVector rest = JointVector::Zero(arm.dof());
     for (std::size_t i = 0; i < schemes.size(); ++i) {
@@ -75,13 +75,13 @@ py::array not_run(py::ssize_t count) {
 /// Runs schemes[which[i]] from q0s[i] for every i, without the interpreter's lock.
 Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, const std::vector<std::size_t>& which,
                   const ArrayLike& q0s, double dt, double hold, const std::string& task, bool motions,
-                  const std::optional<LimitedOptions>& options, const Stop& stop) {
+                  const py::object& options, const Stop& stop) {
   const Array rows = starts(q0s, arm.dof());
   if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
     throw std::invalid_argument("which and q0s: must be of one length");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  const std::optional<Limited> limited = limited_of(options, arm);
+  const std::optional<Limited> limited = limited_of(options, arm, path);
   py::array_t<Outcome> outcomes(rows.shape(0));
   Outcome* const into = outcomes.mutable_data();
   return arm.visit(task, [&](const auto&, auto space) -> Chunk {
@@ -92,8 +92,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     for (std::size_t i = 0; i < which.size(); ++i) {
       jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
-        jobs.back().output =
-            whole.emplace_back(grid.samples(), arm.dof(), limited.has_value(), keeps_clear(options)).output();
+        jobs.back().output = whole.emplace_back(grid.samples(), arm.dof(), limited ? &*limited : nullptr).output();
       }
     }
     {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <variant>
+
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/realtime/tick.hpp"
@@ -7,14 +10,27 @@
 #include "lane_tracker.hpp"
 #include "recorder.hpp"
 #include "scheme.hpp"
+#include "stack_tasks.hpp"
 
 namespace fpbm::bindings {
+
+/// The path of a task of a stack.
+using LedPath = std::variant<AnyPath<Position<3>>, AnyPath<Pose>>;
+
+/// Several tasks, one of which follows the path.
+struct StackOptions {
+  StackPlan plan;
+  int follows;  ///< Of the plan's tasks.
+  LedPath path;
+};
 
 /// How a motion keeps limits; the length of its tick is the grid's.
 struct Limited {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
+  bool keeps_clear = false;                     ///< Whether it was given a clearance.
+  std::shared_ptr<const StackOptions> stack{};  ///< Null: the tip's task is the only one.
 };
 
 /// One motion of an arm along a path.

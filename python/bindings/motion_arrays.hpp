@@ -3,46 +3,63 @@
 #include <pybind11/typing.h>
 
 #include <optional>
-#include <tuple>
 #include <type_traits>
 
 #include "arrays.hpp"
-#include "clearance.hpp"
 #include "motion.hpp"
+#include "path.hpp"
 
 namespace fpbm::bindings {
 
-/// t, q, qd, qdd, x, x_ref, error of a motion, one row a sample; then scale and saturated, of one within limits; then
-/// clearance, of one that keeps clear of shapes.
-using Arrays = py::typing::Tuple<Array, py::ellipsis>;
+/// The arrays of a motion by name, one row a sample.
+using Arrays = py::typing::Dict<py::str, py::array>;
 
 /// Arrays for a motion of that many samples of n joints.
 template <typename Space>
 struct MotionArrays {
-  /// limited: whether the motion has a scale and saturated joints as well. clear: whether it has a clearance.
-  MotionArrays(py::ssize_t samples, py::ssize_t n, bool limited, bool clear)
+  MotionArrays(py::ssize_t samples, py::ssize_t n, const Limited* limited)
       : t(samples),
         q({samples, n}),
         qd({samples, n}),
         qdd({samples, n}),
         x(points(samples)),
         x_ref(points(samples)),
-        error({samples, py::ssize_t{Space::kRows}}),
-        scale(limited ? samples : 0),
-        saturated({limited ? samples : 0, n}),
-        clearance(clear ? samples : 0) {}
+        error({samples, py::ssize_t{Space::kRows}}) {
+    if (limited == nullptr) return;
+    scale = Array(samples);
+    saturated = py::array_t<bool>({samples, n});
+    if (limited->keeps_clear) clearance = Array(samples);
+    if (limited->stack == nullptr) return;
+    scales = Array({samples, py::ssize_t{limited->stack->plan.levels}});
+    task_errors = Array({samples, py::ssize_t{limited->stack->plan.error_size()}});
+  }
 
   [[nodiscard]] Output<Space> output() {
     return {{t.mutable_data(), q.mutable_data(), qd.mutable_data(), qdd.mutable_data(), x.mutable_data(),
              x_ref.mutable_data(), error.mutable_data()},
             scale.size() > 0 ? scale.mutable_data() : nullptr,
             saturated.size() > 0 ? saturated.mutable_data() : nullptr,
-            clearance.size() > 0 ? clearance.mutable_data() : nullptr};
+            clearance.size() > 0 ? clearance.mutable_data() : nullptr,
+            scales.size() > 0 ? scales.mutable_data() : nullptr,
+            task_errors.size() > 0 ? task_errors.mutable_data() : nullptr};
   }
   [[nodiscard]] Arrays all() const {
-    py::tuple every = py::make_tuple(t, q, qd, qdd, x, x_ref, error);
-    if (scale.size() > 0) every = every + py::make_tuple(scale, saturated);
-    if (clearance.size() > 0) every = every + py::make_tuple(clearance);
+    Arrays every;
+    const auto put = [&](const char* name, const py::array& array) {
+      if (array.size() > 0) every[name] = array;
+    };
+    put("t", t);
+    put("q", q);
+    put("qd", qd);
+    put("qdd", qdd);
+    put("x", x);
+    put("x_ref", x_ref);
+    put("error", error);
+    put("scale", scale);
+    put("saturated", saturated);
+    put("clearance", clearance);
+    put("scales", scales);
+    put("task_errors", task_errors);
     return every;
   }
 
@@ -56,6 +73,8 @@ struct MotionArrays {
   Array scale;
   py::array_t<bool> saturated;
   Array clearance;
+  Array scales;
+  Array task_errors;
 
  private:
   static Array points(py::ssize_t samples) {
@@ -67,21 +86,7 @@ struct MotionArrays {
   }
 };
 
-/// limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping and
-/// clearance of a motion that keeps limits.
-using LimitedOptions = std::tuple<py::object, double, double, double, double, double, double, double, py::object>;
-
-inline std::optional<Limited> limited_of(const std::optional<LimitedOptions>& given, const Arm& arm) {
-  if (!given) return std::nullopt;
-  const auto& [limits, error_bound, gain, bound, stall_time, radius, brake, damping, clearance] = *given;
-  return Limited{limits.is_none() ? arm.limits() : joint_limits(limits),
-                 {1e-3, error_bound, gain, bound, stall_time, SingularDamping<>(radius, brake), damping},
-                 clearance_of(arm, clearance)};
-}
-
-/// Whether a motion is asked to keep clear of shapes.
-inline bool keeps_clear(const std::optional<LimitedOptions>& given) {
-  return given && !std::get<8>(*given).is_none();
-}
+/// How a motion keeps limits, of a LimitOptions of motion/simulation.py, or none.
+std::optional<Limited> limited_of(const py::object& given, const Arm& arm, const Path& path);
 
 }  // namespace fpbm::bindings

@@ -1,35 +1,7 @@
-#include "fpbm/objective/gaze.hpp"
 #include "fpbm/objective/manipulability_ascent.hpp"
-#include "fpbm/objective/second_task.hpp"
 #include "scheme.hpp"
 
 namespace fpbm::bindings {
-namespace {
-
-/// The scheme with a second task in its null space.
-template <Level kLevel, typename Space>
-[[nodiscard]] AnyScheme<kLevel, Space> with_second_task(const AnyScheme<kLevel, Space>& scheme,
-                                                        const SecondTaskData& task, const AnyArmFor<Space>& arm) {
-  const auto with = [&](const auto& second, const auto& point) {
-    return AnyScheme<kLevel, Space>(SecondTask(scheme, second, point, task.k1, task.k2));
-  };
-  if constexpr (std::is_same_v<AnyArmFor<Space>, AnyArm<Position<2>>>) {
-    if (const auto* given = std::get_if<SecondTaskData::Point<Position<2>>>(&task.what)) {
-      return with(given->arm, Reference<Position<2>>::hold(given->x));
-    }
-    validation::reject("second_task", ": of an arm in the plane, it must be the tip of another one in the plane");
-  } else {
-    if (const auto* given = std::get_if<SecondTaskData::Point<Position<3>>>(&task.what)) {
-      return with(given->arm, Reference<Position<3>>::hold(given->x));
-    }
-    if (const auto* given = std::get_if<SecondTaskData::Direction>(&task.what)) {
-      return with(Gaze(arm, given->d), Reference<Position<2>>::hold(Vector<2>::Zero()));
-    }
-    validation::reject("second_task", ": of an arm in space, it must be the tip of another one in space");
-  }
-}
-
-}  // namespace
 
 template <typename Space>
 EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
@@ -37,7 +9,6 @@ EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
       [&](auto scheme) -> EitherScheme<Space> {
         using Any = decltype(scheme);
         if (manipulability_gain != 0.0) scheme = Any(ManipulabilityAscent(scheme, arm, manipulability_gain));
-        if (second_task) scheme = with_second_task(scheme, *second_task, arm);
         scheme.require_dof(arm.dof());
         return scheme;
       },

@@ -3,7 +3,6 @@
 #include <atomic>
 
 #include "arm.hpp"
-#include "fpbm/realtime/tick.hpp"
 #include "fpbm/sim/motion.hpp"
 #include "fpbm/sim/summary.hpp"
 
@@ -16,6 +15,8 @@ struct Output {
   double* scale = nullptr;      ///< Of each tick, of a motion that keeps limits,
   bool* saturated = nullptr;    ///< and a row of joints.
   double* clearance = nullptr;  ///< Distance of the nearest pair, written by whoever knows it.
+  double* scales = nullptr;     ///< Of a stack: a row of levels,
+  double* errors = nullptr;     ///< and the errors of all tasks.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;
 };
@@ -33,7 +34,8 @@ class Recorder {
     return output_.stop == nullptr || !output_.stop->load(std::memory_order_relaxed);
   }
 
-  bool operator()(const Sample<Space, kDynamic>& sample, const Tick<Space, kDynamic>& tick) noexcept {
+  template <typename AnyTick>
+  bool operator()(const Sample<Space, kDynamic>& sample, const AnyTick& tick) noexcept {
     if (output_.scale != nullptr) output_.scale[sample.index] = tick.scale;
     if (output_.saturated != nullptr) {
       const Eigen::Index n = sample.q.size();

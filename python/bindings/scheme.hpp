@@ -12,22 +12,6 @@
 
 namespace fpbm::bindings {
 
-/// A second task: the tip of another arm on a point, or the tip's z axis along a direction.
-struct SecondTaskData {
-  template <typename Space>
-  struct Point {
-    AnyArm<Space> arm;
-    typename Space::template Point<double> x;
-  };
-  struct Direction {
-    Vector<3> d;
-  };
-
-  std::variant<Point<Position<2>>, Point<Position<3>>, Direction> what;
-  double k1;
-  double k2;
-};
-
 /// A scheme of either level.
 template <typename Space>
 using EitherScheme = std::variant<AnyScheme<Level::kVelocity, Space>, AnyScheme<Level::kAcceleration, Space>>;
@@ -49,7 +33,6 @@ struct Scheme {
   std::optional<JointVector> c = {};
   double joint_centring = 0.0;
   double manipulability_gain = 0.0;
-  std::optional<SecondTaskData> second_task = {};
   SingularDamping<> singular = SingularDamping<>::off();
 
   /// The scheme for an arm, objectives and all.
@@ -63,7 +46,7 @@ struct Scheme {
   [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
 
   /// Whether all of it is in law(): no objective wraps it.
-  [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0 && !second_task; }
+  [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0; }
 
   /// Whether an objective reads the arm or its limits.
   [[nodiscard]] bool needs_arm() const noexcept { return !is_plain() || joint_centring != 0.0; }

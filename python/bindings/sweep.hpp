@@ -114,7 +114,8 @@ template <typename Space>
 }
 
 /// Runs each job on one arm along one path, as simulate() would or, where limited is not null, track(); and writes an
-/// outcome for each. Where code is not null, it runs motions side by side, with results that do not depend on which.
+/// outcome for each. Where code is not null, it runs motions of one task side by side, with results that do not depend
+/// on which.
 /// Once stop is set, which is looked at in every sample, all that are not done yet are not run.
 /// Throws std::invalid_argument where a scheme, a start or the limits do not fit the arm.
 template <typename Space>
@@ -124,7 +125,8 @@ void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& g
   const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {
-    if (code != nullptr && runs_in_lanes(arm)) {
+    const bool of_a_stack = limited != nullptr && limited->stack != nullptr;
+    if (code != nullptr && runs_in_lanes(arm) && !of_a_stack) {
       for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
         runner.in_lanes(jobs, side_by_side(jobs, level), limited, static_cast<std::size_t>(code->lanes),
                         std::get<RunInLanes<Space>>(code->run), outcomes);

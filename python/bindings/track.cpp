@@ -1,25 +1,116 @@
 #include "fpbm/realtime/track.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <memory>
 
 #include "motion.hpp"
+#include "stack_motion.hpp"
 #include "tracker.hpp"
 
 namespace fpbm::bindings {
 namespace {
 
 template <typename Space>
-std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const Limited& limited) {
+TrackerOptions<> options_of(const Motion<Space>& motion, const Limited& limited) {
   TrackerOptions<> options = limited.options;
   options.dt = motion.grid.dt();
-  return make_tracker<Space>(motion.scheme, {motion.arm, motion.start, options, limited.limits,
+  return options;
+}
+
+template <typename Space>
+std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const Limited& limited) {
+  return make_tracker<Space>(motion.scheme, {motion.arm, motion.start, options_of(motion, limited), limited.limits,
                                              JointVector::Zero(motion.start.q.size()), limited.clearance});
+}
+
+template <typename Space>
+StackMotion stack_motion_of(const Motion<Space>& motion, const Limited& limited) {
+  return {limited.stack->plan, motion.scheme,
+          motion.start,        options_of(motion, limited),
+          limited.limits,      JointVector::Zero(motion.start.q.size()),
+          limited.clearance};
+}
+
+/// A frame in space as a point of Space.
+template <typename Space>
+typename Space::template Point<double> point_of(const Transform<>& at) noexcept {
+  if constexpr (std::is_same_v<Space, Pose>) {
+    return at;
+  } else if constexpr (std::is_same_v<Space, PlanarPose>) {
+    return {at.p(0), at.p(1), std::atan2(at.R(1, 0), at.R(0, 0))};
+  } else {
+    return at.p.head<Space::kRows>();
+  }
+}
+Transform<> transform_of(const Transform<>& at) noexcept {
+  return at;
+}
+Transform<> transform_of(const Vector<3>& p) noexcept {
+  Transform<> at;
+  at.p = p;
+  return at;
+}
+
+/// The rows of Space of an error in space.
+template <typename Space>
+Vector<Space::kRows> rows_of(const JointVector& error) noexcept {
+  if constexpr (std::is_same_v<Space, PlanarPose>) {
+    return {error(0), error(1), error(5)};
+  } else {
+    return error.head<Space::kRows>();
+  }
+}
+
+/// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the path, its J
+/// that of the arm's tip.
+template <typename Space, typename Path>
+RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& limited, const Path& path,
+                                    const Output<Space>& output) {
+  StackMotion tasks = stack_motion_of(motion, limited);
+  StackTracker& tracker = tasks.tracker();
+  const StackPlan& plan = tasks.plan();
+  const StackTask& led = plan.tasks[static_cast<std::size_t>(limited.stack->follows)];
+  using Led = typename Path::Space;
+  AnyFollower<Led> follower(path, point_of<Led>(tasks.frame_of(led)));
+  const StackMotion::Sources sources{{&led, &follower}};
+  Recorder<Space> record(output, Level::kAcceleration);
+  RolloutResult<kDynamic> result{Status::kOk, 0.0, tracker.state(), 0};
+  Kinematics<Space, kDynamic> kinematics;
+  for (int k = 0; k < motion.grid.samples(); ++k) {
+    const State<kDynamic> state = tracker.state();
+    const auto tip = point_of<Space>(tasks.frame_of(led));
+    const auto reference = Reference<Space>::hold(point_of<Space>(transform_of(follower.ahead(0.0).x)));
+    motion.arm.kinematics(state.q, kinematics);
+    if (output.clearance != nullptr) {
+      tracker.clearance().place(state.q);
+      output.clearance[k] = tracker.clearance().nearest_pair().second;
+    }
+    const StackMotion::Result tick = tasks.tick(sources);
+    result = {worse(result.status, tick.status), motion.grid.time(k), state, k + 1};
+    if (output.scales != nullptr) std::copy_n(tick.scales.data(), plan.levels, output.scales + k * plan.levels);
+    if (output.errors != nullptr) {
+      double* row = output.errors + static_cast<std::ptrdiff_t>(k) * plan.error_size();
+      for (const StackTask& task : plan.tasks) {
+        const JointVector error = StackMotion::error_of(task, tick);
+        row = std::copy_n(error.data(), error.size(), row);
+      }
+    }
+    const Vector<Space::kRows> error = rows_of<Space>(StackMotion::error_of(led, tick));
+    if (!record({k, result.time, state.q, state.qd, tick.qdd, tip, reference, error, kinematics.J}, tick)) break;
+  }
+  record.finish();
+  return result;
 }
 
 }  // namespace
 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
+  if (limited.stack != nullptr) {
+    return std::visit([&](const auto& led) { return track_stack(*this, limited, led, output); }, limited.stack->path);
+  }
   const auto tracker = tracker_of(*this, limited);
   Recorder<Space> record(output, Level::kAcceleration);
   AnyFollower<Space> follower(path, tracker->tip());
@@ -44,7 +135,9 @@ LaneTracker<Space, N> Motion<Space>::tracker(const Limited& limited) const {
 
 template <typename Space>
 void Motion<Space>::require(const Limited* limited) const {
-  if (limited != nullptr) {
+  if (limited != nullptr && limited->stack != nullptr) {
+    (void)stack_motion_of(*this, *limited);
+  } else if (limited != nullptr) {
     (void)tracker_of(*this, *limited);
   } else {
     (void)scheme.make<Space>(arm);

@@ -749,18 +749,7 @@ def check_sweep(
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
-    limited: tuple[
-        typing.Any,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.Any,
-    ]
-    | None = None,
+    limited: typing.Any = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], int]: ...
 def circle(
     radius: typing.SupportsFloat | typing.SupportsIndex,
@@ -809,19 +798,8 @@ def rollout(
     dt: typing.SupportsFloat | typing.SupportsIndex,
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
-    limited: tuple[
-        typing.Any,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.Any,
-    ]
-    | None = None,
-) -> tuple[Status, float, int, tuple[numpy.typing.NDArray[numpy.float64], ...]]: ...
+    limited: typing.Any = None,
+) -> tuple[Status, float, int, dict[str, numpy.ndarray]]: ...
 def rotation(r: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Rotation matrix, shape (3, 3), of a rotation vector r [rad]: by |r| about r/|r|.
@@ -881,20 +859,9 @@ def sweep_chunk(
     hold: typing.SupportsFloat | typing.SupportsIndex,
     task: str,
     motions: bool,
-    limited: tuple[
-        typing.Any,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.SupportsFloat | typing.SupportsIndex,
-        typing.Any,
-    ]
-    | None,
+    limited: typing.Any,
     stop: Stop,
-) -> tuple[numpy.ndarray, list[tuple[numpy.typing.NDArray[numpy.float64], ...]]]: ...
+) -> tuple[numpy.ndarray, list[dict[str, numpy.ndarray]]]: ...
 def tricuspid(
     size: typing.SupportsFloat | typing.SupportsIndex,
     duration: typing.SupportsFloat | typing.SupportsIndex,

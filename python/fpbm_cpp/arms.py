@@ -99,20 +99,6 @@ class Arm(Data, CoreArm):
         """Bounds of the joints' motion."""
         return JointLimits(**self.bounds())
 
-    def first(self, joints: int) -> Arm:
-        """The arm of the first so many joints: of an elbow, say. Raises ParameterError."""
-        if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 0 < joints < self.dof:
-            raise wrong("joints", joints, f" = {joints!r}: must be from 1 to {self.dof - 1}, the arm's first so many")
-        if isinstance(self, PlanarArm):
-            return PlanarArm(self.lengths[:joints])
-        assert isinstance(self, SerialArm)
-        driven = [i for i, joint in enumerate(self.joints) if joint.mimic is None]
-        kept = self.joints[: driven[joints - 1] + 1]
-        for joint in kept:
-            if joint.mimic is not None and joint.mimic[0] >= len(kept):
-                raise wrong("joints", joints, f" = {joints}: {joint.name!r} follows a joint beyond them")
-        return SerialArm(kept)
-
 
 @data
 class PlanarArm(Arm):

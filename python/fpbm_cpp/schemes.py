@@ -5,71 +5,26 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, replace
 from typing import ClassVar
 
-import numpy as np
-
 from ._core import Scheme as CoreScheme
 from ._types import ArrayField, OptionalArrayField
-from .arms import Arm
-from .errors import wrong
 from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 
-__all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Gaze", "Scheme", "SecondTask", "WMVNAcceleration"]
+__all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Scheme", "WMVNAcceleration"]
 
 # What more than one class declares.
 ALPHA = Parameter(help="Share of WMVN; MAN has the rest.", usual=0.6, low=0.0, high=1.0)
 WEIGHTS = replace(POSITIVE, help="W, or its diagonal: positive definite. Only ratios matter.", shape="(n,) or (n, n)")
 K = replace(NOT_NEGATIVE, help="Position feedback: xd + k (x - f(q)) in place of xd.", unit="1/s")
-K1 = replace(NOT_NEGATIVE, help="Feedback gain on velocity, which velocity-level schemes do without.", unit="1/s")
-K2 = replace(NOT_NEGATIVE, help="Feedback gain on position or direction.", unit="1/s^2, 1/s at velocity level")
+STIFFNESS = replace(NOT_NEGATIVE, unit="1/s^2, 1/s at velocity level")
 FREE = Parameter(shape="(n,)", unit="rad/s^2, rad/s at velocity level")
 SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
-
-
-@data
-class SecondTask(Data):
-    """A point for a second arm's tip, in the null space of the first task.
-
-    The second arm is of the first joints of the first one: its tip an elbow, say. The first task comes strictly first.
-    """
-
-    kind: ClassVar[str] = "point"
-    arm: Arm = parameter("The second arm, as arm.first(k) gives it: its tip is that of the first k joints.")
-    x: ArrayField = parameter("Where its tip is to be, in the base frame.", shape="(2,) or (3,)", unit="m")
-    _: KW_ONLY
-    k1: float = parameter(like=K1, default=10.0)
-    k2: float = parameter(like=K2, default=25.0)
-
-    def _finish(self) -> None:
-        if not isinstance(self.arm, Arm):
-            raise wrong("arm", self.arm, f" = {self.arm!r:.80}: must be an arm")
-        rows = len(self.arm.jacobian(np.zeros(self.arm.dof)))
-        if len(self.x) != rows:
-            raise wrong("x", self.x, f" has {len(self.x)} entries: must have {rows}")
-
-
-@data
-class Gaze(Data):
-    """A direction for the tip's z axis, in the null space of the first task.
-
-    Of an arm in space; the axis may still turn about itself. The first task comes strictly first.
-    """
-
-    kind: ClassVar[str] = "gaze"
-    direction: ArrayField = parameter("Of the axis, in the base frame; its length does not matter.", shape="(3,)")
-    _: KW_ONLY
-    k1: float = parameter(like=K1, default=10.0)
-    k2: float = parameter(like=K2, default=25.0)
-
-    def _finish(self) -> None:
-        if not np.any(self.direction):
-            raise wrong("direction", self.direction, " = 0: must point somewhere")
 
 
 @data
 class Scheme(Data, CoreScheme):
     """A redundancy resolution scheme: what all of them have.
 
-    joint_centring, manipulability_gain and second_task need an arm: resolve() cannot do them for a Kinematics.
+    joint_centring and manipulability_gain need an arm: resolve() cannot do them for a Kinematics.
     """
 
     kind: ClassVar[str]
@@ -77,7 +32,7 @@ class Scheme(Data, CoreScheme):
     fixed: ClassVar[dict[str, float]] = {}  # What the scheme fixes of the law of its level.
     _: KW_ONLY
     rest_posture: OptionalArrayField = parameter("Where the null space rests.", default=None, shape="(n,)", unit="rad")
-    null_stiffness: float = parameter("How strongly rest_posture draws it.", K2, default=0.0)
+    null_stiffness: float = parameter("How strongly rest_posture draws it.", STIFFNESS, default=0.0)
     c: OptionalArrayField = parameter("Free choice in the general solution (5) or (3).", FREE, default=None)
     joint_centring: float = parameter(
         "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
@@ -91,9 +46,6 @@ class Scheme(Data, CoreScheme):
         SQUARED,
         default=0.0,
     )
-    second_task: SecondTask | Gaze | None = parameter(
-        "What the null space does first of all: the other options have what it leaves.", default=None
-    )
     singular_radius: float = parameter(
         "Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
         "postures; 0.02 is a good one.",
@@ -104,13 +56,7 @@ class Scheme(Data, CoreScheme):
     singular_brake: float = parameter("Damping of the null space there.", NOT_NEGATIVE, default=10.0, unit="1/s")
 
     def _finish(self) -> None:
-        values, second = self._values(), self.second_task
-        if second is not None:
-            if not isinstance(second, (SecondTask, Gaze)):
-                raise wrong("second_task", second, f" = {second!r:.80}: must be a SecondTask or a Gaze")
-            what = "point" if isinstance(second, SecondTask) else "direction"
-            values["second_task"] = (what, *second._values().values())
-        CoreScheme.__init__(self, self.level, {**self.fixed, **values})
+        CoreScheme.__init__(self, self.level, {**self.fixed, **self._values()})
 
 
 class VelocityScheme(Scheme):
@@ -195,4 +141,3 @@ class FPBM(AccelerationScheme):
 
 # By the kind that a table has.
 SCHEMES: dict[str, type[Scheme]] = {each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}
-SECOND_TASKS: dict[str, type[Data]] = {task.kind: task for task in (SecondTask, Gaze)}

@@ -3,7 +3,8 @@
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
 A table has the kind and the parameters of its thing, by their names. A path's also say how it is laid and rotated:
-in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables.
+in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables. A stack is a list of
+tables of tasks, each with its level, counted from 0.
 """
 
 import math
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .arms import ARMS, Arm, Joint, JointLimits, SerialArm
+from .arms import ARMS, Joint, JointLimits, SerialArm
 from .capsule import Capsule
 from .clearance import CLEARANCES, Clearance
 from .errors import ParameterError, not_one_of, suggestion, wrong
@@ -20,7 +21,8 @@ from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
-from .schemes import SCHEMES, SECOND_TASKS, SecondTask
+from .schemes import SCHEMES
+from .tasks import TASKS, Stack, Task
 
 Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
@@ -28,14 +30,23 @@ KINDS: Makers = {
     **ARMS,
     **EVERY_PATH,
     **SCHEMES,
-    **SECOND_TASKS,
+    **TASKS,
     **OBSTACLES,
     JointLimits.kind: JointLimits,
     Clearance.kind: Clearance,
 }
 
 # What stands within other tables, by its key.
-WITHIN: dict[str, Makers] = {"arm": ARMS, "second_task": SECOND_TASKS}
+WITHIN: dict[str, Makers] = {"arm": ARMS}
+LEVEL = Parameter(
+    "level",
+    int,
+    low=0,
+    whole=True,
+    default=0,
+    usual=0,
+    help="Its level, counted from 0: higher levels have lower numbers.",
+)
 LISTS: dict[Any, Any] = {
     (SerialArm, "joints"): Joint,
     (PathSequence, "paths"): EVERY_PATH,
@@ -54,6 +65,8 @@ def to_table(thing: Any) -> Any:
     if isinstance(thing, WithRotation):
         rotation = {"with_rotation": to_table(thing.rotation), "rotation_time_law": thing.time_law}
         return {**to_table(thing.path), **rotation}
+    if isinstance(thing, Stack):
+        return [{**to_table(task), "level": k} for k, level in enumerate(thing.levels) for task in level]
     if isinstance(thing, Data):
         kind = {"kind": thing.kind} if hasattr(thing, "kind") else {}
         values = {name: to_table(value) for name, value in thing._values().items()}
@@ -69,15 +82,14 @@ def to_table(thing: Any) -> Any:
     raise TypeError(f"{thing!r:.80}: must be a thing of this package, numbers or text")
 
 
-def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | None = None) -> Any:
-    """The thing that a table stands for, or a list of those of paths; what is made already may stand in one.
+def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
+    """The thing that a table stands for, or a list of those of paths or of tasks; a table may hold things as well.
 
-    kinds: what may stand there, ARMS, PATHS, SCHEMES or SECOND_TASKS, say. name: what errors call the table. arm: of
-    which second tasks may say the first `joints`, in place of an arm of their own.
+    kinds: what may stand there, ARMS, PATHS, SCHEMES or TASKS, say. name: what errors call the table.
 
     Raises ParameterError of the first thing that is wrong, OSError where a file that it names cannot be read.
     """
-    reader = _Reader(arm)
+    reader = _Reader()
     thing = reader.read(table, kinds, name)
     for problem in reader.problems:
         raise problem
@@ -86,31 +98,32 @@ def from_table(table: Any, kinds: Makers = KINDS, name: str = "", *, arm: Arm | 
 
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
     """All that is wrong with a table's keys and values, for an arm yet to come. usual: what has such may be missing."""
-    reader = _Reader(None, usual, make=False)
+    reader = _Reader(usual, make=False)
     reader.read(table, kinds, name)
     return reader.problems
 
 
-def keys(maker: Callable[..., Any], *, joints: bool = False) -> dict[str, Parameter]:
-    """The keys of a maker's table, but for its kind. joints: as from_table() has it for an arm."""
+def keys(maker: Callable[..., Any]) -> dict[str, Parameter]:
+    """The keys of a maker's table, but for its kind."""
     known = dict(parameters(maker))
-    if maker is SecondTask and joints:
-        del known["arm"]
-        return {"joints": Parameter("joints", int, whole=True, help="How many of the arm's joints."), **known}
+    if maker in TASKS.values():
+        return {**known, "level": LEVEL}
     return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
 
 
 class _Reader:
     """Makes things of tables, and notes what is wrong with them: what it makes is None then."""
 
-    def __init__(self, arm: Arm | None, usual: bool = False, make: bool = True) -> None:
-        self.arm, self.usual, self.make = arm, usual, make
+    def __init__(self, usual: bool = False, make: bool = True) -> None:
+        self.usual, self.make = usual, make
         self.problems: list[ParameterError] = []
 
     def read(self, table: Any, kinds: Makers | type[Joint], name: str) -> Any:
         """The thing of a table, or of a list of those of paths."""
         if isinstance(table, Data):
             return table
+        if isinstance(table, (list, tuple)) and kinds is TASKS:
+            return self._stack(table, name)
         if isinstance(table, (list, tuple)) and kinds in (PATHS, EVERY_PATH, KINDS):
             if len(table) == 1:
                 return self.read(table[0], kinds, name)
@@ -130,7 +143,7 @@ class _Reader:
         return self._thing(table, kinds[kind], name)
 
     def _thing(self, table: Mapping[str, Any], maker: Callable[..., Any], name: str) -> Any:
-        before, known = len(self.problems), keys(maker, joints=self.arm is not None or not self.make)
+        before, known = len(self.problems), keys(maker)
         values, within = {}, f"{name}." if name else ""
         for key, value in table.items():
             if key in known:
@@ -145,8 +158,7 @@ class _Reader:
             return self._checked(lambda: self._made(maker, values), name)
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
-        if "joints" in values and maker is SecondTask and self.arm is not None:
-            values["arm"] = self.arm.first(values.pop("joints"))
+        values.pop("level", None)  # Which _stack() reads.
         plane, rotation, law = (values.pop(key, None) for key in PATH_OPTIONS)
         thing = maker(**values)
         if plane is not None:
@@ -166,6 +178,20 @@ class _Reader:
         if not isinstance(tables, (list, tuple)):
             return self._wrong(name, tables, f" = {tables!r:.60}: must be a list")
         return tuple(self.read(table, kinds, f"{name}[{i}]") for i, table in enumerate(tables))
+
+    def _stack(self, tables: Any, name: str) -> Any:
+        """The stack of a list of tasks."""
+        tasks = self._each(tables, TASKS, name)
+        levels: dict[int, list[Task]] = {}
+        for table, task in zip(tables, tasks):
+            if isinstance(table, Mapping) and task is not None:
+                levels.setdefault(LEVEL.check(table.get("level", 0)), []).append(task)
+        for k in range(max(levels, default=0)):
+            if k not in levels:
+                return self._wrong(
+                    f"{name}.level", max(levels), f" = {max(levels)}: must be less, as level {k} is empty"
+                )
+        return None if None in tasks else self._checked(lambda: Stack(*(levels[k] for k in sorted(levels))), name)
 
     def _checked(self, make: Callable[[], Any], name: str) -> Any:
         """What make() gives; where it refuses, a problem of the table of this name."""

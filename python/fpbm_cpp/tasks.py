@@ -17,6 +17,7 @@ __all__ = ["AxisTask", "OrientationTask", "PoseTask", "PositionTask", "PostureTa
 POSITION = ("x", "y", "z")
 ROTATION = ("rx", "ry", "rz")
 FRAME = "'tip', 'base', or a joint's name: the frame of the link that this joint moves, after its motion."
+TARGET = "Its target, if no path or reference is given; where it starts if not given."
 OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="The task's frame, seen from that frame.")
 AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Whose axes the rows are along.")
 
@@ -46,7 +47,14 @@ class FrameTask(Task):
 
     frame: str = parameter(FRAME, default="tip")
     _: KW_ONLY
+    x: OptionalArrayField = parameter(TARGET, default=None, shape="(3,) or (3, 3) or (4, 4)", unit="m")
     offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+    point_shape: ClassVar[tuple[int, ...]] = (3,)
+
+    def _finish(self) -> None:
+        super()._finish()
+        if self.x is not None and self.x.shape != self.point_shape:
+            raise wrong("x", self.x, f" has shape {self.x.shape}: must have {self.point_shape}")
 
 
 @data
@@ -89,6 +97,7 @@ class OrientationTask(RowsTask):
 
     kind = "orientation"
     all_rows = ROTATION
+    point_shape = (3, 3)
 
 
 @data
@@ -100,6 +109,7 @@ class PoseTask(RowsTask):
 
     kind = "pose"
     all_rows = POSITION + ROTATION
+    point_shape = (4, 4)
 
 
 @data
@@ -120,9 +130,7 @@ class PostureTask(Task):
     """Positions of all joints, or of some. Its point has shape (joints,) [rad]."""
 
     kind = "posture"
-    q: OptionalArrayField = parameter(
-        "Its target; where it starts if not given.", default=None, shape="(n,)", unit="rad"
-    )
+    q: OptionalArrayField = parameter(TARGET, default=None, shape="(n,)", unit="rad")
     _: KW_ONLY
     joints: Sequence[str] | None = parameter("Names of the joints; None: all.", default=None)
 
@@ -134,6 +142,12 @@ class PostureTask(Task):
         if not names or len(set(names)) < len(names):
             raise wrong("joints", self.joints, f" = {self.joints!r:.80}: must be names of joints, each once")
         object.__setattr__(self, "joints", names)
+
+
+# By the kind that a table has.
+TASKS: dict[str, type[Task]] = {
+    each.kind: each for each in (PositionTask, OrientationTask, PoseTask, AxisTask, PostureTask)
+}
 
 
 class Stack:
@@ -165,6 +179,22 @@ class Stack:
     def tasks(self) -> tuple[Task, ...]:
         """All tasks, those of higher levels first."""
         return tuple(task for level in self.levels for task in level)
+
+    def error_sizes(self, dof: int) -> list[int]:
+        """Numbers in the error of each task, for that many joints."""
+        sizes = {"pose": 6, "posture": dof}
+        return [len(getattr(task, "joints", None) or ()) or sizes.get(task.kind, 3) for task in self.tasks]
+
+    def follower(self, name: str | None = None) -> Task:
+        """The task that follows a path: that of the name, or the only position or pose. Raises ParameterError."""
+        able = [task for task in self.tasks if isinstance(task, (PositionTask, PoseTask))]
+        found = [task for task in able if name in (None, task.name)]
+        if len(found) == 1:
+            return found[0]
+        if name is None and found:
+            raise wrong("task", None, f": several tasks follow paths, must be one of {', '.join(t.name for t in able)}")
+        what = f" = {name!r}" if name is not None else ""
+        raise wrong("task", name, f"{what}: must be the name of a position or a pose of the stack to follow a path")
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Stack) and other.levels == self.levels

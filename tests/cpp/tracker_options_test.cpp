@@ -12,7 +12,6 @@
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/objective/manipulability_ascent.hpp"
-#include "fpbm/objective/second_task.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
@@ -66,13 +65,6 @@ struct Preset {
 }
 [[nodiscard]] Preset ur5e() {
   return {"ur5e", presets::ur5e(), {0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0}};
-}
-
-/// The arm that ends with the fourth link.
-[[nodiscard]] Arm forearm(const Preset& preset) {
-  Chain<> chain = preset.chain;
-  chain.joints.resize(4);
-  return Arm(chain);
 }
 
 [[nodiscard]] AccelerationScheme<kOpen> fpbm(int dof, const NullSpace<kOpen>& z = {},
@@ -149,10 +141,8 @@ TEST(TrackerOptions, damp_schemes_of_run_time_type) {
 TEST(TrackerOptions, damp_schemes_in_wrappers) {
   const Vector<3> far(1.5, 0.3, 0.2);
   const Preset panda = redundant()[0];
-  const auto elbow = Reference<Position<3>>::hold(Vector<3>(0.1, 0.2, 0.6));
   const auto wrapped = [&](const AccelerationScheme<kOpen>& scheme) {
-    const Accelerations ascending(ManipulabilityAscent(Accelerations(scheme), panda.arm(), 1.0));
-    return Accelerations(SecondTask(ascending, forearm(panda), elbow, 10.0, 25.0));
+    return Accelerations(ManipulabilityAscent(Accelerations(scheme), panda.arm(), 1.0));
   };
   const Motion own = drawn(tracker_of(panda, wrapped(fpbm(7, damped(2.0), SingularDamping<>()))), far, 4.0);
   const Motion given = drawn(tracker_of(panda, wrapped(fpbm(7))), far, 4.0);
@@ -281,16 +271,6 @@ TEST(TickGains, an_integral_beyond_Routh_is_refused) {
     EXPECT_EQ(refusal(wmvn(7), dt, most_velocity), "");
   }
   EXPECT_NE(refusal(MAN<kOpen>(), 1e-3, 1.0).find("integral_gain = 1: must be at most 0"), std::string::npos);
-}
-
-TEST(TickGains, of_second_tasks_are_checked) {
-  const Preset panda = redundant()[0];
-  const auto elbow = Reference<Position<3>>::hold(Vector<3>(0.1, 0.2, 0.6));
-  const auto with = [&](double k1, double k2) {
-    return refusal(SecondTask(fpbm(7), forearm(panda), elbow, k1, k2), 1e-3);
-  };
-  EXPECT_EQ(with(10.0, 25.0), "");
-  EXPECT_EQ(with(5000.0, 6.25e6).find("second_task.k1 = 5000: must be at most "), 0U);
 }
 
 /// is_stable_…() says whether the ticks of an error decay, for any gains and in float, too.

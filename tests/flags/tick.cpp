@@ -1,11 +1,10 @@
 #include <fpbm/fpbm.hpp>
 
 /// Ticks of control loops in float, and nothing else, so that firmware.sh can look for arithmetic in double.
-/// Of every kind of arm, task space and level, with the objectives that are schemes themselves.
+/// Of every kind of arm, task space and level, with the objective that is a scheme itself.
 namespace fpbm {
 
 using Serial = SerialArm<7, float>;
-using Gazing = SecondTask<AccelerationScheme<7, float>, Gaze<Serial>, Position<2>>;
 using Turning = WithRotation<InPlane<Path<Circle<float>>>>;
 
 Tick<Pose, 7, float> tick(Tracker<Serial, Pose, AccelerationScheme<7, float>>& tracker,
@@ -34,8 +33,9 @@ Status resolve(const CoupledArm<6, float>& arm, const VelocityScheme<6, float>& 
   return scheme.resolve(kinematics, reference, state, qd);
 }
 
-Status resolve(const Kinematics<Position<3>, 7, float>& kinematics, const ManipulabilityAscent<Gazing, Serial>& scheme,
-               const State<7, float>& state, const Reference<Position<3>, float>& reference, Vector<7, float>& qdd) {
+Status resolve(const Kinematics<Position<3>, 7, float>& kinematics,
+               const ManipulabilityAscent<AccelerationScheme<7, float>, Serial>& scheme, const State<7, float>& state,
+               const Reference<Position<3>, float>& reference, Vector<7, float>& qdd) {
   return scheme.resolve(kinematics, reference, state, qdd);
 }
 

@@ -17,6 +17,7 @@ from fpbm_cpp.parameter import REQUIRED, parameters
 from fpbm_cpp.paths import PATH_OPTIONS, PATHS
 from fpbm_cpp.schemes import SCHEMES
 from fpbm_cpp.table import from_table, problems, to_table
+from fpbm_cpp.tasks import TASKS
 
 PANDA = fp.SerialArm.preset("panda")
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
@@ -59,19 +60,18 @@ def options(n):
     }
 
 
-ELBOW = fp.SecondTask(fp.SerialArm.from_joints(PANDA.joints[:4]), [0.1, 0.2, 0.6], k1=5, k2=1 / 3)
 W = np.diag(np.linspace(1, 2, 7)) + 0.1
 SOME_SCHEMES = {
     "MVN": fp.MVN(),
-    "MVN with all": fp.MVN(k=5.0, **options(7), second_task=ELBOW),
+    "MVN with all": fp.MVN(k=5.0, **options(7)),
     "WMVN": fp.WMVN(np.linspace(1, 2, 7), k=1 / 3),
     "WMVN, dense": fp.WMVN(W, **options(7)),
     "MAN": fp.MAN(),
-    "MAN with all": fp.MAN(null_damping=2.0, **options(7), second_task=fp.Gaze([0, 0.1, -1], k1=3)),
+    "MAN with all": fp.MAN(null_damping=2.0, **options(7)),
     "WMVNAcceleration": fp.WMVNAcceleration(W.tolist(), null_damping=1.0),
     "Balanced": fp.Balanced(0.4, W),
     "FPBM": fp.FPBM(1 / 3, np.linspace(1, 2, 7), 10.0, k2=25.0),
-    "FPBM with all": fp.FPBM(0.6, W, k1=10, k2=25, null_damping=2, **options(7), second_task=ELBOW),
+    "FPBM with all": fp.FPBM(0.6, W, k1=10, k2=25, null_damping=2, **options(7)),
 }
 
 
@@ -84,8 +84,9 @@ ARMS_AND_OTHERS = {
         tip=POSES[1],
     ),
     "limits": LIMITS,
-    "gaze": fp.Gaze([0, 0, -1], k1=3),
-    "point": ELBOW,
+    "task": fp.PoseTask("joint_1", rows=("x", "rz"), axes="frame", x=POSES[1], offset=POSES[1], k1=3),
+    "axis": fp.AxisTask(axis=[0, 0, -1], x=[0, 1 / 3, -1], name="torch"),
+    "posture": fp.PostureTask([1, 1 / 3], joints=["a", "b"], k=2),
     "capsule": fp.Capsule(3, [0, 0, 1 / 3], [0, 1, 0], 0.1, "elbow"),
     "half-space": fp.HalfSpace([0, 0, 2], -1 / 3),
     "box": fp.Cuboid(POSES[1], [0.1, 0, 1 / 3], name="shelf"),
@@ -199,13 +200,6 @@ def test_what_was_given_may_change_afterwards():
     assert repr(again(scheme)) == "WMVN(weights=[1, 1, 1, 1])"
 
 
-def test_arms_of_second_tasks_may_go():
-    arm = fp.SerialArm.from_joints(PANDA.joints[:4])
-    task = fp.SecondTask(arm, [0.1, 0.2, 0.6])
-    del arm
-    assert again(fp.MVN(second_task=task)) == fp.MVN(second_task=task)
-
-
 @pytest.mark.parametrize("name", SOME_SCHEMES)
 def test_copied_schemes_move_an_arm_alike(name):
     scheme = SOME_SCHEMES[name]
@@ -234,8 +228,7 @@ MAKERS = [
     fp.SerialArm,
     fp.Joint,
     fp.JointLimits,
-    fp.SecondTask,
-    fp.Gaze,
+    *TASKS.values(),
     fp.Capsule,
     fp.HalfSpace,
     fp.Cuboid,
@@ -292,7 +285,6 @@ def test_bounds_are_kept(maker, value, data):
         (lambda: fp.WMVN([[1, 2], [2, 1]]), "weights", 1, 1.0),
         (lambda: fp.PlanarArm([1, np.inf]), "lengths", 1, np.inf),
         (lambda: fp.SerialArm.preset("pnada"), "name", None, "pnada"),
-        (lambda: fp.PlanarArm([1, 1]).first(2), "joints", None, 2),
     ],
 )
 def test_errors_say_what_they_are_about(make, name, index, value):
@@ -374,9 +366,8 @@ def test_tables_that_people_write():
     lines = [{"kind": "line", "displacement": [0, 1], "duration": 1}, {"kind": "circle", "radius": 1, "duration": 2}]
     assert from_table(lines, PATHS) == fp.Line([0, 1], 1).then(fp.Circle(1, 2))
     assert from_table(lines[:1], PATHS) == fp.Line([0, 1], 1)
-    point = {"kind": "point", "joints": 4, "x": [0.1, 0.2, 0.6]}
-    scheme = from_table({"kind": "mvn", "k": 2, "second_task": point}, SCHEMES, arm=PANDA)
-    assert scheme == fp.MVN(k=2, second_task=fp.SecondTask(PANDA.first(4), [0.1, 0.2, 0.6]))
+    tasks = [{"kind": "pose"}, {"kind": "axis", "frame": "panda_joint4", "x": [0, 0, 1], "level": 1}]
+    assert from_table(tasks, TASKS) == fp.Stack(fp.PoseTask(), fp.AxisTask("panda_joint4", x=[0, 0, 1]))
     assert from_table({"kind": "preset", "name": "panda"}, ARMS) == PANDA
     joints = [{"type": "prismatic", "upper": 1.0}, {"mimic": [0, 1.0, 0.5]}]
     assert from_table({"kind": "joints", "joints": joints}) == fp.SerialArm(
@@ -405,7 +396,8 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
         ({"kind": "circle", "radius": 1}, PATHS, ["path.duration: is missing"]),
         ({**CIRCLE, "in_plane": "xw"}, PATHS, ["path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"]),
         ([CIRCLE, {**CIRCLE, "radius": 0}], PATHS, ["path[1].radius = 0: must be positive"]),
-        ({"kind": "mvn", "second_task": {"kind": "gaz"}}, SCHEMES, ["path.second_task.kind = 'gaz': must be one of"]),
+        ([{"kind": "axes"}], TASKS, ["path[0].kind = 'axes': must be one of position", "did you mean 'axis'?"]),
+        ([{"kind": "axis", "level": -1}], TASKS, ["path[0].level = -1: must be a whole number, not negative"]),
         (
             {"kind": "joints", "joints": [{}, {"axis": "x"}]},
             ARMS,

@@ -146,11 +146,6 @@ def test_a_scheme_with_everything() -> None:
         manipulability_gain = 0.2
         singular_radius = 0.02
         singular_brake = 5
-        [scheme.second_task]
-        kind = "point"
-        joints = 2
-        x = [0.5, 1.0]
-        k1 = 6
     """
     W = [[2, 0, 0, 0], [0, 1, 0.5, 0], [0, 0.5, 1, 0], [0, 0, 0, 3]]
     same = fp.FPBM(
@@ -166,7 +161,6 @@ def test_a_scheme_with_everything() -> None:
         manipulability_gain=0.2,
         singular_radius=0.02,
         singular_brake=5,
-        second_task=fp.SecondTask(fp.PlanarArm([1, 1]), [0.5, 1.0], k1=6),
     )
     motion = prepare(job_of(text))
     q, qd = np.array([0.3, 0.4, 0.5, 0.6]), np.array([0.1, 0.0, -0.1, 0.2])
@@ -174,18 +168,42 @@ def test_a_scheme_with_everything() -> None:
     np.testing.assert_array_equal(*answers)
 
 
-def test_second_tasks_in_space() -> None:
-    point = {"kind": "point", "joints": 4, "x": [0.1, 0.2, 0.5]}
-    gaze = {"kind": "gaze", "direction": [0, 0, -1], "k2": 9.0}
-    panda = fp.SerialArm.preset("panda")
-    theirs = [fp.SecondTask(fp.SerialArm(panda.joints[:4]), [0.1, 0.2, 0.5]), fp.Gaze([0, 0, -1], k2=9.0)]
-    for table, second in zip((point, gaze), theirs):
-        motion = prepare({"arm": PANDA, "scheme": {"kind": "mvn", "second_task": table}})
-        ours, same = (
-            scheme.resolve(panda, READY, np.zeros(7), [0.4, 0.1, 0.4], [0.1, 0, 0])
-            for scheme in (motion.scheme, fp.MVN(second_task=second))
-        )
-        np.testing.assert_array_equal(ours, same)
+def test_tasks() -> None:
+    text = """
+        [arm]
+        kind = "preset"
+        name = "ur5e"
+        [path]
+        kind = "circle"
+        duration = 1.0
+        [run]
+        task = "seam"
+        [[task]]
+        kind = "position"
+        name = "seam"
+        [[task]]
+        kind = "axis"
+        name = "torch"
+        x = [0, 0, -1]
+        [[task]]
+        level = 1
+        kind = "posture"
+        k1 = 4
+        k2 = 4
+    """
+    stack = fp.Stack(
+        [fp.PositionTask(name="seam"), fp.AxisTask(name="torch", x=[0, 0, -1])], fp.PostureTask(k1=4, k2=4)
+    )
+    motion = prepare(job_of(text))
+    assert motion.stack == stack
+    arm, path = fp.SerialArm.preset("ur5e"), fp.Circle(0.1, 1.0).in_plane("yz")
+    scheme = fp.FPBM(0.6, np.ones(6), 0, 0, null_damping=2)
+    run = fp.simulate(arm, path, scheme, motion.q0, stack=stack, task="seam")
+    assert motion.run() == run
+    limited = prepare({**motion.job, "limits": {}})
+    same = fp.track(arm, path, scheme, motion.q0, stack=stack, task="seam", limits=arm.limits, null_damping=0)
+    assert limited.run() == same
+    assert "task" not in motion.taken
 
 
 def test_a_run_is_that_of_the_library() -> None:
@@ -374,7 +392,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", "arm.joints[1].axis = 'x': must be real numbers"),
         (
             f"{ARM}[pth]",
-            "pth: a job has no such key: must be one of arm, path, scheme, run, limits, clearance; "
+            "pth: a job has no such key: must be one of arm, path, scheme, task, run, limits, clearance; "
             "did you mean 'path'?",
         ),
         (f"{ARM}[path]\nkind = 'cirle'", f"path.kind = 'cirle': must be one of {SHAPES}; did you mean 'circle'?"),
@@ -407,14 +425,11 @@ LAWS = "sin_squared, quintic, constant_speed"
             f"{ARM}[scheme]\nkind = 'man'\nalpha = 0.5",
             "scheme.alpha: man has no such key: must be one of null_damping, ",
         ),
-        (
-            f"{ARM}[scheme]\nkind = 'mvn'\nsecond_task = {{kind = 'point', joints = 9, x = [0, 0, 0]}}",
-            "joints = 9: must be from 1 to 6",
-        ),
-        (
-            f"{ARM}[scheme]\nkind = 'mvn'\nsecond_task = {{kind = 'gaz'}}",
-            "scheme.second_task.kind = 'gaz': must be one of",
-        ),
+        (f"{ARM}[[task]]\nkind = 'posture'", "run.task: must be the name of a position or a pose of the stack"),
+        (f"{ARM}[[task]]\nkind = 'pose'\n[run]\ntask = 'seam'", "run.task = 'seam': must be the name of a position or"),
+        (f"{ARM}[[task]]\nkind = 'pose'\nlevel = 1", "task.level = 1: must be less, as level 0 is empty"),
+        (f"{ARM}[[task]]\nkind = 'pose'\nframe = 'hand'", "frame = 'hand': must be 'tip', 'base', or the joint"),
+        (f"task = 1\n{ARM}", "task = 1: must be a table"),
         (f"{ARM}[run]\ntask = 'pos'", "run.task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (f"{ARM}[run]\nq0 = [1, 2]", "run.q0 has 2 entries: must have 7, one per joint"),
         (f"{ARM}[run]\ndt = 0.3", "run.dt = 0.3: must be a divisor of duration = 10"),

@@ -37,7 +37,7 @@ def test_overview() -> None:
 
 def test_overview_within_limits_has_what_they_did() -> None:
     new = set(headings(a_run_within_limits())) - set(headings(a_run()))
-    assert new == {"Joints on a bound", "Share of the task kept", "Clearance"}
+    assert new == {"Joints on a bound", "Task scale", "Clearance"}
 
 
 @pytest.mark.parametrize("name", PANELS)

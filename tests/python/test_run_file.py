@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_data import ELBOW, PANDA, READY, SOME_PATHS, SOME_SCHEMES, expect_same
+from test_data import PANDA, READY, SOME_PATHS, SOME_SCHEMES, expect_same
 
 import fpbm_cpp as fp
 from fpbm_cpp.table import to_table
@@ -224,9 +224,14 @@ def test_arms(tmp_path):
         assert back.limits == arm.limits
 
 
-@pytest.mark.parametrize("task", [ELBOW, fp.Gaze([0, 0, -1 / 3], k1=3), fp.SecondTask(FLAT, [1, 2])], ids=repr)
-def test_second_tasks(task, run, tmp_path):
-    expect_same(task, through_file(run, tmp_path, scheme=fp.MVN(second_task=task)).scheme.second_task)
+def test_stacks(tmp_path):
+    stack = fp.Stack(fp.PoseTask(), [fp.PositionTask("panda_joint4", name="elbow"), fp.AxisTask(axis=[0, 0, 1 / 3])])
+    q0 = [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
+    for motion in (fp.simulate, fp.track):
+        run = motion(PANDA, fp.Circle(0.05, 1.0), fp.WMVN(np.ones(7)), q0, dt=0.01, stack=stack, task="pose")
+        back = through_file(run, tmp_path)
+        assert back == run == back.replay()
+        assert list(back.errors) == ["pose", "elbow", "axis"]
 
 
 @given(st.lists(st.floats(allow_nan=False), min_size=4, max_size=4))
@@ -301,9 +306,8 @@ def test_a_file_that_names_anything_else_is_refused(what, run, tmp_path):
     "table",
     [
         {"arm": {"kind": "urdf", "file": "/etc/passwd", "tip": "tip"}},
-        {"scheme": {"kind": "mvn", "second_task": {"kind": "point", "arm": {"kind": "urdf"}, "x": [0, 0]}}},
     ],
-    ids=["arm", "second task's arm"],
+    ids=["arm"],
 )
 def test_a_file_that_names_other_files_is_refused(table, run, tmp_path):
     run.save(tmp_path / "run.npz")

@@ -320,7 +320,6 @@ def test_wrong_schemes(panda):
         (fp.FPBM(0.6, weights, 10, 25), "k1 = 10: must be 0: the tasks of a stack have gains"),
         (fp.MVN(k=2), "k = 2: must be 0"),
         (fp.Balanced(0.6, weights, manipulability_gain=1), "must not be given with a stack"),
-        (fp.Balanced(0.6, weights, second_task=fp.Gaze((0, 0, 1))), "must not be given with a stack"),
     ]:
         with pytest.raises(fp.ParameterError, match=message):
             fp.Tracker(panda, scheme, READY, stack=cup())

@@ -99,7 +99,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
             remarks.setdefault(" ".join(str(run.status).split()), []).append(kind)
     rows = [_row(kind, run) for kind, run in runs.items()]
     texts = [f"{', '.join(kinds)}: {text}" for text, kinds in remarks.items()]
-    click.echo(figure_table(["scheme"], run.task, rows, texts))
+    click.echo(figure_table(["scheme"], run.kind, rows, texts))
     if out is not None:
         from ..plot import compare as figure
 

@@ -27,6 +27,7 @@ HEADING = {
 }
 SAVED = "Write the job to a TOML file, with all that was taken by default."
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES", "file": "FILE", "srdf": "FILE"}
+WORDS = {"task": ("position", "pose")}  # Which shells complete; a job with tasks has other names as well.
 # What jobs take where nothing is given and the arm decides.
 TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
 
@@ -88,7 +89,7 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         if kind or section != "scheme":
             words = Word(list(SECTIONS[section]))
             yield JobOption(section, "kind", f"--{section}", type=words, help=f"Which; {usual} unless given.")
-        for key in dict.fromkeys(key for each in keys for key in keys[each] if key != "second_task"):
+        for key in dict.fromkeys(key for each in keys for key in keys[each]):
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
     text = "Keep them: the arm's, but for those below. Where it has no accelerations, give some: 10 rad/s^2 is usual."
@@ -107,7 +108,8 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
     """The option for a key, of a few kinds only where these are named."""
     several = bool(declared.shape)
     kind: Any = _value if several or declared.type in (float, int) else str
-    kind = Word(declared.choices) if declared.choices and not several else kind
+    words = WORDS.get(key, declared.choices)
+    kind = Word(words) if words and not several else kind
     metavar = None if isinstance(kind, Word) else METAVARS.get(key, "NUMBERS" if several else "NUMBER")
     usual = [] if declared.usual in (REQUIRED, None) else np.ravel(declared.usual).tolist()
     taken = TAKEN.get(key) or ",".join(f"{x:g}" if isinstance(x, float) else str(x) for x in usual)

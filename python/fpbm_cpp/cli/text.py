@@ -7,6 +7,7 @@ import numpy as np
 
 from .._types import Array
 from ..motion.run import Run
+from ..motion.task_errors import error_parts
 from ..skeleton import joint_labels, joint_units
 from .plain import WIDTH
 
@@ -63,7 +64,7 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
 
     position, orientation = run.error_norms()
     yield at(position.argmax(), "largest tip error", position, "m")
-    if run.task == "pose":
+    if run.kind == "pose":
         yield at(orientation.argmax(), "largest orientation error", orientation, "rad")
     for name, values, per in (("velocity", run.qd, "/s"), ("acceleration", run.qdd, "/s^2")):
         size = np.abs(values)
@@ -75,6 +76,11 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     yield at(manipulability.argmin(), "least manipulability", manipulability)
     if run.scale is not None:
         yield at(run.scale.argmin(), "least task scale", run.scale)
+    if run.stack is not None and run.scales is not None:
+        for level, scale in zip(run.stack.levels[1:], run.scales[:, 1:].T):
+            yield at(scale.argmin(), f"least scale of {', '.join(task.name for task in level)}", scale)
+    for name, unit, values, _ in error_parts(run):
+        yield f"final error of {name}", number(float(np.linalg.norm(values[-1]))), unit, ""
     if run.clearance is not None:
         yield at(run.clearance.argmin(), "least clearance", run.clearance, "m")
     outside = (run.q < limits.lower) | (run.q > limits.upper)

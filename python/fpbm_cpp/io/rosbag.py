@@ -72,7 +72,7 @@ def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
     if isinstance(run.arm, PlanarArm):  # In the xy plane.
-        angles = x[:, 2] if run.task == "pose" else np.zeros(len(x)) if reference else run.q.sum(axis=1)
+        angles = x[:, 2] if run.kind == "pose" else np.zeros(len(x)) if reference else run.q.sum(axis=1)
         half, none = angles / 2, np.zeros(len(x))
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])
     if reference:

@@ -14,9 +14,10 @@ import numpy as np
 
 from .._core import Status, __version__, processor_kinds
 from ..arms import ARMS
-from ..motion.run import ARRAYS, LIMITED, Run, RunStatus
+from ..motion.run import ARRAYS, LIMITED, OF_STACKS, Run, RunStatus
 from ..schemes import SCHEMES
 from ..table import EVERY_PATH, Makers, from_table, to_table
+from ..tasks import TASKS
 from . import write_whole
 
 FORMAT = "fpbm_cpp run"
@@ -100,26 +101,36 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         meta = json.loads(str(members["meta"]), object_hook=_refuse_files)
         if meta["format"] != FORMAT or not isinstance(meta["version"], int):
             raise ValueError(f"its format is {meta['format']!r} {meta['version']!r}")
-        return meta, {name: members[name] for name in (*ARRAYS, *LIMITED) if name in members}
+        return meta, {name: members[name] for name in (*ARRAYS, *LIMITED, *OF_STACKS) if name in members}
 
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
-    arm = made_of["arm"]
-    known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=meta["task"])
-    rows, n, m, tip = len(arrays["t"]), arm.dof, len(known.J), known.tip.shape
-    shapes = {"t": (), "error": (m,), "x": tip, "x_ref": tip, "scale": (), "clearance": ()}
-    for name, array in arrays.items():
-        shape, kind = (rows, *shapes.get(name, (n,))), "bool" if name == "saturated" else "float64"
-        if array.shape != shape or array.dtype != kind:
-            raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")
-    status = meta["status"]
     options = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
     if "scale" in arrays:
         options.setdefault("null_damping", 0.0)  # Trackers before that option added none.
     for name in ("limits", "clearance"):
         if options.get(name) is not None:
             options[name] = from_table(options[name], name=name)
+    if options.get("stack") is not None:
+        options["stack"] = from_table(options["stack"], TASKS, "stack")
+    status = meta["status"]
     ended = RunStatus(Status[status["code"]], status["time"], np.array(status["q"], dtype=float))
     how = {"task": meta["task"], "options": options, "provenance": dict(meta["provenance"])}
-    return Run(**arrays, **made_of, **how, status=ended)
+    run = Run(**arrays, **made_of, **how, status=ended)
+    _check_shapes(run)
+    return run
+
+
+def _check_shapes(run: Run) -> None:
+    """Raise ValueError unless all arrays of a run have the shapes that its arm and tasks ask for."""
+    arm, stack = run.arm, run.stack
+    known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=run.kind)
+    shapes = {name: known.tip.shape for name in ("x", "x_ref")} | {"error": (len(known.J),)}
+    shapes |= {name: () for name in ("t", "scale", "clearance")}
+    if stack is not None:
+        shapes |= {"scales": (len(stack.levels),), "task_errors": (sum(stack.error_sizes(arm.dof)),)}
+    for name, array in run.arrays().items():
+        shape, kind = (len(run.t), *shapes.get(name, (arm.dof,))), "bool" if name == "saturated" else "float64"
+        if array.shape != shape or array.dtype != kind:
+            raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}: must have {shape} and {kind}")

@@ -3,7 +3,7 @@
 import csv
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from .._core import rotation_vector
 from .._types import Array
 from ..errors import extra
 from ..motion.run import Run
+from ..motion.task_errors import error_parts
 from ..skeleton import joint_units
 from . import write_whole
 
@@ -36,12 +37,12 @@ def _quantities(run: Run) -> Iterator[Quantity]:
         yield f"x{end}", f"{{}}{end}", "axis", positions, ["m"] * 3
         if x.ndim == 3:
             yield f"orientation{end}", f"q{{}}{end}", "quaternion", quaternions(x[:, :3, :3]), none
-        elif run.task == "pose":
+        elif run.kind == "pose":
             yield f"angle{end}", f"angle{end}", "", x[:, 2], ["rad"]
     yield "error", "error_{}", "axis", run.position_error, ["m"] * 3
     if run.x.ndim == 3:
         yield "orientation_error", "orientation_error_{}", "axis", run.orientation_error, ["rad"] * 3
-    elif run.task == "pose":
+    elif run.kind == "pose":
         yield "orientation_error", "orientation_error", "", run.orientation_error[:, 0], ["rad"]
     if run.scale is not None:
         yield "scale", "scale", "", run.scale, none
@@ -49,12 +50,19 @@ def _quantities(run: Run) -> Iterator[Quantity]:
         yield "saturated", "saturated_{}", "joint", run.saturated, [""] * len(joints)
     if run.clearance is not None:
         yield "clearance", "clearance", "", run.clearance, ["m"]
+    if run.scales is not None:
+        yield "scales", "scale_of_level_{}", "level", run.scales, [""] * run.scales.shape[1]
+    for name, unit, values, rows in error_parts(run):
+        of = "joints" if rows != ["x", "y", "z"] else "angle" if unit == "rad" else "position"
+        yield f"{of}_error_of_{name}", f"{of}_error_of_{name}_{{}}", f"rows of {name}", values, [unit] * len(rows)
 
 
 def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
     """Name, unit and values of each column."""
     yield "t", "s", run.t
-    labels = {"joint": run.arm.joint_names, "axis": "xyz", "quaternion": "xyzw", "": " "}
+    labels: dict[str, Sequence[str]] = {"joint": run.arm.joint_names, "axis": "xyz", "quaternion": "xyzw", "": " "}
+    labels["level"] = "0123"
+    labels |= {f"rows of {name}": rows for name, _, _, rows in error_parts(run)}
     for _, column, over, values, units in _quantities(run):
         for label, unit, component in zip(labels[over], units, np.atleast_2d(values.T)):
             yield column.format(label), unit, component

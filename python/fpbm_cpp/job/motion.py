@@ -20,11 +20,12 @@ from ..clearance import Clearance
 from ..errors import wrong
 from ..io import write_whole
 from ..motion.run import Run
-from ..motion.simulation import simulate, track
+from ..motion.simulation import led_task, simulate, track, without_limits
 from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Path
 from ..schemes import Scheme
 from ..table import to_table
+from ..tasks import Stack
 from .sections import (
     FREE,
     SECTIONS,
@@ -66,6 +67,7 @@ class Motion:
     path: Path
     scheme: Scheme
     options: RunOptions
+    stack: Stack | None  # None where the tip's task is the only one.
     limits: JointLimits | None  # None where they are not kept.
     clearance: Clearance | None  # What is kept clear of, within limits.
 
@@ -91,7 +93,8 @@ class Motion:
     def keywords(self) -> dict[str, Any]:
         """The keyword arguments of sweep() and tune() that say how it is run."""
         options = self.options
-        keywords = {"dt": options.dt, "hold": options.hold, "task": options.task, "limits": self.limits}
+        keywords = {"dt": options.dt, "hold": options.hold, "task": options.task}
+        keywords |= {"stack": self.stack, "limits": self.limits}
         # A job says the damping of its scheme: 0 is none.
         return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
 
@@ -121,6 +124,7 @@ def prepare(job: Table) -> Motion:
     full = filled(job, arm)
     full = {section: in_order(section, full[section]) for section in SECTIONS if section in full}
     path, scheme, options = (make(section, full[section], arm) for section in ("path", "scheme", "run"))
+    stack = make("task", full["task"], arm) if "task" in full else None
     limits = make("limits", full["limits"], arm) if "limits" in full else None
     if limits is not None and "acceleration" not in full["limits"]:
         bounded = np.isfinite([limits.lower, limits.upper, limits.velocity]).any(axis=0)
@@ -128,10 +132,12 @@ def prepare(job: Table) -> Motion:
             missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(wrong("limits.acceleration", None, missing))
     clearance = make("clearance", full["clearance"], arm) if "clearance" in full else None
-    motion = Motion(full, taken(job, full), arm, path, scheme, options, limits, clearance)
+    motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance)
     with job_errors():
         try:
-            check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, options.task)
+            name, kind = led_task(options.task, stack)
+            alone = None if stack is None else without_limits(arm, stack, name)
+            check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, kind, alone)
         except ValueError:
             motion.run()  # Refuses the same, by the names that a job has for it.
             raise
@@ -142,13 +148,19 @@ def filled(job: Table, arm: Arm) -> Table:
     """The job with what it leaves out."""
     path = job.get("path", {"kind": FREE["path"]})
     pieces = [_filled_path(piece, arm) for piece in path] if isinstance(path, list) else _filled_path(path, arm)
-    scheme = _filled("scheme", job.get("scheme", {"kind": FREE["scheme"]}))
+    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Which the tasks have.
+    scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
+    gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
+    scheme = _filled("scheme", {**gains, **scheme})
     if "weights" in known("scheme", scheme["kind"]):
         scheme = {"weights": [1.0] * arm.dof, **scheme}
     run = _filled("run", job.get("run", {}))
+    stack = make("task", job["task"]) if "task" in job else None
+    with job_errors():
+        run["task"], kind = led_task(job.get("run", {}).get("task"), stack)
     if "q0" not in run:
         preset = job["arm"].get("name")
-        run["q0"] = list(READY.get(preset) or ready(arm, run["task"]))
+        run["q0"] = list(READY.get(preset) or ready(arm, kind))
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "clearance" in job:
         full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.

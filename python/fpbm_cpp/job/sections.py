@@ -15,6 +15,7 @@ from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..schemes import SCHEMES
 from ..table import Makers, from_table, keys, problems
+from ..tasks import TASKS
 
 Table = dict[str, Any]
 
@@ -23,7 +24,10 @@ Table = dict[str, Any]
 class RunOptions(Data):
     """How a motion is run."""
 
-    task: str = parameter("What the tip keeps to.", default="position", choices=("position", "pose"))
+    task: str = parameter(
+        "What the tip keeps to, position or pose; of a job with tasks, the name of the one that follows the path.",
+        default="position",
+    )
     q0: OptionalArrayField = parameter("Joint positions at the start.", default=None, shape="(n,)", unit="rad")
     qd0: OptionalArrayField = parameter("Joint velocities at the start.", default=None, shape="(n,)", unit="rad/s")
     dt: float = parameter("Step.", POSITIVE, default=1e-3, unit="s")
@@ -35,6 +39,7 @@ SECTIONS: dict[str, Makers] = {
     "arm": ARMS,
     "path": PATHS,  # Or a list of tables, of paths one after another.
     "scheme": SCHEMES,
+    "task": TASKS,  # A list of tables: the tasks of a stack.
     "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
     "clearance": CLEARANCES,  # Which of them goes by whether there are capsules.
@@ -84,7 +89,8 @@ def job_errors() -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        named = error.name.partition(".")[0] in SECTIONS
+        section, inside, _ = error.name.partition(".")
+        named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")  # Which is run.task.
         raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 
@@ -101,14 +107,16 @@ def require_sound(job: Table) -> None:
         raise JobError(*errors)
 
 
-def make(section: str, said: Table, arm: Arm | None = None) -> Any:
+def make(section: str, said: Any, arm: Arm | None = None) -> Any:
     """What a section stands for, for this arm. Raises JobError."""
     with job_errors():
-        return from_table(_whole(section, said, arm), SECTIONS[section], section, arm=arm)
+        return from_table(_whole(section, said, arm), SECTIONS[section], section)
 
 
 def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
     """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
+    if section == "task" and isinstance(said, dict):
+        return [said]
     if not isinstance(said, dict):
         return said
     if section == "clearance":

@@ -15,6 +15,7 @@ from .._types import Array
 from ..arms import Arm, JointLimits
 from ..paths import Path
 from ..schemes import Scheme
+from ..tasks import Stack
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
 LIMITED = ("scale", "saturated", "clearance")  # Of runs that kept the joints' limits, and kept clear of shapes.
+OF_STACKS = ("scales", "task_errors")
 
 
 @dataclass(frozen=True)
@@ -71,17 +73,22 @@ class Run:
         Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. qdd of
         track() is the mean over the tick that begins at the sample; at velocity level, simulate()'s is differences.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
-        The tip and its reference in the base frame [m]. Poses are (x, y, angle) in the plane, homogeneous matrices in
-        space.
+        The tip and its reference in the base frame [m]; of a stack, the frame of the task that follows the path. Poses
+        are (x, y, angle) in the plane, homogeneous matrices in space.
     error : numpy.ndarray, shape (N, m)
         x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
     status, arm, path, scheme, task, options
-        How the motion ended, and what it was made of; options are the other keyword arguments: dt, hold, ...
+        How the motion ended, and what it was made of; options are the other keyword arguments: dt, hold, stack, ...
+        task is 'position' or 'pose'; of a stack, the name of the task that follows the path.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it), and
         which joints were on a bound.
     clearance : numpy.ndarray, shape (N,), or None
         Of track() with a clearance: how far the two shapes are apart that are nearest to one another [m].
+    scales : numpy.ndarray, shape (N, levels), or None
+        Of a stack: the share of each level that the limits left, from 0 to 1.
+    task_errors : numpy.ndarray, shape (N, ...), or None
+        Of a stack: what `errors` has by name, one task after another.
     provenance : dict
         Of a run from a file: when, where and by which versions it was made, with the note and seed saved with it.
     """
@@ -102,6 +109,8 @@ class Run:
     scale: Array | None = None
     saturated: NDArray[np.bool_] | None = None
     clearance: Array | None = None
+    scales: Array | None = None
+    task_errors: Array | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
     def max_error(self) -> float:
@@ -139,7 +148,26 @@ class Run:
     def _positions(self, x: Array) -> Array:
         if x.ndim == 3:
             return x[:, :3, 3]
-        return x[:, :2] if self.task == "pose" else x
+        return x[:, :2] if self.kind == "pose" else x
+
+    @property
+    def stack(self) -> Stack | None:
+        """The stack of tasks, where the motion has one."""
+        return self.options.get("stack")
+
+    @property
+    def kind(self) -> str:
+        """'position' or 'pose': what the task is that follows the path."""
+        return self.task if self.stack is None else self.stack.follower(self.task).kind
+
+    @property
+    def errors(self) -> dict[str, Array]:
+        """Of a stack: the error of each task by name [m, rad], one row a sample, as tick.errors; else empty."""
+        if self.stack is None or self.task_errors is None:
+            return {}
+        sizes = self.stack.error_sizes(self.arm.dof)
+        parts = np.split(self.task_errors, np.cumsum(sizes)[:-1], axis=1)
+        return {task.name: part for task, part in zip(self.stack.tasks, parts)}
 
     @property
     def limits(self) -> JointLimits:
@@ -147,13 +175,13 @@ class Run:
         return self.options.get("limits") or self.arm.limits
 
     def manipulability(self) -> Array:
-        """sqrt(det(J J')) of the task, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
-        J = np.array([self.arm.jacobian(q, task=self.task) for q in self.q])
+        """sqrt(det(J J')) of the tip, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
+        J = np.array([self.arm.jacobian(q, task=self.kind) for q in self.q])
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
 
     def arrays(self) -> dict[str, Any]:
-        """All arrays by name; scale, saturated and clearance only where there are such."""
-        arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED)}
+        """All arrays by name; those of limits, of a clearance and of a stack only where there are some."""
+        arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
     def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
@@ -181,7 +209,7 @@ class Run:
         if "dt" not in self.options:
             raise ValueError(f"options = {self.options}: must hold the arguments that the run was made with")
         q0 = self.q[0] if len(self.q) else self.status.q
-        if self.scale is not None:
+        if "error_bound" in self.options:
             return track(self.arm, self.path, self.scheme, q0, task=self.task, **self.options)
         return simulate(self.arm, self.path, self.scheme, q0, task=self.task, partial=True, **self.options)
 

@@ -8,14 +8,15 @@ from numpy.typing import ArrayLike
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
-from ..errors import ResolutionError
+from ..errors import ResolutionError, not_one_of, wrong
 from ..paths import Path
 from ..schemes import Scheme
+from ..tasks import Stack
 from .run import Run, RunStatus
 
 
 class LimitOptions(NamedTuple):
-    """How a motion keeps its joints' limits; the fields are arguments of track(), in the compiled part's order."""
+    """How a motion keeps its joints' limits; the fields are arguments of track()."""
 
     limits: JointLimits | None = None
     error_bound: float = 0.1
@@ -26,6 +27,8 @@ class LimitOptions(NamedTuple):
     singular_brake: float = 10.0
     null_damping: float = 2.0
     clearance: Clearance | None = None
+    stack: Stack | None = None
+    task: str = ""  # Of the stack's, the one that follows the path.
 
 
 def simulate(
@@ -37,7 +40,8 @@ def simulate(
     dt: float = 1e-3,
     hold: float = 0.0,
     qd0: ArrayLike | None = None,
-    task: str = "position",
+    task: str | None = None,
+    stack: Stack | None = None,
     partial: bool = False,
 ) -> Run:
     """Move an arm along a path under a scheme, by RK4 at fixed steps.
@@ -61,13 +65,23 @@ def simulate(
     qd0 : array_like, shape (n,), optional
         Joint velocities at the start [rad/s], zero by default; velocity-level schemes do not read them.
     task : str
-        'position', or 'pose' to track the tip's orientation as well.
+        'position', the default, or 'pose' to track the tip's orientation as well; of a stack, the name of the task that
+        follows the path, which may be left out if one task alone is a position or a pose.
+    stack : Stack, optional
+        Several tasks in strict priority. The path leads one task from where the task's frame is, the other tasks have
+        their targets x or q. Directions that are nearly singular or in conflict with higher levels are damped.
     partial : bool
         If the motion must stop early, return what was done instead of raising.
     """
     options = motion_options(arm, dt, hold, qd0)
-    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task)
-    run = make_run(outcome, q0, arm, path, scheme, task, options)
+    name, kind = led_task(task, stack)
+    law = None if stack is None else without_limits(arm, stack, name)
+    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, kind, law)
+    if stack is not None:
+        options["stack"] = stack
+        for limited in ("scale", "saturated"):
+            del outcome[-1][limited]
+    run = make_run(outcome, q0, arm, path, scheme, name, options)
     if failed(run.status.code) and not partial:
         raise ResolutionError(run.status.code, str(run.status), run)
     return run
@@ -82,7 +96,8 @@ def track(
     dt: float = 1e-3,
     hold: float = 0.0,
     qd0: ArrayLike | None = None,
-    task: str = "position",
+    task: str | None = None,
+    stack: Stack | None = None,
     limits: JointLimits | None = None,
     error_bound: float = 0.1,
     integral_gain: float = 0.0,
@@ -103,7 +118,7 @@ def track(
 
     Parameters
     ----------
-    arm, path, scheme, q0, dt, hold, qd0, task
+    arm, path, scheme, q0, dt, hold, qd0, task, stack
         As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
         arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
@@ -112,6 +127,7 @@ def track(
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
+    name, kind = led_task(task, stack)
     limited = LimitOptions(
         limits,
         error_bound,
@@ -122,9 +138,39 @@ def track(
         singular_brake,
         null_damping,
         clearance,
+        stack,
+        name,
     )
-    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, task, limited)
-    return make_run(outcome, q0, arm, path, scheme, task, {**options, **limited._asdict()})
+    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, kind, limited)
+    return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_options(limited)})
+
+
+def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
+    """Name of the task that follows the path, and whether it is a 'position' or a 'pose'."""
+    if stack is None:
+        if task not in (None, "position", "pose"):
+            raise not_one_of("task", task, ("position", "pose"))
+        return task or "position", task or "position"
+    if not isinstance(stack, Stack):
+        raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
+    led = stack.follower(task)
+    return led.name, led.kind
+
+
+def limit_options(limited: LimitOptions) -> dict[str, Any]:
+    """The options as a run keeps them: its task is a field of its own."""
+    return {name: value for name, value in limited._asdict().items() if name != "task"}
+
+
+def without_limits(arm: Arm, stack: Stack, task: str) -> LimitOptions:
+    """The law of a stack alone: no bounds, no rest at unreachable targets, no damping but the scheme's and of levels.
+
+    An error of 1000 arm lengths is beyond any target.
+    """
+    free = np.full(arm.dof, np.inf)
+    limits = JointLimits(lower=-free, upper=free, velocity=free, acceleration=free)
+    alone = LimitOptions(limits, error_bound=1e3, stall_time=np.inf, null_damping=0.0)
+    return alone._replace(stack=stack, task=task)
 
 
 def motion_options(arm: Arm, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
@@ -137,10 +183,9 @@ def make_run(
     outcome: Any, q0: ArrayLike, arm: Arm, path: Path, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
     """A run of what the compiled part gives: status, time, number of samples, and arrays filled as far as these."""
-    code, time, samples, arrays = outcome
-    arrays = [array if samples == len(array) else array[:samples].copy() for array in arrays]
-    t, q, qd, qdd, x, x_ref, error, *limited = arrays
-    if scheme.level == "velocity" and samples > 1 and not limited:
-        qdd = np.gradient(qd, t, axis=0)
-    status = RunStatus(code, time, q[-1].copy() if samples else np.array(q0, dtype=float))
-    return Run(t, q, qd, qdd, x, x_ref, error, status, arm, path, scheme, task, options, *limited)
+    code, time, samples, given = outcome
+    arrays = {name: array if samples == len(array) else array[:samples].copy() for name, array in given.items()}
+    if scheme.level == "velocity" and samples > 1 and not {"scale", "scales"} & arrays.keys():
+        arrays["qdd"] = np.gradient(arrays["qd"], arrays["t"], axis=0)
+    status = RunStatus(code, time, arrays["q"][-1].copy() if samples else np.array(q0, dtype=float))
+    return Run(**arrays, status=status, arm=arm, path=path, scheme=scheme, task=task, options=options)

@@ -15,7 +15,9 @@ from ..arms import Arm, JointLimits
 from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
 from ..schemes import Scheme
-from .simulation import LimitOptions, make_run, motion_options
+from ..tasks import Stack
+from .run import LIMITED
+from .simulation import LimitOptions, led_task, limit_options, make_run, motion_options, without_limits
 from .workers import run_chunks
 
 # True for a bar on the terminal or in a notebook, or what to call with (done, total).
@@ -52,7 +54,8 @@ class Sweep:
     motions
         The whole motions, each a Run, if they were asked for; None where one was not run.
     arm, path, schemes, q0s, task
-        What moved, along what, how, from where, and as what task: S schemes, and starts of shape (K, n).
+        What moved, along what, how, from where, and whether the task on the path is a 'position' or a 'pose': S
+        schemes, and starts of shape (K, n).
     """
 
     status: NDArray[Any]
@@ -109,7 +112,8 @@ def sweep(
     dt: float = 1e-3,
     *,
     hold: float = 0.0,
-    task: str = "position",
+    task: str | None = None,
+    stack: Stack | None = None,
     limits: JointLimits | None = None,
     error_bound: float = 0.1,
     integral_gain: float = 0.0,
@@ -126,8 +130,8 @@ def sweep(
     """Simulate every scheme from every start, each motion as simulate() does, and keep the key figures of each.
 
     With limits, each motion keeps them as track() does. Runs on all cores, without the interpreter's lock, or in the
-    executor's workers. Without limits, several motions run side by side in the processor's lanes, where they agree with
-    simulate() to 1e-12. The results are the same to the last bit for any number of workers. A motion that must stop
+    executor's workers. Motions of one task run side by side in the processor's lanes, where they agree with simulate()
+    to 1e-12. The results are the same to the last bit for any number of workers. A motion that must stop
     early raises nothing: its status says so.
 
     Raises ValueError or TypeError if an argument is wrong, ImportError if what progress=True needs is missing: nothing
@@ -135,8 +139,8 @@ def sweep(
 
     Parameters
     ----------
-    arm, path, dt, hold, task
-        As for simulate().
+    arm, path, dt, hold, task, stack
+        As for simulate(). Motions of a stack run one by one in each worker, without lanes.
     schemes : Scheme or sequence of Scheme
         S of them.
     q0s : array_like, shape (n,) or (K, n)
@@ -164,13 +168,18 @@ def sweep(
         raise wrong("workers", workers, ": must be left out where there is an executor, which has its own")
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be 1 at least")
+    name, kind = led_task(task, stack)
     limited = LimitOptions(
         limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )
     if limits is None and limited != LimitOptions():
         raise wrong("limits", None, ": must be given where an option that needs them is")
-    kept = None if limits is None else limited
-    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, task, kept)
+    kept = None if limits is None else limited._replace(stack=stack, task=name)
+    if limits is None and stack is not None:
+        kept = without_limits(arm, stack, name)
+    options = motion_options(arm, dt, hold)
+    options.update({} if kept is None else limit_options(kept) if limits is not None else {"stack": stack})
+    starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, kind, kept)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)
     parts = _parts(total, len(starts), samples)
     outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
@@ -179,7 +188,7 @@ def sweep(
         """What a worker needs: motion i is of laws[i // K] from starts[i % K], with K starts."""
         law, start = np.divmod(np.arange(part.start, part.stop), len(starts))
         few = list(laws[law[0] : law[-1] + 1])
-        return arm, path, few, (law - law[0]).tolist(), starts[start], float(dt), float(hold), task, motions, kept
+        return arm, path, few, (law - law[0]).tolist(), starts[start], float(dt), float(hold), kind, motions, kept
 
     def take(part: slice, figures: Any, arrays: list[Any]) -> None:
         outcomes[part] = figures
@@ -187,15 +196,16 @@ def sweep(
         for i, rows in zip(range(total)[part], arrays):
             if status[i] is not None:
                 law, start = laws[i // len(starts)], starts[i % len(starts)]
-                options = {**motion_options(arm, dt, hold), **(kept._asdict() if kept else {})}
+                if limits is None:
+                    rows = {key: array for key, array in rows.items() if key not in LIMITED}
                 outcome = status[i], float(outcomes["time"][i]), int(outcomes["samples"][i]), rows
-                runs[i] = make_run(outcome, start, arm, path, law, task, options)
+                runs[i] = make_run(outcome, start, arm, path, law, name, options)
 
     def result() -> Sweep:
         summary, whole = outcomes["summary"], runs.reshape(shape) if motions else None
         figures = {name: summary[name].reshape(shape).copy() for name in summary.dtype.names or ()}
         time = outcomes["time"].reshape(shape).copy()
-        return Sweep(status.reshape(shape), time, whole, arm, path, laws, starts, task, **figures)
+        return Sweep(status.reshape(shape), time, whole, arm, path, laws, starts, kind, **figures)
 
     try:
         with reporting(progress, total) as report:

@@ -115,7 +115,7 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     if not named:
         raise ValueError("runs: must hold at least one run")
     theme, shown = DARK if dark else LIGHT, list(named.values())
-    quantities = POSE_TASK if any(run.task == "pose" for run in shown) else POSITION_TASK
+    quantities = POSE_TASK if any(run.kind == "pose" for run in shown) else POSITION_TASK
     rows = len(quantities) // 2
     figure, (upper, lower) = sheet(PAGE, [COMPARED_ROW * rows, foot_height(list(named), PAGE)], title, theme)
     grid = upper.subplots(rows, 2)

@@ -68,6 +68,11 @@ def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -
     _legend(axes, theme, handles=handles or axes.get_lines(), ncols=9, handlelength=1.5, **place)
 
 
+def inner_legend(axes: Any, theme: Theme) -> None:
+    """Legend of a few lines with long names, in the axes, where it covers the least."""
+    _legend(axes, theme, loc="best", labelspacing=0.2, borderpad=0.2)
+
+
 def side_legend(axes: Any, theme: Theme) -> None:
     """Legend of many lines, right of the axes."""
     handles, names = axes.get_legend_handles_labels()

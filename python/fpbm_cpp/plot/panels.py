@@ -12,8 +12,9 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
+from ..motion.task_errors import error_parts
 from ..skeleton import joint_labels, joint_points, joint_units, tip_axes
-from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, over_time, side_legend
+from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, inner_legend, over_time, side_legend
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
 __all__ = ["OVERVIEW", "PANELS", "arm_panel", "min_singular_values", "null_space_velocities"]
@@ -23,6 +24,7 @@ __all__ += [
     "position_panel",
     "saturation_panel",
     "scale_panel",
+    "task_error_panel",
     "velocity_panel",
 ]
 __all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
@@ -105,7 +107,7 @@ def frame_arm(axes: Any, theme: Theme) -> None:
 
 def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Norm of the position error and, where the task is a pose, of the orientation error, on a logarithmic axis."""
-    pose = run.task == "pose"
+    pose = run.kind == "pose"
     names = ("[m]", "[rad]") if pose else ("[m]",)
     for name, norms, (colour, dash) in zip(names, run.error_norms(), theme.styles()):
         axes.plot(*envelope(run.t, norms), color=colour, ls=dash, lw=LINE, label=name)
@@ -180,12 +182,27 @@ def _joints(
 
 
 def scale_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Task scale: the share of the commanded motion that the limits allowed, from 0 to 1."""
-    assert run.scale is not None
-    axes.plot(run.t, run.scale, color=theme.lines[0], lw=LINE)
-    axes.fill_between(run.t, run.scale, color=theme.lines[0], alpha=0.15, lw=0)
-    over_time(axes, "task scale")
+    """Task scale: the share of the commanded motion that the limits allowed, from 0 to 1; of a stack, of each level."""
+    if run.stack is not None and run.scales is not None:
+        names = [", ".join(task.name for task in level) for level in run.stack.levels]
+        draw_lines(axes, theme, run.t, run.scales, names, "task scale")
+        inner_legend(axes, theme)
+    else:
+        assert run.scale is not None
+        axes.plot(run.t, run.scale, color=theme.lines[0], lw=LINE)
+        axes.fill_between(run.t, run.scale, color=theme.lines[0], alpha=0.15, lw=0)
+        over_time(axes, "task scale")
     axes.set(ylim=(0.0, 1.05), yticks=(0.0, 0.5, 1.0))
+
+
+def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
+    """Norms of the errors of a stack's tasks, lengths and angles each."""
+    for (name, unit, values, _), (colour, dash) in zip(error_parts(run), theme.styles()):
+        norms = np.linalg.norm(values, axis=1)
+        axes.plot(*envelope(run.t, norms), color=colour, ls=dash, lw=LINE, label=f"{name} [{unit}]")
+    over_time(axes, r"$\|e\|$")
+    in_decades(axes)
+    inner_legend(axes, theme)
 
 
 def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
@@ -257,7 +274,7 @@ def null_space_velocities(run: Run) -> Array:
 
 def _jacobians(run: Run) -> Array:
     m = run.error.shape[1]
-    return np.array([run.arm.jacobian(q, task=run.task) for q in run.q]).reshape(-1, m, run.arm.dof)
+    return np.array([run.arm.jacobian(q, task=run.kind) for q in run.q]).reshape(-1, m, run.arm.dof)
 
 
 class Panel(NamedTuple):
@@ -273,12 +290,13 @@ PANELS = {
     "arm": Panel("Arm", arm_panel),
     "error": Panel("Tip error", tip_error_panel),
     "axis_errors": Panel("Tip error", error_panel),
-    "axis_orientation_errors": Panel("Orientation error", orientation_error_panel, fits=lambda run: run.task == "pose"),
+    "axis_orientation_errors": Panel("Orientation error", orientation_error_panel, fits=lambda run: run.kind == "pose"),
+    "task_errors": Panel("Task errors", task_error_panel, fits=lambda run: run.task_errors is not None),
     "positions": Panel("Joint positions", position_panel, of_joints=True),
     "velocities": Panel("Joint velocities", velocity_panel, of_joints=True),
     "accelerations": Panel("Joint accelerations", acceleration_panel, of_joints=True),
     "saturation": Panel("Joints on a bound", saturation_panel, fits=lambda run: run.saturated is not None),
-    "scale": Panel("Share of the task kept", scale_panel, fits=lambda run: run.scale is not None),
+    "scale": Panel("Task scale", scale_panel, fits=lambda run: run.scale is not None or run.scales is not None),
     "clearance": Panel("Clearance", clearance_panel, fits=lambda run: run.clearance is not None),
     "manipulability": Panel("Manipulability", manipulability_panel),
     "null_space": Panel("Null-space velocity", null_space_panel),

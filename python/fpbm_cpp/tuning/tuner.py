@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
 from ..motion.run import Run
+from ..motion.simulation import led_task
 from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
 from ..paths import Path
 from ..schemes import FPBM
+from ..tasks import Stack
 from .result import Trials, Tuning, joined, sensitivity
 from .search import Space, front, least, numbers, require_cmaes
 
@@ -68,7 +70,8 @@ def tune(
     *,
     dt: float = 1e-3,
     hold: float = 0.0,
-    task: str = "position",
+    task: str | None = None,
+    stack: Stack | None = None,
     limits: JointLimits | None = None,
     search: Mapping[str, ArrayLike] | None = None,
     baseline: FPBM | None = None,
@@ -92,7 +95,7 @@ def tune(
 
     Parameters
     ----------
-    arm, path, q0, dt, hold, task, executor, workers, progress
+    arm, path, q0, dt, hold, task, stack, executor, workers, progress
         As for simulate() and sweep().
     objective : str or callable
         'peak_velocity' [rad/s], 'peak_acceleration' [rad/s^2], 'final_velocity' [rad/s], each of the fastest joint;
@@ -108,7 +111,7 @@ def tune(
         (0.01, 10).
     baseline : FPBM, optional
         The scheme to start from and to compare with, W diagonal; all its other options are kept. By default the paper's
-        choice: alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1.
+        choice: alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1; of a stack, whose tasks have gains, k1 = k2 = 0.
     tolerance : float
         Largest position error of the tip [m], and of its orientation [rad] under 'pose', of a feasible motion.
     trials, seed : int
@@ -118,7 +121,8 @@ def tune(
     count = Parameter("trials", int, low=1, whole=True).check(trials)
     seed = Parameter("seed", int, low=0, whole=True).check(seed)
     tolerance = Parameter("tolerance", float, low=0.0, open_low=True).check(tolerance)
-    first = FPBM(0.6, np.arange(1.0, arm.dof + 1), k1=1.0, k2=1.0) if baseline is None else baseline
+    gain = 1.0 if stack is None else 0.0  # The tasks of a stack have gains of their own.
+    first = FPBM(0.6, np.arange(1.0, arm.dof + 1), k1=gain, k2=gain) if baseline is None else baseline
     if not isinstance(first, FPBM):
         raise TypeError(f"baseline: must be an FPBM, got {type(first).__name__}")
     space = Space(search, first, arm.dof)
@@ -127,13 +131,13 @@ def tune(
     tried: list[Trials] = []
 
     def run(schemes: Sequence[FPBM]) -> Trials:
-        how: dict[str, Any] = {"hold": hold, "task": task, "limits": limits, **tracking}
+        how: dict[str, Any] = {"hold": hold, "task": task, "stack": stack, "limits": limits, **tracking}
         whole = of_run is not None
         done = sweep(arm, path, schemes, start, dt, executor=executor, workers=workers, motions=whole, **how)
         return trials_of(done, name, of_run, tolerance)
 
     def tuning(steps: dict[str, tuple[float, float]]) -> Tuning:
-        return Tuning(joined(tried), steps, name, unit, arm, path, start, task)
+        return Tuning(joined(tried), steps, name, unit, arm, path, start, led_task(task, stack)[0])
 
     size = len(space.names)
     halves = ((least(size, seed), Trials.scores, count - count // 2), (front(size, seed), Trials.peaks, count // 2))

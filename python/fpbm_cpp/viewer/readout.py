@@ -39,7 +39,7 @@ class Readout:
     def at(self, sample: int) -> None:
         playback, run = self._playback, self._playback.run
         w, errors = playback.manipulability, {"tip error": (playback.tip_error, "m")}
-        if run.task == "pose":
+        if run.kind == "pose":
             errors["orientation error"] = playback.orientation_error, "rad"
         names, units = joint_labels(run.arm), joint_units(run.arm)
 
@@ -92,7 +92,7 @@ class Chart:
 
     def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
         self._playback, self._duration, self._sample = playback, duration, 0
-        missing = {"orientation error"} if playback.run.task != "pose" else set()
+        missing = {"orientation error"} if playback.run.kind != "pose" else set()
         if not playback.distances.size:
             missing.add("distance of the nearest shapes")
         names = [name for name in QUANTITIES if name not in missing]

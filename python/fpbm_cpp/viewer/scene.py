@@ -72,8 +72,8 @@ def _at_start(run: Run) -> Run:
     """The start of a run without samples as its only sample."""
     q = run.status.q[None]
     zero = np.zeros_like(q)
-    x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.task).tip)[None]
-    error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.task))))
+    x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.kind).tip)[None]
+    error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.kind))))
     return replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
 
 

@@ -121,5 +121,5 @@ def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
     q0 = run.q[0] if len(run.q) else run.status.q
     if limited:
         return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)
-    options = {name: run.options[name] for name in ("dt", "hold", "qd0") if name in run.options}
+    options = {name: run.options[name] for name in ("dt", "hold", "qd0", "stack") if name in run.options}
     return simulate(run.arm, run.path, scheme, q0, task=run.task, partial=True, **options)

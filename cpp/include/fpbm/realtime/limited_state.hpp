@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/core/parts.hpp"
 #include "fpbm/limits/limiter.hpp"
@@ -85,7 +87,9 @@ class LimitedState {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
     if constexpr (kSecondOrder) {
-      if (limits().bounds_jerk() || has_lower_levels(loop.kinematics)) {
+      // A stack without bounds keeps the end of RK4's step.
+      if (limits().bounds_jerk() ||
+          (has_lower_levels(loop.kinematics) && std::isfinite(limits().bounds().acceleration.minCoeff()))) {
         next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
       }
     } else {

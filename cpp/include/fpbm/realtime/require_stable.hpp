@@ -79,7 +79,7 @@ template <typename Scheme>
 inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_space.stiffness_range())>> = true;
 
 /// Throws std::invalid_argument where a tick does not damp the errors that a scheme feeds back: of the task, k₁ and k₂
-/// or k, with the tracker's integral; of a second task; of the null space, whose stiffness is between the joints' own.
+/// or k, with the tracker's integral; of the null space, whose stiffness is between the joints' own.
 /// Accepts a scheme without these members. An overload for a scheme type of your own is found in its namespace.
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
@@ -87,10 +87,6 @@ void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   const TickOfGains<Scalar> plain{tick.dt, Scalar(0)};
   const Scalar none(0);
   if constexpr (kWraps<Scheme>) {
-    if constexpr (kHasGains<Scheme>) {
-      const Scalar k1 = kLevel == Level::kVelocity ? none : scheme.k1;
-      require_stable_gains<kLevel, Scalar>({"second_task.k1", k1, "second_task.k2", scheme.k2}, plain);
-    }
     require_stable(scheme.scheme, tick);
   } else {
     if constexpr (kLevel == Level::kAcceleration && kHasGains<Scheme>) {

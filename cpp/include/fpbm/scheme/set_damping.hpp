@@ -45,7 +45,7 @@ std::enable_if_t<kHasDamping<Scheme>> set_damping(Scheme& scheme, const DefaultD
   }
 }
 
-/// The same for a wrapper, such as SecondTask: a scheme with another one, its member `scheme`.
+/// The same for a wrapper, such as ManipulabilityAscent: a scheme with another one, its member `scheme`.
 template <typename Scheme, typename Scalar>
 auto set_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping)
     -> decltype(set_damping(scheme.scheme, damping)) {

@@ -1,0 +1,184 @@
+#include "read_stack.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace fpbm::bindings {
+namespace {
+
+constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "posture"};
+constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
+/// Of an arm in the plane, which has no other rows: x, y, rz.
+constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
+
+template <typename Value>
+Value attribute(const py::handle& object, const char* name) {
+  return py::cast<Value>(object.attr(name));
+}
+
+/// The link of a frame: 'tip', 'base', or the link that a joint moves.
+int link_of(const std::string& frame, const Arm& arm) {
+  if (frame == "tip") return Robot<kDynamic>::kTip;
+  if (frame == "base") return 0;
+  std::string known;
+  for (std::size_t i = 0; i < arm.joint_names.size(); ++i) {
+    if (arm.joint_names[i] == frame) return static_cast<int>(i) + 1;
+    known += ", '" + arm.joint_names[i] + "'";
+  }
+  validation::reject("frame", " = '" + frame + "': must be 'tip', 'base', or the joint of a link" + known);
+}
+
+std::vector<int> joints_of(const py::handle& given, const Arm& arm) {
+  std::vector<int> joints;
+  if (given.is_none()) {
+    for (int i = 0; i < arm.dof(); ++i) joints.push_back(i);
+    return joints;
+  }
+  for (const py::handle each : given) {
+    const auto name = py::cast<std::string>(each);
+    const auto found = std::find(arm.joint_names.begin(), arm.joint_names.end(), name);
+    if (found == arm.joint_names.end()) validation::reject("joints", ": the arm has no joint '" + name + "'");
+    joints.push_back(static_cast<int>(found - arm.joint_names.begin()));
+  }
+  return joints;
+}
+
+AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
+  AnyFrameTask::Selection selected{};
+  if (given.is_none()) {
+    selected.fill(true);
+  } else {
+    for (const py::handle row : given) {
+      const auto which = std::find(std::begin(kRows), std::end(kRows), py::cast<std::string>(row));
+      selected[static_cast<std::size_t>(which - std::begin(kRows))] = true;
+    }
+  }
+  for (std::size_t i = 0; i < selected.size(); ++i) selected[i] = selected[i] && (!planar || kPlane[i]);
+  return selected;
+}
+
+AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Arm& arm, const TaskGains<>& gains) {
+  Transform<> offset;
+  if (!given.attr("offset").is_none()) offset = transform(ArrayLike(py::object(given.attr("offset"))), "offset");
+  AnyFrameTask::Selection selected{};
+  Vector<3> axis(0.0, 0.0, 1.0);
+  bool in_frame = false;
+  if (kind == TaskKind::kAxis) {
+    axis = fixed_vector<3>(ArrayLike(py::object(given.attr("axis"))), "axis");
+  } else {
+    selected = rows_of(given.attr("rows"), std::holds_alternative<JointVector>(arm.source));
+    in_frame = attribute<std::string>(given, "axes") == "frame";
+  }
+  const LinkFrame<> link(link_of(attribute<std::string>(given, "frame"), arm), offset);
+  return AnyFrameTask(static_cast<FrameCoordinates>(kind), link, gains, selected, in_frame, axis);
+}
+
+/// The tasks of a level as they are put into an AnyStack.
+struct Places {
+  std::array<AnyFrameTask, 2> frames;
+  AnyPostureTask posture;
+  std::size_t used = 0;
+
+  [[nodiscard]] AnyLevel level() const { return AnyLevel(frames[0], frames[1], posture); }
+};
+
+TaskGains<> gains_of(const py::handle& task, Level level) {
+  return level == Level::kVelocity ? TaskGains<>(attribute<double>(task, "k"))
+                                   : TaskGains<>(attribute<double>(task, "k1"), attribute<double>(task, "k2"));
+}
+
+/// Puts a task of level k into the places of that level for both levels of schemes.
+StackTask place(const py::handle& given, std::size_t k, const Arm& arm, Places& velocity, Places& acceleration) {
+  const auto too_many = [&](const char* what) {
+    const std::string argument = "stack.levels[" + std::to_string(k) + "]";
+    validation::reject(argument, std::string(" has more than ") + what + ": move a task to another level");
+  };
+  const auto name = attribute<std::string>(given, "kind");
+  const auto kind = static_cast<TaskKind>(std::find(std::begin(kKinds), std::end(kKinds), name) - std::begin(kKinds));
+  StackTask task{attribute<std::string>(given, "name"), kind, 3 * static_cast<int>(k), 0, {}};
+  const auto put = [&](Places& places, Level level) {
+    const TaskGains<> gains = gains_of(given, level);
+    if (kind == TaskKind::kPosture) {
+      places.posture = AnyPostureTask(task.joints, gains);
+    } else {
+      places.frames[places.used++] = frame_task(given, kind, arm, gains);
+    }
+  };
+  if (kind == TaskKind::kPosture) {
+    if (velocity.posture.rows() > 0) too_many("one PostureTask");
+    task.joints = joints_of(given.attr("joints"), arm);
+    task.index += 2;
+    task.size = static_cast<int>(task.joints.size());
+  } else {
+    if (velocity.used == 2) too_many("two tasks of frames");
+    task.index += static_cast<int>(velocity.used);
+    task.size = kind == TaskKind::kPose ? 6 : 3;
+  }
+  put(velocity, Level::kVelocity);
+  put(acceleration, Level::kAcceleration);
+  return task;
+}
+
+}  // namespace
+
+StackPlan read_stack(const py::object& stack, const Arm& arm) {
+  if (!py::hasattr(stack, "levels")) validation::reject("stack", ": must be a Stack");
+  constexpr std::size_t kLevels = AnyStack::kLevels;
+  const auto levels = attribute<py::tuple>(stack, "levels");
+  if (levels.size() > kLevels) {
+    validation::fail("number of levels", static_cast<int>(levels.size()), "at most ", static_cast<int>(kLevels));
+  }
+  std::vector<StackTask> tasks;
+  std::vector<std::optional<StackTarget>> targets;
+  std::array<Places, kLevels> velocity;
+  std::array<Places, kLevels> acceleration;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    for (const py::handle given : levels[k]) {
+      const StackTask task = place(given, k, arm, velocity[k], acceleration[k]);
+      const py::object target = given.attr(task.kind == TaskKind::kPosture ? "q" : "x");
+      targets.push_back(target.is_none() ? std::nullopt : std::optional(read_target(task, target)));
+      tasks.push_back(task);
+    }
+  }
+  const auto whole = [](const auto& at) {
+    return AnyStack(at[0].level(), at[1].level(), at[2].level(), at[3].level());
+  };
+  return {arm.chain(), tasks, targets, static_cast<int>(levels.size()), whole(velocity), whole(acceleration)};
+}
+
+StackTarget read_target(const StackTask& task, const py::handle& given) {
+  const bool is_matrix = task.kind == TaskKind::kPose || task.kind == TaskKind::kOrientation;
+  py::object x = py::reinterpret_borrow<py::object>(given);
+  StackTarget target{{}, {}, JointVector::Zero(task.size), JointVector::Zero(task.size)};
+  if (py::isinstance<py::tuple>(given)) {
+    const auto parts = py::reinterpret_borrow<py::tuple>(given);
+    if (!parts.empty() && parts.size() <= 3 && dimensions(ArrayLike(py::object(parts[0]))) == (is_matrix ? 2 : 1)) {
+      x = parts[0];
+      const auto vector = [&](std::size_t i, const char* name) {
+        return joint_vector(ArrayLike(py::object(parts[i])), (task.name + "'s " + name).c_str(), task.size);
+      };
+      if (parts.size() > 1) target.xd = vector(1, "xd");
+      if (parts.size() > 2) target.xdd = vector(2, "xdd");
+    }
+  }
+  const ArrayLike point(x);
+  const std::string name = task.name;
+  switch (task.kind) {
+    case TaskKind::kPosition: target.at.p = fixed_vector<3>(point, name.c_str()); break;
+    case TaskKind::kOrientation:
+      target.at.R = matrix(point, name.c_str(), 3, 3);
+      if (!chain_check::is_rotation(target.at.R)) validation::reject(name, ": must be a rotation matrix");
+      break;
+    case TaskKind::kPose: target.at = transform(point, name.c_str()); break;
+    case TaskKind::kAxis: {
+      const Vector<3> d = fixed_vector<3>(point, name.c_str());
+      if (!(norm(d) > 0.0)) validation::reject(name, " is zero: must point somewhere");
+      target.at.R = z_to(d);
+      break;
+    }
+    case TaskKind::kPosture: target.q = joint_vector(point, name.c_str(), task.size); break;
+  }
+  return target;
+}
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,115 @@
+#include "stack_motion.hpp"
+
+#include <type_traits>
+
+#include "fpbm/realtime/reference_sources.hpp"
+
+namespace fpbm::bindings {
+
+StackMotion::StackMotion(const StackPlan& plan, const Scheme& scheme, const State<kDynamic>& start,
+                         const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
+                         const Clearance<kDynamic>& clearance)
+    : plan_(plan),
+      dt_(options.dt),
+      tracker_(
+          make_stack_tracker(scheme, {plan_.chain, plan_.at(scheme.level), start, options, limits, qdd0, clearance})),
+      held_(Reference<Space>::hold(tracker_->tip())) {
+  for (std::size_t i = 0; i < plan_.tasks.size(); ++i) {
+    if (plan_.targets[i]) put(plan_.tasks[i], *plan_.targets[i], held_);
+  }
+}
+
+void StackMotion::put(const StackTask& task, const StackTarget& target, Reference<Space>& to) const noexcept {
+  task.at_place([&](auto space, auto i, int row) noexcept {
+    if constexpr (std::is_same_v<decltype(space), FrameSpace>) {
+      std::get<decltype(i)::value>(to.x).at = target.at;
+    } else {
+      for (int j = 0; j < task.size; ++j) std::get<decltype(i)::value>(to.x)(j) = target.q(j);
+    }
+    for (int j = 0; j < task.size; ++j) {
+      to.xd(row + task.shift() + j) = target.xd(j);
+      to.xdd(row + task.shift() + j) = target.xdd(j);
+    }
+  });
+}
+
+void StackMotion::put(const StackTask& task, const Source& source, double seconds,
+                      Reference<Space>& to) const noexcept {
+  StackTarget target;
+  std::visit(
+      [&](const auto* each) noexcept {
+        const auto reference = each->ahead(seconds);
+        if constexpr (std::is_same_v<std::decay_t<decltype(reference)>, Reference<Pose>>) {
+          target.at = reference.x;
+        } else {
+          target.at.p = reference.x;
+        }
+        target.xd = reference.xd;
+        target.xdd = reference.xdd;
+      },
+      source);
+  put(task, target, to);
+}
+
+void StackMotion::aim(const Targets& targets) noexcept {
+  held_ = Reference<Space>::hold(held_.x);
+  for (const auto& [task, target] : targets) put(*task, target, held_);
+}
+
+StackMotion::Result StackMotion::tick(const Sources& sources) noexcept {
+  TickReferences<Space> stages = TickReferences<Space>::of([&](double t) noexcept { return ahead(held_, t); }, dt_);
+  for (std::size_t i = 0; i < stages.stages.size(); ++i) {
+    for (const auto& [task, source] : sources) put(*task, source, dt_ / 2 * static_cast<double>(i), stages.stages[i]);
+  }
+  const Result result = tracker_->advance(stages);
+  for (const auto& [task, source] : sources) {
+    put(*task, source, dt_, held_);
+    std::visit([&](auto* each) { advance_source(*each, dt_, stopping_); }, source);
+  }
+  return result;
+}
+
+StackMotion::Result StackMotion::resolve_measured(const State<kDynamic>& measured, const Sources& sources) {
+  for (const auto& [task, source] : sources) put(*task, source, 0.0, held_);
+  return tracker_->resolve_measured(measured, held_);
+}
+
+void StackMotion::stop() noexcept {
+  stopping_ = true;
+  tracker_->stop();
+}
+
+void StackMotion::resume() noexcept {
+  stopping_ = false;
+  tracker_->resume();
+}
+
+Transform<> StackMotion::frame_of(const StackTask& task) const noexcept {
+  const StackTracker::Point tip = tracker_->tip();
+  Transform<> at;
+  task.at_place([&](auto space, auto i, int) noexcept {
+    if constexpr (std::is_same_v<decltype(space), FrameSpace>) at = std::get<decltype(i)::value>(tip).at;
+  });
+  return at;
+}
+
+JointVector StackMotion::posture_of(const StackTask& task) const noexcept {
+  const StackTracker::Point tip = tracker_->tip();
+  JointVector q(task.size);
+  task.at_place([&](auto space, auto i, int) noexcept {
+    if constexpr (!std::is_same_v<decltype(space), FrameSpace>) {
+      for (int j = 0; j < task.size; ++j) q(j) = std::get<decltype(i)::value>(tip)(j);
+    }
+  });
+  return q;
+}
+
+JointVector StackMotion::error_of(const StackTask& task, const Result& tick) noexcept {
+  JointVector error(task.size);
+  task.at_place([&](auto, auto, int row) noexcept {
+    for (int j = 0; j < task.size; ++j) error(j) = tick.error(row + task.shift() + j);
+  });
+  return error;
+}
+
+}  // namespace fpbm::bindings

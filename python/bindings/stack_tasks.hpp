@@ -1,0 +1,91 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arm.hpp"
+#include "fpbm/any/any_stack.hpp"
+#include "fpbm/core/level.hpp"
+
+namespace fpbm::bindings {
+
+/// In the order of FrameCoordinates, then the posture.
+enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kPosture };
+
+/// A task of a stack as Python has it.
+struct StackTask {
+  std::string name;
+  TaskKind kind;
+  int index;  ///< Of AnyStack's tasks.
+  int size;   ///< Rows of its point's displacements.
+  std::vector<int> joints;
+
+  /// First row in those of its place in an AnyStack: angles alone come after lengths.
+  [[nodiscard]] int shift() const noexcept { return kind == TaskKind::kOrientation || kind == TaskKind::kAxis ? 3 : 0; }
+  [[nodiscard]] bool follows_paths() const noexcept { return kind == TaskKind::kPosition || kind == TaskKind::kPose; }
+
+  /// f(space, i, row) for its place in an AnyStack, as AnyStack::Space::each() calls it. f must not throw.
+  template <typename F>
+  void at_place(F&& f) const noexcept {
+    AnyStack::Space::each([&](auto space, auto i, int row) noexcept {
+      if (static_cast<int>(decltype(i)::value) == index) f(space, i, row);
+    });
+  }
+};
+
+/// A reference of one task.
+struct StackTarget {
+  Transform<> at;
+  Vector<kDynamic> q;
+  Vector<kDynamic> xd;
+  Vector<kDynamic> xdd;
+};
+
+/// What Python's Stack says, for an arm.
+struct StackPlan {
+  Chain<> chain;
+  std::vector<StackTask> tasks;
+  std::vector<std::optional<StackTarget>> targets;  ///< Of each task, if it says one.
+  int levels = 0;
+  AnyStack velocity;      ///< The tasks with their gains at velocity level,
+  AnyStack acceleration;  ///< and at acceleration level.
+
+  [[nodiscard]] const AnyStack& at(Level level) const noexcept {
+    return level == Level::kVelocity ? velocity : acceleration;
+  }
+  /// Throws std::invalid_argument where no task has that name.
+  [[nodiscard]] const StackTask& task(const std::string& name) const {
+    std::string known;
+    for (const StackTask& each : tasks) {
+      if (each.name == name) return each;
+      known += (known.empty() ? "'" : ", '") + each.name + "'";
+    }
+    validation::reject("task", " = '" + name + "': must be one of the stack's, " + known);
+  }
+  /// The task that follows a path: that of the name, or the only position or pose.
+  /// Throws std::invalid_argument where there is none.
+  [[nodiscard]] const StackTask& follower(const std::optional<std::string>& name) const {
+    if (name) {
+      const StackTask& named = task(*name);
+      if (named.follows_paths()) return named;
+      validation::reject("task", " = '" + *name + "': must be a position or a pose to follow a path");
+    }
+    const StackTask* found = nullptr;
+    for (const StackTask& each : tasks) {
+      if (!each.follows_paths()) continue;
+      if (found != nullptr) validation::reject("task", ": several tasks follow paths, must be the name of one");
+      found = &each;
+    }
+    if (found == nullptr) validation::reject("task", ": no task of the stack is a position or a pose");
+    return *found;
+  }
+  /// Entries of all errors, one task after another.
+  [[nodiscard]] int error_size() const noexcept {
+    int size = 0;
+    for (const StackTask& each : tasks) size += each.size;
+    return size;
+  }
+};
+
+}  // namespace fpbm::bindings
