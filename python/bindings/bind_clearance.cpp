@@ -2,11 +2,14 @@
 #include <pybind11/typing.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "arrays.hpp"
 #include "clearance.hpp"
 #include "fpbm/clearance/preset_capsules.hpp"
+#include "fpbm/clearance/task_bounds.hpp"
+#include "read_stack.hpp"
 
 namespace fpbm::bindings {
 
@@ -27,16 +30,40 @@ Clearance<kDynamic> clearance_of(const Arm& arm, const py::object& given) {
   Clearance<kDynamic> clearance(arm.chain(), capsules, obstacles, py::cast<double>(given.attr("margin")),
                                 py::cast<Allowed>(given.attr("allowed")));
   clearance.keep_away({py::cast<double>(given.attr("away_gain")), py::cast<double>(given.attr("away_range"))});
-  clearance.bound_tip_speed(py::cast<double>(given.attr("tip_speed")));
-  if (!given.attr("tip_lower").is_none()) {
-    clearance.keep_tip_within(fixed_vector<3>(py::cast<ArrayLike>(given.attr("tip_lower")), "tip_lower"),
-                              fixed_vector<3>(py::cast<ArrayLike>(given.attr("tip_upper")), "tip_upper"));
-  }
   return clearance;
 }
 
+void add_bounds(Clearance<kDynamic>& clearance, const Arm& arm, const py::object& bounds) {
+  for (const py::handle each : bounds) {
+    if (!py::hasattr(each, "task")) validation::reject("bounds", ": must be TaskBounds");
+    const py::object task = each.attr("task");
+    const auto name = py::cast<std::string>(task.attr("name"));
+    const auto number = [&](const char* key) { return py::cast<double>(each.attr(key)); };
+    const auto vector = [](const py::handle& of, const char* key) {
+      return fixed_vector<3>(ArrayLike(py::object(of.attr(key))), key);
+    };
+    const LinkFrame<> frame = read_frame(task, arm);
+    if (py::cast<std::string>(task.attr("kind")) == "axis") {
+      const auto angle = [&](const char* key) { return py::cast<double>(each.attr(key)); };
+      clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), angle("least_angle"),
+                                  angle("largest_angle"), number("velocity"), number("acceleration"), name});
+    } else {
+      const auto selected = py::cast<std::array<bool, 3>>(each.attr("selected"));
+      const auto limit = [&](const char* key) {
+        Vector<3> values;
+        for (std::size_t i = 0; i < 3; ++i) {
+          values(static_cast<Eigen::Index>(i)) = py::cast<double>(each.attr(key)[py::int_(i)]);
+        }
+        return values;
+      };
+      clearance.keep(PositionBounds<>{frame, limit("lower_corner"), limit("upper_corner"), number("velocity"),
+                                      number("acceleration"), selected, name});
+    }
+  }
+}
+
 std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q) {
-  if (clearance.pairs().empty()) return std::nullopt;
+  if (clearance.shape_pairs() == 0) return std::nullopt;
   clearance.place(q);
   const auto [pair, distance] = clearance.nearest_pair();
   return PyNearest{clearance.names(clearance.pairs()[pair]), distance};

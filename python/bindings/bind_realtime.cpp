@@ -105,13 +105,14 @@ class PyTracker {
  public:
   PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
-            const TrackerOptions<>& options, const py::object& clearance)
+            const TrackerOptions<>& options, const py::object& clearance, const py::object& task_bounds)
       : dof_(arm.dof()), dt_(options.dt) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
     const JointLimits<kDynamic> bounds = limits.is_none() ? arm.limits() : joint_limits(limits);
-    const Clearance<kDynamic> shapes = clearance_of(arm, clearance);
+    Clearance<kDynamic> shapes = clearance_of(arm, clearance);
+    add_bounds(shapes, arm, task_bounds);
     if (!stack.is_none()) {
       any_ = std::make_unique<StackLoop>(stack, scheme, arm, start, options, bounds, before, shapes);
       return;
@@ -317,21 +318,23 @@ measured_delay : int
 clearance : Clearance, optional
     What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
     obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
+bounds : sequence of TaskBounds
+    Bounds on coordinates of tasks: walls for points of links, cones for axes, speeds.
 
 Raises
 ------
 ParameterError
-    Where an argument is out of range, a limit is missing, or the start breaks one or is not clear.)")
+    Where an argument is out of range, a limit is missing, or the start is beyond a limit or a bound, or not clear.)")
       .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
                        const py::object& limits, double error_bound, double gain, double bound, double stall_time,
                        double radius, double brake, double null_damping, bool recovery, int measured_delay,
-                       const py::object& clearance) {
+                       const py::object& clearance, const py::object& task_bounds) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
              options.measured_delay = measured_delay;
-             return PyTracker(arm, scheme, q0, qd0, qdd0, task, stack, limits, options, clearance);
+             return PyTracker(arm, scheme, q0, qd0, qdd0, task, stack, limits, options, clearance, task_bounds);
            }),
            py::arg("arm"), py::arg("scheme"), py::arg("q0"), py::kw_only(), py::arg("qd0") = none,
            py::arg("qdd0") = none, py::arg("task") = "position", py::arg("stack") = none, py::arg("dt") = 1e-3,
@@ -340,7 +343,8 @@ ParameterError
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake(),
            py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
-           py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none)
+           py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
+           py::arg("bounds") = py::tuple())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
            "One tick along a path, whose clock advances with it.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),

@@ -43,6 +43,7 @@ std::optional<Limited> limited_of(const py::object& given, const Arm& arm, const
                    SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
                   clearance_of(arm, clearance),
                   !clearance.is_none()};
+  add_bounds(limited.clearance, arm, given.attr("bounds"));
   if (const py::object stack = given.attr("stack"); !stack.is_none()) {
     StackPlan plan = read_stack(stack, arm);
     const StackTask& task = plan.follower(py::cast<std::string>(given.attr("task")));

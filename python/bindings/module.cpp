@@ -11,8 +11,8 @@ void translate(std::exception_ptr thrown) {
   } catch (const fpbm::TooClose& error) {  // With the remedies as Python writes them.
     const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");
     const std::string pair = py::repr(py::make_tuple(error.names().first, error.names().second));
-    const std::string remedy = error.of_box() ? "a larger box by tip_lower and tip_upper" : "allowed=[" + pair + "]";
-    const std::string text = fpbm::TooClose::text(error.names(), error.value(), error.margin(), remedy);
+    const std::string text =
+        fpbm::TooClose::text(error.names(), error.value(), error.margin(), "allowed=[" + pair + "]");
     py::set_error(type, type(error.name(), py::none(), error.value(), text));
   } catch (const fpbm::ParameterError& error) {
     const py::object type = py::module_::import("fpbm_cpp.errors").attr("ParameterError");

@@ -58,8 +58,6 @@ AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
 }
 
 AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Arm& arm, const TaskGains<>& gains) {
-  Transform<> offset;
-  if (!given.attr("offset").is_none()) offset = transform(ArrayLike(py::object(given.attr("offset"))), "offset");
   AnyFrameTask::Selection selected{};
   Vector<3> axis(0.0, 0.0, 1.0);
   bool in_frame = false;
@@ -69,8 +67,7 @@ AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Arm& arm, 
     selected = rows_of(given.attr("rows"), std::holds_alternative<JointVector>(arm.source));
     in_frame = attribute<std::string>(given, "axes") == "frame";
   }
-  const LinkFrame<> link(link_of(attribute<std::string>(given, "frame"), arm), offset);
-  return AnyFrameTask(static_cast<FrameCoordinates>(kind), link, gains, selected, in_frame, axis);
+  return AnyFrameTask(static_cast<FrameCoordinates>(kind), read_frame(given, arm), gains, selected, in_frame, axis);
 }
 
 /// The tasks of a level as they are put into an AnyStack.
@@ -120,6 +117,12 @@ StackTask place(const py::handle& given, std::size_t k, const Arm& arm, Places& 
 }
 
 }  // namespace
+
+LinkFrame<> read_frame(const py::handle& task, const Arm& arm) {
+  Transform<> offset;
+  if (!task.attr("offset").is_none()) offset = transform(ArrayLike(py::object(task.attr("offset"))), "offset");
+  return {link_of(attribute<std::string>(task, "frame"), arm), offset};
+}
 
 StackPlan read_stack(const py::object& stack, const Arm& arm) {
   if (!py::hasattr(stack, "levels")) validation::reject("stack", ": must be a Stack");

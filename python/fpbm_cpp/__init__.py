@@ -36,6 +36,7 @@ from .motion.sweeping import Sweep, sweep
 from .obstacle import Cuboid, HalfSpace
 from .paths import *
 from .schemes import *
+from .task_bounds import TaskBounds
 from .tasks import *
 from .tuning import Tuning, tune
 from .viewer import servo, view
@@ -44,7 +45,7 @@ __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "
 __all__ += ["servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
 __all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "TargetFilter", "Tick"]
-__all__ += ["SaturatedLevels", "Tracker", "failed", "saturate"]
+__all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
 __all__ += arms.__all__ + paths.__all__ + schemes.__all__ + tasks.__all__

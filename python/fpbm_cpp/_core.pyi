@@ -600,11 +600,13 @@ class Tracker:
     clearance : Clearance, optional
         What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
         obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
+    bounds : sequence of TaskBounds
+        Bounds on coordinates of tasks: walls for points of links, cones for axes, speeds.
 
     Raises
     ------
     ParameterError
-        Where an argument is out of range, a limit is missing, or the start breaks one or is not clear.
+        Where an argument is out of range, a limit is missing, or the start is beyond a limit or a bound, or not clear.
     """
     def __init__(
         self,
@@ -628,6 +630,7 @@ class Tracker:
         recovery: bool = True,
         measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
         clearance: typing.Any = None,
+        bounds: typing.Any = (),
     ) -> None: ...
     def enable(self, level: typing.SupportsInt | typing.SupportsIndex, on: bool) -> None:
         """

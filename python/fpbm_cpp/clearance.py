@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import KW_ONLY, replace
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ._core import Clearance as CoreClearance
 from ._core import Nearest, preset_capsules
-from ._types import Array, OptionalArrayField
+from ._types import Array
 from .arms import Arm, Joint, SerialArm
 from .capsule import Capsule
 from .errors import ParameterError, suggestion, wrong
@@ -51,22 +50,8 @@ class Clearance(Data):
         unit="rad/(m s^2)",
     )
     away_range: float = parameter("From what distance on, beyond the margin.", POSITIVE, default=0.1, unit="m")
-    tip_lower: OptionalArrayField = parameter(
-        "Lower corner of a box that the tip is kept within, in the base frame.", default=None, shape="(3,)", unit="m"
-    )
-    tip_upper: OptionalArrayField = parameter("Its upper corner.", default=None, shape="(3,)", unit="m")
-    tip_speed: float = parameter(
-        "Most of the tip's speed, but for what its direction changes in a tick, and where joints' limits and shapes "
-        "leave no room for it; inf for none.",
-        POSITIVE,
-        default=math.inf,
-        infinite=True,
-        unit="m/s",
-    )
 
     def _finish(self) -> None:
-        if (self.tip_lower is None) != (self.tip_upper is None):
-            raise ParameterError("tip_lower", -1, self.tip_lower, "tip_lower, tip_upper: must both be given, or none")
         _require("capsules", self.capsules, (Capsule,), "a Capsule")
         _require("obstacles", self.obstacles, tuple(OBSTACLES.values()), "a HalfSpace, a Cuboid or a Capsule")
         capsules = tuple(each if each.name else replace(each, name=f"link_{each.link}") for each in self.capsules)

@@ -22,7 +22,8 @@ from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
 from .schemes import SCHEMES
-from .tasks import TASKS, Stack, Task
+from .task_bounds import TaskBounds
+from .tasks import TASKS, AxisTask, PositionTask, Stack, Task
 
 Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
@@ -34,10 +35,13 @@ KINDS: Makers = {
     **OBSTACLES,
     JointLimits.kind: JointLimits,
     Clearance.kind: Clearance,
+    TaskBounds.kind: TaskBounds,
 }
 
+BOUNDS: Makers = {TaskBounds.kind: TaskBounds}
+
 # What stands within other tables, by its key.
-WITHIN: dict[str, Makers] = {"arm": ARMS}
+WITHIN: dict[Any, Makers] = {(TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)}}
 LEVEL = Parameter(
     "level",
     int,
@@ -124,6 +128,8 @@ class _Reader:
             return table
         if isinstance(table, (list, tuple)) and kinds is TASKS:
             return self._stack(table, name)
+        if isinstance(table, (list, tuple)) and kinds is BOUNDS:
+            return self._each(table, kinds, name)
         if isinstance(table, (list, tuple)) and kinds in (PATHS, EVERY_PATH, KINDS):
             if len(table) == 1:
                 return self.read(table[0], kinds, name)
@@ -166,8 +172,8 @@ class _Reader:
         return thing if rotation is None else thing.with_rotation(rotation, time_law=law or "quintic")
 
     def _value(self, value: Any, parameter: Parameter, maker: Callable[..., Any], name: str) -> Any:
-        if parameter.name in WITHIN:
-            return self.read(value, WITHIN[parameter.name], name)
+        if (maker, parameter.name) in WITHIN:
+            return self.read(value, WITHIN[maker, parameter.name], name)
         if (maker, parameter.name) in LISTS:
             return self._each(value, LISTS[maker, parameter.name], name)
         if parameter.infinite:

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "fpbm/clearance/guard.hpp"
+#include "fpbm/clearance/task_bounds.hpp"
+#include "fpbm/model/robot.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
@@ -396,7 +398,7 @@ TEST(Guard, keeps_the_tip_within_its_box) {
   const Chain<> chain = presets::panda();
   const Panda arm = any_arm(chain);
   Clearance<kOpen> clearance(chain, {}, {}, 0.0);
-  clearance.keep_tip_within({0.2, -0.2, 0.3}, {0.4, 0.2, 0.7});
+  clearance.keep(PositionBounds<>{{Robot<7>::kTip}, {0.2, -0.2, 0.3}, {0.4, 0.2, 0.7}});
   EXPECT_EQ(clearance.pairs().size(), 6U);
   const auto law = FPBM<kOpen>(0.5, UnitWeights{}, 20.0, 100.0, NullSpace<kOpen>().with_damping(2.0));
   PandaTracker tracker(arm, Position<3>{}, law, State<kOpen>{ready(), Vector<7>::Zero()}, TrackerOptions<>{kTick},
@@ -421,7 +423,9 @@ void expect_slow_tip() {
        {presets::panda(), panda_without_jerk(), presets::ur5e(), panda_on_rail(), coupled_panda()}) {
     Clearance<kOpen> clearance(chain, {}, {}, 0.0);
     constexpr double kSpeed = 0.25;
-    clearance.bound_tip_speed(kSpeed);
+    PositionBounds<> bounds{{Robot<7>::kTip}};
+    bounds.velocity = kSpeed;
+    clearance.keep(bounds);
     const auto arm = any_arm(chain);
     Random random(3);
     const Vector<kOpen> q = spread_posture(chain, 3);
@@ -451,8 +455,15 @@ TEST(Guard, keeps_the_tip_s_speed) {
 
 TEST(Guard, names_what_is_wrong) {
   const Chain<> chain = presets::panda();
-  EXPECT_EQ(complaint([&] { Clearance<7>(chain, {}, {}, 0.0).bound_tip_speed(0.0); }),
-            "tip_speed = 0: must be positive, or infinite");
+  const auto bounded = [&](int link, double lower, double velocity) {
+    const Vector<3> upper = Vector<3>::Constant(2.0);
+    PositionBounds<> bounds{{link}, Vector<3>::Constant(lower), upper};
+    bounds.velocity = velocity;
+    return complaint([&] { Clearance<7>(chain, {}, {}, 0.0).keep(bounds); });
+  };
+  EXPECT_EQ(bounded(8, 1.0, 1.0), "frame = 8: must be the number of a link, at most 7");
+  EXPECT_EQ(bounded(7, 2.0, 1.0), "lower[0] = 2: must be below upper");
+  EXPECT_EQ(bounded(7, 1.0, 0.0), "velocity = 0: must be positive, or infinite");
   const std::vector<LinkCapsule<>> hand = {{7, {Vector<3>::Zero(), chain.tip.p, 0.05}, "hand"}};
   const auto with = [&](const Obstacle<>& obstacle) {
     return [=] { (void)Clearance<7>(chain, hand, {obstacle}, 0.0); };
@@ -470,13 +481,13 @@ TEST(Guard, names_what_is_wrong) {
   EXPECT_EQ(close.substr(0, 31), "q0: hand and floor overlap by 0");
   EXPECT_NE(close.find(R"( m, with margin=0.01; give allowed={{"hand", "floor"}})"), std::string::npos) << close;
   Clearance<7> in_box(chain, hand, {}, 0.01);
-  in_box.keep_tip_within(Vector<3>::Constant(5.0), Vector<3>::Constant(6.0));
+  in_box.keep(PositionBounds<>{{Robot<7>::kTip}, Vector<3>::Constant(5.0), Vector<3>::Constant(6.0)});
   const std::string outside = complaint([&] {
     const Limits<Level::kAcceleration, 7> limits(SerialArm<7>(chain).limits(), kTick);
     Guard<Level::kAcceleration, 7> guard(in_box);
     guard.require_clear(limits, State<7>{ready(), Vector<7>::Zero()}, Vector<7>::Zero());
   });
-  EXPECT_NE(outside.find("with margin=0.01; give a larger box to keep_tip_within()"), std::string::npos) << outside;
+  EXPECT_EQ(outside, "q0: is beyond the bound 'lower y of tip', must be within the bounds of tasks");
   auto tracker = panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.0}}});
   EXPECT_FALSE(tracker.guard().clearance().move(0, Capsule<>{zero, zero, 0.1}, zero));
   EXPECT_FALSE(tracker.guard().clearance().move(1, HalfSpace<>{Vector<3>::UnitZ(), 0.0}, zero));

@@ -245,20 +245,6 @@ def test_the_message_names_both_remedies() -> None:
     fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
 
 
-def test_the_message_about_the_tip_s_box_names_a_larger_box() -> None:
-    """The pair of the tip and a wall cannot be allowed to meet: its names are not those of shapes."""
-    arm = fp.SerialArm.preset("panda")
-    q = np.array(FRANKA[0])
-    upper = arm.forward(q)[:3, 3] + [0.00403, 1.0, 1.0]
-    with pytest.raises(fp.ParameterError) as caught:
-        fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance([], tip_lower=[-1, -1, -1], tip_upper=upper))
-    assert str(caught.value) == (
-        "q0: tip and upper x are 0.0040 m apart, closer than margin=0.01; "
-        "give margin=0.004 or a larger box by tip_lower and tip_upper"
-    )
-    fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance([], margin=0.004, tip_lower=[-1, -1, -1], tip_upper=upper))
-
-
 # What decides where capsules are cut
 
 

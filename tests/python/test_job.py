@@ -206,6 +206,23 @@ def test_tasks() -> None:
     assert "task" not in motion.taken
 
 
+def test_bounds() -> None:
+    table = {
+        "task": {"kind": "axis", "x": [0, 0, -1], "name": "cone"},
+        "upper": 0.3,
+        "velocity": 0.5,
+    }
+    path = {"kind": "line", "displacement": [0.0, 0.4, 0.0], "duration": 1.0}
+    motion = prepare({"arm": PANDA, "path": path, "bounds": [table]})
+    bounds = (fp.TaskBounds(fp.AxisTask(x=[0, 0, -1], name="cone"), upper=0.3, velocity=0.5),)
+    assert motion.bounds == bounds
+    scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
+    arm = fp.SerialArm.preset("panda")
+    run = fp.track(arm, fp.Line([0.0, 0.4, 0.0], 1.0), scheme, READY, bounds=bounds, null_damping=0, limits=arm.limits)
+    np.testing.assert_array_equal(motion.run().q, run.q)
+    assert np.arccos(-run.arm.forward(run.q[-1])[2, 2]) <= 0.3 + 1e-9
+
+
 def test_a_run_is_that_of_the_library() -> None:
     motion = prepare({"arm": PANDA, "path": {"kind": "circle", "duration": 1.0}, "run": {"task": "pose"}})
     scheme = fp.FPBM(0.6, np.ones(7), 10, 25, null_damping=2)
@@ -392,7 +409,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", "arm.joints[1].axis = 'x': must be real numbers"),
         (
             f"{ARM}[pth]",
-            "pth: a job has no such key: must be one of arm, path, scheme, task, run, limits, clearance; "
+            "pth: a job has no such key: must be one of arm, path, scheme, task, run, limits, bounds, clearance; "
             "did you mean 'path'?",
         ),
         (f"{ARM}[path]\nkind = 'cirle'", f"path.kind = 'cirle': must be one of {SHAPES}; did you mean 'circle'?"),
@@ -430,6 +447,9 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[[task]]\nkind = 'pose'\nlevel = 1", "task.level = 1: must be less, as level 0 is empty"),
         (f"{ARM}[[task]]\nkind = 'pose'\nframe = 'hand'", "frame = 'hand': must be 'tip', 'base', or the joint"),
         (f"task = 1\n{ARM}", "task = 1: must be a table"),
+        (f"{ARM}[[bounds]]\nupper = 1", "bounds[0].task: is missing"),
+        (f"{ARM}[[bounds]]\ntask = {{kind = 'pose'}}", "bounds[0].task.kind = 'pose': must be one of position, axis"),
+        (f"{ARM}[[bounds]]\ntask = {{kind = 'axis'}}\nupper = 1", "task.x: must be given, the direction from which"),
         (f"{ARM}[run]\ntask = 'pos'", "run.task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (f"{ARM}[run]\nq0 = [1, 2]", "run.q0 has 2 entries: must have 7, one per joint"),
         (f"{ARM}[run]\ndt = 0.3", "run.dt = 0.3: must be a divisor of duration = 10"),

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 import urllib.request
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -29,7 +30,8 @@ from fpbm_cpp.skeleton import joint_points, link_frames
 from fpbm_cpp.viewer import Viewer, controls
 from fpbm_cpp.viewer import viewer as viewer_module
 from fpbm_cpp.viewer.gap import nearest_points
-from fpbm_cpp.viewer.scene import FRAMES, Links, Meshes, Playback, along
+from fpbm_cpp.viewer.playback import FRAMES, Playback
+from fpbm_cpp.viewer.scene import Links, Meshes, along
 
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 Q0 = np.pi / np.array([12, 12, 15, 15])
@@ -143,22 +145,60 @@ def test_what_is_kept_clear_of_is_drawn_and_said():
         assert "nearest shapes" in say(viewer)
 
 
+def a_stack_run(move=fp.simulate, **how):
+    """The Panda's elbow on a line, its tip's pose below."""
+    stack = fp.Stack(
+        fp.PositionTask("panda_joint5", name="wrist"), fp.PoseTask(name="hand"), fp.PostureTask(name="home")
+    )
+    scheme, line = fp.Balanced(0.6, np.ones(7), null_damping=2), fp.Line([0.0, 0.1, 0.05], 1.0, time_law="quintic")
+    return move(fp.SerialArm.preset("panda"), line, scheme, READY, dt=0.01, task="wrist", stack=stack, **how)
+
+
+@pytest.mark.parametrize("move", [fp.simulate, fp.track])
+def test_a_run_of_a_stack_is_shown(move):
+    run = a_stack_run(move)
+    with Viewer(run, port=0) as viewer:
+        scene = viewer._scene
+        for moment in (0.0, 0.6, 1.0):
+            viewer.time = moment
+            sample = round(100 * moment)
+            np.testing.assert_allclose(scene._path.points[-1, 1], run.x[sample], atol=1e-6)
+            np.testing.assert_allclose(scene._tip.position, run.arm.forward(run.q[sample])[:3, 3], atol=1e-6)
+            errors = {name: np.linalg.norm(run.errors[name][sample]) for name in ("wrist", "home")}
+            errors["hand"] = np.linalg.norm(run.errors["hand"][sample, :3])
+            for name, unit in (("wrist", "m"), ("hand", "m"), ("home", "rad")):
+                row = f"error of {name}</td>"
+                assert row in say(viewer)
+                assert f"{errors[name]:.3g} {unit}" in say(viewer).split(row)[1].split("</tr>")[0]
+        np.testing.assert_allclose(scene._target.points[0, 0], run.x_ref[0], atol=1e-6)
+        assert "tip error" not in say(viewer)
+        assert "error of hand, orientation" in viewer._chart._quantity.options
+        viewer._chart._quantity.value = "error of home"
+        viewer._chart.show(viewer._playback)
+        assert viewer._chart._plot.title.endswith("rad]")
+        sliders = viewer._controls._sliders
+        viewer._controls._kind.value = "FPBM"  # The tasks have the gains.
+        viewer._controls._on_update(SimpleNamespace(client="somebody", target=viewer._controls._kind))
+        assert not sliders["k1"].visible
+        assert viewer.run.scheme == fp.FPBM(0.6, np.ones(7), 0, 0, null_damping=2)
+        assert (viewer.run.stack, viewer.run.task, viewer.run.scale is None) == (run.stack, "wrist", run.scale is None)
+        np.testing.assert_allclose(viewer.run.q, run.q, atol=1e-6)  # The law of a balance without feedback.
+
+
+def test_a_run_of_a_stack_that_cannot_begin():
+    run = a_stack_run()
+    names = [name for name in run.arrays() if name != "q"]
+    none = {name: getattr(run, name)[:0] for name in names}
+    status = replace(run.status, code=fp.Status.SINGULAR, time=0.0, q=run.q[0])
+    with Viewer(replace(run, q=run.q[:0], status=status, **none), port=0) as viewer:
+        assert "stopped after t = 0 s" in say(viewer)
+        assert "error of hand, orientation" in say(viewer)
+
+
 def test_nothing_is_drawn_of_a_run_that_keeps_clear_of_nothing(viewer):
     assert viewer._scene._shapes is None
     assert "nearest shapes" not in say(viewer)
     assert "distance of the nearest shapes" not in viewer._chart._quantity.options
-
-
-def test_the_tip_before_a_wall_of_its_box_has_no_line():
-    arm, ways = fp.PlanarArm([1, 1, 1, 1]), [0.0, -2.0]
-    tip = np.append(arm.forward(Q0), 0.0)
-    room = np.array([2, 0.5, 1])
-    clearance = fp.Clearance(LINKS, tip_lower=tip - room, tip_upper=tip + room)
-    run = fp.track(arm, fp.Line(ways, 2.0), fpbm(), Q0, dt=0.01, limits=WIDE, clearance=clearance)
-    with Viewer(run, port=0) as viewer:
-        viewer.time = 2.0
-        assert "(tip and lower y)" in say(viewer)
-        assert not viewer._scene._shapes._gap.visible
 
 
 @given(st.integers(0, 10**6))

@@ -177,9 +177,10 @@ class Request:
         at_rest: whether it has to begin at rest; limited: whether limits are kept though nobody asks.
         """
         table = {"limits": {}, **self.table} if limited else self.table
-        if "clearance" in table and "clearance" not in self.sections:
-            command = click.get_current_context().info_name
-            raise click.ClickException(f"{command} keeps clear of nothing: leave clearance out, or use track")
+        for section in ("clearance", "bounds"):
+            if section in table and "clearance" not in self.sections:
+                command = click.get_current_context().info_name
+                raise click.ClickException(f"{command} does not take {section}: leave {section} out, or use track")
         if kind is not None:
             table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):

@@ -106,12 +106,14 @@ def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
-    options = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
+    options: dict[str, Any] = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
     if "scale" in arrays:
         options.setdefault("null_damping", 0.0)  # Trackers before that option added none.
     for name in ("limits", "clearance"):
         if options.get(name) is not None:
             options[name] = from_table(options[name], name=name)
+    if "bounds" in options:
+        options["bounds"] = tuple(from_table(each, name="bounds") for each in options["bounds"])
     if options.get("stack") is not None:
         options["stack"] = from_table(options["stack"], TASKS, "stack")
     status = meta["status"]

@@ -25,6 +25,7 @@ from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Path
 from ..schemes import Scheme
 from ..table import to_table
+from ..task_bounds import TaskBounds
 from ..tasks import Stack
 from .sections import (
     FREE,
@@ -70,6 +71,7 @@ class Motion:
     stack: Stack | None  # None where the tip's task is the only one.
     limits: JointLimits | None  # None where they are not kept.
     clearance: Clearance | None  # What is kept clear of, within limits.
+    bounds: tuple[TaskBounds, ...]  # Of tasks, within limits.
 
     @property
     def q0(self) -> Array:
@@ -112,7 +114,9 @@ class Motion:
         keywords = {**self.keywords, "qd0": self.options.qd0}
         with job_errors():
             if self.limits is not None:
-                return track(self.arm, self.path, self.scheme, self.q0, clearance=self.clearance, **keywords)
+                return track(
+                    self.arm, self.path, self.scheme, self.q0, clearance=self.clearance, bounds=self.bounds, **keywords
+                )
             del keywords["limits"]
             return simulate(self.arm, self.path, self.scheme, self.q0, partial=True, **keywords)
 
@@ -132,7 +136,8 @@ def prepare(job: Table) -> Motion:
             missing = ": is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is usual"
             raise JobError(wrong("limits.acceleration", None, missing))
     clearance = make("clearance", full["clearance"], arm) if "clearance" in full else None
-    motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance)
+    bounds = make("bounds", full.get("bounds", []), arm)
+    motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance, bounds)
     with job_errors():
         try:
             name, kind = led_task(options.task, stack)
@@ -162,8 +167,10 @@ def filled(job: Table, arm: Arm) -> Table:
         preset = job["arm"].get("name")
         run["q0"] = list(READY.get(preset) or ready(arm, kind))
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
-    if "clearance" in job:
+    if "bounds" in job:
         full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.
+    if "clearance" in job:
+        full["limits"] = job.get("limits", {})
         full["clearance"] = with_kind(job["clearance"])
         if full["clearance"]["kind"] == job["arm"]["kind"] == "urdf":
             ends = {key: job["arm"][key] for key in ("tip", "base") if key in job["arm"]}

@@ -14,7 +14,7 @@ from ..errors import ParameterError, suggestion, wrong
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
 from ..schemes import SCHEMES
-from ..table import Makers, from_table, keys, problems
+from ..table import BOUNDS, Makers, from_table, keys, problems
 from ..tasks import TASKS
 
 Table = dict[str, Any]
@@ -42,6 +42,7 @@ SECTIONS: dict[str, Makers] = {
     "task": TASKS,  # A list of tables: the tasks of a stack.
     "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
+    "bounds": BOUNDS,  # A list of tables.
     "clearance": CLEARANCES,  # Which of them goes by whether there are capsules.
 }
 FREE = {"path": "circle", "scheme": "fpbm"}  # The kind that is taken where the section is missing.
@@ -115,8 +116,10 @@ def make(section: str, said: Any, arm: Arm | None = None) -> Any:
 
 def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
     """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
-    if section == "task" and isinstance(said, dict):
-        return [said]
+    if section in ("task", "bounds") and isinstance(said, dict):
+        said = [said]
+    if section == "bounds" and isinstance(said, list):
+        return [{"kind": section, **each} if isinstance(each, dict) else each for each in said]
     if not isinstance(said, dict):
         return said
     if section == "clearance":

@@ -1,5 +1,6 @@
 """A whole motion: simulated under the plain law, or tracked within the joints' limits."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..clearance import Clearance
 from ..errors import ResolutionError, not_one_of, wrong
 from ..paths import Path
 from ..schemes import Scheme
+from ..task_bounds import TaskBounds
 from ..tasks import Stack
 from .run import Run, RunStatus
 
@@ -27,6 +29,7 @@ class LimitOptions(NamedTuple):
     singular_brake: float = 10.0
     null_damping: float = 2.0
     clearance: Clearance | None = None
+    bounds: Sequence[TaskBounds] = ()
     stack: Stack | None = None
     task: str = ""  # Of the stack's, the one that follows the path.
 
@@ -107,6 +110,7 @@ def track(
     singular_brake: float = 10.0,
     null_damping: float = 2.0,
     clearance: Clearance | None = None,
+    bounds: Sequence[TaskBounds] = (),
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
@@ -123,7 +127,7 @@ def track(
         arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
         As for Tracker.
-    singular_radius, singular_brake, null_damping, clearance
+    singular_radius, singular_brake, null_damping, clearance, bounds
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
@@ -138,6 +142,7 @@ def track(
         singular_brake,
         null_damping,
         clearance,
+        tuple(bounds),
         stack,
         name,
     )

@@ -11,6 +11,7 @@ from ..capsule import Capsule
 from ..clearance import Clearance
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 from ..skeleton import link_frames
+from .frames import z_to
 from .gap import nearest_points
 
 BODY, OBSTACLE, GAP = (0, 114, 178), (230, 159, 0), (204, 121, 167)
@@ -30,9 +31,6 @@ class Shapes:
         self._obstacles = [
             _add(scene, f"/clear/obstacle_{i}", each, OBSTACLE, 0.5) for i, each in enumerate(clearance.obstacles)
         ]
-        if clearance.tip_lower is not None and clearance.tip_upper is not None:
-            lower, upper = clearance.tip_lower, clearance.tip_upper
-            scene.add_box("/clear/tip", OBSTACLE, upper - lower, wireframe=True, position=(lower + upper) / 2)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         self._gap = scene.add_line_segments("/clear/gap", nothing, GAP, thickness=5.0, thickness_units="screen")
 
@@ -72,9 +70,5 @@ def _add(scene: SceneApi, name: str, shape: Obstacle, color: tuple[int, int, int
 
 
 def along(direction: Array) -> Array:
-    """Quaternion (w, x, y, z) of a rotation that takes the z axis to a direction."""
-    x, y, z = direction / np.linalg.norm(direction)
-    if z < -1.0 + 1e-12:
-        return np.array([0.0, 1.0, 0.0, 0.0])
-    quaternion = np.array([1.0 + z, -y, x, 0.0])
-    return np.asarray(quaternion / np.linalg.norm(quaternion))
+    """Quaternion (w, x, y, z) of a rotation that turns the z axis to a direction."""
+    return np.asarray(SO3.from_matrix(z_to(direction)).wxyz)

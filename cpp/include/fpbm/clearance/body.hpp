@@ -1,14 +1,17 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "fpbm/clearance/shape.hpp"
+#include "fpbm/core/rotation.hpp"
 #include "fpbm/model/links.hpp"
 
 namespace fpbm {
 
-/// One of an arm's capsules, and where it is.
+/// One of an arm's capsules, and where it is. The body of a bound on a task is a point of a link, or a unit vector that
+/// turns with a link: a point that only turning joints move, by no more than their angles.
 template <int N, typename Scalar>
 struct Body {
   using ChainVector = typename Links<N, Scalar>::ChainVector;
@@ -21,6 +24,8 @@ struct Body {
   Vector<3, Scalar> centre;
   Scalar size;               ///< Radius of the ball around it.
   Scalar reach = Scalar(0);  ///< Most that a motion in question can move its axis.
+  bool is_direction = false;
+  Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Most toward a bound of a task.
 
   Body(const Links<N, Scalar>& links, Eigen::Index link_, const Capsule<Scalar>& capsule, std::string name_)
       : link(link_),
@@ -30,9 +35,28 @@ struct Body {
     place({});
   }
 
+  /// A unit vector of a link, as a point that translations do not move. radius: see Clearance::keep_above().
+  [[nodiscard]] static Body direction(const Links<N, Scalar>& links, Eigen::Index link, const Vector<3, Scalar>& axis,
+                                      Scalar radius, std::string name) {
+    Body body(links, link, {axis, axis, radius}, std::move(name));
+    for (Eigen::Index k = 0; k < link; ++k) body.levers(k) = links.turns(k) ? Scalar(1) : Scalar(0);
+    body.is_direction = true;
+    return body;
+  }
+
+  /// Gradient of n·x by joint k of the chain with this frame, for a point x of the body and m = x × n.
+  [[nodiscard]] Scalar gradient(const Transform<Scalar>& frame, bool turns, const Vector<3, Scalar>& n,
+                                const Vector<3, Scalar>& m) const noexcept {
+    const Vector<3, Scalar> z = frame.R.col(2);
+    if (is_direction) return turns ? z.dot(m) : Scalar(0);
+    // n · (z × (x − p)) = z · ((x − p) × n)
+    return turns ? z.dot(Vector<3, Scalar>(m - cross(frame.p, n))) : z.dot(n);
+  }
+
   /// frame: that of its link.
   void place(const Transform<Scalar>& frame) noexcept {
     now = placed(in_link, frame);
+    if (is_direction) now.a = now.b = frame.R.lazyProduct(in_link.a);
     centre = (now.a + now.b) / Scalar(2);
     size = (now.b - now.a).norm() / Scalar(2) + now.radius;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -13,6 +14,7 @@
 #include "fpbm/clearance/open_pairs.hpp"
 #include "fpbm/model/links.hpp"
 #include "fpbm/model/spread_posture.hpp"
+#include "fpbm/task/link_frame.hpp"
 
 namespace fpbm {
 
@@ -27,12 +29,19 @@ class Clearance {
   using Body = fpbm::Body<N, Scalar>;
   using Names = std::pair<std::string, std::string>;
 
+  /// Most of the speed of a body over some coordinates of the base frame [m/s], or [rad/s] of a direction.
+  struct SpeedBound {
+    Body body;
+    std::array<bool, 3> rows;
+    Scalar most;
+  };
+
   /// margin: least distance of a pair [m]. allowed: names of pairs that need not be kept apart. Links next to one
   /// another need not either. Throws std::invalid_argument where a number is out of range, a link does not exist, or
   /// the arm reaches beyond a prismatic joint without ends.
   Clearance(const Chain<Scalar>& chain, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
-      : links_(chain), tip_(links_.in_frame(links_.count(), chain.tip.p)), obstacles_(obstacles), margin_(margin) {
+      : links_(chain), tip_(chain.tip), obstacles_(obstacles), margin_(margin) {
     validation::require_non_negative("margin", margin);
     for (std::size_t i = 0; i < capsules.size(); ++i) {
       const auto& [link, capsule, name] = capsules[i];
@@ -63,7 +72,7 @@ class Clearance {
     }
     leave_out_overlaps(chain);
     open_.resize(pairs_.size());
-    named_ = bodies_.size();
+    shape_pairs_ = pairs_.size();
   }
 
   [[nodiscard]] const Links<N, Scalar>& links() const noexcept { return links_; }
@@ -77,8 +86,8 @@ class Clearance {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
   }
 
-  /// Whether a pair is the tip with a wall of its box: not a pair that `allowed` could name.
-  [[nodiscard]] bool is_of_box(const ShapePair& pair) const noexcept { return pair.first >= named_; }
+  /// Number of pairs of shapes; the pairs behind these are bounds of tasks.
+  [[nodiscard]] std::size_t shape_pairs() const noexcept { return shape_pairs_; }
 
   /// Pairs that overlap in all of many postures, which no motion could keep apart: left out.
   [[nodiscard]] const std::vector<ShapePair>& left_out() const noexcept { return left_out_; }
@@ -100,33 +109,41 @@ class Clearance {
   }
   [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
 
-  /// Keeps the tip's speed below one [m/s]. Throws std::invalid_argument unless it is positive; infinite for none.
-  void bound_tip_speed(Scalar most) {
-    if (!(most > Scalar(0))) validation::fail("tip_speed", most, "positive, or infinite");
-    tip_speed_ = most;
+  /// Adds bounds on a task's coordinates: PositionBounds, AxisBounds. Throws std::invalid_argument as they do.
+  template <typename Bounds>
+  void keep(const Bounds& bounds) {
+    bounds.add_to(*this);
   }
-  [[nodiscard]] Scalar tip_speed() const noexcept { return tip_speed_; }
 
-  /// Where the tip is in the last link's frame.
-  [[nodiscard]] const Vector3& tip() const noexcept { return tip_; }
+  /// The origin of a frame, as the body of a bound. Throws std::invalid_argument where there is no such link.
+  [[nodiscard]] Body point_of(const LinkFrame<Scalar>& frame, const std::string& name) const {
+    const auto [link, pose] = in_link(frame);
+    return {links_, link, {links_.in_frame(link, pose.p), links_.in_frame(link, pose.p), -margin_}, name};
+  }
 
-  /// Keeps the tip within a box in the base frame, from lower to upper [m]: six walls that nothing else heeds.
-  void keep_tip_within(const Vector3& lower, const Vector3& upper) {
-    const Eigen::Index last = links_.count();
-    bodies_.emplace_back(links_, last, Capsule<Scalar>{tip_, tip_, Scalar(0)}, "tip");
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(lower(axis) < upper(axis))) {
-        validation::fail(validation::element("lower", axis), lower(axis), "below upper");
-      }
-      for (const Scalar side : {Scalar(-1), Scalar(1)}) {
-        const Vector3 inward = -side * Vector3::Unit(axis);
-        const std::string name = std::string(side < Scalar(0) ? "lower " : "upper ") + "xyz"[axis];
-        pairs_.push_back({bodies_.size() - 1, obstacles_.size(), true});
-        obstacles_.push_back({name, HalfSpace<Scalar>{inward, -side * (side < Scalar(0) ? lower : upper)(axis)}});
-      }
-    }
+  /// The same of an axis of a frame, a unit vector.
+  [[nodiscard]] Body direction_of(const LinkFrame<Scalar>& frame, const Vector3& axis, const std::string& name) const {
+    const auto [link, pose] = in_link(frame);
+    return Body::direction(links_, link, links_.in_frame(link, pose.R * axis), -margin_, name);
+  }
+
+  /// Keeps n·x of the point x of a body at offset or above. The radius of the body, −margin(), takes the margin of
+  /// shapes off. deceleration: most before the bound [1/s²].
+  void keep_above(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
+    if (!(deceleration > Scalar(0))) validation::fail("acceleration", deceleration, "positive, or infinite");
+    body.deceleration = deceleration;
+    pairs_.push_back({bodies_.size(), obstacles_.size(), true});
+    obstacles_.push_back({body.name, HalfSpace<Scalar>{n, offset}});
+    bodies_.push_back(std::move(body));
     open_.resize(pairs_.size());
   }
+
+  /// Keeps the speed of a body at a bound or below. Throws std::invalid_argument unless that is positive.
+  void bound_speed(SpeedBound bound) {
+    if (!(bound.most > Scalar(0))) validation::fail("velocity", bound.most, "positive, or infinite");
+    if (std::isfinite(bound.most)) speed_bounds_.push_back(std::move(bound));
+  }
+  [[nodiscard]] const std::vector<SpeedBound>& speed_bounds() const noexcept { return speed_bounds_; }
 
   /// Whether any obstacle moves by itself.
   [[nodiscard]] bool moves() const noexcept {
@@ -138,6 +155,7 @@ class Clearance {
   void place(const JointVector& q) noexcept {
     links_.place(q, frames_);
     for (Body& body : bodies_) body.place(frames_[static_cast<std::size_t>(body.link)]);
+    for (SpeedBound& bound : speed_bounds_) bound.body.place(frames_[static_cast<std::size_t>(bound.body.link)]);
   }
 
   /// A lower bound on the distance of a pair where the arm is placed, found faster than nearest_of().
@@ -161,10 +179,14 @@ class Clearance {
   /// Pairs that a question is still open about, for who asks it.
   [[nodiscard]] OpenPairs& open() noexcept { return open_; }
 
-  /// The pair that is nearest to one another where the arm is placed, and its distance; infinite without pairs.
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept {
+  /// The pair of shapes that is nearest to one another where the arm is placed, and its distance; infinite without
+  /// pairs.
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept { return nearest_pair(0, shape_pairs_); }
+
+  /// The same of the pairs of shapes or the bounds of tasks from a number up to another.
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(std::size_t first, std::size_t end) const noexcept {
     std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (std::size_t i = first; i < end; ++i) {
       if (roughly(pairs_[i]) >= found.second) continue;
       const Scalar distance = nearest_of(pairs_[i]).distance;
       if (distance < found.second) found = {i, distance};
@@ -173,6 +195,16 @@ class Clearance {
   }
 
  private:
+  /// Link and pose of a frame in that of the link's joint.
+  [[nodiscard]] std::pair<Eigen::Index, Transform<Scalar>> in_link(const LinkFrame<Scalar>& frame) const {
+    constexpr int kTip = -1;
+    if (frame.link() == kTip) return {links_.count(), tip_ * frame.offset()};
+    if (frame.link() < 0 || frame.link() > links_.count()) {
+      validation::fail("frame", frame.link(), "the number of a link, at most ", static_cast<int>(links_.count()));
+    }
+    return {frame.link(), frame.offset()};
+  }
+
   void leave_out_overlaps(const Chain<Scalar>& chain) {
     if (pairs_.empty()) return;
     constexpr int kPostures = 256;
@@ -189,16 +221,16 @@ class Clearance {
   }
 
   Links<N, Scalar> links_;
-  Vector3 tip_;  ///< In the last link's frame.
-  std::vector<Body> bodies_;
-  std::size_t named_ = 0;  ///< Bodies before these are the capsules; then comes the tip, once it is kept in a box.
+  Transform<Scalar> tip_;     ///< In the frame of the last joint.
+  std::vector<Body> bodies_;  ///< Those of bounds of tasks come last.
+  std::size_t shape_pairs_ = 0;
+  std::vector<SpeedBound> speed_bounds_;
   std::vector<Obstacle<Scalar>> obstacles_;
   std::vector<ShapePair> pairs_;
   std::vector<ShapePair> left_out_;
   OpenPairs open_;
   Scalar margin_;
   Away<Scalar> away_;
-  Scalar tip_speed_ = std::numeric_limits<Scalar>::infinity();
   typename Links<N, Scalar>::Frames frames_;
 };
 

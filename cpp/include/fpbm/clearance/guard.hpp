@@ -6,7 +6,7 @@
 
 #include "fpbm/clearance/advance.hpp"
 #include "fpbm/clearance/motion_away.hpp"
-#include "fpbm/clearance/tip_speed.hpp"
+#include "fpbm/clearance/speed_bound.hpp"
 #include "fpbm/clearance/too_close.hpp"
 #include "fpbm/limits/rows.hpp"
 
@@ -22,7 +22,7 @@ template <Level kLevel, int N, typename Scalar = double>
 class Guard {
  public:
   static constexpr int kPairs = 16;         ///< Rows for pairs, at most: of more, those with least to spare.
-  static constexpr int kRows = kPairs + 1;  ///< One for the tip's speed.
+  static constexpr int kRows = kPairs + 4;  ///< The last ones for speeds.
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
@@ -39,8 +39,12 @@ class Guard {
     const auto [pair, distance] = clearance_.nearest_pair();
     if (!(distance >= clearance_.margin())) {
       const ShapePair& close = clearance_.pairs()[pair];
-      reject_close(clearance_.names(close), static_cast<double>(distance), static_cast<double>(clearance_.margin()),
-                   clearance_.is_of_box(close));
+      reject_close(clearance_.names(close), static_cast<double>(distance), static_cast<double>(clearance_.margin()));
+    }
+    const auto [bound, room] = clearance_.nearest_pair(clearance_.shape_pairs(), clearance_.pairs().size());
+    if (!(room >= clearance_.margin())) {
+      validation::reject("q0", ": is beyond the bound '" + clearance_.names(clearance_.pairs()[bound]).first +
+                                   "', must be within the bounds of tasks");
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);
@@ -87,16 +91,19 @@ class Guard {
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
+    Scalar gaps[kPairs];
     Scalar spares[kPairs];  // By how much gaps close slower than they may.
     for (const ShapePair& pair : clearance_.pairs()) {
       const Scalar moves = pair.world ? time * clearance_.obstacles()[pair.second].velocity.norm() : Scalar(0);
-      if (clearance_.roughly(pair) >= clearance_.margin() + clearance_.bodies()[pair.first].reach + moves) continue;
+      const auto& body = clearance_.bodies()[pair.first];
+      const bool gentle = std::isfinite(body.deceleration);  // Which may take more than the quickest stop does.
+      if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + body.reach + moves) continue;
       const Bend<N, Scalar> bend(clearance_, pair, sweep);
       const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
       const Scalar far =
           clearance_.margin() + bend.c0 + bend.c1 + bend.c2 + moves + reach(clearance_, pair, fastest, Scalar(1));
       const Nearest<Scalar> found = clearance_.nearest_of(pair);
-      if (found.distance >= far) continue;
+      if (!gentle && found.distance >= far) continue;
       room_ += found.distance;
       const Separation<N, Scalar> plane(clearance_, pair, found);
       const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
@@ -106,13 +113,15 @@ class Guard {
         const auto& gradient = between ? nearest : plane.gradient[e];
         const JointVector g = clearance_.links().by_drive(gradient);
         const Scalar left = gap - taken - beyond_slope(sweep, speed, gradient, average);
-        const Scalar spare = kShare * left / time - plane.closing + g.dot(state.qd);
+        const Scalar spare =
+            most_closing(gap - clearance_.margin(), kShare * left / time, body, h) - plane.closing + g.dot(state.qd);
         const Eigen::Index k = row_for(spare, spares, rows.count);
         if (k == kPairs) continue;
         spares[k] = spare;
         pairs[k] = &pair;
         slack[k] = plane.distance + nearest.dot(sweep.way);  // At the way's end, without what bends it.
         closing[k] = plane.closing;
+        gaps[k] = gap - clearance_.margin();
         rows.b(k) = left;
         rows.g.col(k) = g;
       }
@@ -124,17 +133,18 @@ class Guard {
       const Scalar bent = slack[k] - clearance_.nearest_of(*pairs[k]).distance;
       const Scalar left = rows.b(k) - std::max(bent, Scalar(0));
       const Scalar now = rows.g.col(k).dot(state.qd);
-      rows.b(k) = (left > Scalar(0) ? kShare * left / time : left / (kShare * average)) - closing[k];  // −g·q̇
+      const Scalar hard = left > Scalar(0) ? kShare * left / time : left / (kShare * average);
+      rows.b(k) = most_closing(gaps[k], hard, clearance_.bodies()[pairs[k]->first], h) - closing[k];  // −g·q̇
       rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - late) * now;
       rows.g.col(k) *= kLevel == Level::kAcceleration ? -late * h : -late;
     }
     return rows;
   }
 
-  /// Adds a row for the tip's speed, which a tick's motion may exceed.
-  void bound_tip_speed(const JointLimits& limits, const JointState& state, const JointVector& u,
-                       Rows<N, kRows, Scalar>& rows) noexcept {
-    fpbm::bound_tip_speed(clearance_, limits, state, plan_.latency(limits), u, rows);
+  /// Adds rows for the speeds that a tick's motion would exceed.
+  void bound_speeds(const JointLimits& limits, const JointState& state, const JointVector& u,
+                    Rows<N, kRows, Scalar>& rows) noexcept {
+    fpbm::bound_speeds(clearance_, limits, state, plan_.latency(limits), u, rows);
   }
 
   /// Whether some of the rows that bound a motion are those of pairs; bit k is for row k.
@@ -175,6 +185,16 @@ class Guard {
   }
 
  private:
+  /// Most speed v at which a gap s may close. A body with a deceleration a brakes by a, v²/2a + v h ≤ s − s₀/2, until
+  /// s₀ = a τ², from where v = s/τ decelerates by less.
+  [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const Body<N, Scalar>& body, Scalar h) noexcept {
+    if (!std::isfinite(body.deceleration)) return hard;
+    const Scalar a = body.deceleration;
+    const Scalar last = a * kTail * kTail;
+    if (!(gap > last)) return std::min(hard, std::max(gap, Scalar(0)) / kTail);
+    return std::min(hard, std::sqrt(a * (a * h * h + Scalar(2) * gap - last)) - a * h);
+  }
+
   /// No joint can be faster at a tick's end, once its acceleration has been let go.
   [[nodiscard]] static JointVector fastest_of(const JointLimits& limits, const JointState& state,
                                               Scalar late) noexcept {
@@ -195,6 +215,7 @@ class Guard {
   }
 
   static constexpr Scalar kSoft = Scalar(0.05);  ///< Offset of the envelope over its deceleration [s].
+  static constexpr Scalar kTail = Scalar(0.2);   ///< τ [s], above the usual T/κ (TaskBounds.stop_gently*).
   static constexpr Scalar kShare = Scalar(0.8);  ///< κ
   static constexpr Scalar kSteps = Scalar(4);    ///< Advances that a stop along a surface may take.
 

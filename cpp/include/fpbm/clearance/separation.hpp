@@ -52,11 +52,7 @@ struct Separation {
     const Vector3 moments[2] = {cross(ends[0], n), cross(ends[1], n)};
     for (Eigen::Index k = from; k < body.link; ++k) {
       const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
-      const Vector3 z = frame.R.col(2);
-      const bool turns = clearance.links().turns(k);
-      // n · (z × (x − p)) = z · ((x − p) × n)
-      const Vector3 offset = cross(frame.p, n);
-      for (int e = 0; e < 2; ++e) gradient[e](k) = turns ? z.dot(moments[e] - offset) : z.dot(n);
+      for (int e = 0; e < 2; ++e) gradient[e](k) = body.gradient(frame, clearance.links().turns(k), n, moments[e]);
     }
   }
 

@@ -13,19 +13,14 @@ namespace fpbm {
 /// A start posture in which two shapes are closer than the margin. what() names the remedies in the terms of C++.
 class TooClose : public ParameterError {
  public:
-  /// of_box: the pair is the tip with a wall of its box.
-  TooClose(std::pair<std::string, std::string> names, double distance, double margin, bool of_box)
+  TooClose(std::pair<std::string, std::string> names, double distance, double margin)
       : ParameterError("q0", -1, distance,
-                       text(names, distance, margin,
-                            of_box ? "a larger box to keep_tip_within()"
-                                   : "allowed={{\"" + names.first + "\", \"" + names.second + "\"}}")),
+                       text(names, distance, margin, "allowed={{\"" + names.first + "\", \"" + names.second + "\"}}")),
         names_(std::move(names)),
-        margin_(margin),
-        of_box_(of_box) {}
+        margin_(margin) {}
 
   [[nodiscard]] const std::pair<std::string, std::string>& names() const noexcept { return names_; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
-  [[nodiscard]] bool of_box() const noexcept { return of_box_; }
 
   /// The message, with the remedy beside a smaller margin as a language writes it. Shapes that overlap have no margin.
   [[nodiscard]] static std::string text(const std::pair<std::string, std::string>& names, double distance,
@@ -48,16 +43,15 @@ class TooClose : public ParameterError {
 
   std::pair<std::string, std::string> names_;
   double margin_;
-  bool of_box_;
 };
 
 /// Throws TooClose; without exceptions, ends the program with its message.
-[[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance, double margin,
-                                      bool of_box) {
+[[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance,
+                                      double margin) {
 #if defined(__cpp_exceptions)
-  throw TooClose(names, distance, margin, of_box);
+  throw TooClose(names, distance, margin);
 #else
-  const TooClose error(names, distance, margin, of_box);
+  const TooClose error(names, distance, margin);
 #if !defined(EIGEN_NO_IO)
   std::fprintf(stderr, "fpbm: %s\n", error.what());
 #endif

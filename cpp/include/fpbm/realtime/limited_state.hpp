@@ -99,7 +99,7 @@ class LimitedState {
       if (guard_.draws_away() && !failed(result.status)) {
         next = motion_.after(state_, motion_.between(state_, next) + self_motion_away(loop.arm, next.q));
       }
-      guard_.bound_tip_speed(limits(), state_, motion_.between(state_, next), rows);
+      guard_.bound_speeds(limits(), state_, motion_.between(state_, next), rows);
     }
     if (!moderate(next)) result.status = Status::kNotFinite;
     const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);

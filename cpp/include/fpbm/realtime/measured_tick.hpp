@@ -19,9 +19,9 @@ template <typename Loop, typename Limiter, typename Kept, typename Space, int N,
   auto rows = guard.rows(limits, measured);
   if constexpr (Kept::kGuarded) {
     // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
-    guard.bound_tip_speed(limits, measured, loop.qdd, rows);
+    guard.bound_speeds(limits, measured, loop.qdd, rows);
     const Scalar share = kept.dt() / limits.tick();
-    if (share < Scalar(1)) guard.bound_tip_speed(limits, measured, share * loop.qdd, rows);
+    if (share < Scalar(1)) guard.bound_speeds(limits, measured, share * loop.qdd, rows);
   }
   const auto tasks = jacobian_in_metres(loop.kinematics);
   auto found = with_scale(tasks, last, Scalar(0));

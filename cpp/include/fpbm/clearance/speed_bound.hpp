@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/limits/limits.hpp"
+#include "fpbm/limits/rows.hpp"
+
+namespace fpbm {
+
+/// Gradient of n·x by the drives, for the point x of a body, where the clearance is placed: nᵀJ.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> gradient_along(const Clearance<N, Scalar>& clearance, const Body<N, Scalar>& body,
+                                               const Vector<3, Scalar>& n) noexcept {
+  typename Clearance<N, Scalar>::ChainVector row = Clearance<N, Scalar>::ChainVector::Zero(clearance.links().count());
+  const Vector<3, Scalar> moment = cross(body.now.a, n);
+  for (Eigen::Index k = 0; k < body.link; ++k) {
+    const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
+    row(k) = body.gradient(frame, clearance.links().turns(k), n, moment);
+  }
+  return clearance.links().by_drive(row);
+}
+
+/// Adds a row n · v ≤ most for each speed bound that a tick's motion u would exceed with the velocity v, with n along
+/// v: at the tick's end, or once the acceleration has been let go, which takes `late` ticks. So the speed is kept but
+/// for the change of direction in a tick, and where other rows and the joints' limits leave no motion that keeps it.
+template <Level kLevel, int N, int P, typename Scalar>
+void bound_speeds(Clearance<N, Scalar>& clearance, const Limits<kLevel, N, Scalar>& limits,
+                  const State<N, Scalar>& state, Scalar late, const Vector<N, Scalar>& u,
+                  Rows<N, P, Scalar>& rows) noexcept {
+  if (clearance.speed_bounds().empty()) return;
+  // qd + g u is the velocity then.
+  const Scalar h = limits.tick();
+  const Scalar g = kLevel == Level::kAcceleration ? late * h : late;
+  const Vector<N, Scalar> left = kLevel == Level::kAcceleration ? state.qd : (Scalar(1) - late) * state.qd;
+  const Vector<N, Scalar> then = left + g * u;
+  clearance.place(state.q + h / Scalar(2) * (state.qd + then));
+  for (const auto& bound : clearance.speed_bounds()) {
+    Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!bound.rows[static_cast<std::size_t>(axis)]) continue;
+      v(axis) = gradient_along(clearance, bound.body, Vector<3, Scalar>(Vector<3, Scalar>::Unit(axis))).dot(then);
+    }
+    const Scalar speed = v.norm();
+    if (!(speed > bound.most) || rows.count == P) continue;
+    const Vector<N, Scalar> row = gradient_along(clearance, bound.body, Vector<3, Scalar>(v / speed));
+    rows.g.col(rows.count) = g * row;
+    rows.b(rows.count++) = bound.most - row.dot(left);
+  }
+}
+
+}  // namespace fpbm

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/task/link_frame.hpp"
+
+namespace fpbm {
+
+/// Bounds on the place of a frame's origin, coordinate by coordinate in the base frame, and on its speed:
+///
+///   lowerᵢ ≤ pᵢ ≤ upperᵢ        ‖(ṗᵢ)‖ ≤ velocity, over the coordinates of `rows`
+///
+/// The bounds on the place hold at every tick, as a clearance does: a tick is taken only if the robot can stop within
+/// them from its end. The bound on the speed holds as far as the joints' limits and the other rows admit.
+template <typename Scalar = double>
+struct PositionBounds {
+  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+
+  LinkFrame<Scalar> frame;
+  Vector<3, Scalar> lower = Vector<3, Scalar>::Constant(-kNone);  ///< [m]
+  Vector<3, Scalar> upper = Vector<3, Scalar>::Constant(kNone);   ///< [m]
+  Scalar velocity = kNone;                                        ///< [m/s]
+  Scalar deceleration = kNone;                                    ///< Most before lower and upper [m/s²].
+  std::array<bool, 3> rows = {true, true, true};                  ///< Of the speed.
+  std::string name = "tip";
+
+  /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
+  template <int N>
+  void add_to(Clearance<N, Scalar>& clearance) const {
+    const auto body = [&](const std::string& bound) { return clearance.point_of(frame, bound + " of " + name); };
+    for (int i = 0; i < 3; ++i) {
+      if (!(lower(i) < upper(i))) validation::fail(validation::element("lower", i), lower(i), "below upper");
+      const std::string axis(1, "xyz"[i]);
+      const Vector<3, Scalar> n = Vector<3, Scalar>::Unit(i);
+      if (std::isfinite(lower(i))) clearance.keep_above(body("lower " + axis), n, lower(i), deceleration);
+      if (std::isfinite(upper(i))) clearance.keep_above(body("upper " + axis), -n, -upper(i), deceleration);
+    }
+    clearance.bound_speed({body("speed"), rows, velocity});
+  }
+};
+
+/// Bounds on the angle θ between an axis of a frame and a direction d, a cone about d, and on the speed of the axis:
+///
+///   lower ≤ θ ≤ upper        ‖ȧ‖ ≤ velocity
+///
+/// The bounds on the angle hold at every tick, as those of PositionBounds: cos θ = d·a is the coordinate along d of the
+/// unit vector a, a point that turning joints move.
+template <typename Scalar = double>
+struct AxisBounds {
+  static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
+
+  LinkFrame<Scalar> frame;
+  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the frame; its length does not matter.
+  Vector<3, Scalar> direction;                          ///< In the base frame; its length does not matter.
+  Scalar lower = Scalar(0);                             ///< [rad]
+  Scalar upper = kNone;                                 ///< [rad]; from π on there is no bound.
+  Scalar velocity = kNone;                              ///< [rad/s]
+  Scalar deceleration = kNone;                          ///< Most of cos θ before the bounds [1/s²].
+  std::string name = "axis";
+
+  /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
+  template <int N>
+  void add_to(Clearance<N, Scalar>& clearance) const {
+    const Vector<3, Scalar> a = unit_vector("axis", axis);
+    const Vector<3, Scalar> d = unit_vector("direction", direction);
+    validation::require_non_negative("lower", lower);
+    if (!(lower < upper)) validation::fail("lower", lower, "below upper");
+    constexpr Scalar kHalfTurn = Scalar(3.14159265358979323846);
+    const auto body = [&](const char* bound) { return clearance.direction_of(frame, a, bound + (" of " + name)); };
+    if (upper < kHalfTurn) clearance.keep_above(body("largest angle"), d, std::cos(upper), deceleration);
+    if (lower > Scalar(0)) clearance.keep_above(body("least angle"), -d, -std::cos(lower), deceleration);
+    clearance.bound_speed({body("speed"), {true, true, true}, velocity});
+  }
+
+ private:
+  [[nodiscard]] static Vector<3, Scalar> unit_vector(const char* name, const Vector<3, Scalar>& vector) {
+    validation::require_finite(name, vector);
+    const Scalar length = vector.stableNorm();
+    if (!(length > Scalar(0))) validation::fail(name, Scalar(0), "longer: it must point somewhere");
+    return vector / length;
+  }
+};
+
+}  // namespace fpbm

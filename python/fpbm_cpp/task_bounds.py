@@ -1,0 +1,108 @@
+"""Bounds on coordinates of tasks: a wall for a point of the robot, a cone for an axis, a speed."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY
+from math import inf, pi
+from typing import ClassVar
+
+import numpy as np
+
+from ._types import Array, OptionalArrayField
+from .errors import wrong
+from .parameter import POSITIVE, Data, Parameter, data, parameter
+from .tasks import POSITION, AxisTask, PositionTask
+
+RANGE = Parameter(shape="() or (m,)", infinite=True, unit="m, rad")
+
+
+@data
+class TaskBounds(Data):
+    """Bounds on the coordinates of a task.
+
+    Of a PositionTask, lower and upper are positions along the base frame's axes, an entry for each of its rows. Of an
+    AxisTask, they are the least and the largest angle between the axis and the task's x: a cone about x.
+
+    lower and upper hold at every tick: a tick is taken only if the robot can stop within them from its end. velocity
+    and acceleration hold as far as the joints' limits and the other bounds admit.
+
+    Raises ParameterError where the task is another one, a bound is out of range, or lower is not below upper.
+    """
+
+    kind: ClassVar[str] = "bounds"
+    task: PositionTask | AxisTask = parameter("Whose coordinates; its gains do not matter.")
+    lower: OptionalArrayField = parameter("Lowest values; none where not given.", RANGE, default=None)
+    upper: OptionalArrayField = parameter("Highest values; none where not given.", RANGE, default=None)
+    _: KW_ONLY
+    velocity: float = parameter(
+        "Highest speed: norm of the velocity of the task's rows, or of the axis.",
+        POSITIVE,
+        default=inf,
+        infinite=True,
+        unit="m/s, rad/s",
+    )
+    acceleration: float = parameter(
+        "Deceleration before lower and upper; of an axis, of the cosine of the angle. By default the joints' most.",
+        POSITIVE,
+        default=inf,
+        infinite=True,
+        unit="m/s^2, 1/s^2",
+    )
+
+    def _finish(self) -> None:
+        task = self.task
+        if isinstance(task, PositionTask):
+            if task.axes != "base":
+                raise wrong("task.axes", task.axes, f" = {task.axes!r}: must be 'base', along which bounds are")
+        elif not isinstance(task, AxisTask):
+            raise wrong("task", task, f" = {task!r:.80}: must be a PositionTask or an AxisTask")
+        elif task.x is None:
+            raise wrong("task.x", None, ": must be given, the direction from which the angle is measured")
+        rows = len(task.rows or POSITION) if isinstance(task, PositionTask) else 1
+        for name, missing in (("lower", -inf), ("upper", inf)):
+            values = getattr(self, name)
+            values = np.full(rows, missing) if values is None else np.atleast_1d(values)
+            if values.shape not in ((rows,), (1,)):
+                raise wrong(name, values, f" has {len(values)} entries: must have {rows}, one for each row")
+            object.__setattr__(self, "_" + name, np.broadcast_to(values, (rows,)))
+        for i, (low, high) in enumerate(zip(self._lower, self._upper)):
+            if not low < high:
+                raise wrong("lower", float(low), f"[{i}] = {low:g}: must be below upper")
+        if isinstance(task, AxisTask) and self.lower is not None and not 0.0 <= self._lower[0] < pi:
+            raise wrong("lower", self.lower, f" = {self._lower[0]:g}: must be an angle from 0 to pi")
+
+    _lower: ClassVar[Array]
+    _upper: ClassVar[Array]
+
+    # What the compiled part reads.
+
+    @property
+    def selected(self) -> list[bool]:
+        """Which of x, y and z the rows are."""
+        assert isinstance(self.task, PositionTask)
+        return [row in (self.task.rows or POSITION) for row in POSITION]
+
+    @property
+    def lower_corner(self) -> list[float]:
+        """Lower bounds of x, y and z [m]."""
+        return self._corner(self._lower, -inf)
+
+    @property
+    def upper_corner(self) -> list[float]:
+        """Upper bounds of x, y and z [m]."""
+        return self._corner(self._upper, inf)
+
+    @property
+    def least_angle(self) -> float:
+        """Of an axis [rad]."""
+        return max(float(self._lower[0]), 0.0)
+
+    @property
+    def largest_angle(self) -> float:
+        """Of an axis [rad]; infinite where there is no bound."""
+        return float(self._upper[0])
+
+    def _corner(self, values: Array, missing: float) -> list[float]:
+        assert isinstance(self.task, PositionTask)
+        rows = list(self.task.rows or POSITION)
+        return [float(values[rows.index(row)]) if row in rows else missing for row in POSITION]
