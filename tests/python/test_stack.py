@@ -333,6 +333,30 @@ def test_gains_are_checked(panda, balanced):
             fp.Tracker(panda, balanced, READY, **wrong)
 
 
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+def test_the_largest_gains_that_are_accepted_damp_errors(panda, level):
+    """The tip stands still while its level's own gain is the largest, and a lower level meets its limits."""
+    largest = 1.0 / DT
+    scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
+    last = []
+    for gain in (0.95 * largest, 1.05 * largest):
+        tip = fp.PositionTask(k1=gain, k2=0, k=gain)
+        stack = fp.Stack(tip, fp.PostureTask(k1=100, k2=0, k=100))
+        if gain > largest:
+            with pytest.raises(fp.ParameterError, match=r"k1? = 1050: must be at most 1000 in a stack of several"):
+                fp.Tracker(panda, scheme, READY, stack=stack)
+            fp.Tracker(panda, scheme, READY, stack=fp.Stack(tip))  # A level alone is resolved by RK4.
+            continue
+        tracker = fp.Tracker(panda, scheme, READY, stack=stack)
+        held = tracker.tip["position"]
+        for i in range(3000):
+            swing = 2.0 * np.cos(40 * i * DT) * np.array([1, -1, 1, -1, 1, -1, 1])
+            tick = tracker.tick({"position": (held, np.zeros(3)), "posture": (tracker.q, swing)})
+            last.append(np.linalg.norm(panda.jacobian(tick.q) @ tick.qd))
+        assert tick.saturated.any() or tick.scales[1] < 1
+    assert max(last[-1000:]) < 1e-4
+
+
 def test_wrong_references_change_nothing(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     place = tracker.tip["place"]
