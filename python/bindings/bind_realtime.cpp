@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "arrays.hpp"
 #include "clearance.hpp"
@@ -138,6 +139,7 @@ class PyTracker {
   }
 
   void enable(int level, bool on) { stack().enable(level, on); }
+  void reorder(const std::vector<int>& order) { stack().reorder(order); }
   [[nodiscard]] Array frame(const std::string& task) { return stack().frame(task); }
 
   [[nodiscard]] PyTick tick(const ArrayLike& x, const OptionalArray& xd, const OptionalArray& xdd) {
@@ -379,6 +381,10 @@ Of a stack, from where the task of that name is; it may be left out if one task 
            R"(Resolves a level of a stack below the first, counted from 0, or leaves it out.
 
 Commands stay within all bounds.)")
+      .def("reorder", &PyTracker::reorder, py::arg("order"),
+           R"(Reorders the levels of a stack: level k becomes what was level order[k].
+
+The tasks keep their targets; tick.scales and enable() count the new levels. Commands stay within all bounds.)")
       .def("frame", &PyTracker::frame, py::arg("task"),
            "Of a stack: the frame of the task of that name, in the base frame, shape (4, 4); of an axis task, z is the "
            "axis.")

@@ -1,5 +1,9 @@
 #include "stack_loop.hpp"
 
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -74,6 +78,20 @@ void StackLoop::enable(int level, bool on) {
     validation::fail("level", level, "that of a level below the first, at most ", motion_.plan().levels - 1);
   }
   tracker().enable(level, on);
+}
+
+void StackLoop::reorder(const std::vector<int>& order) {
+  std::array<int, AnyStack::kLevels> whole{};
+  std::iota(whole.begin(), whole.end(), 0);  // Levels without tasks stay last.
+  const auto levels = static_cast<std::size_t>(motion_.plan().levels);
+  if (order.size() == levels) std::copy(order.begin(), order.end(), whole.begin());
+  const auto count = motion_.plan().levels;
+  const bool sound =
+      order.size() == levels && std::all_of(order.begin(), order.end(), [count](int k) { return k < count; });
+  if (!sound || !motion_.reorder(whole)) {
+    validation::reject(
+        "order", ": must have each level from 0 to " + std::to_string(count - 1) + " once, and an enabled one first");
+  }
 }
 
 PyPoints StackLoop::points() const {

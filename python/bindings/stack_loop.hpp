@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <pybind11/typing.h>
 
@@ -40,6 +41,9 @@ class StackLoop {
 
   /// Throws std::invalid_argument unless there is such a level below the first.
   void enable(int level, bool on);
+  /// Level k becomes what was level order[k]. Throws std::invalid_argument unless order has each level once, and its
+  /// first level is enabled.
+  void reorder(const std::vector<int>& order);
   void stop() noexcept { motion_.stop(); }
   void resume() noexcept { motion_.resume(); }
 

@@ -1,5 +1,6 @@
 #include "stack_motion.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "fpbm/realtime/reference_sources.hpp"
@@ -72,6 +73,36 @@ StackMotion::Result StackMotion::tick(const Sources& sources) noexcept {
 StackMotion::Result StackMotion::resolve_measured(const State<kDynamic>& measured, const Sources& sources) {
   for (const auto& [task, source] : sources) put(*task, source, 0.0, held_);
   return tracker_->resolve_measured(measured, held_);
+}
+
+StackTarget StackMotion::target_of(const StackTask& task) const noexcept {
+  StackTarget target{{}, JointVector::Zero(task.size), JointVector::Zero(task.size), JointVector::Zero(task.size)};
+  task.at_place([&](auto space, auto i, int row) noexcept {
+    for (int j = 0; j < task.size; ++j) {
+      target.xd(j) = held_.xd(row + task.shift() + j);
+      target.xdd(j) = held_.xdd(row + task.shift() + j);
+    }
+    if constexpr (std::is_same_v<decltype(space), FrameSpace>) {
+      target.at = std::get<decltype(i)::value>(held_.x).at;
+    } else {
+      for (int j = 0; j < task.size; ++j) target.q(j) = std::get<decltype(i)::value>(held_.x)(j);
+    }
+  });
+  return target;
+}
+
+bool StackMotion::reorder(const std::array<int, AnyStack::kLevels>& order) noexcept {
+  if (!tracker_->reorder(order)) return false;
+  constexpr int kPlaces = AnyStack::kTasks / AnyStack::kLevels;
+  Reference<Space> held = Reference<Space>::hold(tracker_->tip());
+  for (StackTask& task : plan_.tasks) {
+    const StackTarget target = target_of(task);
+    const auto level = std::find(order.begin(), order.end(), task.index / kPlaces) - order.begin();
+    task.index = static_cast<int>(level) * kPlaces + task.index % kPlaces;
+    put(task, target, held);
+  }
+  held_ = held;
+  return true;
 }
 
 void StackMotion::stop() noexcept {

@@ -34,6 +34,9 @@ class StackMotion {
   /// Throws std::invalid_argument where the scheme is of velocity level.
   [[nodiscard]] Result resolve_measured(const State<kDynamic>& measured, const Sources& sources);
 
+  /// Level k becomes what was level order[k], with its targets. False, without an effect, as Stack::reorder().
+  bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept;
+
   void stop() noexcept;
   void resume() noexcept;
 
@@ -47,6 +50,7 @@ class StackMotion {
   [[nodiscard]] static JointVector error_of(const StackTask& task, const Result& tick) noexcept;
 
  private:
+  [[nodiscard]] StackTarget target_of(const StackTask& task) const noexcept;
   void put(const StackTask& task, const StackTarget& target, Reference<Space>& to) const noexcept;
   void put(const StackTask& task, const Source& source, double seconds, Reference<Space>& to) const noexcept;
 

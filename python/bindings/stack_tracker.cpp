@@ -30,6 +30,7 @@ class StackTrackerOf final : public StackTracker {
   }
 
   bool enable(int level, bool on) noexcept override { return tracker_.enable(level, on); }
+  bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept override { return tracker_.reorder(order); }
   void stop() noexcept override { tracker_.stop(); }
   void resume() noexcept override { tracker_.resume(); }
 

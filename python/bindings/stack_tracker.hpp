@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "fpbm/any/any_stack.hpp"
@@ -27,6 +28,7 @@ class StackTracker {
   [[nodiscard]] virtual Result resolve_measured(const State<kDynamic>& measured, const Reference<Space>& reference) = 0;
 
   virtual bool enable(int level, bool on) noexcept = 0;
+  virtual bool reorder(const std::array<int, AnyStack::kLevels>& order) noexcept = 0;
   virtual void stop() noexcept = 0;
   virtual void resume() noexcept = 0;
 

@@ -381,3 +381,39 @@ def test_wrong_references_change_nothing(panda, balanced):
     for wrong in (lambda: single.tick({}), lambda: single.enable(1, True), lambda: single.frame("tip")):
         with pytest.raises(fp.ParameterError, match="has one task"):
             wrong()
+
+
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+def test_levels_are_reordered(panda, level):
+    """Of two conflicting tasks, the one on the higher level is done. Reordering keeps all bounds, also on jerk."""
+    scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
+    stack = fp.Stack(fp.PositionTask(name="near"), fp.PositionTask(name="far"), fp.PostureTask(READY))
+    tracker = fp.Tracker(panda, scheme, READY, stack=stack)
+    tip = tracker.tip["near"]
+    goals = {"near": tip + [0, 0.1, 0], "far": tip + [0, 0.2, 0.1]}
+    q = [tracker.q]
+    tracker.tick(goals)
+    q.append(tracker.q)
+    for order, first in (([1, 0, 2], "far"), ([1, 2, 0], "near"), ([0, 1, 2], "near"), ([2, 1, 0], "far")):
+        tracker.reorder(order)
+        q += [tracker.tick({}).q for _ in range(3000)]
+        tick = tracker.tick({})
+        q.append(tick.q)
+        assert np.linalg.norm(tick.errors[first]) < 1e-5, first
+        assert np.linalg.norm(tick.errors["near" if first == "far" else "far"]) > 0.1
+    assert excess(panda.limits, np.array(q)) < 1e-9
+    jerk = np.diff(np.array(q), 3, axis=0) / DT**3
+    assert (np.abs(jerk) - panda.limits.jerk).max() < 1e-3 * panda.limits.jerk.max()
+
+
+def test_wrong_orders_change_nothing(panda, balanced):
+    tracker = fp.Tracker(panda, balanced, READY, stack=cup())
+    tracker.enable(2, False)
+    for order in ([0, 1], [0, 1, 2, 2], [0, 1, 2, 4], [-1, 0, 1, 2], [2, 0, 1, 3], []):
+        with pytest.raises(fp.ParameterError, match="order: must have each level from 0 to 3 once, and an enabled"):
+            tracker.reorder(order)
+    same = fp.Tracker(panda, balanced, READY, stack=cup())
+    same.enable(2, False)
+    goal = {"place": tracker.tip["place"] + 0.1}
+    for _ in range(100):
+        np.testing.assert_array_equal(tracker.tick(goal).q, same.tick(goal).q)

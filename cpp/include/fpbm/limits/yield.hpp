@@ -18,6 +18,7 @@ void yield(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Box
            const Rows<N, P, Scalar>& rows, const Vector<N, Scalar>& desired, Saturated<N, Scalar>& found) noexcept {
   using JointVector = Vector<N, Scalar>;
   constexpr Scalar kLittle = Scalar(0.1);  // s₀
+  constexpr Scalar kFree = Scalar(0.5);
   constexpr Scalar kRadius = Scalar(0.1);  // Damping of the least squares, as a share of ‖J‖_F.
   constexpr Scalar kDamping = Scalar(10);  // Damping of what the least squares leave free [1/s].
   const Vector<M, Scalar> task = product(J, desired);
@@ -25,11 +26,16 @@ void yield(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Box
   if constexpr (kLevel == Level::kVelocity) scale = dot(product(J, found.u), task) / squared_norm(task);
   const Scalar left = scale > Scalar(0) ? scale / kLittle : Scalar(0);
   if (!(left < Scalar(1))) return;
-  const Scalar yields = Scalar(1) - left * left;
+  Scalar yields = Scalar(1) - left * left;
   const Scalar mu = kRadius * kRadius * squared_norm(J);
   const JointVector rest =
       entrywise(qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * qd(i) : Scalar(0); });
   const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
+  // Where the task's line gives a good share of what leaving it would give, the demand is large and the line is free.
+  const Scalar gain = dot(product(J, yielded), task);
+  const Scalar kept = gain > Scalar(0) ? dot(product(J, found.u), task) / (kFree * gain) : Scalar(0);
+  if (!(kept < Scalar(1))) return;
+  yields *= kept > Scalar(0) ? Scalar(1) - kept * kept : Scalar(1);
   const JointVector blended =
       entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
   const JointVector to = box.nearest(blended);  // Round-off may leave the box.

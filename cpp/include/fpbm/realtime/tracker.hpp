@@ -188,6 +188,17 @@ class Tracker {
     return true;
   }
 
+  /// Reorders levels of one type: level k becomes what was level order[k], and so do its references. The integrals
+  /// start at zero. The commands stay within all bounds. False, without an effect, as Stack::reorder().
+  template <typename Order>
+  bool reorder(const Order& order) noexcept {
+    static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
+    if (!arm_.reorder(order)) return false;
+    kept_.correction().forget(0, Space::kRows);
+    lower_levels_.release();
+    return true;
+  }
+
   /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
   [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
   [[nodiscard]] const Guard_& guard() const noexcept { return kept_.guard(); }

@@ -76,7 +76,8 @@ inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof.
 /// Tasks on levels in strict priority: Stack(TaskLevel(a, b), c) has a and b side by side, and c below both. A level of
 /// one task needs no TaskLevel.
 ///
-/// Lower levels may be disabled from tick to tick. All sizes are known at compile time.
+/// Lower levels may be disabled from tick to tick, and levels of one type reordered. All sizes are known at compile
+/// time.
 template <typename... Levels>
 class Stack {
  public:
@@ -118,6 +119,32 @@ class Stack {
   }
   [[nodiscard]] const std::array<bool, kLevels>& enabled() const noexcept { return enabled_; }
 
+  /// Reorders levels of one type, as those of an AnyStack: level k becomes what was level order[k]. False, without an
+  /// effect, unless order has each level once, and its first level is enabled and has a task.
+  bool reorder(const std::array<int, kLevels>& order) noexcept {
+    static_assert((std::is_same_v<Levels, std::tuple_element_t<0, std::tuple<Levels...>>> && ...),
+                  "only levels of one type can be reordered");
+    std::array<bool, kLevels> seen{};
+    for (const int k : order) {
+      if (k < 0 || k >= kLevels || std::exchange(seen[static_cast<std::size_t>(k)], true)) return false;
+    }
+    if (rows(order[0]) == 0 || !enabled_[static_cast<std::size_t>(order[0])]) return false;
+    const Stack before = *this;
+    constexpr int kEach = kTasks / kLevels;
+    each_mutable([&](auto& task, auto to) noexcept {
+      constexpr int kTo = decltype(to)::value;
+      before.each([&](const auto& from, auto i) noexcept {
+        if constexpr (decltype(i)::value % kEach == kTo % kEach) {
+          if (level(decltype(i)::value) == order[static_cast<std::size_t>(level(kTo))]) task = from;
+        }
+      });
+    });
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      enabled_[k] = before.enabled_[static_cast<std::size_t>(order[k])];
+    }
+    return true;
+  }
+
   /// Binds the tasks to a robot. Throws std::invalid_argument where a task does not suit the robot, a level has more
   /// rows than the robot has joints, or the first level has no rows.
   template <typename Robot>
@@ -139,6 +166,14 @@ class Stack {
   }
 
  private:
+  template <typename F, std::size_t... i>
+  void each_mutable(F& f, std::index_sequence<i...>) noexcept {
+    (f(std::get<i>(tasks_), std::integral_constant<int, static_cast<int>(i)>{}), ...);
+  }
+  template <typename F>
+  void each_mutable(F&& f) noexcept {
+    each_mutable(f, std::make_index_sequence<kTasks>{});
+  }
   template <typename F, std::size_t... i>
   void each(F& f, std::index_sequence<i...>) const noexcept {
     (f(std::get<i>(tasks_), std::integral_constant<int, static_cast<int>(i)>{}), ...);

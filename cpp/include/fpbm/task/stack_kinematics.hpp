@@ -125,6 +125,8 @@ class RobotTasks {
   [[nodiscard]] const Stack_& stack() const noexcept { return stack_; }
   /// As Stack::enable().
   bool enable(int k, bool on) noexcept { return stack_.enable(k, on); }
+  /// As Stack::reorder().
+  bool reorder(const std::array<int, Stack_::kLevels>& order) noexcept { return stack_.reorder(order); }
   [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
 
   /// At (q, qd).
