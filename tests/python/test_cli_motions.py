@@ -640,13 +640,61 @@ def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert q0[3] == -2.3562
     limits = how.pop("limits")
     assert how.pop("clearance") is None
-    assert how == {"task": task, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
+    assert how == {"task": task, "stack": None, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
     assert (limits.velocity == 0.5).all()
     assert (limits.jerk == 1000).all()
     np.testing.assert_array_equal(limits.acceleration, panda.limits.acceleration)
     lines = result.stdout.splitlines()
     assert (lines[0], lines[-1]) == ("panda, fpbm", "waited")
     assert "radius" not in result.stdout
+
+
+STACK = """
+[arm]
+kind = "preset"
+name = "panda"
+
+[run]
+task = "seam"
+dt = 0.01
+
+[path]
+kind = "circle"
+radius = 0.05
+duration = 1.0
+
+[[task]]
+kind = "position"
+name = "seam"
+
+[[task]]
+level = 1
+kind = "axis"
+name = "torch"
+"""
+
+
+def test_jobs_of_stacks_are_shown_and_dragged(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = []
+    for page in ("Servo", "Viewer"):
+        monkeypatch.setitem(vars(viewer), page, lambda *what, **how: shown.append((what, how)) or Shown())
+    Path("stack.toml").write_text(STACK)
+    for name in ("servo", "view"):
+        result = call(name, "--job", "stack.toml", "--no-browser")
+        assert result.exit_code == 0, result.output
+    ((_, scheme, _), how), ((run,), _) = shown
+    stack = fp.Stack(fp.PositionTask(name="seam"), fp.AxisTask(name="torch"))
+    assert how["stack"] == run.stack == stack
+    assert (scheme.k1, run.task) == (0, "seam")
+
+
+def test_a_stack_is_dragged_from_a_job() -> None:
+    """To the page itself, which the job suits."""
+    pytest.importorskip("viser")
+    Path("stack.toml").write_text(STACK)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = str(server.getsockname()[1])
+        assert f"port {port} is in use" in refused("servo", "--job", "stack.toml", "--port", port, "--no-browser")
 
 
 def test_servo_has_no_path_and_always_limits() -> None:

@@ -28,6 +28,7 @@ PANDA = fp.SerialArm.preset("panda")
 READY = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])
 PLANAR = fp.PlanarArm([1, 1, 1, 1])
 BENT = np.pi / np.array([12, 12, 15, 15])
+ALIKE = 2e-5  # viser does not move what is as close as numpy.allclose [m].
 CLICK = SimpleNamespace(client="somebody", target=None)
 
 
@@ -158,11 +159,112 @@ def test_it_keeps_clear_of_what_is_dragged_to_it():
         servo.target = [2.6, 2.4]
         grip.position = np.array([2.2, 0.8, 0.0])
         servo._loop.drag("post", grip.position - place)
-        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - grip.position).max() < 1e-6)
+        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - grip.position).max() < ALIKE)
         assert servo.tick.nearest.distance >= 0.01 - 1e-9
         servo.restart()
-        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - place).max() < 1e-6)
+        until(lambda: np.abs(servo._scene._shapes._obstacles[0].position - place).max() < ALIKE)
         np.testing.assert_allclose(grip.position, place)
+
+
+def cup():
+    """Axis, place, height of the elbow, orientation, posture."""
+    return fp.Stack(
+        [fp.AxisTask(name="upright"), fp.PositionTask(name="place")],
+        fp.PositionTask("panda_joint4", rows=("z",), name="elbow"),
+        fp.OrientationTask(name="turn"),
+        fp.PostureTask(name="home"),
+    )
+
+
+def a_stack_servo(stack=None, **how):
+    scheme = fp.Balanced(0.6, np.ones(7), null_damping=2)
+    return Servo(PANDA, scheme, READY, **{"stack": stack or cup(), "port": 0, **how})
+
+
+@pytest.fixture(scope="module")
+def shared_stack():
+    with a_stack_servo() as servo:
+        yield servo
+
+
+@pytest.fixture
+def stacked(shared_stack):
+    shared_stack.restart()
+    return shared_stack
+
+
+def test_each_task_of_a_frame_has_a_handle(stacked):
+    handles = {handle.task.name: handle for handle in stacked._scene.handles}
+    assert [*handles] == ["upright", "place", "elbow", "turn"]
+    moves = {name: (not each._gizmo.disable_axes, not each._gizmo.disable_rotations) for name, each in handles.items()}
+    assert moves == {"upright": (0, 1), "place": (1, 0), "elbow": (1, 0), "turn": (0, 1)}
+    assert handles["elbow"]._gizmo.active_axes == (False, False, True)
+    names = [node for node in stacked._server.scene._handle_from_node_name if node.endswith("/name")]
+    assert len(names) == 4
+    stacked.target = {
+        "upright": fp.rotation([0.3, 0.1, 0]) @ stacked.target["upright"],
+        "place": stacked.target["place"] + [0.0, 0.2, 0.1],
+        "elbow": stacked.target["elbow"] - [0.0, 0.0, 0.05],
+        "turn": fp.rotation([0.0, 0.2, 0.1]) @ stacked.target["turn"],
+    }
+    until(lambda: np.abs(stacked.tip["place"] - stacked.target["place"]).max() < 1e-3)
+    until(lambda: np.abs(stacked.tick.qd).max() < 1e-3)
+    for name in ("upright", "place", "turn"):
+        np.testing.assert_allclose(handles[name].target, stacked.target[name], atol=1e-9)
+    tip, elbow = stacked.tip["place"], stacked.tip["elbow"]
+    for name in ("upright", "turn"):
+        np.testing.assert_allclose(handles[name].position, tip, atol=1e-3)
+    assert handles["elbow"].position[2] == stacked.target["elbow"][2]
+    np.testing.assert_allclose(handles["elbow"].position[:2], elbow[:2], atol=1e-3)  # It has no target there.
+    lines = stacked._scene._gap.points
+    assert len(lines) == 2 + 1 + 1 + 6
+    np.testing.assert_allclose(lines[3], [elbow, [*elbow[:2], stacked.target["elbow"][2]]], atol=1e-3)
+
+
+def test_targets_of_a_stack_are_a_dictionary(stacked):
+    before = stacked.target
+    assert [*before] == ["upright", "place", "elbow", "turn", "home"]
+    stacked.target = {"place": before["place"] + [0, 0.1, 0], "home": READY + 0.1}
+    np.testing.assert_array_equal(stacked.target["home"], READY + 0.1)
+    for name in ("upright", "elbow", "turn"):
+        np.testing.assert_array_equal(stacked.target[name], before[name])
+    for lie, words in [
+        ({"palce": before["place"]}, "task = 'palce': must be one of .*; did you mean 'place'"),
+        ({"upright": [0, 0, 0]}, "target of 'upright': must be finite"),
+        ({"place": [0, 0, np.nan]}, "target of 'place': must be finite"),
+        ([0, 0, 0], "target = .*: must be a dictionary of points by the names of the tasks"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            stacked.target = lie
+    with a_servo() as servo, pytest.raises(ValueError, match=r"target = .*: must be a point of the tip"):
+        servo.target = {"tip": [1, 2]}
+
+
+def test_it_says_how_each_task_and_level_fares(stacked):
+    until(lambda: "all is well" in says(stacked))
+    levels = ["upright, place", "elbow", "turn", "home"]
+    for text in (*(f"scale of {level}" for level in levels), *(f"from {name} to handle" for name in stacked.tip)):
+        assert (text in says(stacked)) == ("home to" not in text), text
+    stacked.target = {"place": stacked.target["place"] + [2.0, 0, 0]}  # Out of reach.
+    until(lambda: "Drag the handle into reach" in says(stacked))
+    frame = stacked._loop.frame("place")[:3, 3]
+    assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in says(stacked)
+    labels = [series["label"] for series in stacked._chart._plot.series]
+    assert labels == ["t [s]", "speed", "acceleration", "jerk", *(f"scale of {level}" for level in levels)]
+    assert len(stacked._chart._plot.data) == len(labels)
+
+
+def test_schemes_beside_a_stack_have_no_gains(stacked):
+    controls = stacked._controls
+    target = stacked.target
+    for kind in ("FPBM", "MVN", "WMVN", "Balanced"):
+        controls._kind.value = kind
+        controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
+        assert type(stacked.scheme).__name__ == kind
+        assert not any(controls._sliders[name].visible for name in ("k1", "k2", "k"))
+    assert "not taken" not in says(stacked)
+    for name, x in target.items():
+        np.testing.assert_array_equal(stacked.target[name], x)
 
 
 def test_it_keeps_pace_with_the_clock(servo):
@@ -196,6 +298,7 @@ def test_it_serves_until_it_is_closed():
         ({"port": -1}, "port = -1"),
         ({"urdf": "none.urdf"}, "must be left out where the arm is planar"),
         ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),
+        ({"stack": fp.PoseTask()}, "stack: must be a Stack"),
     ],
 )
 def test_bad_arguments(change, words):
@@ -270,9 +373,14 @@ def seen(page, servo, point):
 
 def drag(page, servo, goal):
     """Takes the handle by the square between its axes, in the plane, and lets it go at a goal."""
-    handle = servo._scene.handle
+    handle = servo._scene.handles[0]
     grip = np.array([0.3, 0.3, 0.0]) * handle._gizmo.scale
-    begin, end = (seen(page, servo, point + grip) for point in (handle.position, np.array([*goal, 0.0])))
+    mouse(page, *(seen(page, servo, point + grip) for point in (handle.position, np.array([*goal, 0.0]))))
+    eventually(page, lambda: np.abs(servo.target - goal).max() < 0.1)
+
+
+def mouse(page, begin, end):
+    """Moves the mouse from one place to another with its button down."""
     page.mouse.move(*begin)
     page.wait_for_timeout(200)
     page.mouse.down()
@@ -280,16 +388,19 @@ def drag(page, servo, goal):
         page.mouse.move(*(begin + share * (end - begin)))
         page.wait_for_timeout(30)
     page.mouse.up()
-    eventually(page, lambda: np.abs(servo.target - goal).max() < 0.1)
+
+
+def visit(page, servo, text):
+    page.goto(servo.url)
+    eventually(page, servo._server.get_clients)
+    page.get_by_text(text).wait_for()
+    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no graphics processor.
+    page.wait_for_timeout(2000)  # The scene comes last.
 
 
 def test_dragged_in_a_browser(page, servo):
     """By true mouse events: within reach, out of reach and back."""
-    page.goto(servo.url)
-    eventually(page, servo._server.get_clients)
-    page.get_by_text("from tip to handle").wait_for()
-    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no graphics processor.
-    page.wait_for_timeout(2000)  # The scene comes last.
+    visit(page, servo, "from tip to handle")
     for goal in ([2.0, 2.5], [2.5, 1.0]):
         drag(page, servo, goal)
         eventually(page, lambda: np.abs(servo.tip - servo.target).max() < 0.01)
@@ -311,3 +422,33 @@ def test_dragged_in_a_browser(page, servo):
     page.get_by_text("all is well").wait_for()
     page.get_by_role("button", name="back to start").click()
     eventually(page, lambda: np.abs(servo.q - BENT).max() < 1e-6)
+
+
+def test_the_handles_of_a_stack_in_a_browser(page):
+    """By true mouse events: an arc turns the axis, an arrow lifts the elbow, and nothing else has another target."""
+    stack = fp.Stack(
+        fp.AxisTask(name="upright"),
+        fp.PositionTask("panda_joint4", rows=("z",), name="elbow"),
+        fp.PostureTask(),
+    )
+    with a_stack_servo(stack) as servo:
+        visit(page, servo, "from upright to handle")
+        upright, elbow = servo._scene.handles
+        first = servo.target
+        arc = 0.65 * upright._gizmo.scale * np.array([0.0, 1.0, 1.0]) / np.sqrt(2)  # About the gizmo's x axis.
+        R = SO3(upright._gizmo.wxyz).as_matrix()
+        turned = (upright.position + R @ fp.rotation([angle, 0, 0]) @ arc for angle in (0.0, 0.4))
+        mouse(page, *(seen(page, servo, point) for point in turned))
+        expected = R @ fp.rotation([0.4, 0, 0])[:, 2]
+        eventually(page, lambda: np.abs(servo.target["upright"] - expected).max() < 0.1)
+        eventually(page, lambda: np.abs(servo.tip["upright"] - servo.target["upright"]).max() < 0.01)
+        np.testing.assert_array_equal(servo.target["elbow"], first["elbow"])
+        np.testing.assert_allclose(upright.position, servo._loop.frame("upright")[:3, 3], atol=1e-3)
+
+        grip = np.array([0.0, 0.0, 0.7 * elbow._gizmo.scale])
+        lifted = (elbow.position + grip - [0, 0, drop] for drop in (0.0, 0.1))
+        mouse(page, *(seen(page, servo, point) for point in lifted))
+        eventually(page, lambda: abs(servo.target["elbow"][2] - first["elbow"][2] + 0.1) < 0.03)
+        eventually(page, lambda: abs(servo.tip["elbow"][2] - servo.target["elbow"][2]) < 0.01)
+        np.testing.assert_allclose(servo.tip["upright"], servo.target["upright"], atol=0.01)
+        np.testing.assert_array_equal(servo.target["posture"], first["posture"])

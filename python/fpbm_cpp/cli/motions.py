@@ -159,8 +159,8 @@ def servo(request: Request, port: int, browser: bool) -> None:
 
     1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
     keeps the arm from the handle. A URDF file is shown with its meshes. What the arm keeps clear of is drawn as well;
-    arrows move boxes and capsules of the surroundings. Ctrl-C ends it. ARM and the options are those of track; of a
-    job, the path does not matter.
+    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Ctrl-C ends it. ARM and
+    the options are those of track; of a job, the path does not matter.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():
@@ -174,6 +174,7 @@ def servo(request: Request, port: int, browser: bool) -> None:
                 motion.scheme,
                 motion.q0,
                 task=motion.options.task,
+                stack=motion.stack,
                 dt=motion.options.dt,
                 limits=motion.limits,
                 clearance=motion.clearance,

@@ -6,6 +6,7 @@ Both draw what the arm keeps clear of (shapes).
 """
 
 import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -16,6 +17,7 @@ from ..clearance import Clearance
 from ..motion.simulation import simulate
 from ..paths import Path
 from ..schemes import Scheme
+from ..tasks import Stack
 
 if TYPE_CHECKING:
     from .servoing import Servo
@@ -44,7 +46,8 @@ def view(
     *,
     dt: float = 1e-3,
     hold: float = 0.0,
-    task: str = "position",
+    task: str | None = None,
+    stack: Stack | None = None,
     urdf: str | os.PathLike[str] | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -53,7 +56,8 @@ def view(
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
     Prints the page's address. The motion, as for simulate(), is made again whenever the scheme or a parameter is
-    changed on the page; one that stops early is shown as far as it went. fpbm_cpp.viewer.Viewer does not wait.
+    changed on the page; one that stops early is shown as far as it went. Of a stack, the path is that of the task that
+    follows it, and the errors are those of all tasks. fpbm_cpp.viewer.Viewer does not wait.
 
     urdf is the arm's URDF file, whose meshes are drawn, with the joints that are not the arm's at zero; without it the
     arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0' or an address on a
@@ -64,7 +68,7 @@ def view(
     """
     from . import Viewer
 
-    run = simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task, partial=True)
+    run = simulate(arm, path, scheme, q0, dt=dt, hold=hold, task=task, stack=stack, partial=True)
     Viewer(run, urdf=urdf, host=host, port=port, open_browser=open_browser).wait()
 
 
@@ -74,9 +78,10 @@ def servo(
     q0: ArrayLike,
     *,
     task: str = "position",
+    stack: Stack | None = None,
     dt: float = 1e-3,
     limits: JointLimits | None = None,
-    targets: TargetFilter | None = None,
+    targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
     clearance: Clearance | None = None,
     urdf: str | os.PathLike[str] | None = None,
     host: str = "127.0.0.1",
@@ -95,7 +100,11 @@ def servo(
     translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings, which
     follow them at 0.3 m/s.
 
-    Raises what Tracker and view() raise, and ValueError where targets is for another task or tick.
+    A stack replaces task. Each of its tasks of a frame has a handle with the task's name: arrows for a position, arcs
+    for an orientation or an axis. The z axis of the handle of an AxisTask is the target direction. targets is then a
+    dictionary of filters for positions and poses.
+
+    Raises what Tracker and view() raise, and ValueError where a filter is for another task or tick.
     """
     from . import Servo
 
@@ -104,6 +113,7 @@ def servo(
         scheme,
         q0,
         task=task,
+        stack=stack,
         dt=dt,
         limits=limits,
         targets=targets,

@@ -17,6 +17,7 @@ from ..skeleton import joint_labels
 RATE = 30.0  # Pictures per second.
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
+GAINS = ("k1", "k2", "k")
 # The numbers that only some schemes have; a slider is made for each.
 NUMBERS = {
     name: known
@@ -35,7 +36,8 @@ def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Sche
 class Controls:
     """Inputs for the scheme and its parameters; calls `on_change` when one is changed on the page.
 
-    limits: those that are kept on request, and whether they are at first; without them nobody is asked.
+    limits: those that are kept on request, and whether they are at first; without them nobody is asked. gains: whether
+    schemes have gains; beside a stack, whose tasks have them, they are 0.
     """
 
     def __init__(
@@ -46,11 +48,14 @@ class Controls:
         on_change: Callable[[], None],
         limits: JointLimits | None = None,
         limited: bool = False,
+        gains: bool = True,
     ) -> None:
         self._on_change = on_change
+        self._hidden = () if gains else GAINS
         with gui.add_folder("Scheme"):
             self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
             self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}
+            self._initial |= dict.fromkeys(self._hidden, 0.0)
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
             self._folder = gui.add_folder("weights", expand_by_default=False)
             with self._folder:
@@ -93,7 +98,7 @@ class Controls:
     def _show_sliders(self) -> None:
         known = parameters(KINDS[self._kind.value])
         for name, slider in self._sliders.items():
-            slider.visible = name in known
+            slider.visible = name in known and name not in self._hidden
         self._folder.visible = "weights" in known and not self._dense
 
     def _on_update(self, event: GuiEvent[Any]) -> None:

@@ -1,4 +1,4 @@
-"""The handle in the scene that is dragged, and what it stands for: a target of the task."""
+"""A handle in the scene that is dragged, and what it stands for: a target of a task."""
 
 from collections.abc import Callable
 from typing import Any
@@ -9,47 +9,95 @@ from viser.transforms import SO3
 
 from .._types import Array
 from ..arms import Arm, PlanarArm
+from ..tasks import POSITION, ROTATION, FrameTask, RowsTask
+from .frames import frame_of, point_of, selected
+
+ANCHORS = ("bottom-left", "top-left", "bottom-right", "top-right")  # Labels at one place do not cover each other.
+COLOURS = ((230, 60, 60), (60, 170, 60), (60, 90, 230))  # Of axes x, y and z.
+TURNING = {"axis": [2], "orientation": [0, 1, 2]}  # Tasks without a position, and the axes that they turn.
 
 
 class Handle:
-    """Arrows to drag and, for poses, arcs to turn; calls `moved` with each new target, in order."""
+    """Arrows to drag where a task has a position, arcs to turn where it has an orientation or an axis.
 
-    def __init__(self, scene: SceneApi, arm: Arm, task: str, size: float, moved: Callable[[Array], object]) -> None:
-        self._planar, self._pose = isinstance(arm, PlanarArm), task == "pose"
+    Calls `moved` with each new target, in order. Coordinates that the task does not select follow the task's frame.
+    """
+
+    def __init__(
+        self,
+        scene: SceneApi,
+        index: int,
+        arm: Arm,
+        task: FrameTask,
+        x: Array,
+        size: float,
+        moved: Callable[[Array], object],
+    ) -> None:
+        self.task, self.axes, self.size = task, TURNING.get(task.kind, []), size
+        self._shape, self._index = x.shape, index
+        in_frame = isinstance(task, RowsTask) and task.axes == "frame" and not self.axes
+        self._held = np.ones(3) if in_frame else selected(task, POSITION)
+        at_tip = task.frame == "tip" and task.offset is None
+        look = {"axes_length": 0.4 * size, "axes_radius": 0.02 * size, "visible": not at_tip}  # The tip has axes.
+        self._frame = scene.add_frame(f"/frames/{index}", **look)
+        # A node of its own follows the frame: a handle whose position is set while it is turned would jump.
+        self._carrier = scene.add_frame(f"/handles/{index}", show_axes=False)
         self._gizmo = scene.add_transform_controls(
-            "/handle",
+            f"/handles/{index}/gizmo",
             scale=size,
             line_width=3.0,
-            active_axes=(True, True, not self._planar),
-            disable_rotations=not self._pose,
+            active_axes=self._active(isinstance(arm, PlanarArm)),
+            disable_axes=bool(self.axes),
+            disable_sliders=bool(self.axes),
+            disable_rotations=not self.axes and not selected(task, ROTATION).any(),
             depth_test=False,
         )
+        widths = {"shaft_radius": 0.02 * size, "head_radius": 0.06 * size, "head_length": 0.15 * size}
+        for axis in self.axes:
+            arrow = np.array([[np.zeros(3), size * np.eye(3)[axis]]])
+            scene.add_arrows(f"/handles/{index}/gizmo/{axis}", arrow, COLOURS[axis], **widths)
 
         async def tell(_: Any) -> None:  # What is not async may be called out of order.
             moved(self.target)
 
         self._gizmo.on_update(tell)
 
+    def label(self, scene: SceneApi) -> None:
+        """Show the task's name beside it."""
+        anchor = ANCHORS[self._index % len(ANCHORS)]
+        scene.add_label(f"/handles/{self._index}/gizmo/name", self.task.name, anchor=anchor)
+
     @property
     def target(self) -> Array:
         """Where it is, shaped as the task's targets are [m, rad]."""
-        position, rotation = np.array(self._gizmo.position, dtype=float), SO3(self._gizmo.wxyz).as_matrix()
-        if self._planar:
-            angle = np.arctan2(rotation[1, 0], rotation[0, 0])
-            return np.array([*position[:2], angle]) if self._pose else position[:2]
-        if not self._pose:
-            return position
-        return np.block([[rotation, position[:, None]], [np.zeros((1, 3)), 1.0]])
+        frame = np.eye(4)
+        frame[:3, :3], frame[:3, 3] = SO3(self._gizmo.wxyz).as_matrix(), self.position
+        return point_of(self.task, frame, self._shape)
 
     @property
     def position(self) -> Array:
         """Where it is in space [m]."""
-        return np.array(self._gizmo.position, dtype=float)
+        return np.asarray(np.array(self._carrier.position, dtype=float) + self._gizmo.position)
 
     def place(self, x: Array) -> None:
         """Put it on a target."""
-        if x.shape == (4, 4):
-            self._gizmo.wxyz, x = SO3.from_matrix(x[:3, :3]).wxyz, x[:3, 3]
-        elif self._planar and self._pose:
-            self._gizmo.wxyz, x = SO3.from_z_radians(x[2]).wxyz, x[:2]
-        self._gizmo.position = np.pad(x, (0, 3 - len(x)))
+        frame = frame_of(self.task, x)
+        self._gizmo.wxyz, self._gizmo.position = SO3.from_matrix(frame[:3, :3]).wxyz, self._held * frame[:3, 3]
+
+    def follow(self, frame: Array) -> None:
+        """Show the task's frame, and follow it in the coordinates that the task leaves free."""
+        self._frame.position, self._frame.wxyz = frame[:3, 3], SO3.from_matrix(frame[:3, :3]).wxyz
+        self._carrier.position = (1.0 - self._held) * frame[:3, 3]
+
+    def gap(self, frame: Array) -> Array:
+        """Lines from the task's frame to the handle, shape (N, 2, 3)."""
+        p, lines = frame[:3, 3], []
+        for axis in self.axes:
+            now, target = (p + self.size * R[:3, axis] for R in (frame, SO3(self._gizmo.wxyz).as_matrix()))
+            lines += [(p, now), (now, target)]
+        return np.array(lines or [(p, self.position)])
+
+    def _active(self, planar: bool) -> tuple[bool, bool, bool]:
+        """Axes that it moves along or turns about."""
+        x, y, z = self._held > 0.0 if self.task.kind == "position" else (True, True, True)
+        return bool(x), bool(y), bool(z) and not planar

@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 from viser import GuiApi
 
-from .._core import Status, advice, message, rotation_vector
+from .._core import Status, advice, message
 from .._types import Array
 from ..skeleton import joint_labels
+from ..tasks import FrameTask
+from .frames import distances, frame_of
 from .loop import ServoLoop
 from .readout import BAD, GOOD, LINES, sentence, table
 from .strip import SECONDS, Strip
@@ -59,18 +61,33 @@ def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
     nothing = np.full(len(worst), np.nan)
     there = worst[:, ~np.isnan(worst[0])]
     now = there[:, -1] if there.size else nothing
-    far = np.append(there[:3].max(axis=1), there[3].min()) if there.size else nothing
-    names = [*(f"joint {name}" for name in NAMES), "task's scale"]
-    known = [*loop.strip.bounded, True]
+    far = np.append(there[:3].max(axis=1), there[3:].min(axis=1)) if there.size else nothing
+    names = [*(f"joint {name}" for name in NAMES), *_scales(loop)]
+    known = [*loop.strip.bounded, *(True for _ in _scales(loop))]
     cells = [(_percent(a), _percent(b)) if there else ("no bound", "") for a, b, there in zip(now, far, known)]
     joints = [label for label, flag in zip(joint_labels(loop.arm), _on_bounds(loop)) if flag]
     return [
         ("th", "worst joint, of its bound", "now", f"in {SECONDS:g} s"),
         *(("td", name, *cell) for name, cell in zip(names, cells)),
         ("td", "joints on a bound", ", ".join(joints) or "none", ""),
-        ("td", "from tip to handle", _error(loop), ""),
+        *_distances(loop),
         *_nearest(loop),
     ]
+
+
+def _scales(loop: ServoLoop) -> list[str]:
+    """What the scale of each level is called."""
+    if loop.stack is None:
+        return ["task's scale"]
+    return [f"scale of {', '.join(task.name for task in level)}" for level in loop.stack.levels]
+
+
+def _distances(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
+    """How far each frame is from its handle."""
+    for task in loop.tasks:
+        if isinstance(task, FrameTask):
+            found = distances(task, frame_of(task, loop.target_of(task.name)), loop.frame(task.name))
+            yield "td", f"from {task.name} to handle", ", ".join(f"{x:.3f} {unit}" for unit, x in found.items()), ""
 
 
 def _nearest(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
@@ -90,33 +107,23 @@ def _percent(share: float) -> str:
     return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
 
 
-def _error(loop: ServoLoop) -> str:
-    """How far the tip is from the handle."""
-    x, tip = loop.target, loop.tip
-    if x.shape == (4, 4):
-        angle = float(np.linalg.norm(rotation_vector(x[:3, :3] @ tip[:3, :3].T)))
-        x, tip = x[:3, 3], tip[:3, 3]
-    elif loop.task == "pose":
-        angle = abs(float(np.remainder(x[2] - tip[2] + np.pi, 2.0 * np.pi) - np.pi))
-        x, tip = x[:2], tip[:2]
-    distance = f"{np.linalg.norm(x - tip):.3f} m"
-    return f"{distance}, {angle:.3f} rad" if loop.task == "pose" else distance
-
-
 class StripChart:
-    """The last ten seconds: each quantity of the joint nearest to its bound, and the task's scale [%]."""
+    """The last ten seconds: each quantity of the joint nearest to its bound, and the scale of each level [%]."""
 
-    def __init__(self, gui: GuiApi, strip: Strip) -> None:
-        known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], strip.bounded)
+    def __init__(self, gui: GuiApi, loop: ServoLoop) -> None:
+        known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], loop.strip.bounded)
         curves: list[dict[str, Any]] = [
             {"label": name if there else f"{name} (no bound)", "stroke": colour, "width": 1.6}
             for name, colour, there in known
         ]
-        scale = {"label": "task's scale", "stroke": LINES[6], "width": 1.6, "dash": [6, 3]}
+        scales = [
+            {"label": name, "stroke": colour, "width": 1.6, "dash": [6, 3]}
+            for name, colour in zip(_scales(loop), LINES[6:7] + LINES[1:3] + LINES[4:5])
+        ]
         with gui.add_folder(f"Last {SECONDS:g} s"):
             self._plot = gui.add_uplot(
-                self._data(strip),
-                ({"label": "t [s]"}, *({**curve, "points": {"show": False}} for curve in (*curves, scale))),
+                self._data(loop.strip),
+                ({"label": "t [s]"}, *({**curve, "points": {"show": False}} for curve in (*curves, *scales))),
                 title="worst joint, of its bound [%]",
                 scales={"x": {"time": False}, "y": {"range": (0.0, 105.0)}},
                 axes=({"size": 36}, {"size": 44}),
@@ -125,8 +132,8 @@ class StripChart:
                 padding=(8, 16, 0, 0),
             )
 
-    def show(self, strip: Strip) -> None:
-        self._plot.data = self._data(strip)
+    def show(self, loop: ServoLoop) -> None:
+        self._plot.data = self._data(loop.strip)
 
     def _data(self, strip: Strip) -> tuple[Array, ...]:
         t, worst = strip.curves()

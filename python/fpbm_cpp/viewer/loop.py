@@ -1,11 +1,12 @@
-"""The loop behind a handle that is dragged: targets in, ticks out, at the pace of a clock, without a page."""
+"""The loop behind handles that are dragged: targets in, ticks out, at the pace of a clock, without a page."""
 
 from __future__ import annotations
 
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,24 +17,30 @@ from ..arms import Arm, JointLimits
 from ..clearance import Clearance
 from ..schemes import Scheme
 from ..skeleton import joint_points
+from ..tasks import Stack, Task
+from .frames import tip_pose
 from .obstacles import Obstacles
 from .strip import Strip
+from .targets import Targets
 
 MOST = 0.1  # Simulated at once [s]: what the clock asks for beyond that is dropped.
-REPEAT = 0.1  # A handle without news rests: its target is said again after this time [s].
 SAID = 0.25  # The status is the worst of this time [s]; a tick is too short to read.
 
 
 class ServoLoop:
-    """An arm that follows targets as they come, within its limits: ticks of a Tracker behind a TargetFilter.
+    """An arm that follows targets as they come, within its limits: ticks of a Tracker behind TargetFilters.
 
     advance() makes as many ticks as have passed on the clock. A machine that is too slow for them makes fewer:
     simulated time then falls behind the clock, and no bound changes. All calls may come from any thread.
 
-    targets is a filter with bounds of one's own; unless given, the tip's bounds suit the length L of the arm: L per
-    second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. The other parameters are Tracker's.
+    A stack replaces task. Each position and pose of the stack has a filter; targets of other tasks are references as
+    they are. At first, a task has its own target x or q, or the target where it starts.
 
-    Raises ValueError as Tracker does, and where the filter is for another task or tick.
+    targets is a filter with bounds of one's own, of a stack a dictionary of filters by name; unless given, the bounds
+    suit the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. The other
+    parameters are Tracker's.
+
+    Raises ValueError as Tracker does, and where a filter is for another task or tick.
     """
 
     def __init__(
@@ -43,42 +50,41 @@ class ServoLoop:
         q0: ArrayLike,
         *,
         task: str = "position",
+        stack: Stack | None = None,
         dt: float = 1e-3,
         limits: JointLimits | None = None,
-        targets: TargetFilter | None = None,
+        targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
         clearance: Clearance | None = None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self.arm, self.task, self.dt = arm, task, dt
+        self.arm, self.stack, self.dt = arm, stack, dt
         self.limits = arm.limits if limits is None else limits
-        self._scheme, self._clock, self._lock = scheme, clock, threading.RLock()
+        self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
         self._obstacles = Obstacles(clearance, dt)
-        self._tracker = self._new_tracker(scheme, self._q0)
-        self._targets = self._usual_targets() if targets is None else targets
-        self._tracker.tick(self._targets)  # Refuses a filter that does not suit.
+        self._tracker = self._new_tracker(scheme, self._q0)  # Refuses a task or a stack that does not suit.
+        length = float(np.linalg.norm(np.diff(joint_points(arm, self._q0), axis=0), axis=1).sum())
+        self._targets = Targets(task, stack, self._tracker.tip, targets, length, dt)
+        self._tracker.tick(self._targets.references)  # Refuses a filter that does not suit.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
         self._tick: Tick | None = None
-        self._heard: float = 0.0  # When the newest target came, and when the last ticks were made.
-        self._last: float = 0.0
+        self._last: float = 0.0  # When the last ticks were made.
         self.restart()
 
-    def push(self, x: ArrayLike) -> bool:
-        """A target [m, rad], as TargetFilter.push takes it: whether it is taken."""
+    def push(self, x: ArrayLike, task: str | None = None) -> bool:
+        """A target [m, rad], of a stack for the task of that name: whether it is taken.
+
+        It is not if a number is not finite, R is not a rotation, or a direction is zero.
+        """
         with self._lock:
             now = self._clock()
-            # On the ticks' clock, which leaves out what a slow machine drops.
-            taken = self._targets.push(x, self._time + self._owed + min(now - self._last, MOST))
-            if taken:
-                self._target, self._heard = np.array(x, dtype=float), now
-            return taken
+            return self._targets.of(task).push(x, now, self._stamp(now))
 
     def advance(self) -> list[Tick]:
         """Make the ticks that are due."""
         with self._lock:
             now = self._clock()
-            if now - self._heard >= REPEAT:
-                self.push(self._target)
+            self._targets.repeat(now, self._stamp(now))
             self._owed += min(now - self._last, MOST)
             self._last = now
             due = int(self._owed / self.dt)
@@ -109,7 +115,7 @@ class ServoLoop:
             self._tracker.resume()
 
     def restart(self) -> None:
-        """Begin anew, at rest where the arm began, with the target at its tip and obstacles where they were given."""
+        """Begin anew, at rest where the arm began, with the first targets and obstacles where they were given."""
         with self._lock:
             self._obstacles.restart()
             self._tracker = self._new_tracker(self._scheme, self._q0)
@@ -130,6 +136,11 @@ class ServoLoop:
                 self._tracker.stop()
 
     @property
+    def tasks(self) -> Sequence[Task]:
+        """The tasks of the stack, or the tip's only task."""
+        return self._targets.tasks
+
+    @property
     def clearance(self) -> Clearance | None:
         """What the arm keeps clear of, where it is now."""
         return self._obstacles.clearance
@@ -140,15 +151,22 @@ class ServoLoop:
         return self._tracker.q
 
     @property
-    def tip(self) -> Array:
-        """The tip, shaped as targets are [m, rad]."""
-        tip: Array = self._tracker.tip
-        return tip
+    def tip(self) -> Any:
+        """The tip, shaped as targets are [m, rad]; of a stack, where each task is, by name."""
+        return self._tracker.tip
 
     @property
-    def target(self) -> Array:
-        """The newest target."""
-        return self._target
+    def target(self) -> Any:
+        """The newest target; of a stack, that of each task by name."""
+        return self._targets.x
+
+    def target_of(self, task: str) -> Array:
+        """The newest target of the task of that name."""
+        return self._targets.of(task).x.copy()
+
+    def frame(self, task: str) -> Array:
+        """The frame of the task of that name, shape (4, 4); of an axis, z is its direction."""
+        return tip_pose(self.arm, self.q) if self.stack is None else self._tracker.frame(task)
 
     @property
     def time(self) -> float:
@@ -178,7 +196,8 @@ class ServoLoop:
             self.arm,
             scheme,
             q0,
-            task=self.task,
+            task=self._task,
+            stack=self.stack,
             dt=self.dt,
             limits=self.limits,
             clearance=self._obstacles.clearance,
@@ -188,29 +207,19 @@ class ServoLoop:
 
     def _one_tick(self) -> Tick:
         self._obstacles.step(self._tracker)
-        return self._tracker.tick(self._targets)
+        return self._tracker.tick(self._targets.references)
+
+    def _stamp(self, now: float) -> float:
+        """A moment on the ticks' clock, which leaves out what a slow machine drops."""
+        return self._time + self._owed + min(now - self._last, MOST)
 
     def _begin(self) -> None:
-        self._target = self._tracker.tip
-        self._targets.reset(self._target)
         self._stopped = False
         self._tick = None
         self._said.clear()
-        self.strip: Strip = Strip(self.limits, self.dt)
+        levels = 1 if self.stack is None else len(self.stack.levels)
+        self.strip: Strip = Strip(self.limits, self.dt, levels)
         self._time: float = 0.0
         self._owed: float = 0.0  # Time that has passed on the clock, and is less than a tick.
-        self._heard = self._last = self._clock()
-
-    def _usual_targets(self) -> TargetFilter:
-        length = float(np.linalg.norm(np.diff(joint_points(self.arm, self._q0), axis=0), axis=1).sum())
-        return TargetFilter(
-            self._tracker.tip,
-            velocity=length,
-            acceleration=5.0 * length,
-            jerk=100.0 * length,
-            angular_velocity=2.0,
-            angular_acceleration=10.0,
-            angular_jerk=200.0,
-            task=self.task,
-            dt=self.dt,
-        )
+        self._last = self._clock()
+        self._targets.restart(self._tracker.tip, self._last)

@@ -1,7 +1,7 @@
 """A run in words, numbers and curves: how it ended, figures of the sample shown, and one quantity over time."""
 
 import html
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from viser import GuiApi
@@ -9,7 +9,7 @@ from viser import GuiApi
 from .._core import message
 from .._types import Array
 from ..skeleton import joint_labels, joint_units
-from .scene import Playback
+from .playback import Playback
 
 GOOD, BAD = "#009E73", "#D55E00"
 CELL = "padding:0.15em 0.6em 0.15em 0"
@@ -38,9 +38,7 @@ class Readout:
 
     def at(self, sample: int) -> None:
         playback, run = self._playback, self._playback.run
-        w, errors = playback.manipulability, {"tip error": (playback.tip_error, "m")}
-        if run.kind == "pose":
-            errors["orientation error"] = playback.orientation_error, "rad"
+        w, errors = playback.manipulability, playback.errors
         names, units = joint_labels(run.arm), joint_units(run.arm)
 
         def fastest(qd: Array) -> str:
@@ -75,16 +73,16 @@ def table(rows: Iterable[Sequence[str]]) -> str:
     return f'<table style="{TABLE}">{"".join(f"<tr>{line}</tr>" for line in lines)}</table>'
 
 
-# Values at the frames, and their unit; in two dimensions those of the joints, which have the joints' unit and this.
-QUANTITIES: dict[str, tuple[Callable[[Playback], Array], str]] = {
-    "joint velocities": (lambda playback: playback.run.qd[playback.frames], "/s"),
-    "joint accelerations": (lambda playback: playback.run.qdd[playback.frames], "/s²"),
-    "joint positions": (lambda playback: playback.run.q[playback.frames], ""),
-    "tip error": (lambda playback: playback.tip_error[playback.frames], "m"),
-    "orientation error": (lambda playback: playback.orientation_error[playback.frames], "rad"),
-    "manipulability": (lambda playback: playback.manipulability, ""),
-    "distance of the nearest shapes": (lambda playback: playback.distances, "m"),
-}
+def quantities(playback: Playback) -> dict[str, tuple[Array, str]]:
+    """Values at the frames, and their unit; in two dimensions those of the joints, which have the joints' unit, too."""
+    run, at = playback.run, playback.frames
+    found = {"joint velocities": (run.qd[at], "/s"), "joint accelerations": (run.qdd[at], "/s²")}
+    found["joint positions"] = run.q[at], ""
+    found |= {name: (values[at], unit) for name, (values, unit) in playback.errors.items()}
+    found["manipulability"] = playback.manipulability, ""
+    if playback.distances.size:
+        found["distance of the nearest shapes"] = playback.distances, "m"
+    return found
 
 
 class Chart:
@@ -92,12 +90,8 @@ class Chart:
 
     def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
         self._playback, self._duration, self._sample = playback, duration, 0
-        missing = {"orientation error"} if playback.run.kind != "pose" else set()
-        if not playback.distances.size:
-            missing.add("distance of the nearest shapes")
-        names = [name for name in QUANTITIES if name not in missing]
         with gui.add_folder("Over time"):
-            self._quantity = gui.add_dropdown("quantity", tuple(names))
+            self._quantity = gui.add_dropdown("quantity", tuple(quantities(playback)))
             nothing = (np.zeros(1), np.zeros(1)), ({"label": ""}, {"label": ""})
             axes = ({"size": 32}, {"size": 44})
             self._plot = gui.add_uplot(*nothing, axes=axes, height=220, padding=(8, 16, 0, 0))
@@ -126,8 +120,7 @@ class Chart:
     def _curves(self) -> tuple[list[str], Array, str]:
         """Labels, a column for each, and a title with unit and power of ten."""
         name, arm = self._quantity.value, self._playback.run.arm
-        values_of, unit = QUANTITIES[name]
-        values = values_of(self._playback)
+        values, unit = quantities(self._playback)[name]
         if values.ndim == 2:
             units = sorted({own + unit for own in joint_units(arm)}, reverse=True)
             return joint_labels(arm), values, f"{name} [{', '.join(units)}]"

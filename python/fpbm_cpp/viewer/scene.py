@@ -1,11 +1,10 @@
-"""What is drawn of a run: its samples and curves, prepared for drawing, the scene, and the arm in it."""
+"""What is drawn of a run: the scene, and the arm in it."""
 
 from __future__ import annotations
 
 import logging
 import os
 import warnings
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,77 +15,19 @@ from viser import ClientHandle, FrameHandle, SceneApi, SceneNodeHandle, ViserSer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
-from .._core import Nearest
 from .._types import Array
 from ..arms import Arm, PlanarArm, SerialArm
-from ..clearance import Clearance
 from ..io.mesh_file import find_mesh
-from ..motion.run import Run
-from ..skeleton import joint_axes, joint_points, tip_axes
+from ..skeleton import joint_axes, joint_points
+from .frames import in_space
+from .playback import Playback
 from .shapes import Shapes, along
 
-FRAMES = 500
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
 LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
 RADIUS = 0.019  # Of links, as a share of the arm's length.
 FIELD = 0.7  # Vertical field of view [rad].
 TOLERANCE = 2e-3  # Between a joint of a URDF file and of the arm [m].
-
-
-class Playback:
-    """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
-
-    Curves are drawn through F frames: some of the samples, or all. The tip and its target, shape (F, 3) [m], and the
-    manipulability, shape (F,), are those at the frames, the errors' norms those at all samples, shape (N,) [m], [rad].
-    """
-
-    def __init__(self, run: Run, clearance: Clearance | None = None) -> None:
-        self.clearance = clearance
-        self.run = run = run if len(run.t) else _at_start(run)
-        self.frames = np.unique(np.linspace(0, len(run.t) - 1, FRAMES).round().astype(int))
-        self.tip = in_space(run.positions[self.frames])
-        self.target = in_space(run.reference_positions[self.frames])
-        self.manipulability = replace(run, q=run.q[self.frames]).manipulability()
-        self.tip_error, self.orientation_error = run.error_norms()
-        found = (self.nearest(sample) for sample in self.frames)
-        self.distances = np.array([each.distance for each in found if each is not None])
-
-    def sample(self, time: float) -> int:
-        """The sample nearest to a time."""
-        return int(np.abs(self.run.t - time).argmin())
-
-    def frame(self, sample: int) -> int:
-        """Index of the last frame that is not after a sample."""
-        return int(np.searchsorted(self.frames, sample, side="right")) - 1
-
-    def nearest(self, sample: int) -> Nearest | None:
-        """The two shapes that are nearest to one another at a sample, where any are kept apart."""
-        return None if self.clearance is None else self.clearance.nearest(self.run.arm, self.run.q[sample])
-
-    def pose(self, sample: int) -> Array:
-        """The tip's frame at a sample, shape (4, 4)."""
-        return tip_pose(self.run.arm, self.run.q[sample])
-
-
-def _at_start(run: Run) -> Run:
-    """The start of a run without samples as its only sample."""
-    q = run.status.q[None]
-    zero = np.zeros_like(q)
-    x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.kind).tip)[None]
-    error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.kind))))
-    return replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
-
-
-def tip_pose(arm: Arm, q: Array) -> Array:
-    """The tip's frame in a posture, shape (4, 4)."""
-    R, p, pose = tip_axes(arm, q), joint_points(arm, q)[-1], np.eye(4)
-    pose[: len(p), : len(p)], pose[: len(p), 3] = R, p
-    return pose
-
-
-def in_space(points: Array) -> Array:
-    """Points with three coordinates; z is 0 for points in the plane."""
-    return np.pad(points, [(0, 0)] * (points.ndim - 1) + [(0, 3 - points.shape[-1])])
 
 
 class Meshes:
@@ -186,14 +127,14 @@ class Scene:
         self._target.points = target[::2] if len(target) > 50 else target  # Dashes.
 
     def at(self, sample: int) -> None:
-        """Move arm and tip to a sample, and draw the tip's path up to it."""
+        """Move arm and tip to a sample, and draw the path up to it, of a stack that of the task that is led."""
         playback = self._playback
         pose = playback.pose(sample)
         with self._server.atomic():
             self._arm.pose(playback.run.q[sample])
             self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
             passed = playback.tip[: playback.frame(sample) + 1]
-            self._path.points = segments(np.vstack([passed, pose[None, :3, 3]]))
+            self._path.points = segments(np.vstack([passed, in_space(playback.run.positions[[sample]])]))
             if self._shapes is not None and playback.clearance is not None:
                 nearest = playback.nearest(sample)
                 self._shapes.at(playback.clearance, playback.run.q[sample], None if nearest is None else nearest.pair)

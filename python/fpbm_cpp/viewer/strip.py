@@ -15,23 +15,25 @@ POINTS = 200  # Of a curve.
 class Strip:
     """Speed, acceleration and jerk of the joint that is nearest to its bound, as shares of it, and the task's scale.
 
-    Shares are of all ticks in the last ten seconds, shape (4, N), a row each; 0 where nothing is bounded. The jerk of a
+    Shares are of all ticks in the last ten seconds, shape (4, N), a row each; 0 where nothing is bounded. A stack has
+    a scale for each of its levels, shape (3 + levels, N). The jerk of a
     tick is the difference of its mean acceleration from that of the tick before, by the tick.
     """
 
-    def __init__(self, limits: JointLimits, dt: float) -> None:
+    def __init__(self, limits: JointLimits, dt: float, levels: int = 1) -> None:
         self._dt, self._count = dt, 0
         self._bounds = np.array([limits.velocity, limits.acceleration, limits.jerk], dtype=float)
         self._before = np.zeros(len(limits.velocity))
         self._width = max(round(SECONDS / dt / POINTS), 1)
-        self._shares = np.empty((4, 0))
+        self._shares = np.empty((3 + levels, 0))
 
     def add(self, ticks: Sequence[Tick]) -> None:
         """Ticks that follow each other, one at least."""
         qd, qdd = np.array([tick.qd for tick in ticks]), np.array([tick.qdd for tick in ticks])
         jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
         shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk), self._bounds)]
-        new = np.array([*shares, [tick.scale for tick in ticks]])
+        scales = np.array([tick.scale if tick.scales is None else tick.scales for tick in ticks])
+        new = np.vstack([*shares, scales.reshape(len(ticks), -1).T])
         self._before, self._count = qdd[-1], self._count + len(ticks)
         self._shares = np.hstack([self._shares, new])[:, -(POINTS + 1) * self._width :]
 
@@ -45,14 +47,14 @@ class Strip:
         return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
 
     def curves(self) -> tuple[Array, Array]:
-        """Times [s], shape (POINTS,), and the worst of the stretch that ends at each, shape (4, POINTS).
+        """Times [s], shape (POINTS,), and the worst of the stretch that ends at each, shape (3 + levels, POINTS).
 
         A stretch is always of the same ticks: a peak keeps its height on its way. NaN where nothing was.
         """
         end = self._shares.shape[1] - self._count % self._width
         there = self._shares[:, :end][:, -POINTS * self._width :]
         there = np.pad(there, [(0, 0), (POINTS * self._width - there.shape[1], 0)], constant_values=np.nan)
-        stretches = there.reshape(4, POINTS, self._width)
+        stretches = there.reshape(-1, POINTS, self._width)
         worst = np.vstack([stretches[:3].max(axis=2), stretches[3:].min(axis=2)])
         times: Array = (self._count // self._width + np.arange(1.0 - POINTS, 1.0)) * self._width * self._dt
         return times, worst

@@ -11,8 +11,9 @@ from ..motion.simulation import simulate, track
 from ..schemes import Scheme
 from .controls import Controls, Player
 from .page import Page
+from .playback import Playback
 from .readout import Chart, Readout
-from .scene import Meshes, Playback, Scene
+from .scene import Meshes, Scene
 
 
 class Viewer(Page):
@@ -42,7 +43,8 @@ class Viewer(Page):
         with self._lock:  # The page's first events wait until all parts are there.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)
-            self._controls = Controls(gui, run.arm, run.scheme, self._on_change, run.limits, run.scale is not None)
+            limits, gains = (run.limits, run.scale is not None), run.stack is None
+            self._controls = Controls(gui, run.arm, run.scheme, self._on_change, *limits, gains=gains)
             self._chart = Chart(gui, playback, duration)
             self._scene = Scene(self._server, playback, meshes)
             self._show(run)

@@ -1,0 +1,76 @@
+"""Points and frames in space: of the tip, and of the points that tasks have as targets."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .._core import rotation, rotation_vector
+from .._types import Array
+from ..arms import Arm
+from ..skeleton import joint_points, tip_axes
+from ..tasks import POSITION, ROTATION, AxisTask, RowsTask, Task
+
+
+def in_space(points: Array) -> Array:
+    """Points with three coordinates; z is 0 for points in the plane."""
+    return np.pad(points, [(0, 0)] * (points.ndim - 1) + [(0, 3 - points.shape[-1])])
+
+
+def tip_pose(arm: Arm, q: Array) -> Array:
+    """The tip's frame in a posture, shape (4, 4)."""
+    return _frame(tip_axes(arm, q), joint_points(arm, q)[-1])
+
+
+def frame_of(task: Task, x: Array) -> Array:
+    """The frame of a point of a task, shape (4, 4): z is the direction of an axis; what the point leaves open is 0."""
+    if task.kind == "position":
+        return _frame(np.eye(3), x)
+    if task.kind == "orientation":
+        return _frame(x, np.zeros(3))
+    if task.kind == "axis":
+        return _frame(z_to(x), np.zeros(3))
+    return x.copy() if x.shape == (4, 4) else _frame(rotation([0.0, 0.0, x[2]]), x[:2])
+
+
+def point_of(task: Task, frame: Array, shape: tuple[int, ...]) -> Array:
+    """The point of a task that a frame stands for, in the shape that the task's points have."""
+    if task.kind == "position":
+        return frame[: shape[0], 3].copy()
+    if task.kind == "orientation":
+        return frame[:3, :3].copy()
+    if task.kind == "axis":
+        return frame[:3, 2].copy()
+    return frame.copy() if shape == (4, 4) else np.array([*frame[:2, 3], np.arctan2(frame[1, 0], frame[0, 0])])
+
+
+def distances(task: Task, target: Array, now: Array) -> dict[str, float]:
+    """How far a task's frame is from a target, by unit: 'm', 'rad' or both, of the rows that the task selects."""
+    R, linear = now[:3, :3], target[:3, 3] - now[:3, 3]
+    if isinstance(task, AxisTask):
+        a, b = now[:3, 2], target[:3, 2]
+        return {"rad": float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))}
+    angular = rotation_vector(target[:3, :3] @ R.T)
+    if isinstance(task, RowsTask) and task.axes == "frame":
+        linear, angular = R.T @ linear, R.T @ angular
+    parts = ("m", selected(task, POSITION), linear), ("rad", selected(task, ROTATION), angular)
+    return {unit: float(np.linalg.norm(rows * error)) for unit, rows, error in parts if rows.any()}
+
+
+def selected(task: Task, rows: Sequence[str]) -> Array:
+    """1 for each of these rows that a task selects, 0 for the others."""
+    own = (task.all_rows if task.rows is None else task.rows) if isinstance(task, RowsTask) else ()
+    return np.array([float(row in own) for row in rows])
+
+
+def z_to(direction: Array) -> Array:
+    """A rotation that turns the z axis to a direction, by the smallest angle."""
+    x, y, z = direction / np.linalg.norm(direction)
+    sine = float(np.hypot(x, y))
+    axis = np.array([-y, x, 0.0]) / sine if sine > 1e-12 else np.array([1.0, 0.0, 0.0])
+    return np.asarray(rotation(float(np.arctan2(sine, z)) * axis))
+
+
+def _frame(R: Array, p: Array) -> Array:
+    frame = np.eye(4)
+    frame[: len(R), : len(R)], frame[: len(p), 3] = R, p
+    return frame

@@ -1,0 +1,77 @@
+"""A run prepared for drawing: its samples and curves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .._core import Nearest
+from .._types import Array
+from ..clearance import Clearance
+from ..motion.run import Run
+from ..motion.task_errors import error_parts
+from .frames import in_space, tip_pose
+
+FRAMES = 500
+
+
+class Playback:
+    """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
+
+    Curves are drawn through F frames: some of the samples, or all. The tip and its target, shape (F, 3) [m], and the
+    manipulability, shape (F,), are those at the frames. errors has the norms of errors at all samples, shape (N,), and
+    their units, by name.
+    """
+
+    def __init__(self, run: Run, clearance: Clearance | None = None) -> None:
+        self.clearance = clearance
+        self.run = run = run if len(run.t) else _at_start(run)
+        self.frames = np.unique(np.linspace(0, len(run.t) - 1, FRAMES).round().astype(int))
+        self.tip = in_space(run.positions[self.frames])
+        self.target = in_space(run.reference_positions[self.frames])
+        self.manipulability = replace(run, q=run.q[self.frames]).manipulability()
+        self.errors = _errors(run)
+        found = (self.nearest(sample) for sample in self.frames)
+        self.distances = np.array([each.distance for each in found if each is not None])
+
+    def sample(self, time: float) -> int:
+        """The sample nearest to a time."""
+        return int(np.abs(self.run.t - time).argmin())
+
+    def frame(self, sample: int) -> int:
+        """Index of the last frame that is not after a sample."""
+        return int(np.searchsorted(self.frames, sample, side="right")) - 1
+
+    def nearest(self, sample: int) -> Nearest | None:
+        """The two shapes that are nearest to one another at a sample, where any are kept apart."""
+        return None if self.clearance is None else self.clearance.nearest(self.run.arm, self.run.q[sample])
+
+    def pose(self, sample: int) -> Array:
+        """The tip's frame at a sample, shape (4, 4)."""
+        return tip_pose(self.run.arm, self.run.q[sample])
+
+
+def _errors(run: Run) -> dict[str, tuple[Array, str]]:
+    """Norms of the errors of the tip; of a stack, of each task."""
+    if run.stack is None:
+        errors = {"tip error": (np.linalg.norm(run.position_error, axis=1), "m")}
+        if run.kind == "pose":
+            errors["orientation error"] = np.linalg.norm(run.orientation_error, axis=1), "rad"
+        return errors
+    kinds = {task.name: task.kind for task in run.stack.tasks}
+    errors = {}
+    for name, unit, values, _ in error_parts(run):
+        part = ", orientation" if kinds[name] == "pose" and unit == "rad" else ""
+        errors[f"error of {name}{part}"] = np.linalg.norm(values, axis=1), unit
+    return errors
+
+
+def _at_start(run: Run) -> Run:
+    """The start of a run without samples as its only sample."""
+    q = run.status.q[None]
+    zero = np.zeros_like(q)
+    x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.kind).tip)[None]
+    error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.kind))))
+    start = replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
+    return start if run.task_errors is None else replace(start, task_errors=np.zeros((1, run.task_errors.shape[1])))
