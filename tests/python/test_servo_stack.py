@@ -265,3 +265,18 @@ def test_distances_are_those_of_the_tasks_errors(pose, now):
         assert found.keys() == sizes.keys()
         for unit, value in sizes.items():
             assert found[unit] == pytest.approx(value, abs=1e-7)
+
+
+def test_bounds_of_tasks_hold_while_a_target_is_dragged() -> None:
+    arm, q0 = fp.SerialArm.preset("panda"), [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
+    y = arm.forward(q0)[1, 3] + 0.1
+    now = 0.0
+    wall = fp.TaskBounds(fp.PositionTask(rows=("y",)), upper=y)
+    loop = ServoLoop(arm, fp.FPBM(0.6, np.ones(7), 10, 25), q0, bounds=[wall], clock=lambda: now)
+    most = -np.inf
+    for _ in range(150):
+        now += 0.02
+        loop.push(arm.forward(q0)[:3, 3] + [0, 0.3, 0])
+        most = max(most, *(arm.forward(tick.q)[1, 3] for tick in loop.advance()))
+    assert y - 1e-3 < most <= y + 1e-9
+    assert loop.status is fp.Status.BLOCKED

@@ -390,7 +390,7 @@ def test_levels_are_reordered(panda, level):
     stack = fp.Stack(fp.PositionTask(name="near"), fp.PositionTask(name="far"), fp.PostureTask(READY))
     tracker = fp.Tracker(panda, scheme, READY, stack=stack)
     tip = tracker.tip["near"]
-    goals = {"near": tip + [0, 0.1, 0], "far": tip + [0, 0.2, 0.1]}
+    goals = {"near": tip + np.array([0, 0.1, 0]), "far": tip + np.array([0, 0.2, 0.1])}
     q = [tracker.q]
     tracker.tick(goals)
     q.append(tracker.q)

@@ -178,6 +178,7 @@ def servo(request: Request, port: int, browser: bool) -> None:
                 dt=motion.options.dt,
                 limits=motion.limits,
                 clearance=motion.clearance,
+                bounds=motion.bounds,
                 urdf=motion.job["arm"].get("file"),
                 port=port,
                 open_browser=browser,

@@ -6,7 +6,7 @@ Both draw what the arm keeps clear of (shapes).
 """
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from ..clearance import Clearance
 from ..motion.simulation import simulate
 from ..paths import Path
 from ..schemes import Scheme
+from ..task_bounds import TaskBounds
 from ..tasks import Stack
 
 if TYPE_CHECKING:
@@ -83,6 +84,7 @@ def servo(
     limits: JointLimits | None = None,
     targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
     clearance: Clearance | None = None,
+    bounds: Sequence[TaskBounds] = (),
     urdf: str | os.PathLike[str] | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
@@ -96,9 +98,9 @@ def servo(
 
     The handle's places, 20 a second, go through targets, a TargetFilter with bounds of one's own. Unless given, the
     bounds suit the arm's length L: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2, 200 rad/s^3. task, dt,
-    limits and clearance are those of Tracker, urdf, host and port those of view(). What the arm keeps clear of is drawn
-    translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings, which
-    follow them at 0.3 m/s.
+    limits, clearance and bounds are those of Tracker, urdf, host and port those of view(). What the arm keeps clear of
+    is drawn translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings,
+    which follow them at 0.3 m/s.
 
     A stack replaces task. Each of its tasks of a frame has a handle with the task's name: arrows for a position, arcs
     for an orientation or an axis. The z axis of the handle of an AxisTask is the target direction. targets is then a
@@ -118,6 +120,7 @@ def servo(
         limits=limits,
         targets=targets,
         clearance=clearance,
+        bounds=bounds,
         urdf=urdf,
         host=host,
         port=port,

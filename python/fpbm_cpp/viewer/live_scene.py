@@ -19,7 +19,7 @@ from .handle import Handle
 from .loop import ServoLoop
 from .obstacles import can_be_dragged
 from .scene import TARGET, TIP, Meshes, segments, set_up
-from .shapes import Shapes, centre
+from .shapes import Shapes, centre, draw_bounds
 from .strip import SECONDS
 
 REACH = 0.65  # Of the arm's length, about its base, is in view.
@@ -40,6 +40,7 @@ class LiveScene:
             for name, color, width in (("/way", TIP, 4.0), ("/gap", TARGET, 2.0))
         )
         self._shapes = None if loop.clearance is None else Shapes(server.scene, loop.arm, loop.clearance)
+        draw_bounds(server.scene, loop.bounds)
         self._grips = _grips(server, loop, 0.12 * radius)
         self.restart(loop)
 

@@ -17,6 +17,7 @@ from ..arms import Arm, JointLimits
 from ..clearance import Clearance
 from ..schemes import Scheme
 from ..skeleton import joint_points
+from ..task_bounds import TaskBounds
 from ..tasks import Stack, Task
 from .frames import tip_pose
 from .obstacles import Obstacles
@@ -55,13 +56,14 @@ class ServoLoop:
         limits: JointLimits | None = None,
         targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
         clearance: Clearance | None = None,
+        bounds: Sequence[TaskBounds] = (),
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.arm, self.stack, self.dt = arm, stack, dt
         self.limits = arm.limits if limits is None else limits
         self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
-        self._obstacles = Obstacles(clearance, dt)
+        self._obstacles, self.bounds = Obstacles(clearance, dt), tuple(bounds)
         self._tracker = self._new_tracker(scheme, self._q0)  # Refuses a task or a stack that does not suit.
         length = float(np.linalg.norm(np.diff(joint_points(arm, self._q0), axis=0), axis=1).sum())
         self._targets = Targets(task, stack, self._tracker.tip, targets, length, dt)
@@ -201,6 +203,7 @@ class ServoLoop:
             dt=self.dt,
             limits=self.limits,
             clearance=self._obstacles.clearance,
+            bounds=self.bounds,
             qd0=qd0,
             qdd0=qdd0,
         )

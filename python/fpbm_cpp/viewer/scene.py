@@ -21,7 +21,7 @@ from ..io.mesh_file import find_mesh
 from ..skeleton import joint_axes, joint_points
 from .frames import in_space
 from .playback import Playback
-from .shapes import Shapes, along
+from .shapes import Shapes, along, draw_bounds
 
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
 LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
@@ -113,6 +113,7 @@ class Scene:
         self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
         clearance = playback.clearance
         self._shapes = None if clearance is None else Shapes(server.scene, run.arm, clearance)
+        draw_bounds(server.scene, run.options.get("bounds") or ())
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         lines = ("/start", START, 2.0), ("/target", TARGET, 2.0), ("/tip_path", TIP, 5.0)
         self._start, self._target, self._path = (

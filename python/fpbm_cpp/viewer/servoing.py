@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import webbrowser
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from ..arms import Arm, JointLimits
 from ..clearance import Clearance
 from ..errors import wrong
 from ..schemes import Scheme
+from ..task_bounds import TaskBounds
 from ..tasks import Stack
 from .controls import RATE, Controls
 from .live import LiveReadout, StripChart
@@ -47,12 +48,13 @@ class Servo(Page):
         limits: JointLimits | None = None,
         targets: TargetFilter | Mapping[str, TargetFilter] | None = None,
         clearance: Clearance | None = None,
+        bounds: Sequence[TaskBounds] = (),
         urdf: str | os.PathLike[str] | None = None,
         host: str = "127.0.0.1",
         port: int = 8080,
         open_browser: bool = False,
     ) -> None:
-        how: dict[str, Any] = {"limits": limits, "targets": targets, "clearance": clearance}
+        how: dict[str, Any] = {"limits": limits, "targets": targets, "clearance": clearance, "bounds": bounds}
         self._loop = ServoLoop(arm, scheme, q0, task=task, stack=stack, dt=dt, **how)
         meshes = None if urdf is None else Meshes(urdf, arm, self._loop.q)
         super().__init__(host, port)

@@ -1,5 +1,7 @@
 """What an arm keeps clear of, in the scene: capsules on its links, obstacles, and the pair that is nearest."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from trimesh.creation import capsule as capsule_mesh
 from viser import SceneApi, SceneNodeHandle
@@ -11,12 +13,24 @@ from ..capsule import Capsule
 from ..clearance import Clearance
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 from ..skeleton import link_frames
+from ..task_bounds import TaskBounds
+from ..tasks import PositionTask
 from .frames import z_to
 from .gap import nearest_points
 
 BODY, OBSTACLE, GAP = (0, 114, 178), (230, 159, 0), (204, 121, 167)
 FACES = (16, 24)  # Of a capsule, from end to end and around.
 SLAB = 1.5  # A half-space is shown as a square of this half width [m].
+
+
+def draw_bounds(scene: SceneApi, bounds: Sequence[TaskBounds]) -> None:
+    """Draw the box that a position is kept within, where it is bounded on all sides."""
+    for i, each in enumerate(bounds):
+        if isinstance(each.task, PositionTask):
+            lower, upper = np.array(each.lower_corner), np.array(each.upper_corner)
+            if np.all(np.isfinite(upper - lower)):
+                place = (lower + upper) / 2
+                scene.add_box(f"/bounds_{i}", OBSTACLE, upper - lower, wireframe=True, position=place)
 
 
 class Shapes:

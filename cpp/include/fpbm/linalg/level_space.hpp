@@ -49,6 +49,9 @@ class LevelSpace {
   /// Z are zero.
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
+    if constexpr (M == N || M == Eigen::Dynamic) {
+      if (is_diagonal(A, [](Scalar entry) { return entry == Scalar(1); })) return add_identity(r);
+    }
     return add_with(A, r,
                     [&](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
                       const Eigen::Index m = T.cols();
@@ -63,6 +66,9 @@ class LevelSpace {
   /// Adds the level A, without a solution.
   template <int M>
   void add(const Matrix<M, N, Scalar>& A) noexcept {
+    if constexpr (M == N || M == Eigen::Dynamic) {
+      if (is_diagonal(A, [](Scalar entry) { return entry != Scalar(0); })) return set_full();
+    }
     auto r = filled<Vector<M, Scalar>>(A.rows());
     (void)triangular(A, r);
   }
@@ -76,19 +82,46 @@ class LevelSpace {
     return x;
   }
 
-  /// Z, n × (n − rank).
-  [[nodiscard]] Basis basis() const noexcept {
+  /// Z, n × (n − rank), of all levels.
+  [[nodiscard]] Basis basis() const noexcept { return basis(rank_); }
+
+  /// The same of the first levels, those that had this rank.
+  [[nodiscard]] Basis basis(Eigen::Index rank) const noexcept {
     Basis Z;
-    Z.resize(size(), size() - rank_);
+    Z.resize(size(), size() - rank);
     for (Eigen::Index j = 0; j < Z.cols(); ++j) {
       Scalar* const z = Z.data() + j * size();
-      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank_ + j ? 1 : 0);
-      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, z);
+      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank + j ? 1 : 0);
+      for (Eigen::Index k = rank; k-- > 0;) reflect(k, z);
     }
     return Z;
   }
 
  private:
+  /// A posture of all joints determines all motion that the higher levels leave, without a factorisation.
+  template <typename Matrix, typename Accepts>
+  [[nodiscard]] bool is_diagonal(const Matrix& A, const Accepts& accepts) const noexcept {
+    if (A.rows() != A.cols()) return false;
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      for (Eigen::Index i = 0; i < A.rows(); ++i) {
+        if (!(i == j ? accepts(A.coeff(i, j)) : A.coeff(i, j) == Scalar(0))) return false;
+      }
+    }
+    return true;
+  }
+  /// A = I: the singular values of A Z are 1, so that no direction is lost, and y = Z Zᵀ r.
+  template <int M>
+  [[nodiscard]] Column add_identity(const Vector<M, Scalar>& r) noexcept {
+    Column y = filled<Column>(size());
+    for (Eigen::Index i = 0; i < size(); ++i) y.coeffRef(i) = r.coeff(i);
+    y = project(y);
+    set_full();
+    return y;
+  }
+  void set_full() noexcept {
+    for (; rank_ < size(); ++rank_) beta_.coeffRef(rank_) = Scalar(0);  // No reflection.
+  }
+
   /// Adds the level A and returns y = Q w, where solved(T, first, count, r) replaces the first entries of r by w.
   template <int M, typename Solved>
   [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, Vector<M, Scalar> r, const Solved& solved) noexcept {

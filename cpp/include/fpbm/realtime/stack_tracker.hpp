@@ -9,6 +9,7 @@
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/by_levels.hpp"
 #include "fpbm/task/stack_kinematics.hpp"
+#include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
