@@ -132,7 +132,11 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       if (!(clearance.nearest_pair().second > 0.0)) continue;
       const double size = std::pow(10.0, random.uniform(-2.0, 0.0));
       const Joints none = Joints::Zero(n);
-      Sweep<kOpen> sweep{size * random.uniform(n, -1.0, 1.0), 0.05 * size * random.uniform(n, -1.0, 1.0), none, none};
+      const Joints unknown = Joints::Constant(n, std::numeric_limits<double>::quiet_NaN());
+      Sweep<kOpen> sweep{size * random.uniform(n, -1.0, 1.0), 0.05 * size * random.uniform(n, -1.0, 1.0), none, none,
+                         unknown};
+      const bool gains = seed % 5 == 0;  // Joints begin to move, as in a tick.
+      if (gains) sweep.begun = sweep.way + 2.0 * sweep.tick;
       const Joints either = 0.02 * size * random.uniform(n, -1.0, 1.0);
       if (seed % 2 == 0) sweep.low = either.cwiseMin(0.0);
       if (seed % 3 == 0) sweep.high = either.cwiseMax(0.0);
@@ -141,7 +145,9 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       for (int place = 0; place < 60; ++place) {
         const double t = random.uniform(0.0, 1.0);
         const Joints rest = sweep.low + Joints(random.uniform(n, 0.0, 1.0)).cwiseProduct(sweep.high - sweep.low);
-        clearance.place(q + (place < 30 ? place / 29.0 : t) * sweep.way + random.uniform(0.0, 1.0) * sweep.tick + rest);
+        const double s = place < 30 ? place / 29.0 : t;
+        const double most = gains ? std::min(2.0 * s, 1.0) : 1.0;
+        clearance.place(q + s * sweep.way + random.uniform(0.0, most) * sweep.tick + rest);
         least = std::min(least, clearance.nearest_pair().second);
       }
       if (kept) {
@@ -163,7 +169,7 @@ TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
   const Joints none = Joints::Zero(7);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int part = 0; part < 4; ++part) {
-      Sweep<kOpen> sweep{none, none, none, none};
+      Sweep<kOpen> sweep{none, none, none, none, none};
       (part == 0 ? sweep.way : part == 1 ? sweep.tick : part == 2 ? sweep.low : sweep.high)(3) = bad;
       clearance.place(q);
       EXPECT_FALSE(keeps_apart(clearance, q, sweep, 0.0)) << "part " << part;

@@ -417,3 +417,18 @@ def test_wrong_orders_change_nothing(panda, balanced):
     goal = {"place": tracker.tip["place"] + 0.1}
     for _ in range(100):
         np.testing.assert_array_equal(tracker.tick(goal).q, same.tick(goal).q)
+
+
+@pytest.mark.parametrize("level", ["velocity", "acceleration"])
+def test_an_arm_moves_on_from_a_wall(panda, level):
+    """A wall for the elbow blocks the place, which comes back and is reached; the cup stays upright."""
+    scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
+    stack = fp.Stack(fp.AxisTask(x=[0, 0, -1], name="upright"), fp.PositionTask(name="place"), fp.PostureTask(READY))
+    wall = fp.TaskBounds(fp.PositionTask("panda_joint4", rows=("y",)), upper=0.02)
+    path = fp.Line([0.15, 0.4, 0.1], 2.5).then(fp.Line([-0.15, -0.8, -0.1], 3.5))
+    run = fp.track(panda, path, scheme, READY, stack=stack, task="place", bounds=[wall], hold=2.0)
+    place = np.linalg.norm(run.errors["place"], axis=1)
+    assert place[2500] > 0.1
+    assert place[-1] < 1e-3
+    assert np.linalg.norm(run.errors["upright"][2500:], axis=1).max() < 1e-4
+    assert excess(panda.limits, run.q) < 1e-9

@@ -58,7 +58,6 @@
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/held_joints.hpp"
 #include "fpbm/limits/jerk_limited_joint.hpp"
-#include "fpbm/limits/level_least_squares.hpp"
 #include "fpbm/limits/level_saturation.hpp"
 #include "fpbm/limits/limiter.hpp"
 #include "fpbm/limits/limits.hpp"

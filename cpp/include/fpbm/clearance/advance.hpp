@@ -19,6 +19,7 @@ struct ChainSweep {
   ChainVector tick;
   ChainVector low;
   ChainVector high;
+  ChainVector begun;
   ChainVector rest;  ///< Most that all but `way` displaces a joint, either way.
 
   ChainSweep(const Links<N, Scalar>& links, const Sweep<N, Scalar>& sweep) noexcept
@@ -26,12 +27,20 @@ struct ChainSweep {
         tick(links.motion(sweep.tick)),
         low(links.least(sweep.low, sweep.high)),
         high(-links.least(-sweep.high, -sweep.low)),
+        begun(links.motion(sweep.begun)),
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 
   /// Least that all but `way` adds to what has this gradient.
   [[nodiscard]] Scalar least(const ChainVector& gradient) const noexcept {
-    return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum() +
-           std::min(gradient.dot(tick), Scalar(0));
+    return least_of_own(gradient) + std::min(gradient.dot(tick), Scalar(0));
+  }
+  /// The same of low and high alone.
+  [[nodiscard]] Scalar least_of_own(const ChainVector& gradient) const noexcept {
+    return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum();
+  }
+  /// Whether `way` and `tick` together never reduce what has this gradient.
+  [[nodiscard]] bool opens(const ChainVector& gradient) const noexcept {
+    return gradient.dot(begun) >= Scalar(0) && gradient.dot(tick) <= Scalar(0);
   }
 };
 
@@ -146,10 +155,13 @@ template <int N, typename Scalar>
       Scalar sure = whole;
       for (int e = 0; e < 2; ++e) {
         const auto& g = plane.gradient[e];
-        const Scalar rest = sweep.least(g) - bend.c0;
-        const Scalar gap = plane.gap[e] - clearance.margin() + rest - time * std::max(plane.closing, Scalar(0));
+        const Scalar gap = plane.gap[e] - clearance.margin() - bend.c0 - time * std::max(plane.closing, Scalar(0));
         const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
-        sure = std::min(furthest(gap, slope, bend.c2, whole), sure);  // In this order NaN stays.
+        Scalar far = furthest(gap + sweep.least(g), slope, bend.c2, whole);
+        if (far < whole && done == Scalar(0) && sweep.opens(g)) {
+          far = std::max(furthest(gap + sweep.least_of_own(g), bend.c1, bend.c2, whole), far);
+        }
+        sure = std::min(far, sure);  // In this order NaN stays.
       }
       step = std::min(sure, step);
       return sure == whole;

@@ -112,7 +112,7 @@ class Guard {
         const Scalar gap = between ? plane.distance : plane.gap[e];
         const auto& gradient = between ? nearest : plane.gradient[e];
         const JointVector g = clearance_.links().by_drive(gradient);
-        const Scalar left = gap - taken - beyond_slope(sweep, speed, gradient, average);
+        const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
         const Scalar spare =
             most_closing(gap - clearance_.margin(), kShare * left / time, body, h) - plane.closing + g.dot(state.qd);
         const Eigen::Index k = row_for(spare, spares, rows.count);
@@ -214,6 +214,8 @@ class Guard {
     return limits.tick() * (Scalar(1) + plan_.ticks_left());
   }
 
+  /// What an arm at rest keeps beyond the margin, so that it can move on: more than a tick from rest may bend.
+  static constexpr Scalar kReserve = Scalar(1e-6);
   static constexpr Scalar kSoft = Scalar(0.05);  ///< Offset of the envelope over its deceleration [s].
   static constexpr Scalar kTail = Scalar(0.2);   ///< τ [s], above the usual T/κ (TaskBounds.stop_gently*).
   static constexpr Scalar kShare = Scalar(0.8);  ///< κ

@@ -9,7 +9,6 @@
 #include "fpbm/limits/one_level.hpp"
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/task_given_up.hpp"
-#include "fpbm/limits/task_levels.hpp"
 #include "fpbm/limits/toward_goal.hpp"
 #include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/product.hpp"
@@ -115,7 +114,7 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
     const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
-    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found), found);
+    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
   }
 
   /// The motion within bounds that does as much as possible of a desired one.
@@ -128,8 +127,7 @@ class Limiter {
     Found<Tasks> found = saturation(box, rest, desired);
     if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
     if (is_finite(found.u)) {
-      const JointVector calm = calm_motion<kLevel>(state.qd);
-      resolve_lower(saturation, box, desired, found, &calm);
+      resolve_lower(saturation, box, desired, found);
     } else {
       found.u = rest;
       set_scale(found, Scalar(0));
@@ -147,33 +145,20 @@ class Limiter {
   }
 
   /// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its
-  /// end: the same for all joints, so that the change keeps its direction. Each level of a stack has a share, of what
-  /// the level adds, which lower levels do not change.
-  [[nodiscard]] JointVector approach(const JointVector& qd, const Saturated<N, Scalar>& goal) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) return goal.u;
-    return step_toward(qd, qd, qd, goal.u);
-  }
-  template <int K>
-  [[nodiscard]] JointVector approach(const JointVector& qd, const SaturatedLevels<N, Scalar, K>& goal) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) return goal.u;
-    JointVector step = step_toward(qd, qd, qd, goal.upto[0]);
-    for (std::size_t k = 1; k < goal.upto.size(); ++k) step = step_toward(qd, step, goal.upto[k - 1], goal.upto[k]);
-    return step;
-  }
-
-  /// step + share (to − from) with the largest share in [0, 1] that leaves time to reach `to` from qd.
-  [[nodiscard]] JointVector step_toward(const JointVector& qd, const JointVector& step, const JointVector& from,
-                                        const JointVector& to) const noexcept {
-    Scalar share(1);
-    for (Eigen::Index i = 0; i < to.size(); ++i) {
-      if (!limits_.bounds_jerk(i)) continue;
-      const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(std::abs(to(i) - qd(i)));
-      const Scalar begun = step(i) - qd(i);
-      const Scalar added = to(i) - from(i);
-      const Scalar room = most - (added > Scalar(0) ? begun : -begun);
-      if (share * std::abs(added) > room) share = room > Scalar(0) ? room / std::abs(added) : Scalar(0);
+  /// end: the same for all joints, so that the change keeps its direction.
+  [[nodiscard]] JointVector approach(const JointVector& qd, const JointVector& goal) const noexcept {
+    if constexpr (kLevel == Level::kAcceleration) {
+      return goal;
+    } else {
+      Scalar share(1);
+      for (Eigen::Index i = 0; i < goal.size(); ++i) {
+        if (!limits_.bounds_jerk(i)) continue;
+        const Scalar change = std::abs(goal(i) - qd(i));
+        const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
+        if (share * change > most) share = most / change;
+      }
+      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
     }
-    return entrywise(qd, [&](Eigen::Index i) { return step(i) + share * (to(i) - from(i)); });
   }
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.

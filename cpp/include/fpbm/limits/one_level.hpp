@@ -45,6 +45,6 @@ template <int M, int N, typename Scalar, int P>
 /// Resolves the levels below the first: none.
 template <int M, int N, typename Scalar, int P>
 void resolve_lower(const NullSpaceSaturation<M, N, Scalar, P>&, const Box<N, Scalar>&, const Vector<N, Scalar>&,
-                   const Saturated<N, Scalar>&, const Vector<N, Scalar>* = nullptr) noexcept {}
+                   const Saturated<N, Scalar>&) noexcept {}
 
 }  // namespace fpbm

@@ -4,10 +4,8 @@
 #include <cstddef>
 #include <tuple>
 
-#include "fpbm/limits/level_least_squares.hpp"
 #include "fpbm/limits/saturation.hpp"
 #include "fpbm/limits/task_levels.hpp"
-#include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
@@ -42,22 +40,18 @@ class SaturationByLevel {
   /// Resolves the first level from rest, a motion within the bounds.
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                   const JointVector& desired) noexcept {
-    Result result{first_(box, rest, desired), {}, {}};
+    Result result{first_(box, rest, desired), {}};
     result.scales.fill(Scalar(1));  // Of a level that is left out, or that the higher levels determine.
     result.scales[0] = result.scale;
     return result;
   }
 
-  /// Resolves the levels below from the motion of the first. No J_k u of a higher level changes. calm: the motion that
-  /// a blocked level keeps to where its task leaves it free; null: levels keep to their lines.
-  void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result,
-                     const JointVector* calm) const noexcept {
+  /// Resolves the levels below from the motion of the first. No J_k u of a higher level changes.
+  void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
     LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
-    result.upto.fill(result.u);
     levels_.each_lower([&](std::size_t k, const auto& J) noexcept {
-      const Eigen::Index rank = space.rank();
-      if (rank == space.size()) return;  // The higher levels determine the motion.
+      if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
           whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
       if (whole) space.add(in_units(J, unit_));
@@ -67,9 +61,7 @@ class SaturationByLevel {
         result.u = goal;
       } else {
         NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space, unit_, rows_);
-        Saturated<N, Scalar> found = saturation(box, result.u, goal);
-        if (calm != nullptr && found.scale < kLittle<Scalar>)
-          yield_level(space, rank, J, box, goal, *calm, result.u, found);
+        const Saturated<N, Scalar> found = saturation(box, result.u, goal);
         result.scales[k] = found.u.allFinite() ? found.scale : Scalar(0);
         if (found.u.allFinite()) result.u = found.u;
         result.joints |= found.joints;
@@ -77,28 +69,10 @@ class SaturationByLevel {
         result.passes += found.passes;
       }
       whole = whole && result.scales[k] == Scalar(1);
-      for (std::size_t i = k; i < result.upto.size(); ++i) result.upto[i] = result.u;
     });
   }
 
  private:
-  /// yield() for a lower level, in the null space of the first `rank` directions of a space.
-  template <int Mk>
-  void yield_level(const LevelSpace<N, Scalar>& space, Eigen::Index rank, const Matrix<Mk, N, Scalar>& J,
-                   const Box<N, Scalar>& box, const JointVector& goal, const JointVector& calm, const JointVector& from,
-                   Saturated<N, Scalar>& found) const noexcept {
-    const auto Z = space.basis(rank);
-    const Matrix<Mk, N, Scalar> scaled = in_units(J, unit_);
-    const JointVector yielded =
-        level_least_squares(Z, scaled, unit_, box, rows_, from, goal, calm, kLevelRadius<Scalar>);
-    const Vector<Mk, Scalar> task = J.lazyProduct(goal - from);
-    const Vector<Eigen::Dynamic, Scalar> rates = Z.transpose().lazyProduct(transpose_times(scaled, task));
-    const Scalar share =
-        yielded_share(scaled, task, rates, found.scale, JointVector((found.u - from).cwiseQuotient(unit_)),
-                      JointVector((yielded - from).cwiseQuotient(unit_)));
-    found.u = box.nearest(JointVector(found.u + share * (yielded - found.u)));
-  }
-
   /// Of the first level. One level alone is saturated as a task without levels.
   using First = NullSpaceSaturation<kLevels == 1 ? std::get<0>(std::array{M...}) : Eigen::Dynamic, N, Scalar, P>;
 
@@ -159,9 +133,8 @@ template <int N, typename Scalar, int P, int... M>
 
 template <int N, typename Scalar, int P, int... M>
 void resolve_lower(const SaturationByLevel<N, Scalar, P, M...>& saturation, const Box<N, Scalar>& box,
-                   const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(M)>& found,
-                   const Vector<N, Scalar>* calm = nullptr) noexcept {
-  saturation.resolve_lower(box, desired, found, calm);
+                   const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(M)>& found) noexcept {
+  saturation.resolve_lower(box, desired, found);
 }
 
 /// The part of a motion that changes no level.

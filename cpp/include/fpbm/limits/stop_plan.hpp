@@ -18,6 +18,8 @@ struct Sweep {
   Vector<N, Scalar> tick;
   Vector<N, Scalar> low;   ///< ≤ 0
   Vector<N, Scalar> high;  ///< ≥ 0
+  /// Velocities at the start. s·way + t·tick is a sum of multiples of these and of −tick that are not negative.
+  Vector<N, Scalar> begun;
 };
 
 /// A motion to rest from a viable state, known to its end: the arm's last resort.
@@ -56,7 +58,9 @@ class StopPlan {
   }
 
   /// Of an arm at rest.
-  [[nodiscard]] Sweep<N, Scalar> sweep() const noexcept { return {velocity_, velocity_, velocity_, velocity_}; }
+  [[nodiscard]] Sweep<N, Scalar> sweep() const noexcept {
+    return {velocity_, velocity_, velocity_, velocity_, velocity_};
+  }
 
   /// The joints' places over a tick that leads to the plan's start, and over the plan.
   [[nodiscard]] Sweep<N, Scalar> sweep(const JointLimits& limits, const State<N, Scalar>& before,
@@ -65,7 +69,7 @@ class StopPlan {
     const Eigen::Index n = last_.size();
     const Scalar h = limits.tick();
     const JointVector zero = JointVector::Zero(n);
-    Sweep<N, Scalar> sweep{zero, zero, zero, zero};
+    Sweep<N, Scalar> sweep{zero, zero, zero, zero, zero};
     const Scalar ticks = Scalar(1) + profile_.way(kLevel);
     // The tick's way less that at the velocity after letting go; and what is lost to that velocity while letting go.
     const Scalar lost = gained() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5)) + late();
@@ -73,6 +77,7 @@ class StopPlan {
       if (!is_own(i)) {
         sweep.way(i) = h * ticks * velocity_(i);
         sweep.tick(i) = -h * h * lost * last_(i);
+        sweep.begun(i) = before.qd(i);
         continue;
       }
       const auto [low, high] = own_reach(limits, i, start.qd(i));

@@ -41,8 +41,7 @@ class TaskLevels {
 /// A joint motion within a box that resolves task levels.
 template <int N, typename Scalar, int K>
 struct SaturatedLevels : Saturated<N, Scalar> {
-  std::array<Scalar, K> scales;           ///< s_k of each level. The first is scale.
-  std::array<Vector<N, Scalar>, K> upto;  ///< u_k: the motion of the levels down to each.
+  std::array<Scalar, K> scales;  ///< s_k of each level. The first is scale.
 };
 
 template <int N, typename Scalar, int... M>
@@ -59,9 +58,8 @@ void set_scale(SaturatedLevels<N, Scalar, K>& motion, Scalar scale) noexcept {
 
 template <int N, typename Scalar, int... M>
 [[nodiscard]] auto with_scale(const TaskLevels<N, Scalar, M...>&, const Vector<N, Scalar>& u, Scalar scale) noexcept {
-  SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> result{{u, scale, 0, 0}, {}, {}};
+  SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> result{{u, scale, 0, 0}, {}};
   set_scale(result, scale);
-  result.upto.fill(u);
   return result;
 }
 

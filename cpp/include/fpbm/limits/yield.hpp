@@ -12,58 +12,47 @@
 
 namespace fpbm {
 
-/// s₀: a level with a smaller scale yields, unless its direction is free.
-template <typename Scalar>
-inline constexpr Scalar kLittle = Scalar(0.1);
-
-/// Motion of joints that a blocked task leaves free: they brake.
-template <Level kLevel, int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> calm_motion(const Vector<N, Scalar>& qd) noexcept {
-  constexpr Scalar kDamping = Scalar(10);  // [1/s]
-  return entrywise(qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * qd(i) : Scalar(0); });
+/// How free the direction b of a task is, in [0, 1], where u keeps the direction and `leaving` does not:
+///
+///   min((J u · b)/(0.3 J leaving · b), 1) min((σ_b/σ₀)², 1),    σ_b = ‖Jᵀb‖/(‖J‖‖b‖)
+///
+/// The first factor compares what both motions give of the task: if the demand is large, both give little, and u gives
+/// a good share of `leaving`. σ_b is small where the posture loses the direction; there both give little as well.
+template <int M, int N, typename Scalar>
+[[nodiscard]] Scalar freedom(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Vector<N, Scalar>& u,
+                             const Vector<N, Scalar>& leaving) noexcept {
+  constexpr Scalar kShare = Scalar(0.3);
+  constexpr Scalar kLost = Scalar(0.2);  // σ₀
+  const Scalar most = kShare * dot(product(J, leaving), task);
+  const Scalar size = kLost * kLost * squared_norm(J) * squared_norm(task);
+  if (!(most > Scalar(0) && size > Scalar(0))) return Scalar(0);
+  const Scalar kept = std::clamp(dot(product(J, u), task) / most, Scalar(0), Scalar(1));
+  return kept * std::min(squared_norm(transpose_times(J, task)) / size, Scalar(1));
 }
 
-/// Share of `yielded`, which leaves the task's direction b, in the motion of a level:
-///
-///   w = (1 − (s/s₀)²)² (1 − f²)²,   f = min((J found · b)/(0.3 J yielded · b), 1) min((σ_b/0.1)², 1)
-///
-/// s is the scale. f compares what both motions give of the task: from 0.3 on, the direction is free, and s is
-/// small because the demand is large. σ_b = ‖(JZ)ᵀb‖/(‖J‖‖b‖) is small where the posture or the higher levels lose the
-/// direction; there both give little. rates: (JZ)ᵀb.
-template <int M, int N, typename Scalar, typename Rates>
-[[nodiscard]] Scalar yielded_share(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Rates& rates,
-                                   Scalar scale, const Vector<N, Scalar>& found,
-                                   const Vector<N, Scalar>& yielded) noexcept {
-  constexpr Scalar kFree = Scalar(0.3);
-  constexpr Scalar kLost = Scalar(0.1);
-  const Scalar left = scale > Scalar(0) ? scale / kLittle<Scalar> : Scalar(0);
-  if (!(left < Scalar(1))) return Scalar(0);
-  const Scalar most = kFree * dot(product(J, yielded), task);
-  const Scalar kept = most > Scalar(0) ? dot(product(J, found), task) / most : Scalar(0);
-  const Scalar size = squared_norm(J) * squared_norm(task);
-  const Scalar present = size > Scalar(0) ? squared_norm(rates) / (kLost * kLost * size) : Scalar(0);
-  const Scalar free = std::clamp(kept, Scalar(0), Scalar(1)) * std::min(present, Scalar(1));
-  const Scalar blocked = (Scalar(1) - left * left) * (Scalar(1) - free * free);
-  return blocked * blocked;
-}
-
-/// Blends found, the motion of the first level, with box_least_squares(), as far as yielded_share() says. At velocity
-/// level the scale is the share of the task's velocity that is left.
+/// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (1 − f²)² (yielded − found), where s is the scale,
+/// s₀ = kLittle the scale below which the arm yields, and f is freedom(). At velocity level s is the share of the
+/// task's velocity that is left.
 template <Level kLevel, int M, int N, int P, typename Scalar>
 void yield(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Box<N, Scalar>& box,
            const Rows<N, P, Scalar>& rows, const Vector<N, Scalar>& desired, Saturated<N, Scalar>& found) noexcept {
   using JointVector = Vector<N, Scalar>;
+  constexpr Scalar kLittle = Scalar(0.1);  // s₀
   constexpr Scalar kRadius = Scalar(0.1);  // Damping of the least squares, as a share of ‖J‖_F.
+  constexpr Scalar kDamping = Scalar(10);  // Damping of what the least squares leave free [1/s].
   const Vector<M, Scalar> task = product(J, desired);
   Scalar scale = found.scale;
   if constexpr (kLevel == Level::kVelocity) scale = dot(product(J, found.u), task) / squared_norm(task);
-  if (!(scale < kLittle<Scalar>)) return;
+  const Scalar left = scale > Scalar(0) ? scale / kLittle : Scalar(0);
+  if (!(left < Scalar(1))) return;
   const Scalar mu = kRadius * kRadius * squared_norm(J);
-  const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, calm_motion<kLevel>(qd), box);
-  const Scalar yields = yielded_share(J, task, transpose_times(J, task), scale, found.u, yielded);
-  if (!(yields > Scalar(0))) return;
+  const JointVector rest =
+      entrywise(qd, [&](Eigen::Index i) { return kLevel == Level::kAcceleration ? -kDamping * qd(i) : Scalar(0); });
+  const JointVector yielded = box_least_squares<M, N, Scalar>(J, task, mu, rest, box);
+  const Scalar free = freedom(J, task, found.u, yielded);
+  const Scalar yields = (Scalar(1) - left * left) * (Scalar(1) - free * free);
   const JointVector blended =
-      entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * (yielded(i) - found.u(i)); });
+      entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
   const JointVector to = box.nearest(blended);  // Round-off may leave the box.
   const Scalar share = rows.share(found.u, to);
   found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });

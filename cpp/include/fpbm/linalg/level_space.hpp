@@ -82,17 +82,14 @@ class LevelSpace {
     return x;
   }
 
-  /// Z, n × (n − rank), of all levels.
-  [[nodiscard]] Basis basis() const noexcept { return basis(rank_); }
-
-  /// The same of the first levels, those that had this rank.
-  [[nodiscard]] Basis basis(Eigen::Index rank) const noexcept {
+  /// Z, n × (n − rank).
+  [[nodiscard]] Basis basis() const noexcept {
     Basis Z;
-    Z.resize(size(), size() - rank);
+    Z.resize(size(), size() - rank_);
     for (Eigen::Index j = 0; j < Z.cols(); ++j) {
       Scalar* const z = Z.data() + j * size();
-      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank + j ? 1 : 0);
-      for (Eigen::Index k = rank; k-- > 0;) reflect(k, z);
+      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank_ + j ? 1 : 0);
+      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, z);
     }
     return Z;
   }
