@@ -16,7 +16,6 @@ import lwr_segment
 import numpy as np
 import panda_problems
 import planar_hexagon
-import stiff_gains
 from figures import draw_panda, draw_planar, draw_segment
 
 import fpbm_cpp as fp
@@ -78,8 +77,6 @@ def panda(folder: Path, problems: int) -> Iterator[str]:
 def falls_short() -> Iterator[str]:
     yield "## A demand beyond the bounds\n"
     yield from beyond_bounds.run()
-    yield "\n## Gains near the tick rate\n"
-    yield from stiff_gains.run()
 
 
 def main() -> None:

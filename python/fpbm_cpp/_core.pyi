@@ -657,6 +657,12 @@ class Tracker:
         shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
         where no obstacle has that name, or the shape is of another kind.
         """
+    def reorder(self, order: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> None:
+        """
+        Reorders the levels of a stack: level k becomes what was level order[k].
+
+        The tasks keep their targets; tick.scales and enable() count the new levels. Commands stay within all bounds.
+        """
     @typing.overload
     def resolve_measured(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict[str, typing.Any]

@@ -22,7 +22,7 @@ template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar freedom(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Vector<N, Scalar>& u,
                              const Vector<N, Scalar>& leaving) noexcept {
   constexpr Scalar kShare = Scalar(0.3);
-  constexpr Scalar kLost = Scalar(0.2);  // σ₀
+  constexpr Scalar kLost = Scalar(0.3);  // σ₀
   const Scalar most = kShare * dot(product(J, leaving), task);
   const Scalar size = kLost * kLost * squared_norm(J) * squared_norm(task);
   if (!(most > Scalar(0) && size > Scalar(0))) return Scalar(0);
