@@ -640,6 +640,7 @@ def test_servo(task: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert q0[3] == -2.3562
     limits = how.pop("limits")
     assert how.pop("clearance") is None
+    assert how.pop("bounds") == ()
     assert how == {"task": task, "stack": None, "dt": 1e-3, "urdf": None, "port": 9000, "open_browser": False}
     assert (limits.velocity == 0.5).all()
     assert (limits.jerk == 1000).all()

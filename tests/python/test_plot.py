@@ -40,9 +40,26 @@ def test_overview_within_limits_has_what_they_did() -> None:
     assert new == {"Joints on a bound", "Task scale", "Clearance"}
 
 
+def a_run_of_a_stack() -> fp.Run:
+    arm, q0 = fp.SerialArm.preset("panda"), [0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785]
+    stack = fp.Stack(fp.PoseTask(), fp.PositionTask("panda_joint4", rows=("z",), name="elbow"))
+    path = fp.Line([0.1, 0.1, 0.0], 1.0)
+    return fp.track(arm, path, fp.WMVN(np.ones(7)), q0, dt=0.01, stack=stack, task="pose")
+
+
+def test_a_run_of_a_stack_has_its_tasks() -> None:
+    assert set(headings(a_run_of_a_stack())) - set(headings(a_run_within_limits())) == {"Task errors"}
+    (axes,) = panels(a_run_of_a_stack().plot(panels=["task_errors"])).values()
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels == ["pose [m]", "pose [rad]", "elbow [m]"]
+    (axes,) = panels(a_run_of_a_stack().plot(panels=["scale"])).values()
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["pose", "elbow"]
+
+
 @pytest.mark.parametrize("name", PANELS)
 def test_each_panel_alone_is_as_wide_as_a_column(name: str) -> None:
-    run = a_run_in_space() if name == "axis_orientation_errors" else a_run_within_limits()
+    special = {"axis_orientation_errors": a_run_in_space, "task_errors": a_run_of_a_stack}
+    run = special.get(name, a_run_within_limits)()
     figure = run.plot(panels=[name])
     assert list(panels(figure)) == [PANELS[name].heading]
     assert figure.get_figwidth() == 3.5

@@ -274,7 +274,7 @@ def test_bounds_of_tasks_hold_while_a_target_is_dragged() -> None:
     wall = fp.TaskBounds(fp.PositionTask(rows=("y",)), upper=y)
     loop = ServoLoop(arm, fp.FPBM(0.6, np.ones(7), 10, 25), q0, bounds=[wall], clock=lambda: now)
     most = -np.inf
-    for _ in range(150):
+    for _ in range(100):
         now += 0.02
         loop.push(arm.forward(q0)[:3, 3] + [0, 0.3, 0])
         most = max(most, *(arm.forward(tick.q)[1, 3] for tick in loop.advance()))

@@ -122,6 +122,8 @@ def test_options_make_it_again(q0):
         "singular_brake": 5.0,
         "null_damping": 3.0,
         "clearance": fp.Clearance([fp.Capsule(4, [0, 0, 0], [1, 0, 0], 0.1)], [fp.HalfSpace([0, 1, 0], -3)]),
+        "bounds": (fp.TaskBounds(fp.PositionTask(rows=("x",)), upper=5),),
+        "stack": None,
     }
     run = fp.track(arm, SMOOTH, scheme, q0, **given)
     assert run.options == given

@@ -17,7 +17,7 @@ from .._core import check_sweep
 from .._types import Array
 from ..arms import Arm, JointLimits, PlanarArm
 from ..clearance import Clearance
-from ..errors import wrong
+from ..errors import not_one_of, wrong
 from ..io import write_whole
 from ..motion.run import Run
 from ..motion.simulation import led_task, simulate, track, without_limits
@@ -54,6 +54,7 @@ READY = {
 
 # How far joints of an unknown arm are bent, one way, the other or not at all [rad]; at most a quarter of their range.
 BEND = 1.0
+TIP_TASKS = ("position", "pose")
 MOST = 3**7  # Postures that are looked at.
 GOOD = 0.8  # Of what the best has, as far as singular postures are.
 
@@ -161,6 +162,8 @@ def filled(job: Table, arm: Arm) -> Table:
         scheme = {"weights": [1.0] * arm.dof, **scheme}
     run = _filled("run", job.get("run", {}))
     stack = make("task", job["task"]) if "task" in job else None
+    if stack is None and run["task"] not in TIP_TASKS:
+        raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():
         run["task"], kind = led_task(job.get("run", {}).get("task"), stack)
     if "q0" not in run:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
-from ..errors import ResolutionError, not_one_of, wrong
+from ..errors import ResolutionError, wrong
 from ..paths import Path
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
@@ -153,8 +153,6 @@ def track(
 def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     """Name of the task that follows the path, and whether it is a 'position' or a 'pose'."""
     if stack is None:
-        if task not in (None, "position", "pose"):
-            raise not_one_of("task", task, ("position", "pose"))
         return task or "position", task or "position"
     if not isinstance(stack, Stack):
         raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
