@@ -19,7 +19,6 @@ struct ChainSweep {
   ChainVector tick;
   ChainVector low;
   ChainVector high;
-  ChainVector begun;
   ChainVector rest;  ///< Most that all but `way` displaces a joint, either way.
 
   ChainSweep(const Links<N, Scalar>& links, const Sweep<N, Scalar>& sweep) noexcept
@@ -27,7 +26,6 @@ struct ChainSweep {
         tick(links.motion(sweep.tick)),
         low(links.least(sweep.low, sweep.high)),
         high(-links.least(-sweep.high, -sweep.low)),
-        begun(links.motion(sweep.begun)),
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 
   /// Least that all but `way` adds to what has this gradient.
@@ -38,8 +36,8 @@ struct ChainSweep {
   [[nodiscard]] Scalar least_of_own(const ChainVector& gradient) const noexcept {
     return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum();
   }
-  /// Whether `way` and `tick` together never reduce what has this gradient.
-  [[nodiscard]] bool opens(const ChainVector& gradient) const noexcept {
+  /// Whether `way` and `tick` together never reduce what has this gradient. begun: of the sweep, by the chain's joints.
+  [[nodiscard]] bool opens(const ChainVector& gradient, const ChainVector& begun) const noexcept {
     return gradient.dot(begun) >= Scalar(0) && gradient.dot(tick) <= Scalar(0);
   }
 };
@@ -158,7 +156,7 @@ template <int N, typename Scalar>
         const Scalar gap = plane.gap[e] - clearance.margin() - bend.c0 - time * std::max(plane.closing, Scalar(0));
         const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
         Scalar far = furthest(gap + sweep.least(g), slope, bend.c2, whole);
-        if (far < whole && done == Scalar(0) && sweep.opens(g)) {
+        if (far < whole && done == Scalar(0) && sweep.opens(g, clearance.links().motion(drives.begun))) {
           far = std::max(furthest(gap + sweep.least_of_own(g), bend.c1, bend.c2, whole), far);
         }
         sure = std::min(far, sure);  // In this order NaN stays.

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "fpbm/clearance/shape.hpp"
-#include "fpbm/core/rotation.hpp"
 #include "fpbm/model/links.hpp"
 
 namespace fpbm {
@@ -44,19 +43,21 @@ struct Body {
     return body;
   }
 
-  /// Gradient of n·x by joint k of the chain with this frame, for a point x of the body and m = x × n.
-  [[nodiscard]] Scalar gradient(const Transform<Scalar>& frame, bool turns, const Vector<3, Scalar>& n,
-                                const Vector<3, Scalar>& m) const noexcept {
-    const Vector<3, Scalar> z = frame.R.col(2);
-    if (is_direction) return turns ? z.dot(m) : Scalar(0);
-    // n · (z × (x − p)) = z · ((x − p) × n)
-    return turns ? z.dot(Vector<3, Scalar>(m - cross(frame.p, n))) : z.dot(n);
-  }
-
   /// frame: that of its link.
   void place(const Transform<Scalar>& frame) noexcept {
     now = placed(in_link, frame);
+    set_ball();
+  }
+
+  /// The same of the body of a bound.
+  void place_in_bound(const Transform<Scalar>& frame) noexcept {
+    now = placed(in_link, frame);
     if (is_direction) now.a = now.b = frame.R.lazyProduct(in_link.a);
+    set_ball();
+  }
+
+ private:
+  void set_ball() noexcept {
     centre = (now.a + now.b) / Scalar(2);
     size = (now.b - now.a).norm() / Scalar(2) + now.radius;
   }

@@ -70,6 +70,7 @@ class Clearance {
         pairs_.push_back({i, j, true});
       }
     }
+    shapes_ = bodies_.size();
     leave_out_overlaps(chain);
     open_.resize(pairs_.size());
     shape_pairs_ = pairs_.size();
@@ -154,8 +155,12 @@ class Clearance {
   /// Places the arm's capsules at a posture.
   void place(const JointVector& q) noexcept {
     links_.place(q, frames_);
-    for (Body& body : bodies_) body.place(frames_[static_cast<std::size_t>(body.link)]);
-    for (SpeedBound& bound : speed_bounds_) bound.body.place(frames_[static_cast<std::size_t>(bound.body.link)]);
+    const auto frame = [this](const Body& body) -> const auto& {
+      return frames_[static_cast<std::size_t>(body.link)];
+    };
+    for (std::size_t i = 0; i < shapes_; ++i) bodies_[i].place(frame(bodies_[i]));
+    for (std::size_t i = shapes_; i < bodies_.size(); ++i) bodies_[i].place_in_bound(frame(bodies_[i]));
+    for (SpeedBound& bound : speed_bounds_) bound.body.place_in_bound(frame(bound.body));
   }
 
   /// A lower bound on the distance of a pair where the arm is placed, found faster than nearest_of().
@@ -223,6 +228,7 @@ class Clearance {
   Links<N, Scalar> links_;
   Transform<Scalar> tip_;     ///< In the frame of the last joint.
   std::vector<Body> bodies_;  ///< Those of bounds of tasks come last.
+  std::size_t shapes_ = 0;    ///< Number of bodies that are shapes.
   std::size_t shape_pairs_ = 0;
   std::vector<SpeedBound> speed_bounds_;
   std::vector<Obstacle<Scalar>> obstacles_;

@@ -22,7 +22,7 @@ template <Level kLevel, int N, typename Scalar = double>
 class Guard {
  public:
   static constexpr int kPairs = 16;         ///< Rows for pairs, at most: of more, those with least to spare.
-  static constexpr int kRows = kPairs + 4;  ///< The last ones for speeds.
+  static constexpr int kRows = kPairs + 2;  ///< The last ones for speeds.
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
@@ -91,12 +91,15 @@ class Guard {
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
-    Scalar gaps[kPairs];
+    Scalar gaps[kPairs];  // Of rows of bounds with a deceleration.
+    std::uint32_t gentle_rows = 0;
     Scalar spares[kPairs];  // By how much gaps close slower than they may.
+    const ShapePair* const first_bound = clearance_.pairs().data() + clearance_.shape_pairs();
     for (const ShapePair& pair : clearance_.pairs()) {
       const Scalar moves = pair.world ? time * clearance_.obstacles()[pair.second].velocity.norm() : Scalar(0);
       const auto& body = clearance_.bodies()[pair.first];
-      const bool gentle = std::isfinite(body.deceleration);  // Which may take more than the quickest stop does.
+      // A deceleration of its own may take more than the quickest stop does.
+      const bool gentle = &pair >= first_bound && std::isfinite(body.deceleration);
       if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + body.reach + moves) continue;
       const Bend<N, Scalar> bend(clearance_, pair, sweep);
       const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
@@ -113,15 +116,20 @@ class Guard {
         const auto& gradient = between ? nearest : plane.gradient[e];
         const JointVector g = clearance_.links().by_drive(gradient);
         const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
-        const Scalar spare =
-            most_closing(gap - clearance_.margin(), kShare * left / time, body, h) - plane.closing + g.dot(state.qd);
+        Scalar allowed = kShare * left / time;
+        if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, body, h);
+        const Scalar spare = allowed - plane.closing + g.dot(state.qd);
         const Eigen::Index k = row_for(spare, spares, rows.count);
         if (k == kPairs) continue;
         spares[k] = spare;
         pairs[k] = &pair;
         slack[k] = plane.distance + nearest.dot(sweep.way);  // At the way's end, without what bends it.
         closing[k] = plane.closing;
-        gaps[k] = gap - clearance_.margin();
+        gentle_rows &= ~(std::uint32_t(1) << k);
+        if (gentle) {
+          gentle_rows |= std::uint32_t(1) << k;
+          gaps[k] = gap - clearance_.margin();
+        }
         rows.b(k) = left;
         rows.g.col(k) = g;
       }
@@ -133,8 +141,10 @@ class Guard {
       const Scalar bent = slack[k] - clearance_.nearest_of(*pairs[k]).distance;
       const Scalar left = rows.b(k) - std::max(bent, Scalar(0));
       const Scalar now = rows.g.col(k).dot(state.qd);
-      const Scalar hard = left > Scalar(0) ? kShare * left / time : left / (kShare * average);
-      rows.b(k) = most_closing(gaps[k], hard, clearance_.bodies()[pairs[k]->first], h) - closing[k];  // −g·q̇
+      Scalar allowed = left > Scalar(0) ? kShare * left / time : left / (kShare * average);
+      if ((gentle_rows >> k & 1U) != 0)
+        allowed = most_closing(gaps[k], allowed, clearance_.bodies()[pairs[k]->first], h);
+      rows.b(k) = allowed - closing[k];  // −g·q̇
       rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - late) * now;
       rows.g.col(k) *= kLevel == Level::kAcceleration ? -late * h : -late;
     }
@@ -188,7 +198,6 @@ class Guard {
   /// Most speed v at which a gap s may close. A body with a deceleration a brakes by a, v²/2a + v h ≤ s − s₀/2, until
   /// s₀ = a τ², from where v = s/τ decelerates by less.
   [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const Body<N, Scalar>& body, Scalar h) noexcept {
-    if (!std::isfinite(body.deceleration)) return hard;
     const Scalar a = body.deceleration;
     const Scalar last = a * kTail * kTail;
     if (!(gap > last)) return std::min(hard, std::max(gap, Scalar(0)) / kTail);

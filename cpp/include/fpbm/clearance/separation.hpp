@@ -50,14 +50,32 @@ struct Separation {
       gradient[e].setZero(clearance.links().count());
     }
     const Vector3 moments[2] = {cross(ends[0], n), cross(ends[1], n)};
+    if (body.is_direction) {
+      set_direction(clearance, body.link, moments[0]);
+      return;
+    }
     for (Eigen::Index k = from; k < body.link; ++k) {
       const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
-      for (int e = 0; e < 2; ++e) gradient[e](k) = body.gradient(frame, clearance.links().turns(k), n, moments[e]);
+      const Vector3 z = frame.R.col(2);
+      const bool turns = clearance.links().turns(k);
+      // n · (z × (x − p)) = z · ((x − p) × n)
+      const Vector3 offset = cross(frame.p, n);
+      for (int e = 0; e < 2; ++e) gradient[e](k) = turns ? z.dot(moments[e] - offset) : z.dot(n);
     }
   }
 
   /// Gradient of the distance, by the chain's joints.
   [[nodiscard]] ChainVector of_distance() const noexcept { return gradient[0] + at * (gradient[1] - gradient[0]); }
+
+ private:
+  /// Of a direction x, which only turning joints move: n · (z × x) = z · (x × n).
+  void set_direction(const Clearance<N, Scalar>& clearance, Eigen::Index link, const Vector3& moment) noexcept {
+    for (Eigen::Index k = 0; k < link; ++k) {
+      if (clearance.links().turns(k)) {
+        gradient[0](k) = gradient[1](k) = clearance.frames()[static_cast<std::size_t>(k + 1)].R.col(2).dot(moment);
+      }
+    }
+  }
 };
 
 }  // namespace fpbm

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "fpbm/clearance/clearance.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/rows.hpp"
@@ -16,7 +14,12 @@ template <int N, typename Scalar>
   const Vector<3, Scalar> moment = cross(body.now.a, n);
   for (Eigen::Index k = 0; k < body.link; ++k) {
     const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
-    row(k) = body.gradient(frame, clearance.links().turns(k), n, moment);
+    const Vector<3, Scalar> z = frame.R.col(2);
+    if (clearance.links().turns(k)) {
+      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(frame.p, n)));
+    } else if (!body.is_direction) {
+      row(k) = z.dot(n);
+    }
   }
   return clearance.links().by_drive(row);
 }
