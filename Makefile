@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -35,6 +35,7 @@ help:
 	@echo 'make packages         the recipes for Conan and, with VCPKG_ROOT, for vcpkg'
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
+	@echo 'make motions          10,000 random motions of stacks of tasks: bounds, and rest'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
@@ -136,6 +137,10 @@ soak:
 	cmake --preset release
 	cmake --build --preset release --target fpbm_soak
 	build/release/tests/cpp/fpbm_soak $(TICKS)
+
+# Two hours of processor time.
+motions: $(VENV)/package
+	$(BIN)/python tests/soak/stack_motions.py
 
 # The corpus stays in build/fuzz, so that the next run goes on from it.
 fuzz:

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,45 +16,49 @@
 namespace fpbm::bindings {
 namespace {
 
-/// What one tick did, as Python has it.
+/// What one tick did. Its arrays become Python's where they are read.
 struct PyTick {
-  Array q;
-  Array qd;
-  Array qdd;
+  JointVector q;
+  JointVector qd;
+  JointVector qdd;
   Status status;
   double scale;
-  py::array_t<bool> saturated;
+  std::uint32_t saturated;
   double sigma;
-  Array error;
+  Eigen::VectorXd error;
   std::optional<PyNearest> nearest;
-  std::optional<Array> scales;     ///< Of a stack: of each level.
-  std::optional<PyPoints> errors;  ///< Of a stack: of each task.
+  Eigen::VectorXd scales;                         ///< Of a stack: of each level.
+  std::shared_ptr<const StackLoop::Parts> parts;  ///< Of a stack: the tasks of the error's entries.
+
+  [[nodiscard]] py::array_t<bool> saturated_joints() const {
+    py::array_t<bool> joints(q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) joints.mutable_at(i) = ((saturated >> i) & 1U) != 0;
+    return joints;
+  }
+  [[nodiscard]] std::optional<Array> level_scales() const {
+    return parts ? std::optional(array_of(scales)) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<PyPoints> task_errors() const {
+    if (!parts) return std::nullopt;
+    PyPoints errors;
+    Eigen::Index row = 0;
+    for (const auto& [name, size] : *parts) {
+      errors[py::str(name)] = array_of(error.segment(row, size));
+      row += size;
+    }
+    return errors;
+  }
 };
 
 template <typename Space>
 PyTick python_tick(const Tick<Space, kDynamic>& tick, const std::optional<PyNearest>& nearest) {
-  py::array_t<bool> saturated(tick.q.size());
-  for (Eigen::Index i = 0; i < tick.q.size(); ++i) saturated.mutable_at(i) = ((tick.saturated >> i) & 1U) != 0;
-  return {array_of(tick.q),
-          array_of(tick.qd),
-          array_of(tick.qdd),
-          tick.status,
-          tick.scale,
-          saturated,
-          tick.sigma,
-          array_of(tick.error),
-          nearest,
-          {},
-          {}};
+  return {tick.q, tick.qd, tick.qdd, tick.status, tick.scale, tick.saturated, tick.sigma, tick.error, nearest, {}, {}};
 }
 
 /// Of a stack.
 PyTick python_tick(const StackLoop& loop, const StackLoop::Result& tick, const std::optional<PyNearest>& nearest) {
-  PyTick result = python_tick(tick, nearest);
-  result.error = loop.error(tick);
-  result.scales = loop.scales(tick);
-  result.errors = loop.errors(tick);
-  return result;
+  return {tick.q,     tick.qd,          tick.qdd, tick.status,       tick.scale,  tick.saturated,
+          tick.sigma, loop.error(tick), nearest,  loop.scales(tick), loop.parts()};
 }
 
 template <typename Space>
@@ -235,20 +240,23 @@ class PyTracker {
 };
 
 void bind_tick(py::module_& m) {
+  const auto array = [](auto values) { return [values](const PyTick& tick) { return array_of(tick.*values); }; };
   py::class_<PyTick>(m, "Tick", "What one tick of a control loop did.")
-      .def_readonly("q", &PyTick::q, "Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).")
-      .def_readonly("qd", &PyTick::qd, "Its velocity [rad/s], shape (n,).")
-      .def_readonly("qdd", &PyTick::qdd, "Mean acceleration over the tick [rad/s^2], shape (n,).")
+      .def_property_readonly("q", array(&PyTick::q),
+                             "Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).")
+      .def_property_readonly("qd", array(&PyTick::qd), "Its velocity [rad/s], shape (n,).")
+      .def_property_readonly("qdd", array(&PyTick::qdd), "Mean acceleration over the tick [rad/s^2], shape (n,).")
       .def_readonly("status", &PyTick::status, "What became of it; where it failed, why the arm brakes.")
       .def_readonly("scale", &PyTick::scale, "How much of the task the limits left, from 0 to 1.")
-      .def_readonly("saturated", &PyTick::saturated, "Which joints are on a bound, shape (n,).")
+      .def_property_readonly("saturated", &PyTick::saturated_joints, "Which joints are on a bound, shape (n,).")
       .def_readonly("sigma", &PyTick::sigma,
                     "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
-      .def_readonly("error", &PyTick::error, "x - f(q) at the tick's start [m, rad], shape (m,).")
-      .def_readonly("scales", &PyTick::scales,
-                    "Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.")
-      .def_readonly(
-          "errors", &PyTick::errors,
+      .def_property_readonly("error", array(&PyTick::error), "x - f(q) at the tick's start [m, rad], shape (m,).")
+      .def_property_readonly(
+          "scales", &PyTick::level_scales,
+          "Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.")
+      .def_property_readonly(
+          "errors", &PyTick::task_errors,
           "Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.")
       .def_readonly(
           "nearest", &PyTick::nearest,

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "read_stack.hpp"
@@ -15,7 +16,11 @@ namespace fpbm::bindings {
 StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Arm& arm, const State<kDynamic>& start,
                      const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
                      const Clearance<kDynamic>& clearance)
-    : dt_(options.dt), motion_(read_stack(stack, arm), scheme, start, options, limits, qdd0, clearance) {}
+    : dt_(options.dt), motion_(read_stack(stack, arm), scheme, start, options, limits, qdd0, clearance) {
+  auto parts = std::make_shared<Parts>();
+  for (const StackTask& task : motion_.plan().tasks) parts->emplace_back(task.name, task.size);
+  parts_ = std::move(parts);
+}
 
 std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, const py::handle& given) const {
   using Source = StackMotion::Source;
@@ -114,25 +119,18 @@ Array StackLoop::frame(const std::string& name) const {
   return array_of(motion_.frame_of(task));
 }
 
-Array StackLoop::scales(const Result& tick) const {
-  return array_of(Eigen::Map<const Eigen::VectorXd>(tick.scales.data(), motion_.plan().levels));
+Eigen::VectorXd StackLoop::scales(const Result& tick) const {
+  return Eigen::Map<const Eigen::VectorXd>(tick.scales.data(), motion_.plan().levels);
 }
 
-PyPoints StackLoop::errors(const Result& tick) const {
-  PyPoints errors;
+Eigen::VectorXd StackLoop::error(const Result& tick) const {
+  Eigen::VectorXd all(motion_.plan().error_size());
+  Eigen::Index row = 0;
   for (const StackTask& task : motion_.plan().tasks) {
-    errors[py::str(task.name)] = array_of(StackMotion::error_of(task, tick));
+    all.segment(row, task.size) = StackMotion::error_of(task, tick);
+    row += task.size;
   }
-  return errors;
-}
-
-Array StackLoop::error(const Result& tick) const {
-  std::vector<double> all;
-  for (const StackTask& task : motion_.plan().tasks) {
-    const JointVector error = StackMotion::error_of(task, tick);
-    all.insert(all.end(), error.data(), error.data() + error.size());
-  }
-  return array_of(Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())));
+  return all;
 }
 
 }  // namespace fpbm::bindings

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct PyFollower {
 class StackLoop {
  public:
   using Result = StackMotion::Result;
+  using Parts = std::vector<std::pair<std::string, int>>;
 
   /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument where a task does not suit the arm, and as fpbm::Tracker.
   StackLoop(const py::object& stack, const Scheme& scheme, const Arm& arm, const State<kDynamic>& start,
@@ -53,10 +56,11 @@ class StackLoop {
   /// The frame of a task, shape (4, 4); of an axis, its z axis is that.
   [[nodiscard]] Array frame(const std::string& task) const;
 
-  [[nodiscard]] Array scales(const Result& tick) const;
-  [[nodiscard]] PyPoints errors(const Result& tick) const;
-  /// The errors one after another.
-  [[nodiscard]] Array error(const Result& tick) const;
+  [[nodiscard]] Eigen::VectorXd scales(const Result& tick) const;
+  /// The errors of the tasks one after another.
+  [[nodiscard]] Eigen::VectorXd error(const Result& tick) const;
+  /// Name and number of entries of each.
+  [[nodiscard]] const std::shared_ptr<const Parts>& parts() const noexcept { return parts_; }
 
  private:
   /// The sources of references that have some; the other tasks get their targets.
@@ -65,6 +69,7 @@ class StackLoop {
 
   double dt_;
   StackMotion motion_;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace fpbm::bindings

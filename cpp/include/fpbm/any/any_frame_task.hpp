@@ -24,6 +24,7 @@ struct FrameSpace {
   struct Point {
     Transform<Scalar> at;
     bool is_axis = false;
+    bool is_empty = false;  ///< Of a task without rows: has no error, and does not move.
   };
 
   template <typename Scalar>
@@ -34,6 +35,7 @@ struct FrameSpace {
   /// As Pose, or of directions as Direction, without linear rows.
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
+    if (y.is_empty) return filled<Vector<6, Scalar>>(6);
     if (!y.is_axis) return Pose::difference<Scalar>(x.at, y.at);
     const Vector<3, Scalar> turn = Direction::difference<Scalar>(column(x.at.R, 2), column(y.at.R, 2));
     auto result = filled<Vector<6, Scalar>>(6);
@@ -43,6 +45,7 @@ struct FrameSpace {
 
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
+    if (y.is_empty) return y;
     return {Pose::displace<Scalar>(y.at, d), y.is_axis};
   }
 };
@@ -95,6 +98,7 @@ class AnyFrameTask {
   void evaluate(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x,
                 Matrix<6, Robot::kDof>& J, Matrix<6, Robot::kDof>& Jd, Matrix<Eigen::Dynamic, 6>& S) const noexcept {
     x.is_axis = kind_ == FrameCoordinates::kAxis;
+    x.is_empty = count_ == 0;
     S.resize(count_, 6);
     if (count_ == 0) return;
     x.at = frame_.at(robot, state);

@@ -45,12 +45,16 @@ class AnyPostureTask {
     x = filled<Vector<kMaxDof>>(kMaxDof);
     S.resize(count_, kMaxDof);
     if (count_ == 0) return;
-    J.setZero(kMaxDof, robot.dof());
-    if (state.moves) Jd.setZero(kMaxDof, robot.dof());
-    S.setZero();
+    J.resize(kMaxDof, robot.dof());
+    Jd.resize(kMaxDof, robot.dof());
+    for (int j = 0; j < robot.dof(); ++j) {
+      for (int i = 0; i < count_; ++i) {
+        J(i, j) = j == joints_(i) ? 1.0 : 0.0;
+        Jd(i, j) = 0.0;
+      }
+    }
     for (int i = 0; i < count_; ++i) {
       x(i) = state.q(joints_(i));
-      J(i, joints_(i)) = 1.0;
       S(i, i) = 1.0;
     }
   }

@@ -142,8 +142,9 @@ class Guard {
       const Scalar left = rows.b(k) - std::max(bent, Scalar(0));
       const Scalar now = rows.g.col(k).dot(state.qd);
       Scalar allowed = left > Scalar(0) ? kShare * left / time : left / (kShare * average);
-      if ((gentle_rows >> k & 1U) != 0)
+      if ((gentle_rows >> k & 1U) != 0) {
         allowed = most_closing(gaps[k], allowed, clearance_.bodies()[pairs[k]->first], h);
+      }
       rows.b(k) = allowed - closing[k];  // −g·q̇
       rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - late) * now;
       rows.g.col(k) *= kLevel == Level::kAcceleration ? -late * h : -late;

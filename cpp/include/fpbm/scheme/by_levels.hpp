@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/core/status.hpp"
@@ -55,7 +57,10 @@ struct ByLevels {
       Reference<Position<M>, Scalar> command{none, none, none};
       command_level<kIndex>(kinematics, reference, command);
       if constexpr (kIndex == 0) {
-        const Kinematics<Position<M>, kDof, Scalar> rows{none, J, Jd};
+        Kinematics<Position<M>, kDof, Scalar> rows;
+        rows.tip = none;
+        rows.J = J;
+        rows.Jd = Jd;
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve(rows, command, state, result);
         if constexpr (Stack_::kLevels > 1) space.add(J);
@@ -101,17 +106,22 @@ struct ByLevels {
             Part::template difference<Scalar>(std::get<kTask>(reference.x), std::get<kTask>(kinematics.tip));
         const Twist xd = reference.xd.template segment<Part::kRows>(row);
         const Twist xdd = reference.xdd.template segment<Part::kRows>(row);
-        const auto put = [&](Vector<M, Scalar>& to, const Twist& twist) noexcept {
-          const auto rows = product(task.S, twist);
-          for (Eigen::Index j = 0; j < rows.size(); ++j) to.coeffRef(to_row + j) = rows.coeff(j);
+        const auto put = [&](Vector<M, Scalar>& to, const auto& entry) noexcept {
+          if constexpr (std::tuple_element_t<kTask, typename Stack_::Tasks>::kWhole) {
+            for (Eigen::Index j = 0; j < task.S.rows(); ++j) to.coeffRef(to_row + j) = task.S.coeff(j, j) * entry(j);
+          } else {
+            const Twist twist = entrywise(xd, entry);
+            const auto rows = product(task.S, twist);
+            for (Eigen::Index j = 0; j < rows.size(); ++j) to.coeffRef(to_row + j) = rows.coeff(j);
+          }
         };
         if constexpr (kLevel == Level::kAcceleration) {
-          put(command.xd, xd);
-          put(command.xdd, entrywise(xd, [&](Eigen::Index j) {
-                return xdd.coeff(j) + task.k1 * (xd.coeff(j) - task.xd.coeff(j)) + task.k2 * error.coeff(j);
-              }));
+          put(command.xd, [&](Eigen::Index j) { return xd.coeff(j); });
+          put(command.xdd, [&](Eigen::Index j) {
+            return xdd.coeff(j) + task.k1 * (xd.coeff(j) - task.xd.coeff(j)) + task.k2 * error.coeff(j);
+          });
         } else {
-          put(command.xd, entrywise(xd, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); }));
+          put(command.xd, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); });
         }
         to_row += task.S.rows();
       }

@@ -15,7 +15,7 @@ namespace fpbm {
 ///
 ///   x      point of the Space, in the base frame, as references have it
 ///   J, J̇   in the Space's rows, along the base frame's axes [m, rad]; J̇ if the state moves
-///   S      selection: the task's rows are S J. If kWhole, S is the identity.
+///   S      selection: the task's rows are S J. If kWhole, S is the identity, and only its diagonal is read.
 template <int M = 3, typename Scalar_ = double>
 struct PositionTask {
   using Scalar = Scalar_;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/robot.hpp"
 #include "fpbm/task/stack.hpp"
@@ -16,6 +17,9 @@ template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
+
+  // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
+  LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
 
   void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
     J.resize(rows, dof);
@@ -30,7 +34,9 @@ struct TaskState {
   Scalar k1;
   Scalar k2;
   Matrix<Task::kRows, Task::Space::kRows, Scalar> S;
-  Vector<Task::Space::kRows, Scalar> xd;
+  Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only its first S.rows() entries.
+
+  TaskState() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 };
 
 namespace stack_detail {
@@ -57,6 +63,8 @@ template <typename Stack_, int N>
 struct StackKinematics {
   using Scalar = typename Stack_::Scalar;
   using Levels = typename stack_detail::RowsOf<N, Stack_>::type;
+
+  StackKinematics() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 
   typename Stack_::Point tip;  ///< x of each task, in the base frame.
   Levels levels;
@@ -162,14 +170,24 @@ class RobotTasks {
       Matrix<kSpace, kDof, Scalar> Jd;
       task.evaluate(robot_, state, std::get<kIndex>(out.tip), J, Jd, S);
       if (rows_of(task) == 0) return;
-      for (int j = kSpace - Task::Space::kTurns; j < kSpace; ++j) {
-        for (Eigen::Index r = 0; r < S.rows(); ++r) S(r, j) *= out.length;
+      if constexpr (Task::kWhole) {
+        for (Eigen::Index j = kSpace - Task::Space::kTurns; j < S.rows(); ++j) S(j, j) *= out.length;
+      } else {
+        for (int j = kSpace - Task::Space::kTurns; j < kSpace; ++j) {
+          for (Eigen::Index r = 0; r < S.rows(); ++r) S(r, j) *= out.length;
+        }
       }
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
       select<Task>(S, J, row, level.J);
       if (state.moves) {
         select<Task>(S, Jd, row, level.Jd);
-        xd = product(J, state.qd);
+        if constexpr (Task::kWhole && Task::kRows == Eigen::Dynamic) {
+          for (Eigen::Index j = 0; j < S.rows(); ++j) {
+            xd(j) = sum_over(state.qd, [&](Eigen::Index i) { return J.coeff(j, i) * state.qd.coeff(i); });
+          }
+        } else {
+          xd = product(J, state.qd);
+        }
       }
       row += rows_of(task);
     });
