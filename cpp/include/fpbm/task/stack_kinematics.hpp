@@ -183,7 +183,7 @@ class RobotTasks {
         select<Task>(S, Jd, row, level.Jd);
         if constexpr (Task::kWhole && Task::kRows == Eigen::Dynamic) {
           for (Eigen::Index j = 0; j < S.rows(); ++j) {
-            xd(j) = sum_over(state.qd, [&](Eigen::Index i) { return J.coeff(j, i) * state.qd.coeff(i); });
+            xd(j) = sum_over(state.qd, [&](Eigen::Index joint) { return J.coeff(j, joint) * state.qd.coeff(joint); });
           }
         } else {
           xd = product(J, state.qd);
