@@ -69,7 +69,8 @@ struct Factors : ::testing::Test {
 
 template <typename Shape>
 struct SelfMotions : Factors<Shape> {};
-using WithSelfMotion = ::testing::Types<Shape<2, 3, 0>, Shape<3, 4, 1>, Shape<6, 7, 3>, Shape<6, 7, 3, float>>;
+using WithSelfMotion = ::testing::Types<Shape<2, 3, 0>, Shape<3, 4, 1>, Shape<5, 6, 2>, Shape<5, 6, 2, float>,
+                                        Shape<6, 7, 3>, Shape<6, 7, 3, float>>;
 TYPED_TEST_SUITE(SelfMotions, WithSelfMotion, ShapeNames);
 
 /// J v = 0; J y = b, of one b and of two; sᵀg for J s = t is tᵀμ for Jᵀμ = g; and no σ_min is below its bound.

@@ -449,6 +449,32 @@ TEST(Stack, keeps_every_bound_and_comes_to_rest_by_velocity) {
   }
 }
 
+/// Six joints, a position and an axis: fixed sizes resolve the level by its self-motion, other sizes by the rows of J.
+TEST(Stack, of_a_position_and_an_axis_moves_by_its_self_motion) {
+  const TaskGains<> gains(10.0, 25.0);
+  const Stack stack(TaskLevel(PositionTask<>{{kTip}, gains}, AxisTask<>{{kTip}, gains}));
+  const Vector<6> q0{0.0, -1.2, 1.4, -0.6, 1.2, 0.4};
+  const auto tracker_of = [&](auto size) {
+    constexpr int N = decltype(size)::value;
+    const auto scheme = Balanced<N>(0.6, DiagonalWeights<N>(Vector<N>(Vector<6>::LinSpaced(6, 1.0, 4.0))),
+                                    NullSpace<N>().with_damping(2.0));
+    return stack_tracker(Robot<N>(presets::ur5e()), stack, scheme, Vector<N>(q0));
+  };
+  auto tracker = tracker_of(std::integral_constant<int, 6>{});
+  auto by_rows = tracker_of(std::integral_constant<int, kOpen>{});
+  const auto [place, axis] = tracker.tip();
+  const auto position = Reference<Position<3>>::hold(place + Vector<3>(-0.05, 0.1, -0.1));
+  const auto direction = Reference<Direction>::hold(rotation(Vector<3>(0.2, -0.2, 0.1)) * axis);
+  for (int i = 0; i < 3000; ++i) {
+    const auto tick = tracker.tick(position, direction);
+    const auto other = by_rows.tick(position, direction);
+    ASSERT_LT((tick.q - other.q).norm(), 1e-9) << i;
+    ASSERT_EQ(tick.status, other.status) << i;
+  }
+  EXPECT_LT((std::get<0>(tracker.tip()) - position.x).norm(), 1e-4);
+  EXPECT_LT((std::get<1>(tracker.tip()) - direction.x).norm(), 1e-4);
+}
+
 /// The cup's tasks with references, for the laws below.
 struct Cup {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};

@@ -75,6 +75,7 @@
 #include "fpbm/limits/usable_bounds.hpp"
 #include "fpbm/limits/velocity_envelope.hpp"
 #include "fpbm/limits/yield.hpp"
+#include "fpbm/linalg/axis_self_motion.hpp"
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/inverse_trace.hpp"

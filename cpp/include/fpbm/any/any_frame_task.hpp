@@ -88,6 +88,10 @@ class AnyFrameTask {
   }
 
   [[nodiscard]] int rows() const noexcept { return count_; }
+  /// The coordinate that row i is; -1 where it is a component along an axis of the frame.
+  [[nodiscard]] int coordinate(int i) const noexcept {
+    return in_frame_ || kind_ == FrameCoordinates::kAxis ? -1 : rows_[static_cast<std::size_t>(i)];
+  }
 
   template <typename Robot>
   void bind(const Robot& robot) {
@@ -105,7 +109,7 @@ class AnyFrameTask {
     robot.jacobian(state, frame_.link(), x.at.p, J, Jd);
     if (x.is_axis) {
       x.at.R = times(x.at.R, to_axis_);
-      if (state.moves) add_spin<6, Robot::kDof, double>(J, state.qd, column(x.at.R, 2), Jd);
+      if (state.moves) add_spin(J, robot.angular_velocity(state, frame_.link()), column(x.at.R, 2), Jd);
     }
     for (int i = 0; i < count_; ++i) {
       const int row = x.is_axis ? 3 + i : rows_[static_cast<std::size_t>(i)];

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "fpbm/core/rotation.hpp"
+#include "fpbm/core/rotation_vector.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/sums.hpp"
 
@@ -28,8 +30,16 @@ struct Direction {
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::atan2;
     Vector<3, Scalar> axis = cross(y, x);
-    const Scalar sine = norm(axis);
+    const Scalar square = squared_norm(axis);
     const Scalar cosine = dot(x, y);
+    // Small angles, as errors have, without root or division, if both lengths are 1.
+    const bool unit =
+        std::abs(cosine * cosine + square - Scalar(1)) < Scalar(16) * std::numeric_limits<Scalar>::epsilon();
+    if (unit && cosine > Scalar(0) && square < Scalar(kLargestSquare)) {
+      const Scalar share = angle_over_sine(square);
+      return entrywise(axis, [&](Eigen::Index i) { return share * axis.coeff(i); });
+    }
+    const Scalar sine = std::sqrt(square);
     if (!(sine > Scalar(0))) {
       if (!(cosine < Scalar(0))) return axis;
       Eigen::Index least = 0;

@@ -67,6 +67,14 @@ template <typename Scalar>
   return entrywise(R, [&](Eigen::Index i) { return R.coeff(i / 3, i % 3); });
 }
 
+/// Pose of the frame a in the frame b.
+template <typename Scalar>
+[[nodiscard]] Transform<Scalar> inverse(const Transform<Scalar>& a) noexcept {
+  const Matrix<3, 3, Scalar> back = transposed(a.R);
+  const Vector<3, Scalar> p = times(back, a.p);
+  return {entrywise(p, [&](Eigen::Index i) { return -p.coeff(i); }), back};
+}
+
 template <typename Scalar>
 [[nodiscard]] Scalar trace_of(const Matrix<3, 3, Scalar>& R) noexcept {
   return R.coeff(0, 0) + (R.coeff(1, 1) + R.coeff(2, 2));

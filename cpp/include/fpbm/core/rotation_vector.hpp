@@ -13,6 +13,24 @@
 
 namespace fpbm {
 
+/// Squares of sines up to which angle_over_sine() is exact to round-off.
+inline constexpr double kLargestSquare = 1.0 / 64.0;
+
+/// θ/sin θ for z = sin²θ, by the arcsine series.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Scalar angle_over_sine(const Scalar& z) noexcept {
+  // Even and odd powers apart: two short dependency chains in place of a long one.
+  // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
+  // double.
+  const Scalar y = z * z;
+  Scalar even = Scalar(6435.0 / 557056.0) * y + Scalar(231.0 / 13312.0);
+  even = (even * y + Scalar(35.0 / 1152.0)) * y + Scalar(3.0 / 40.0);
+  even = even * y + Scalar(1);
+  Scalar odd = Scalar(143.0 / 10240.0) * y + Scalar(63.0 / 2816.0);
+  odd = (odd * y + Scalar(5.0 / 112.0)) * y + Scalar(1.0 / 6.0);
+  return even + z * odd;
+}
+
 namespace rotation_detail {
 
 /// Rotation vector of a rotation matrix by way of its quaternion, which is good at every angle.
@@ -38,24 +56,14 @@ template <typename Scalar>
 
 /// Rotation vector r of a rotation matrix R by its trace and s, the vector of R − Rᵀ: s = 2 sin|r| r/|r|. whole() is R.
 ///
-/// Small angles, as errors have, by the arcsine series, without root or division.
+/// Small angles, as errors have, without root or division.
 template <typename Scalar, typename Whole>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Scalar> rotation_vector(const Vector<3, Scalar>& s,
                                                                            const Scalar& trace,
                                                                            const Whole& whole) noexcept {
   const Scalar z = squared_norm(s) / Scalar(4);
-  // Even and odd powers apart: two short dependency chains in place of a long one.
-  // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
-  // double.
-  const Scalar y = z * z;
-  Scalar even = Scalar(6435.0 / 557056.0) * y + Scalar(231.0 / 13312.0);
-  even = (even * y + Scalar(35.0 / 1152.0)) * y + Scalar(3.0 / 40.0);
-  even = even * y + Scalar(1);
-  Scalar odd = Scalar(143.0 / 10240.0) * y + Scalar(63.0 / 2816.0);
-  odd = (odd * y + Scalar(5.0 / 112.0)) * y + Scalar(1.0 / 6.0);
-  const Scalar sum = even + z * odd;
-  const Mask<Scalar> small = trace > Scalar(2) && z < Scalar(1.0 / 64.0);
-  const Scalar half = sum / Scalar(2);
+  const Mask<Scalar> small = trace > Scalar(2) && z < Scalar(kLargestSquare);
+  const Scalar half = angle_over_sine(z) / Scalar(2);
   Vector<3, Scalar> r(half * s.coeff(0), half * s.coeff(1), half * s.coeff(2));
   if (all_of(small)) return r;
   const Vector<3, Scalar> large = large_rotation_vector<Scalar>(whole());

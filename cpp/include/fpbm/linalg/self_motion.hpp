@@ -2,6 +2,7 @@
 
 #include "fpbm/core/mask.hpp"
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/axis_self_motion.hpp"
 #include "fpbm/linalg/spatial_self_motion.hpp"
 #include "fpbm/linalg/three_by_four.hpp"
 
@@ -21,7 +22,7 @@ class SelfMotion;
 
 /// Whether there is one.
 template <int M, int N>
-inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 6);
+inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 5 || M == 6);
 
 /// A position in the plane, by the cross product of J's rows a and b:
 ///
@@ -105,6 +106,10 @@ class SelfMotion<3, 4, Scalar> {
  private:
   ThreeByFour<Scalar> S_;  ///< J
 };
+
+/// A position and an axis.
+template <typename Scalar>
+class SelfMotion<5, 6, Scalar> : public AxisSelfMotion<Scalar> {};
 
 /// A pose in space.
 template <typename Scalar>

@@ -1,15 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "fpbm/core/rotation.hpp"
-#include "fpbm/core/sincos.hpp"
 #include "fpbm/core/validation.hpp"
-#include "fpbm/linalg/three.hpp"
 #include "fpbm/model/chain.hpp"
-#include "fpbm/model/joint.hpp"
-#include "fpbm/model/link.hpp"
+#include "fpbm/model/frame.hpp"
+#include "fpbm/model/serial_arm.hpp"
 
 namespace fpbm {
 
@@ -39,34 +36,21 @@ class Robot {
 
   /// Throws std::invalid_argument as SerialArm does.
   template <int Length = Eigen::Dynamic>
-  explicit Robot(const Chain<Scalar, Length>& chain)
-      : dof_(require_chain(chain, N)), turns_(dof_), limits_(JointLimits<N, Scalar>::none(dof_)) {
-    Matrix<3, 3, Scalar> back = identity<Matrix<3, 3, Scalar>>();
-    for (Eigen::Index i = 0; i < dof_; ++i) {
-      const auto& joint = chain.joints[static_cast<std::size_t>(i)];
-      const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
-      Transform<Scalar> turned_back;
-      turned_back.R = back;
-      steps_[index(i)] = turned_back * joint.placement;
-      steps_[index(i)].R = times(steps_[index(i)].R, to_axis);
-      back = transposed(to_axis);
-      ends_[index(i + 1)].R = back;
-      turns_(i) = joint.type == JointType::kPrismatic ? Scalar(0) : Scalar(1);
-      if (turns_(i) == Scalar(0) && std::isfinite(joint.bounds.upper - joint.bounds.lower)) {
-        length_ += joint.bounds.upper - joint.bounds.lower;
-      }
-      if (i > 0) length_ += norm(joint.placement.p);
-      limits_.set(i, joint.bounds);
+  explicit Robot(const Chain<Scalar, Length>& chain) : arm_(chain) {
+    State zero;
+    update(filled<Vector<N, Scalar>>(dof()), zero);
+    Transform<Scalar> link;
+    for (int i = 0; i < dof(); ++i) {
+      link = link * chain.joints[index(i)].placement;
+      ends_[index(i + 1)] = inverse(zero.placement[index(i + 1)]) * link;
     }
-    length_ += norm(chain.tip.p);
-    if (!(length_ > Scalar(0))) length_ = Scalar(1);
-    tip_ = ends_[index(dof_)] * chain.tip;
+    tip_ = ends_[index(dof())] * chain.tip;
   }
 
-  [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
-  [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
+  [[nodiscard]] int dof() const noexcept { return arm_.dof(); }
+  [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return arm_.limits(); }
   /// Characteristic length [m], as SerialArm::length().
-  [[nodiscard]] Scalar length() const noexcept { return length_; }
+  [[nodiscard]] Scalar length() const noexcept { return arm_.length(); }
 
   /// Throws std::invalid_argument unless link is kTip or 0 to dof().
   void require_link(const char* name, int link) const {
@@ -77,7 +61,7 @@ class Robot {
 
   /// Placements of all joints at q, for tasks at velocity level: their J̇ is left as it is.
   void update(const Vector<N, Scalar>& q, State& state) const noexcept {
-    update(q, filled<Vector<N, Scalar>>(dof_), state);
+    update(q, filled<Vector<N, Scalar>>(dof()), state);
     state.moves = false;
   }
 
@@ -86,31 +70,12 @@ class Robot {
     state.q = q;
     state.qd = qd;
     state.moves = true;
-    const Vector<N, Scalar> angles = entrywise(q, [&](Eigen::Index i) { return turns_.coeff(i) * q.coeff(i); });
-    Vector<N, Scalar> sines(dof_);
-    Vector<N, Scalar> cosines(dof_);
-    sincos(angles, sines, cosines);
     state.placement[0] = {};
-    state.w.resize(3, dof_);
-    Vector3 w(Scalar(0), Scalar(0), Scalar(0));
-    for (Eigen::Index i = 0; i < dof_; ++i) {
-      Transform<Scalar>& frame = state.placement[index(i + 1)];
-      frame = state.placement[index(i)] * steps_[index(i)];
-      const Scalar slide = (Scalar(1) - turns_.coeff(i)) * q.coeff(i);
-      const Scalar rate = turns_.coeff(i) * qd.coeff(i);
-      const Scalar c = cosines.coeff(i);
-      const Scalar s = sines.coeff(i);
-      for (int k = 0; k < 3; ++k) {
-        const Scalar x = frame.R.coeff(k, 0);
-        const Scalar y = frame.R.coeff(k, 1);
-        const Scalar z = frame.R.coeff(k, 2);
-        frame.R.coeffRef(k, 0) = c * x + s * y;
-        frame.R.coeffRef(k, 1) = c * y - s * x;
-        frame.p.coeffRef(k) += slide * z;
-        w.coeffRef(k) += rate * z;
-        state.w.coeffRef(k, i) = w.coeff(k);
-      }
-    }
+    state.w.resize(3, dof());
+    arm_.visit_joints(q, qd, [&](Eigen::Index i, const Frame<Scalar>& frame, const SplitVector<Scalar>& w) noexcept {
+      frame.store(state.placement[index(i + 1)]);
+      w.store(state.w.data() + 3 * i);
+    });
   }
 
   /// A frame fixed to a link, at offset in the link's frame, seen from the link's joint. Constant: for the constructor
@@ -121,6 +86,18 @@ class Robot {
   /// That frame in the base frame. seen: in_joint().
   [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
     return state.placement[index(joints_before(link))] * seen;
+  }
+
+  /// Its origin. seen: in_joint().
+  [[nodiscard]] Vector3 point(const State& state, int link, const Vector3& seen) const noexcept {
+    const Transform<Scalar>& placement = state.placement[index(joints_before(link))];
+    const Vector3 turned = times(placement.R, seen);
+    return entrywise(turned, [&](Eigen::Index i) { return placement.p.coeff(i) + turned.coeff(i); });
+  }
+  /// Angular velocity of a link, in the base frame's axes [rad/s].
+  [[nodiscard]] Vector3 angular_velocity(const State& state, int link) const noexcept {
+    const Eigen::Index joints = joints_before(link);
+    return joints > 0 ? Vector3(column(state.w, joints - 1)) : filled<Vector3>(3);
   }
 
   /// J and J̇ of a frame of a link with its origin at p, in the base frame's axes: linear rows [m], or linear and then
@@ -138,8 +115,8 @@ class Robot {
       const Transform<Scalar>& placement = state.placement[index(i + 1)];
       const Vector3 z = column(placement.R, 2);
       const Vector3 lever = entrywise(p, [&](Eigen::Index k) { return p.coeff(k) - placement.p.coeff(k); });
-      const Vector3 l = turns_.coeff(i) > Scalar(0) ? cross(z, lever) : z;
-      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return turns_.coeff(i) * z.coeff(k); });
+      const Vector3 l = arm_.turns().coeff(i) > Scalar(0) ? cross(z, lever) : z;
+      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return arm_.turns().coeff(i) * z.coeff(k); });
       store(J, 0, i, l);
       if constexpr (M == 6) store(J, 3, i, a);
       if (!state.moves) continue;
@@ -158,7 +135,7 @@ class Robot {
     start(link, state, J, Jd);
     for (Eigen::Index i = joints_before(link); i-- > 0;) {
       const Vector3 z = column(state.placement[index(i + 1)].R, 2);
-      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return turns_.coeff(i) * z.coeff(k); });
+      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return arm_.turns().coeff(i) * z.coeff(k); });
       store(J, 0, i, a);
       if (state.moves) store(Jd, 0, i, cross(column(state.w, i), a));
     }
@@ -166,14 +143,14 @@ class Robot {
 
  private:
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
-  [[nodiscard]] Eigen::Index joints_before(int link) const noexcept { return link == kTip ? dof_ : link; }
+  [[nodiscard]] Eigen::Index joints_before(int link) const noexcept { return link == kTip ? dof() : link; }
 
   /// Gives J and J̇ their size, and zeros in the columns of joints beyond a link.
   template <int M>
   void start(int link, const State& state, Matrix<M, N, Scalar>& J, Matrix<M, N, Scalar>& Jd) const noexcept {
-    J.resize(M, dof_);
-    Jd.resize(M, dof_);
-    for (Eigen::Index j = joints_before(link); j < dof_; ++j) {
+    J.resize(M, dof());
+    Jd.resize(M, dof());
+    for (Eigen::Index j = joints_before(link); j < dof(); ++j) {
       for (int i = 0; i < M; ++i) J.coeffRef(i, j) = Scalar(0);
       for (int i = 0; state.moves && i < M; ++i) Jd.coeffRef(i, j) = Scalar(0);
     }
@@ -183,13 +160,9 @@ class Robot {
     for (int k = 0; k < 3; ++k) to.coeffRef(row + k, j) = from.coeff(k);
   }
 
-  Eigen::Index dof_;
-  std::array<Transform<Scalar>, kCapacity<N>> steps_;     ///< From a joint's frame to the next joint's, at zero.
+  SerialArm<N, Scalar> arm_;
   std::array<Transform<Scalar>, kCapacity<N> + 1> ends_;  ///< From a joint's placement to its link's frame.
   Transform<Scalar> tip_;                                 ///< From the last joint's placement.
-  Vector<N, Scalar> turns_;                               ///< 1, or 0 for a prismatic joint.
-  Scalar length_{0};                                      ///< [m]
-  JointLimits<N, Scalar> limits_;
 };
 
 }  // namespace fpbm

@@ -83,6 +83,33 @@ class SerialArm {
   /// prismatic joints. 1 where that is zero.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
+  /// 1 for each joint that turns, 0 for a prismatic one.
+  [[nodiscard]] const Vector<N, Scalar>& turns() const noexcept { return turns_; }
+
+  /// Calls visit(i, frame, w) for each joint i, from the base on: a frame that joint i moves, with the joint's axis as
+  /// its z axis, and its angular velocity. The frame differs from the joint's by a constant rotation about z.
+  template <typename Visit>
+  void visit_joints(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd, const Visit& visit) const noexcept {
+    using Two = Pair<Scalar>;
+    const Vector<N, Scalar> angles =
+        entrywise(q, [&](Eigen::Index i) { return turns_.coeff(i) * q.coeff(i) + offsets_.coeff(i); });
+    Vector<N, Scalar> sines(dof_);
+    Vector<N, Scalar> cosines(dof_);
+    sincos(angles, sines, cosines);
+    Frame<Scalar> frame(base_);
+    SplitVector<Scalar> w;
+    each(Constant<0>{}, extent<N>(dof_), [&](Eigen::Index i) {
+      if (slides(i)) {
+        frame.p += Two(q.coeff(i)) * frame.z;
+      } else {
+        w += Two(qd.coeff(i)) * frame.z;
+      }
+      frame.turn(Two(cosines.coeff(i)), Two(sines.coeff(i)));
+      visit(i, frame, w);
+      frame.pass(links_[static_cast<std::size_t>(i)]);
+    });
+  }
+
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,

@@ -59,6 +59,15 @@ struct AccelerationScheme {
                                         qdd);
   }
 
+  /// Joint accelerations that give any rows, all in metres, J qdd = b: the law without feedback, b with J̇ qd
+  /// subtracted.
+  template <int M>
+  [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>& xd,
+                                    const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
+                                    const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
+    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, xd, Scalar(1), state, qdd);
+  }
+
  private:
   /// resolve() for a commanded b. Compiled once per number of rows and of angles, not per task space.
   template <int kTurns, int M>

@@ -56,19 +56,16 @@ struct ByLevels {
       const auto none = filled<Vector<M, Scalar>>(J.rows());
       Reference<Position<M>, Scalar> command{none, none, none};
       command_level<kIndex>(kinematics, reference, command);
+      if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || J.rows() == 0)) return;
+      Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
+      if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
       if constexpr (kIndex == 0) {
-        Kinematics<Position<M>, kDof, Scalar> rows;
-        rows.tip = none;
-        rows.J = J;
-        rows.Jd = Jd;
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve(rows, command, state, result);
+        status = scheme.resolve_rows(r, command.xd, J, Jd, state, result);
         if constexpr (Stack_::kLevels > 1) space.add(J);
       } else {
-        if (failed(status) || !kinematics.enabled[kIndex] || J.rows() == 0 || space.rank() == space.size()) return;
-        Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
+        if (space.rank() == space.size()) return;
         r -= product(J, result);
-        if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
         if (!r.allFinite()) return;
         DampedLevel<M, Scalar> damped(radius * radius * squared_norm(J));
         result += space.add(J, r, damped);

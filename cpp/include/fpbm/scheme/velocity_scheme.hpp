@@ -43,12 +43,25 @@ struct VelocityScheme {
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
                                Vector<N, Scalar>& qd) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    const auto& J = kinematics.J;
-    constexpr int kTurns = kScaledRows<Space, N>;
-    const Scalar length = scale_of_rows(kinematics);
-    if constexpr (kHasSelfMotion<Space::kRows, N>) {
+    return solve<kScaledRows<Space, N>>(v, kinematics.J, kinematics.Jd, scale_of_rows(kinematics), state, qd);
+  }
+
+  /// Joint velocities that give any rows, all in metres, J qd = b: the law without feedback.
+  template <int M>
+  [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>&, const Matrix<M, N, Scalar>& J,
+                                    const Matrix<M, N, Scalar>& Jd, const State<N, Scalar>& state,
+                                    Vector<N, Scalar>& qd) const noexcept {
+    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, Scalar(1), state, qd);
+  }
+
+ private:
+  template <int kTurns, int M>
+  [[nodiscard]] Status solve(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
+                             const Scalar& length, const State<N, Scalar>& state,
+                             Vector<N, Scalar>& qd) const noexcept {
+    if constexpr (kHasSelfMotion<M, N>) {
       const auto foreseen = foresee<kTurns>(singular, J, length, [&](const auto& motion) noexcept {
-        return with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, kinematics.Jd, null_space, state);
+        return with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, Jd, null_space, state);
       });
       if (all_of(foreseen.regular)) {
         qd = foreseen.u;
@@ -60,7 +73,6 @@ struct VelocityScheme {
     }
   }
 
- private:
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status by_gram(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Scalar& length,
                                const State<N, Scalar>& state, const Known& foreseen,

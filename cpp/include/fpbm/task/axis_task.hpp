@@ -14,14 +14,14 @@ namespace fpbm {
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
 /// Without the last term, rotation about a, which lower levels determine, would disturb the motion of a. J, J̇: the last
-/// three rows are angular; those of J̇ are changed.
+/// three rows are angular; those of J̇ are changed. w: ω.
 template <int M, int N, typename Scalar>
-void add_spin(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Vector<3, Scalar>& a,
+void add_spin(const Matrix<M, N, Scalar>& J, const Vector<3, Scalar>& w, const Vector<3, Scalar>& a,
               Matrix<M, N, Scalar>& Jd) noexcept {
   const auto angular = [](const auto& rows, Eigen::Index j) noexcept {
     return Vector<3, Scalar>(rows.coeff(M - 3, j), rows.coeff(M - 2, j), rows.coeff(M - 1, j));
   };
-  const Vector<3, Scalar> turning = cross(angular(product(J, qd), 0), a);
+  const Vector<3, Scalar> turning = cross(w, a);
   for (Eigen::Index j = 0; j < J.cols(); ++j) {
     const Scalar spin = dot(angular(J, j), a);
     for (int i = 0; i < 3; ++i) Jd.coeffRef(M - 3 + i, j) -= spin * turning.coeff(i);
@@ -48,7 +48,7 @@ class AxisTask {
   /// axis: in the frame; its length does not matter. Throws std::invalid_argument where it is zero or not finite.
   AxisTask(const LinkFrame<Scalar>& frame_, const TaskGains<Scalar>& gains_,
            const Vector<3, Scalar>& axis = {Scalar(0), Scalar(0), Scalar(1)})
-      : frame(frame_), gains(gains_) {
+      : frame(frame_), gains(gains_), axes_(frame_) {
     validation::require_finite("axis", axis);
     if (!(norm(axis) > Scalar(0))) validation::reject("axis", " is zero: must point somewhere");
     to_axis_ = z_to(axis);
@@ -56,17 +56,20 @@ class AxisTask {
 
   template <typename Robot>
   void bind(const Robot& robot) {
-    frame.bind(robot);
+    Transform<Scalar> turned;
+    turned.R = to_axis_;
+    axes_ = LinkFrame<Scalar>(frame.link(), frame.offset() * turned);
+    axes_.bind(robot);
   }
 
   template <typename Robot>
   void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
                 Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
                 Matrix<2, 3, Scalar>& S) const noexcept {
-    const Matrix<3, 3, Scalar> axes = times(frame.at(robot, state).R, to_axis_);  // b₁, b₂ and a.
+    const Matrix<3, 3, Scalar> axes = axes_.at(robot, state).R;  // b₁, b₂ and a.
     x = column(axes, 2);
     robot.angular_jacobian(state, frame.link(), J, Jd);
-    if (state.moves) add_spin(J, state.qd, x, Jd);
+    if (state.moves) add_spin(J, robot.angular_velocity(state, frame.link()), x, Jd);
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 3; ++j) S(i, j) = axes(j, i);
     }
@@ -74,6 +77,7 @@ class AxisTask {
 
  private:
   Matrix<3, 3, Scalar> to_axis_;  ///< In the frame: b₁, b₂ and the axis.
+  LinkFrame<Scalar> axes_;        ///< Has these axes.
 };
 
 }  // namespace fpbm

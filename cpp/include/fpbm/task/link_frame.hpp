@@ -30,6 +30,11 @@ class LinkFrame {
   [[nodiscard]] Transform<Scalar> at(const Robot& robot, const typename Robot::State& state) const noexcept {
     return robot.frame(state, link_, in_joint_);
   }
+  /// Its origin.
+  template <typename Robot>
+  [[nodiscard]] Vector<3, Scalar> origin(const Robot& robot, const typename Robot::State& state) const noexcept {
+    return robot.point(state, link_, in_joint_.p);
+  }
 
  private:
   int link_;

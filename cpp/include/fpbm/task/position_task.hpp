@@ -39,14 +39,16 @@ struct PositionTask {
   void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
                 Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
                 Matrix<M, 3, Scalar>& S) const noexcept {
-    const Transform<Scalar> at = frame.at(robot, state);
-    x = at.p;
-    robot.jacobian(state, frame.link(), at.p, J, Jd);
+    x = frame.origin(robot, state);
+    robot.jacobian(state, frame.link(), x, J, Jd);
+    Matrix<3, 3, Scalar> axes = identity<Matrix<3, 3, Scalar>>();
+    if (in_frame) axes = frame.at(robot, state).R;
     for (int i = 0; i < M; ++i) {
-      const int row = rows[static_cast<std::size_t>(i)];
-      for (int j = 0; j < 3; ++j) S(i, j) = in_frame ? at.R(j, row) : Scalar(row == j ? 1 : 0);
+      for (int j = 0; j < 3; ++j) S.coeffRef(i, j) = axes.coeff(j, rows[static_cast<std::size_t>(i)]);
     }
   }
+  /// The coordinate that row i is; -1 where it is a component along an axis of the frame.
+  [[nodiscard]] int coordinate(int i) const noexcept { return in_frame ? -1 : rows[static_cast<std::size_t>(i)]; }
 
  private:
   [[nodiscard]] static std::array<int, M> first_rows() noexcept {

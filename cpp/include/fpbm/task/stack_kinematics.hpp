@@ -178,9 +178,9 @@ class RobotTasks {
         }
       }
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      select<Task>(S, J, row, level.J);
+      select(task, S, J, row, level.J);
       if (state.moves) {
-        select<Task>(S, Jd, row, level.Jd);
+        select(task, S, Jd, row, level.Jd);
         if constexpr (Task::kWhole && Task::kRows == Eigen::Dynamic) {
           for (Eigen::Index j = 0; j < S.rows(); ++j) {
             xd(j) = sum_over(state.qd, [&](Eigen::Index joint) { return J.coeff(j, joint) * state.qd.coeff(joint); });
@@ -195,11 +195,12 @@ class RobotTasks {
 
   /// Writes S A to the rows of `to` from `row` on.
   template <typename Task, typename Selection, typename Rows, typename LevelMatrix>
-  static void select(const Selection& S, const Rows& A, int row, LevelMatrix& to) noexcept {
-    for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      for (Eigen::Index i = 0; i < S.rows(); ++i) {
-        if constexpr (Task::kWhole) {
-          to.coeffRef(row + i, j) = S.coeff(i, i) * A.coeff(i, j);
+  static void select(const Task& task, const Selection& S, const Rows& A, int row, LevelMatrix& to) noexcept {
+    for (Eigen::Index i = 0; i < S.rows(); ++i) {
+      const int from = CoordinateOf<Task>::row(task, static_cast<int>(i));
+      for (Eigen::Index j = 0; j < A.cols(); ++j) {
+        if (from >= 0) {
+          to.coeffRef(row + i, j) = S.coeff(i, from) * A.coeff(from, j);
         } else {
           Scalar sum(0);
           for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(i, k) * A.coeff(k, j);
