@@ -46,11 +46,17 @@ class LevelSpace {
   /// Adds the level A. With A Z = L Qᵀ, L lower triangular (trapezoidal if rows are dependent) and QᵀQ = I, calls
   /// solver(L, r, rank of A Z). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y
   /// of add(A, r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A
-  /// Z are zero.
+  /// Z are zero. Where A is a multiple of I, solver.loses(σ) says whether it would replace r for singular values σ
+  /// alone.
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
-      if (is_diagonal(A, [](Scalar entry) { return entry == Scalar(1); })) return add_identity(r);
+      if (is_diagonal(A)) {
+        const Scalar scale = A.coeff(0, 0);
+        bool uniform = !solver.loses(scale);
+        for (Eigen::Index i = 1; i < A.rows(); ++i) uniform = uniform && A.coeff(i, i) == scale;
+        if (uniform) return add_identity(r, scale);
+      }
     }
     return add_with(A, r,
                     [&](const auto& T, Eigen::Index first, Eigen::Index count, Vector<M, Scalar>& result) noexcept {
@@ -67,7 +73,7 @@ class LevelSpace {
   template <int M>
   void add(const Matrix<M, N, Scalar>& A) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
-      if (is_diagonal(A, [](Scalar entry) { return entry != Scalar(0); })) return set_full();
+      if (is_diagonal(A)) return set_full();
     }
     auto r = filled<Vector<M, Scalar>>(A.rows());
     (void)triangular(A, r);
@@ -95,22 +101,23 @@ class LevelSpace {
   }
 
  private:
-  /// A posture of all joints determines all motion that the higher levels leave, without a factorisation.
-  template <typename Matrix, typename Accepts>
-  [[nodiscard]] bool is_diagonal(const Matrix& A, const Accepts& accepts) const noexcept {
+  /// Whether A is square and diagonal, without zeros there: a posture of all joints determines all motion that the
+  /// higher levels leave, without a factorisation.
+  template <typename Matrix>
+  [[nodiscard]] static bool is_diagonal(const Matrix& A) noexcept {
     if (A.rows() != A.cols()) return false;
     for (Eigen::Index j = 0; j < A.cols(); ++j) {
       for (Eigen::Index i = 0; i < A.rows(); ++i) {
-        if (!(i == j ? accepts(A.coeff(i, j)) : A.coeff(i, j) == Scalar(0))) return false;
+        if ((A.coeff(i, j) != Scalar(0)) != (i == j)) return false;
       }
     }
     return true;
   }
-  /// A = I: the singular values of A Z are 1, so that no direction is lost, and y = Z Zᵀ r.
+  /// A = c I: the singular values of A Z are c, and y = Z Zᵀ r/c.
   template <int M>
-  [[nodiscard]] Column add_identity(const Vector<M, Scalar>& r) noexcept {
+  [[nodiscard]] Column add_identity(const Vector<M, Scalar>& r, Scalar scale) noexcept {
     Column y = filled<Column>(size());
-    for (Eigen::Index i = 0; i < size(); ++i) y.coeffRef(i) = r.coeff(i);
+    for (Eigen::Index i = 0; i < size(); ++i) y.coeffRef(i) = r.coeff(i) / scale;
     y = project(y);
     set_full();
     return y;

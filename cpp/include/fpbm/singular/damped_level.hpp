@@ -46,6 +46,9 @@ class DampedLevel {
     return true;
   }
 
+  /// Whether a direction of the singular value sigma is lost.
+  [[nodiscard]] bool loses(Scalar sigma) const noexcept { return epsilon_squared_ > sigma * sigma; }
+
   /// tr Δ/ε², about the number of lost directions, and the number of dependent rows.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
