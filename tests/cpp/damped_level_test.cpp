@@ -227,7 +227,9 @@ TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
     const double radius = seed % 2 == 0 ? 0.1 : 0.6;  // With 0.6, all directions are lost.
     const Matrix<Eigen::Dynamic, n> above = random.uniform(random.uniform(0.0, 1.0) < 0.5 ? 3 : 5, n, -1.0, 1.0);
     const double size = std::pow(10.0, random.uniform(-2.0, 2.0));
-    const Matrix<n, n> posture = size * Matrix<n, n>::Identity();
+    Vector<n> entries = Vector<n>::Constant(size);
+    if (seed % 3 > 0) entries = size * random.uniform(n, 0.5, 1.5);
+    const Matrix<n, n> posture = entries.asDiagonal();
     const Vector<n> r = random.uniform(n, -1.0, 1.0);
     const auto motion = [&](const Matrix<n, n>& A, const Vector<n>& b) {
       LevelSpace<n> space(n);

@@ -77,6 +77,7 @@
 #include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/axis_self_motion.hpp"
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/inverse_trace.hpp"
 #include "fpbm/linalg/level_space.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"
 
@@ -46,16 +47,15 @@ class LevelSpace {
   /// Adds the level A. With A Z = L Qᵀ, L lower triangular (trapezoidal if rows are dependent) and QᵀQ = I, calls
   /// solver(L, r, rank of A Z). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y
   /// of add(A, r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A
-  /// Z are zero. Where A is a multiple of I, solver.loses(σ) says whether it would replace r for singular values σ
-  /// alone.
+  /// Z are zero. Where A is diagonal, solver.loses(σ) says whether it would replace r for a singular value σ
+  /// or larger ones.
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
       if (is_diagonal(A)) {
-        const Scalar scale = A.coeff(0, 0);
-        bool uniform = !solver.loses(scale);
-        for (Eigen::Index i = 1; i < A.rows(); ++i) uniform = uniform && A.coeff(i, i) == scale;
-        if (uniform) return add_identity(r, scale);
+        Scalar least = std::abs(A.coeff(0, 0));
+        for (Eigen::Index i = 1; i < A.rows(); ++i) least = std::min(least, std::abs(A.coeff(i, i)));
+        if (!solver.loses(least)) return add_diagonal(A, r);
       }
     }
     return add_with(A, r,
@@ -101,24 +101,24 @@ class LevelSpace {
   }
 
  private:
-  /// Whether A is square and diagonal, without zeros there: a posture of all joints determines all motion that the
-  /// higher levels leave, without a factorisation.
-  template <typename Matrix>
-  [[nodiscard]] static bool is_diagonal(const Matrix& A) noexcept {
-    if (A.rows() != A.cols()) return false;
-    for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      for (Eigen::Index i = 0; i < A.rows(); ++i) {
-        if ((A.coeff(i, j) != Scalar(0)) != (i == j)) return false;
-      }
-    }
-    return true;
-  }
-  /// A = c I: the singular values of A Z are c, and y = Z Zᵀ r/c.
+  /// A = D, of which no direction is lost: the singular values of D Z are at least the least entry of D.
+  ///
+  ///   y = Z (ZᵀD²Z)⁻¹ ZᵀD r,   and Z Zᵀ r/c where D = c I.
   template <int M>
-  [[nodiscard]] Column add_identity(const Vector<M, Scalar>& r, Scalar scale) noexcept {
-    Column y = filled<Column>(size());
-    for (Eigen::Index i = 0; i < size(); ++i) y.coeffRef(i) = r.coeff(i) / scale;
-    y = project(y);
+  [[nodiscard]] Column add_diagonal(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
+    const Eigen::Index n = size();
+    const auto entry = [&](Eigen::Index i) -> const Scalar& { return A.coeffRef(i, i); };
+    Column y = filled<Column>(n);
+    bool uniform = true;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      uniform = uniform && entry(i) == entry(0);
+      y.coeffRef(i) = r.coeff(i) / entry(i);
+    }
+    if (uniform) {
+      y = project(y);
+    } else {
+      y = solve_diagonal<N, Scalar>(basis(), A, r);
+    }
     set_full();
     return y;
   }
