@@ -157,8 +157,12 @@ StackTarget read_target(const StackTask& task, const py::handle& given) {
     const auto parts = py::reinterpret_borrow<py::tuple>(given);
     if (!parts.empty() && parts.size() <= 3 && dimensions(ArrayLike(py::object(parts[0]))) == (is_matrix ? 2 : 1)) {
       x = parts[0];
-      const auto vector = [&](std::size_t i, const char* name) {
-        return joint_vector(ArrayLike(py::object(parts[i])), (task.name + "'s " + name).c_str(), task.size);
+      const auto vector = [&](std::size_t i, const char* what) -> JointVector {
+        const ArrayLike values(py::object(parts[i]));
+        const std::string name = task.name + "'s " + what;
+        if (task.kind == TaskKind::kPosture) return joint_vector(values, name.c_str(), task.size);
+        if (task.kind == TaskKind::kPose) return fixed_vector<6>(values, name.c_str());
+        return fixed_vector<3>(values, name.c_str());
       };
       if (parts.size() > 1) target.xd = vector(1, "xd");
       if (parts.size() > 2) target.xdd = vector(2, "xdd");

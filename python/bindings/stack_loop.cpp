@@ -52,6 +52,9 @@ StackMotion::Sources StackLoop::read(const PyReferences& references) {
   StackMotion::Sources sources;
   StackMotion::Targets targets;
   for (const auto& [key, given] : references) {
+    if (!py::isinstance<py::str>(key)) {
+      validation::reject("references", ": the keys of the dictionary must be the names of the tasks");
+    }
     const StackTask& task = motion_.plan().task(py::cast<std::string>(key));
     if (const auto source = source_of(task, given)) {
       sources.emplace_back(&task, *source);

@@ -138,8 +138,9 @@ class PostureTask(Task):
         super()._finish()
         if self.joints is None:
             return
-        names = (self.joints,) if isinstance(self.joints, str) else tuple(self.joints)
-        if not names or len(set(names)) < len(names):
+        given = (self.joints,) if isinstance(self.joints, str) or not isinstance(self.joints, Iterable) else self.joints
+        names = tuple(given)
+        if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
             raise wrong("joints", self.joints, f" = {self.joints!r:.80}: must be names of joints, each once")
         object.__setattr__(self, "joints", names)
 

@@ -289,6 +289,9 @@ def test_stacks_are_values():
         (lambda: fp.PositionTask(k2=-1), "k2 = -1"),
         (lambda: fp.AxisTask(axis=(0, 0, 0)), "axis = 0"),
         (lambda: fp.PostureTask(joints=()), "joints"),
+        (lambda: fp.PostureTask(joints=2), "joints = 2: must be names of joints, each once"),
+        (lambda: fp.PostureTask(joints=[0, 2]), "must be names of joints"),
+        (lambda: fp.PostureTask(joints=[["a"]]), "must be names of joints"),
     ],
 )
 def test_wrong_tasks(make, message):
@@ -365,7 +368,8 @@ def test_wrong_references_change_nothing(panda, balanced):
         ({"place": place[:2]}, "place has 2 entries"),
         ({"place": place * np.nan}, r"place\[0\] = nan"),
         ({"elbow": place + 1, "upright": (0, 0, 0)}, "upright is zero"),
-        ({"place": (place, [1, 2])}, "place's xd has 2 entries"),
+        ({"place": (place, [1, 2])}, "place's xd has 2 entries: must have 3$"),
+        ({3: place}, "references: the keys of the dictionary must be the names of the tasks"),
         ({"upright": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1)}, "another task than 'upright'"),
         ({"place": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1, dt=2e-3)}, "filter's dt"),
         (place, "must be given a dictionary"),
