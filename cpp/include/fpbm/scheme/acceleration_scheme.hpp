@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/space.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/objective/null_space.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/core/level.hpp"
+#include "fpbm/core/space.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/least_norm.hpp"
 #include "fpbm/scheme/weights.hpp"
