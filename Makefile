@@ -138,7 +138,7 @@ soak:
 	cmake --build --preset release --target fpbm_soak
 	build/release/tests/cpp/fpbm_soak $(TICKS)
 
-# Two hours of processor time.
+# Takes two hours of processor time.
 motions: $(VENV)/package
 	$(BIN)/python tests/soak/stack_motions.py
 

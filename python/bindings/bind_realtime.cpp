@@ -16,7 +16,7 @@
 namespace fpbm::bindings {
 namespace {
 
-/// What one tick did. Its arrays become Python's where they are read.
+/// Result of one tick. Python's arrays are made when a program reads them.
 struct PyTick {
   JointVector q;
   JointVector qd;

@@ -217,14 +217,12 @@ INSTANTIATE_TEST_SUITE_P(every, DampedLevel, ::testing::ValuesIn(kKinds), [](con
   return name;
 });
 
-/// A row of the second level turns through a row of the first one: the motion is continuous, also where the two rows
-/// coincide.
 /// A posture of all joints needs no factorisation. Its motion is that of the same rows in another order.
 TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   constexpr Eigen::Index n = 7;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
-    const double radius = seed % 2 == 0 ? 0.1 : 0.6;  // With 0.6, all directions are lost.
+    const double radius = seed % 2 == 0 ? 0.1 : 0.6;  // With 0.6, the solver damps directions.
     const Matrix<Eigen::Dynamic, n> above = random.uniform(random.uniform(0.0, 1.0) < 0.5 ? 3 : 5, n, -1.0, 1.0);
     const double size = std::pow(10.0, random.uniform(-2.0, 2.0));
     Vector<n> entries = Vector<n>::Constant(size);
@@ -245,6 +243,8 @@ TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   }
 }
 
+/// A row of the second level turns through a row of the first one: the motion is continuous, also where the two rows
+/// coincide.
 TEST(DampedLevels, are_continuous_where_rows_of_two_levels_coincide) {
   double largest = 0.0;
   double undamped = 0.0;

@@ -98,7 +98,7 @@ class Guard {
     for (const ShapePair& pair : clearance_.pairs()) {
       const Scalar moves = pair.world ? time * clearance_.obstacles()[pair.second].velocity.norm() : Scalar(0);
       const auto& body = clearance_.bodies()[pair.first];
-      // A deceleration of its own may take more than the quickest stop does.
+      // A bound with its own deceleration may need more distance than the quickest stop.
       const bool gentle = &pair >= first_bound && std::isfinite(body.deceleration);
       if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + body.reach + moves) continue;
       const Bend<N, Scalar> bend(clearance_, pair, sweep);

@@ -32,7 +32,7 @@ struct Direction {
     Vector<3, Scalar> axis = cross(y, x);
     const Scalar square = squared_norm(axis);
     const Scalar cosine = dot(x, y);
-    // Small angles, as errors have, without root or division, if both lengths are 1.
+    // Small angles of unit vectors, without root or division. 16 epsilon is the round-off of sin² + cos².
     const bool unit =
         std::abs(cosine * cosine + square - Scalar(1)) < Scalar(16) * std::numeric_limits<Scalar>::epsilon();
     if (unit && cosine > Scalar(0) && square < Scalar(kLargestSquare)) {

@@ -19,7 +19,7 @@ inline constexpr double kLargestSquare = 1.0 / 64.0;
 /// θ/sin θ for z = sin²θ, by the arcsine series.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Scalar angle_over_sine(const Scalar& z) noexcept {
-  // Even and odd powers apart: two short dependency chains in place of a long one.
+  // Even and odd powers apart: a processor computes the two short dependency chains in parallel.
   // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
   // double.
   const Scalar y = z * z;

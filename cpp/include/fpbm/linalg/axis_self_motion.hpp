@@ -34,7 +34,7 @@ class AxisSelfMotion {
     const Scalar square0 = product(hand0, hand0, a12, a34, 0, 0);
     const Scalar square1 = product(hand1, hand1, a12, a34, 1, 1);
     const Scalar along = product(hand0, hand1, a12, a34, 0, 1);
-    const Scalar gram = square0 * square1 - along * along;  // The sum of the squares of all hands' determinants.
+    const Scalar gram = square0 * square1 - along * along;  // det AAᵀ
     const Scalar det = hand0.first() * hand1.second() - hand0.second() * hand1.first();
     const Mask<Scalar> spans = Scalar(kSpans) * det * det > gram && gram > share * square0 * square1;
     if (none_of(spans)) return spans;
@@ -105,7 +105,8 @@ class AxisSelfMotion {
       {3, 4, 0, 1, 2, 5}, {2, 4, 0, 1, 3, 5}, {1, 4, 0, 2, 3, 5}, {0, 4, 1, 2, 3, 5}, {4, 5, 0, 1, 2, 3},
       {3, 5, 0, 1, 2, 4}, {2, 3, 0, 1, 4, 5}, {1, 3, 0, 2, 4, 5}, {0, 3, 1, 2, 4, 5}, {2, 5, 0, 1, 3, 4},
       {1, 5, 0, 2, 3, 4}, {0, 5, 1, 2, 3, 4}, {1, 2, 0, 3, 4, 5}, {0, 2, 1, 3, 4, 5}, {0, 1, 2, 3, 4, 5}};
-  /// A hand whose determinant has at least this part of the sum of all squares, of which there are 15, serves.
+  /// A pair is a hand if det² A_T is more than 1/kSpans of det AAᵀ, the sum of det² of all 15 pairs. At least one pair
+  /// has 1/15 of the sum (docs/equations.md). 20 leaves a margin for round-off.
   static constexpr auto kSpans = 20.0F;
 
   /// K b_w: what a joint of the hand does about a turn b_w.

@@ -47,8 +47,7 @@ class LevelSpace {
   /// Adds the level A. With A Z = L Qᵀ, L lower triangular (trapezoidal if rows are dependent) and QᵀQ = I, calls
   /// solver(L, r, rank of A Z). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y
   /// of add(A, r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A
-  /// Z are zero. Where A is diagonal, solver.loses(σ) says whether it would replace r for a singular value σ
-  /// or larger ones.
+  /// Z are zero. If A is diagonal, solver.loses(σ) returns whether the solver damps a singular value σ [unit of A].
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
