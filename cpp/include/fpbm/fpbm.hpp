@@ -158,6 +158,7 @@
 #include "fpbm/singular/damping.hpp"
 #include "fpbm/singular/lost_directions.hpp"
 #include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/coordinate_of.hpp"
 #include "fpbm/task/curve.hpp"
 #include "fpbm/task/feedback.hpp"
 #include "fpbm/task/fixed_axis.hpp"

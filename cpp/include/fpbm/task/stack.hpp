@@ -20,19 +20,6 @@ template <typename Task>
   }
 }
 
-/// The coordinate of its Space that row i of a task is; -1 where S mixes coordinates. Tasks may say so by
-/// coordinate(i).
-template <typename Task, typename = void>
-struct CoordinateOf {
-  [[nodiscard]] static constexpr int row([[maybe_unused]] const Task& task, int i) noexcept {
-    return Task::kWhole ? i : -1;
-  }
-};
-template <typename Task>
-struct CoordinateOf<Task, std::void_t<decltype(std::declval<const Task&>().coordinate(0))>> {
-  [[nodiscard]] static constexpr int row(const Task& task, int i) noexcept { return task.coordinate(i); }
-};
-
 /// Tasks side by side on one level.
 template <typename... Tasks>
 struct TaskLevel {

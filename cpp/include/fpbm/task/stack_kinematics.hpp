@@ -8,6 +8,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/robot.hpp"
+#include "fpbm/task/coordinate_of.hpp"
 #include "fpbm/task/stack.hpp"
 
 namespace fpbm {
