@@ -177,6 +177,18 @@ TEST(Direction, difference_turns_one_to_the_other) {
     EXPECT_LT(std::abs(d.dot(y)), 1e-12);
   }
 }
+/// From 1e-8 to 0.5 rad, where the series ends at 0.125 rad, and of vectors of any length.
+TEST(Direction, difference_is_the_rotation_vector_of_small_angles) {
+  Random random(5);
+  for (int trial = 0; trial < trials(1000); ++trial) {
+    const Vector<3> y = Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
+    const double angle = std::pow(10.0, random.uniform(-8.0, std::log10(0.5)));
+    const Vector<3> turn = angle * cross(y, Vector<3>(random.uniform(3, -1.0, 1.0))).normalized();
+    const Vector<3> x = rotation(turn) * y;
+    EXPECT_LT((Direction::difference<double>(x, y) - turn).norm(), 2e-15 + 1e-14 * angle);
+    EXPECT_LT((Direction::difference<double>(Vector<3>(3.0 * x), y) - turn).norm(), 2e-15 + 1e-14 * angle);
+  }
+}
 
 TEST(Stack, of_one_level_is_the_tracker_of_that_task) {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
