@@ -19,8 +19,8 @@ class AxisSelfMotion {
   static constexpr int kKinds = 15;  ///< Of hands: any two joints. Those of the wrist are tried first.
   using Twice = Pair<Scalar>;
 
-  [[nodiscard, gnu::always_inline]] Mask<Scalar> factor(const Matrix<5, 6, Scalar>& J, int kind,
-                                                        const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+  [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<5, 6, Scalar>& J, int kind,
+                                                   const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
     joint_ = kJoints[kind];
     const auto linear = [&](int i) { return J.data() + 5 * joint_[i]; };
     const auto angular = [&](int row, int i) -> const Scalar& { return J.coeffRef(3 + row, joint_[i]); };
@@ -63,7 +63,7 @@ class AxisSelfMotion {
   }
 
   template <typename Value>
-  [[nodiscard, gnu::always_inline]] Vector<6, Value> solve(const Vector<5, Value>& b) const noexcept {
+  [[nodiscard, gnu::noinline]] Vector<6, Value> solve(const Vector<5, Value>& b) const noexcept {
     const Value x[2] = {hand(0, b), hand(1, b)};
     Value y[4];
     rest_.solve(left(three(b.data()), x), y);
@@ -77,8 +77,7 @@ class AxisSelfMotion {
   }
 
   /// gᵀs for J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
-  [[nodiscard, gnu::always_inline]] Scalar along(const Vector<5, Scalar>& t,
-                                                 const Vector<6, Scalar>& g) const noexcept {
+  [[nodiscard, gnu::noinline]] Scalar along(const Vector<5, Scalar>& t, const Vector<6, Scalar>& g) const noexcept {
     const auto at = [&](int i) -> const Scalar& { return g.coeffRef(joint_[i]); };
     const Scalar x[2] = {hand(0, t), hand(1, t)};
     const Twice first(at(0)), second(at(1));
@@ -98,6 +97,39 @@ class AxisSelfMotion {
     return P + Scalar(2) * (P * B + Scalar(1)) * K / (length * length);
   }
   [[nodiscard]] Scalar inverse_square(const Scalar& length) const noexcept { return rough_inverse_square(length); }
+
+  /// SpatialSelfMotion::inverse_trace().
+  [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
+    Twice s12[3], s34[3];
+    rest_.inverse(s12, s34);
+    const auto lever = [&](const Scalar& a, const Scalar& b) { return Twice(a) * K_[0] + Twice(b) * K_[1]; };
+    const Three<Twice> G = {lever(B_[0].x, B_[1].x), lever(B_[0].y, B_[1].y), lever(B_[0].z, B_[1].z)};
+    const auto times_lever = [&](const Three<Scalar>& a) { return dot(repeated<Twice>(a), G); };
+    const auto square_of_rest = [&](const Twice(&s)[3]) {
+      const Twice a = s[0] * Twice(G.x.first()) + s[1] * Twice(G.y.first()) + s[2] * Twice(G.z.first());
+      const Twice b = s[0] * Twice(G.x.second()) + s[1] * Twice(G.y.second()) + s[2] * Twice(G.z.second());
+      return a * a + b * b;
+    };
+    Scalar square = rest_.inverse_square() + sum(square_of_rest(s12) + square_of_rest(s34));
+    Scalar null_square = rest_.null_square();
+    Three<Scalar> along_p = {Scalar(0), Scalar(0), Scalar(0)};
+    Twice along_k(Scalar(0));
+    for (int i = 0; i < 2; ++i) {
+      const auto entry = [&](int j) {
+        const Twice both = X12_[i] * s12[j] + X34_[i] * s34[j];
+        return both.second() - both.first();
+      };
+      const Three<Scalar> p = {entry(0), entry(1), entry(2)};
+      const Twice r = K_[i] - times_lever(p);
+      const Scalar v = -sum(X12_[i] * rest_.null12() + X34_[i] * rest_.null34());
+      square += dot(p, p) + sum(r * r);
+      null_square += v * v;
+      along_p = along_p + v * p;
+      along_k += Twice(v) * K_[i];
+    }
+    const Twice along_r = along_k - times_lever(along_p);
+    return square - (dot(along_p, along_p) + sum(along_r * along_r)) / null_square;
+  }
 
  private:
   /// The hand, then the rest.

@@ -55,7 +55,8 @@ template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Vector<Rows, Scalar> product(const Matrix<Rows, Cols, Scalar>& A,
                                            const Vector<Cols, Scalar>& b) noexcept {
   if constexpr (Rows != Eigen::Dynamic) {
-    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows_of_product(rows, A, b); });
+    const Vector<Cols, Scalar> c = b;  // The result may be b, so far as the compiler knows: b would be read again.
+    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows_of_product(rows, A, c); });
   } else {
     Vector<Rows, Scalar> result;
     result.resize(A.rows());

@@ -17,6 +17,7 @@ namespace fpbm {
 ///   along(t, g)               μᵀt, where Jᵀμ = g
 ///   inverse_square(length)    a bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
 ///   rough_inverse_square(length)   the same bound or a larger one, for less
+///   inverse_trace()       tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
@@ -57,10 +58,9 @@ class SelfMotion<2, 3, Scalar> {
     return t(0) * dot(h, first_) + t(1) * dot(h, second_);
   }
 
-  [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept {
-    return dot(first_, first_) + dot(second_, second_);
-  }
-  [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
+  [[nodiscard]] Scalar inverse_square(const Scalar&) const noexcept { return inverse_trace(); }
+  [[nodiscard]] Scalar rough_inverse_square(const Scalar&) const noexcept { return inverse_trace(); }
+  [[nodiscard]] Scalar inverse_trace() const noexcept { return dot(first_, first_) + dot(second_, second_); }
 
  private:
   Three<Scalar> v_;
@@ -102,6 +102,7 @@ class SelfMotion<3, 4, Scalar> {
     return squares.x + squares.y + squares.z / (length * length);
   }
   [[nodiscard]] Scalar rough_inverse_square(const Scalar& length) const noexcept { return inverse_square(length); }
+  [[nodiscard]] Scalar inverse_trace() const noexcept { return S_.inverse_square(); }
 
  private:
   ThreeByFour<Scalar> S_;  ///< J

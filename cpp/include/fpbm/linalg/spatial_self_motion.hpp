@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -20,8 +21,8 @@ class SpatialSelfMotion {
   static constexpr int kKinds = 5;  ///< Of hands: any three consecutive joints. The wrist is tried first.
   using Twice = Pair<Scalar>;
 
-  [[nodiscard, gnu::always_inline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
-                                                        const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
+  [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
+                                                   const Scalar& share = Scalar(kCertain<Scalar>)) noexcept {
     using std::abs;
     joint_ = kJoints[kind];
     const auto linear = [&](int i) { return J.data() + 6 * joint_[i]; };
@@ -45,16 +46,15 @@ class SpatialSelfMotion {
 
   [[nodiscard, gnu::always_inline]] Vector<7, Scalar> null() const noexcept {
     const Twice &v12 = rest_.null12(), &v34 = rest_.null34();
-    const auto row = [&](const Twice& x12, const Twice& x34) { return -sum(x12 * v12 + x34 * v34); };
-    const Scalar v[7] = {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z), v12.first(),
-                         v12.second(),        v34.first(),         v34.second()};
+    const Three<Scalar> turns = turns_of_null();
+    const Scalar v[7] = {turns.x, turns.y, turns.z, v12.first(), v12.second(), v34.first(), v34.second()};
     Vector<7, Scalar> result;
     for (int i = 0; i < 7; ++i) result.coeffRef(joint_[i]) = v[i];
     return result;
   }
 
   template <typename Value>
-  [[nodiscard, gnu::always_inline]] Vector<7, Value> solve(const Vector<6, Value>& b) const noexcept {
+  [[nodiscard, gnu::noinline]] Vector<7, Value> solve(const Vector<6, Value>& b) const noexcept {
     const Three<Value> x = hand(three(b.data() + 3));
     Value y[4];
     rest_.solve(left(three(b.data()), x), y);
@@ -71,8 +71,7 @@ class SpatialSelfMotion {
   }
 
   /// gᵀs for J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
-  [[nodiscard, gnu::always_inline]] Scalar along(const Vector<6, Scalar>& t,
-                                                 const Vector<7, Scalar>& g) const noexcept {
+  [[nodiscard, gnu::noinline]] Scalar along(const Vector<6, Scalar>& t, const Vector<7, Scalar>& g) const noexcept {
     const auto at = [&](int i) -> const Scalar& { return g.coeffRef(joint_[i]); };
     const Three<Scalar> hands = {at(0), at(1), at(2)};
     const Three<Twice> both = repeated<Twice>(hands);
@@ -86,34 +85,42 @@ class SpatialSelfMotion {
   /// P = (−X S⁺, S⁺) and G = B_T K.
   [[nodiscard, gnu::noinline]] Scalar inverse_square(const Scalar& length) const noexcept {
     using std::sqrt;
-    Twice xy[4];
-    Scalar z[4];
-    rest_.inverse(xy, z);
-    Twice square = xy[0] * xy[0] + xy[1] * xy[1] + xy[2] * xy[2] + xy[3] * xy[3];
-    Scalar square_z = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
-    const auto add_row = [&](const Twice& x12, const Twice& x34) {
-      const Twice two = Twice(x12.first()) * xy[0] + Twice(x12.second()) * xy[1] + Twice(x34.first()) * xy[2] +
-                        Twice(x34.second()) * xy[3];
-      const Scalar one = x12.first() * z[0] + x12.second() * z[1] + x34.first() * z[2] + x34.second() * z[3];
-      square += two * two;
-      square_z += one * one;
-    };
-    add_row(X12_.x, X34_.x);
-    add_row(X12_.y, X34_.y);
-    add_row(X12_.z, X34_.z);
-    const auto lever = [&](const auto& a, const auto& b, const auto& c) {
-      using Value = std::decay_t<decltype(a)>;
-      const auto entry = [&](const Scalar& ka, const Scalar& kb, const Scalar& kc) {
-        const Value sum = a * Value(ka) + b * Value(kb) + c * Value(kc);
-        return sum * sum;
-      };
-      return entry(K_[0].x, K_[1].x, K_[2].x) + entry(K_[0].y, K_[1].y, K_[2].y) + entry(K_[0].z, K_[1].z, K_[2].z);
-    };
-    const Scalar G = sum(lever(Twice(B_[0].x, B_[0].y), Twice(B_[1].x, B_[1].y), Twice(B_[2].x, B_[2].y))) +
-                     lever(B_[0].z, B_[1].z, B_[2].z);
-    const Scalar P = sum(square) + square_z;
+    Twice s12[3], s34[3];
+    rest_.inverse(s12, s34);
+    const Scalar P = rest_.inverse_square() + squares(hand(s12, s34));
+    const Scalar G = squares(lever());
     const Scalar K = squares(K_);
     return P + (P * G + K + Scalar(2) * sqrt(P * G * K)) / (length * length);
+  }
+
+  /// tr((JJᵀ)⁻¹) = ‖J⁺‖² = ‖R‖² − |Rᵀv|²/vᵀv, in the norm of Frobenius, where R = [P, (K, 0) − P G] is a right inverse
+  /// of J, and J⁺ is R without its part along v.
+  [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
+    Twice s12[3], s34[3];
+    rest_.inverse(s12, s34);
+    const Rows H = hand(s12, s34);
+    const Rows G = lever();
+    const auto times_lever = [&G](const auto& a, const auto& b, const auto& c) {
+      using Value = std::decay_t<decltype(a)>;
+      const auto column = [&](const Scalar& ga, const Scalar& gb, const Scalar& gc) {
+        return a * Value(ga) + b * Value(gb) + c * Value(gc);
+      };
+      return Three<Value>{column(G[0].x, G[1].x, G[2].x), column(G[0].y, G[1].y, G[2].y),
+                          column(G[0].z, G[1].z, G[2].z)};
+    };
+    const Three<Twice> r12 = times_lever(s12[0], s12[1], s12[2]);
+    const Three<Twice> r34 = times_lever(s34[0], s34[1], s34[2]);
+    const Three<Scalar> v = turns_of_null();
+    Scalar square = rest_.inverse_square() + sum(dot(r12, r12) + dot(r34, r34));
+    Three<Scalar> along_p = v.x * H[0], along_k = v.x * K_[0];
+    for (int i = 0; i < 3; ++i) {
+      const Three<Scalar> r = K_[i] - times_lever(H[i].x, H[i].y, H[i].z);
+      square += dot(H[i], H[i]) + dot(r, r);
+    }
+    along_p = (along_p + v.y * H[1]) + v.z * H[2];
+    along_k = (along_k + v.y * K_[1]) + v.z * K_[2];
+    const Three<Scalar> along_r = along_k - times_lever(along_p.x, along_p.y, along_p.z);
+    return square - (dot(along_p, along_p) + dot(along_r, along_r)) / (rest_.null_square() + dot(v, v));
   }
 
   /// The same with ‖P‖² ≤ ‖S⁺‖² (1 + ‖X‖²), ‖G‖ ≤ ‖B_T‖ ‖K‖ and (a + b)² ≤ 2 (a² + b²).
@@ -133,8 +140,34 @@ class SpatialSelfMotion {
   /// Least |det A_T| with which a hand spans space.
   static constexpr auto kSpans = 0.3F;
 
-  [[nodiscard]] static Scalar squares(const Three<Scalar> (&vectors)[3]) noexcept {
-    return dot(vectors[0], vectors[0]) + dot(vectors[1], vectors[1]) + dot(vectors[2], vectors[2]);
+  using Rows = std::array<Three<Scalar>, 3>;
+
+  [[nodiscard]] static Scalar squares(const Rows& rows) noexcept {
+    return dot(rows[0], rows[0]) + dot(rows[1], rows[1]) + dot(rows[2], rows[2]);
+  }
+  /// −X ṽ
+  [[nodiscard, gnu::always_inline]] Three<Scalar> turns_of_null() const noexcept {
+    const Twice &v12 = rest_.null12(), &v34 = rest_.null34();
+    const auto row = [&](const Twice& x12, const Twice& x34) { return -sum(x12 * v12 + x34 * v34); };
+    return {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z)};
+  }
+  /// −X S⁺, by S⁺ as ThreeByFour::inverse() gives it.
+  [[nodiscard]] Rows hand(const Twice (&s12)[3], const Twice (&s34)[3]) const noexcept {
+    const auto row = [&](const Twice& x12, const Twice& x34) {
+      const auto entry = [&](int j) {
+        const Twice both = x12 * s12[j] + x34 * s34[j];
+        return both.second() - both.first();
+      };
+      return Three<Scalar>{entry(0), entry(1), entry(2)};
+    };
+    return {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z)};
+  }
+  /// G = B_T K
+  [[nodiscard]] Rows lever() const noexcept {
+    const auto row = [&](const Scalar& a, const Scalar& b, const Scalar& c) {
+      return (a * K_[0] + b * K_[1]) + c * K_[2];
+    };
+    return {row(B_[0].x, B_[1].x, B_[2].x), row(B_[0].y, B_[1].y, B_[2].y), row(B_[0].z, B_[1].z, B_[2].z)};
   }
   /// K a: what the hand does about a turn a.
   template <typename Value>
@@ -150,9 +183,9 @@ class SpatialSelfMotion {
   }
 
   const int* joint_;
-  Three<Scalar> K_[3];  ///< Rows of K.
-  Three<Scalar> B_[3];  ///< Columns of B_T.
-  Three<Twice> X12_;    ///< Columns of X.
+  Rows K_;            ///< Rows of K.
+  Rows B_;            ///< Columns of B_T.
+  Three<Twice> X12_;  ///< Columns of X.
   Three<Twice> X34_;
   ThreeByFour<Scalar> rest_;  ///< S
 };

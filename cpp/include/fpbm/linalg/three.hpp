@@ -11,6 +11,7 @@ struct Three {
   Value y;
   Value z;
 
+  friend Three operator+(const Three& a, const Three& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Three operator-(const Three& a, const Three& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Three operator*(const Value& s, const Three& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
 };

@@ -41,6 +41,8 @@ class ThreeByFour {
   /// that of the product of their lengths.
   [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
 
+  /// |ṽ|²
+  [[nodiscard]] const Scalar& null_square() const noexcept { return square_; }
   /// ṽ
   [[nodiscard]] const Twice& null12() const noexcept { return v12_; }
   [[nodiscard]] const Twice& null34() const noexcept { return v34_; }
@@ -51,12 +53,21 @@ class ThreeByFour {
     combine(minors(a), y);
   }
 
-  /// S⁺: its first two columns side by side, and its third.
-  void inverse(Twice (&xy)[4], Scalar (&z)[4]) const noexcept {
-    combine(Minors<Twice>{firsts(c12_34_.x, c12_34_.y), firsts(c13_24_.x, c13_24_.y), firsts(c14_23_.x, c14_23_.y),
-                          seconds(c14_23_.x, c14_23_.y), seconds(c13_24_.x, c13_24_.y), seconds(c12_34_.x, c12_34_.y)},
-            xy);
-    combine(apart(c12_34_.z, c13_24_.z, c14_23_.z), z);
+  /// S⁺ by columns: rows 1 and 2, rows 3 and 4, with rows 2 and 4 negated.
+  void inverse(Twice (&s12)[3], Twice (&s34)[3]) const noexcept {
+    const Twice over(over_);
+    const Twice v12 = over * v12_, v34 = over * v34_;
+    const Twice v21 = swapped(v12), v43 = swapped(v34);
+    const Twice v1(v12.first()), v2(v12.second()), v3(v34.first()), v4(v34.second());
+    const auto column = [&](int j, const Twice& d12_34, const Twice& d13_24, const Twice& d14_23) {
+      const Twice d13_14 = firsts(d13_24, d14_23), d24_23 = seconds(d13_24, d14_23);
+      const Twice d24_14(d24_23.first(), d13_14.second()), d23_13(d24_23.second(), d13_14.first());
+      s12[j] = v3 * d24_14 - v4 * d23_13 - Twice(d12_34.second()) * v21;
+      s34[j] = v2 * swapped(d13_14) - v1 * d24_23 - Twice(d12_34.first()) * v43;
+    };
+    column(0, c12_34_.x, c13_24_.x, c14_23_.x);
+    column(1, c12_34_.y, c13_24_.y, c14_23_.y);
+    column(2, c12_34_.z, c13_24_.z, c14_23_.z);
   }
 
   /// hᵀS⁺a.

@@ -46,7 +46,7 @@ struct ManipulabilityAscent {
     const auto Z = null_basis(kinematics.J);
     result += Z.lazyProduct((Z.transpose().lazyProduct(z)).eval());
     if (!result.allFinite()) return Status::kNotFinite;
-    u = result;
+    u = std::move(result);
     return status;
   }
 };

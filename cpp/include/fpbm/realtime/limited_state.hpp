@@ -152,7 +152,7 @@ class LimitedState {
     result.qd = next.qd;
     result.qdd = last_ = motion_.rate(state_.qd, next.qd);
     const JointVector q = state_.q;
-    state_ = next;
+    state_ = std::move(next);
     if (stopping_ || failed(result.status)) return;
     const Scalar length = correction_.length();
     if (recovering) return progress_.recovered(state_.q, now.x, length);

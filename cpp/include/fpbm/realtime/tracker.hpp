@@ -116,7 +116,7 @@ class Tracker {
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
-    result.status = loop.resolve(references.stages[0], dx);
+    resolve(loop, references.stages[0], dx, result);
     const JointVector field = column(dx, 0);
     if (!failed(result.status)) {
       result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
@@ -162,7 +162,7 @@ class Tracker {
     X dx = Loop::packed(measured);
     loop.update(dx);
     watch(loop.kinematics, reference, result);
-    result.status = loop.resolve(kept_.correction()(reference), dx);
+    resolve(loop, kept_.correction()(reference), dx, result);
     result.qdd = answer_ = limit_measured(loop, measured_, kept_, measured, answer_, result);
     report_lower_levels(result);
     return result;
@@ -216,9 +216,15 @@ class Tracker {
   using X = typename Loop::X;
 
   void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
-    result.sigma = least_singular_value_bound(first_rows(kinematics));
     result.error = task_error(kinematics, reference.x);
     kept_.correction().begin(result.error, kinematics.length);
+  }
+
+  /// The scheme's answer where update() was called, and σ from its factorisation, or from one more.
+  static void resolve(Loop& loop, const Target& reference, X& dx, Result& result) noexcept {
+    result.sigma = Scalar(-1);
+    result.status = loop.resolve(reference, dx, &result.sigma);
+    if (result.sigma < Scalar(0)) result.sigma = least_singular_value_bound(first_rows(loop.kinematics));
   }
 
   Arm arm_;

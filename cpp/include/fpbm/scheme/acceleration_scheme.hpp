@@ -51,13 +51,14 @@ struct AccelerationScheme {
 
   /// Joint accelerations qdd [rad/s²] that give the tip its reference acceleration, corrected by the feedback. Leaves
   /// qdd unchanged where it fails.
+  /// sigma, unless null, gets the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) where the factorisation of the answer has it.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               Vector<N, Scalar>& qdd) const noexcept {
+                               Vector<N, Scalar>& qdd, Scalar* sigma = nullptr) const noexcept {
     const auto b = commanded_acceleration(k1, k2, kinematics, reference, state);
     return solve<kScaledRows<Space, N>>(b, kinematics.J, kinematics.Jd, reference.xd, scale_of_rows(kinematics), state,
-                                        qdd);
+                                        qdd, sigma);
   }
 
   /// Joint accelerations that give any rows, all in metres, J qdd = b: the law without feedback, b with J̇ qd
@@ -65,8 +66,9 @@ struct AccelerationScheme {
   template <int M>
   [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>& xd,
                                     const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
-                                    const State<N, Scalar>& state, Vector<N, Scalar>& qdd) const noexcept {
-    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, xd, Scalar(1), state, qdd);
+                                    const State<N, Scalar>& state, Vector<N, Scalar>& qdd,
+                                    Scalar* sigma = nullptr) const noexcept {
+    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, xd, Scalar(1), state, qdd, sigma);
   }
 
  private:
@@ -74,24 +76,27 @@ struct AccelerationScheme {
   template <int kTurns, int M>
   [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
                              const Vector<M, Scalar>& xd, const Scalar& length, const State<N, Scalar>& state,
-                             Vector<N, Scalar>& qdd) const noexcept {
+                             Vector<N, Scalar>& qdd, Scalar* sigma) const noexcept {
     if constexpr (kHasSelfMotion<M, N>) {
-      const auto foreseen = foresee<kTurns>(singular, J, length, [&](const auto& motion) noexcept {
-        if constexpr (!kInLanes<Scalar>) {
-          if (alpha == Scalar(0)) {
-            return with_one_self_motion<kLevel>(motion, weights, alpha, b, Jd, null_space, state);
-          }
-        }
-        const Vector<M, Pair<Scalar>> rhs = side_by_side<M, 1, Scalar>(b, xd);
-        return with_one_self_motion<kLevel>(motion, weights, alpha, rhs, Jd, null_space, state);
-      });
+      auto foreseen = foresee<kTurns>(
+          singular, J, length,
+          [&](const auto& motion, Vector<N, Scalar>& u) noexcept {
+            if constexpr (!kInLanes<Scalar>) {
+              if (alpha == Scalar(0)) {
+                return with_one_self_motion<kLevel>(motion, weights, alpha, b, Jd, null_space, state, u);
+              }
+            }
+            const Vector<M, Pair<Scalar>> rhs = side_by_side<M, 1, Scalar>(b, xd);
+            return with_one_self_motion<kLevel>(motion, weights, alpha, rhs, Jd, null_space, state, u);
+          },
+          sigma);
       if (all_of(foreseen.regular)) {
-        qdd = foreseen.u;
+        qdd = std::move(foreseen.u);
         return Status::kOk;
       }
-      return by_gram<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
+      return by_gram<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
     } else {
-      return by_gram<kTurns>(b, J, Jd, xd, length, state, Unforeseen{}, qdd);
+      return by_gram<kTurns>(b, J, Jd, xd, length, state, Unforeseen{}, qdd, sigma);
     }
   }
 
@@ -99,44 +104,45 @@ struct AccelerationScheme {
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status by_gram(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd, const Scalar& length,
-                               const State<N, Scalar>& state, const Known& foreseen,
-                               Vector<N, Scalar>& qdd) const noexcept {
+                               const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
+                               Scalar* sigma) const noexcept {
     constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
     if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
-      return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
+      return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
     } else {
       if constexpr (kUnit) {
         // With one self-motion, only postures near a singularity come here. One instantiation serves every alpha.
         if constexpr (!kHasSelfMotion<M, N>) {
-          if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd);
+          if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd, sigma);
         }
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
-        const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result);
+        const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result, sigma);
         // Near a singular posture the brake is a motion for N_W to project: fall through to both factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
-          if (!failed(status)) qdd = result;
+          if (!failed(status)) qdd = std::move(result);
           return status;
         }
       }
       if constexpr (!kUnit) {
-        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd);
+        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
       }
       const auto force = [&](const auto& solutions) noexcept -> Vector<N, Scalar> {
         const Vector<N, Scalar> whole = transpose_times(Jd, solutions.force(solutions.shares(xd)));
         return entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       };
-      return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd);
+      return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd,
+                                        sigma);
     }
   }
 
   /// The law with α = 0 and W = I: one factorisation.
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
-                                  const State<N, Scalar>& state, const Known& foreseen,
-                                  Vector<N, Scalar>& qdd) const noexcept {
+                                  const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
+                                  Scalar* sigma) const noexcept {
     return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoForce{}, null_space, singular, J, length, state, foreseen,
-                                      qdd);
+                                      qdd, sigma);
   }
 
   /// Two factors, of J and of JC with C Cᵀ = W⁻¹, made side by side:
@@ -146,10 +152,11 @@ struct AccelerationScheme {
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
                                                 const Scalar& length, const State<N, Scalar>& state,
-                                                const Known& foreseen, Vector<N, Scalar>& qdd) const noexcept {
+                                                const Known& foreseen, Vector<N, Scalar>& qdd,
+                                                Scalar* sigma) const noexcept {
     DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of J and JC.
     const Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);      // Jᵀ and (JC)ᵀ.
-    const Status status = gram.factor(rows, Scalar(1));
+    const Status status = gram.factor(rows, Scalar(1), sigma);
     if (foreseen.answers(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;
 
@@ -175,7 +182,7 @@ struct AccelerationScheme {
     });
     foreseen.settle(result);
     if (!is_finite(result)) return Status::kNotFinite;
-    qdd = result;
+    qdd = std::move(result);
     return status;
   }
 };

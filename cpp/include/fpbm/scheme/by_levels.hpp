@@ -42,10 +42,10 @@ struct ByLevels {
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
   /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is left out. Leaves u
-  /// unchanged where the first level fails.
+  /// unchanged where the first level fails. sigma: of the first level, as of AccelerationScheme::resolve().
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
-                               JointVector& u) const noexcept {
+                               JointVector& u, Scalar* sigma = nullptr) const noexcept {
     JointVector result;
     LevelSpace<kDof, Scalar> space(state.q.size());
     Status status = Status::kOk;
@@ -61,7 +61,7 @@ struct ByLevels {
       if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve_rows(r, command.xd, J, Jd, state, result);
+        status = scheme.resolve_rows(r, command.xd, J, Jd, state, result, sigma);
         if constexpr (Stack_::kLevels > 1) space.add(J);
       } else {
         if (space.rank() == space.size()) return;
@@ -73,7 +73,7 @@ struct ByLevels {
     });
     if (failed(status)) return status;
     if (!is_finite(result)) return Status::kNotFinite;
-    u = result;
+    u = std::move(result);
     return status;
   }
 

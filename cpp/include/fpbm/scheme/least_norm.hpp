@@ -21,18 +21,20 @@ struct NoForce {};
 ///
 /// u: velocities or accelerations by level. force(gram) is f, which needs the factorised Gram matrix JW⁻¹Jᵀ, or
 /// NoForce. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
-/// Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened, since a large translation unit may
-/// not inline small calls.
+/// sigma: as of DampedGram::factor(). Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened,
+/// since a large translation unit may not inline small calls.
 template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
-                                              const Known& foreseen, Vector<N, Scalar>& u) noexcept {
+                                              const Known& foreseen, Vector<N, Scalar>& u,
+                                              [[maybe_unused]] Scalar* sigma) noexcept {
   const Matrix<N, M, Scalar> Jt = transpose_of(J);
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
-  const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>());
+  constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
+  const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>(), kUnit ? sigma : nullptr);
   if (foreseen.answers(gram, u)) return Status::kOk;
   if (failed(status)) return status;
 
@@ -51,7 +53,7 @@ template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weig
   Vector<N, Scalar> result = weights.root(y);
   foreseen.settle(result);
   if (!is_finite(result)) return Status::kNotFinite;
-  u = result;
+  u = std::move(result);
   return status;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <type_traits>
 
 #include "fpbm/core/level.hpp"
@@ -23,10 +24,11 @@ namespace fpbm {
 /// rhs: b beside xd; or b alone, for a law without the drift W⁻¹Jdᵀμ, whose α is a balance only.
 /// docs/equations.md has the proof.
 template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Value>
-[[nodiscard, gnu::always_inline]] inline Vector<N, Scalar> with_one_self_motion(
-    const SelfMotion<M, N, Scalar>& motion, const Weights& weights, const Scalar& alpha, const Vector<M, Value>& rhs,
-    [[maybe_unused]] const Matrix<M, N, Scalar>& Jd, const NullSpace<N, Scalar>& null_space,
-    const State<N, Scalar>& state) noexcept {
+[[gnu::always_inline]] inline void with_one_self_motion(const SelfMotion<M, N, Scalar>& motion, const Weights& weights,
+                                                        const Scalar& alpha, const Vector<M, Value>& rhs,
+                                                        [[maybe_unused]] const Matrix<M, N, Scalar>& Jd,
+                                                        const NullSpace<N, Scalar>& null_space,
+                                                        const State<N, Scalar>& state, Vector<N, Scalar>& u) noexcept {
   const Vector<N, Scalar> v = motion.null();
   const Vector<N, Scalar> Wv = weights.times(v);
   const Vector<N, Value> y = motion.solve(rhs);
@@ -49,9 +51,7 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
     wanted += alpha * motion.along(product(Jd, v), weights.times(rate));
   }
   const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
-  Vector<N, Scalar> u;
   each(Constant<0>{}, Constant<N>{}, [&](Eigen::Index i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
-  return u;
 }
 
 /// What is known of a state before a Gram matrix is factorised: nothing, where an arm has more self-motions or none.
@@ -93,24 +93,28 @@ struct Foreseen {
   }
 };
 
-/// The answer of law(motion). The last kTurns rows of J are angular; length: the arm's [m].
+/// The answer of law(motion, u). The last kTurns rows of J are angular; length: the arm's [m]. sigma, unless null, gets
+/// the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) with the answer.
 template <int kTurns, int M, int N, typename Scalar, typename Law>
 [[nodiscard, gnu::always_inline]] inline Foreseen<N, Scalar> foresee(const SingularDamping<Scalar>& damping,
                                                                      const Matrix<M, N, Scalar>& J,
-                                                                     const Scalar& length, const Law& law) noexcept {
+                                                                     const Scalar& length, const Law& law,
+                                                                     [[maybe_unused]] Scalar* sigma) noexcept {
   Foreseen<N, Scalar> result;
   SelfMotion<M, N, Scalar> motion;
   const Mask<Scalar> undamped = damping.radius() == Scalar(0);
   for (int kind = 0; kind < motion.kKinds && !all_of(result.answered); ++kind) {
     Mask<Scalar> found = motion.factor(J, kind);
     if (none_of(found)) continue;
-    const Vector<N, Scalar> u = law(motion);
     Mask<Scalar> regular = undamped;
     if (!all_of(undamped)) {
       const Scalar threshold = damping.radius() * damping.radius() * squared_norm_in_metres<kTurns>(J, length);  // ε²
       regular = regular || threshold * motion.rough_inverse_square(length) <= Scalar(1);
       if (!all_of(regular)) regular = regular || threshold * motion.inverse_square(length) <= Scalar(1);
     }
+    Vector<N, Scalar> lanes;
+    Vector<N, Scalar>& u = kInLanes<Scalar> ? lanes : result.u;
+    law(motion, u);
     if constexpr (kInLanes<Scalar>) {
       found = found && !result.answered;
       for (int i = 0; i < N; ++i) where(found, result.u(i)) = u(i);
@@ -118,7 +122,9 @@ template <int kTurns, int M, int N, typename Scalar, typename Law>
       result.regular = result.regular || (found && regular);
     } else {
       if (!is_finite(u)) break;
-      result = {true, regular, u};
+      if (sigma != nullptr) *sigma = Scalar(1) / std::sqrt(motion.inverse_trace());
+      result.answered = true;
+      result.regular = regular;
     }
   }
   return result;

@@ -39,46 +39,51 @@ struct VelocityScheme {
   }
 
   /// Joint velocities qd [rad/s] that give the tip its reference velocity. Leaves qd unchanged where it fails.
+  /// sigma, unless null, gets the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) where the factorisation of the answer has it.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
-                               Vector<N, Scalar>& qd) const noexcept {
+                               Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
     const auto v = commanded_velocity(k, kinematics, reference);
-    return solve<kScaledRows<Space, N>>(v, kinematics.J, kinematics.Jd, scale_of_rows(kinematics), state, qd);
+    return solve<kScaledRows<Space, N>>(v, kinematics.J, kinematics.Jd, scale_of_rows(kinematics), state, qd, sigma);
   }
 
   /// Joint velocities that give any rows, all in metres, J qd = b: the law without feedback.
   template <int M>
   [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>&, const Matrix<M, N, Scalar>& J,
                                     const Matrix<M, N, Scalar>& Jd, const State<N, Scalar>& state,
-                                    Vector<N, Scalar>& qd) const noexcept {
-    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, Scalar(1), state, qd);
+                                    Vector<N, Scalar>& qd, Scalar* sigma = nullptr) const noexcept {
+    return solve<kScaledRows<Position<M>, N>>(b, J, Jd, Scalar(1), state, qd, sigma);
   }
 
  private:
   template <int kTurns, int M>
   [[nodiscard]] Status solve(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
-                             const Scalar& length, const State<N, Scalar>& state,
-                             Vector<N, Scalar>& qd) const noexcept {
+                             const Scalar& length, const State<N, Scalar>& state, Vector<N, Scalar>& qd,
+                             Scalar* sigma) const noexcept {
     if constexpr (kHasSelfMotion<M, N>) {
-      const auto foreseen = foresee<kTurns>(singular, J, length, [&](const auto& motion) noexcept {
-        return with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, Jd, null_space, state);
-      });
+      auto foreseen = foresee<kTurns>(
+          singular, J, length,
+          [&](const auto& motion, Vector<N, Scalar>& u) noexcept {
+            with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, Jd, null_space, state, u);
+          },
+          sigma);
       if (all_of(foreseen.regular)) {
-        qd = foreseen.u;
+        qd = std::move(foreseen.u);
         return Status::kOk;
       }
-      return by_gram<kTurns>(v, J, length, state, foreseen, qd);
+      return by_gram<kTurns>(v, J, length, state, foreseen, qd, sigma);
     } else {
-      return by_gram<kTurns>(v, J, length, state, Unforeseen{}, qd);
+      return by_gram<kTurns>(v, J, length, state, Unforeseen{}, qd, sigma);
     }
   }
 
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status by_gram(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Scalar& length,
-                               const State<N, Scalar>& state, const Known& foreseen,
-                               Vector<N, Scalar>& qd) const noexcept {
-    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, foreseen, qd);
+                               const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qd,
+                               Scalar* sigma) const noexcept {
+    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, foreseen, qd,
+                                      sigma);
   }
 };
 

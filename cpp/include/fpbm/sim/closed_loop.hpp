@@ -49,22 +49,37 @@ struct ClosedLoop {
     }
   }
 
-  /// Second half of evaluate(): dX/dt where update() was called.
-  [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx) noexcept {
+  /// Second half of evaluate(): dX/dt where update() was called. sigma, unless null, gets a lower bound on σ_min(J) of
+  /// the first level where the scheme reports one.
+  [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx, Scalar* sigma = nullptr) noexcept {
     Status status;
     if constexpr (kSecondOrder) {
-      status = scheme.resolve(kinematics, reference, state, qdd);
+      status = resolve(scheme, reference, qdd, sigma, 0);
       if (failed(status)) return status;
       set_column(dx, 0, state.qd);
       set_column(dx, 1, qdd);
     } else {
       Vector<N, Scalar> qd;  // Not state.qd itself, which the scheme may read.
-      status = scheme.resolve(kinematics, reference, state, qd);
+      status = resolve(scheme, reference, qd, sigma, 0);
       if (failed(status)) return status;
       state.qd = qd;
       set_column(dx, 0, qd);
     }
     return status;
+  }
+
+ private:
+  /// The scheme's answer u. A scheme need not report σ.
+  template <typename Scheme_>
+  [[nodiscard]] auto resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
+                             Scalar* sigma, int) const noexcept
+      -> decltype(s.resolve(kinematics, reference, state, u, sigma)) {
+    return s.resolve(kinematics, reference, state, u, sigma);
+  }
+  template <typename Scheme_>
+  [[nodiscard]] Status resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
+                               Scalar*, long) const noexcept {
+    return s.resolve(kinematics, reference, state, u);
   }
 };
 

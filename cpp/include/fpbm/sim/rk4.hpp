@@ -14,9 +14,9 @@ struct RK4 {
   template <typename Derivative, typename Scalar, typename X>
   [[nodiscard]] static Status step(Derivative&& f, Scalar t, Scalar h, const X& k1, X& x) noexcept {
     const Scalar half = h / Scalar(2);
-    X k2 = k1;
-    X k3 = k1;
-    X k4 = k1;
+    X k2 = of_size(k1);
+    X k3 = of_size(k1);
+    X k4 = of_size(k1);
     X stage = plus(x, half, k1);
     Status status = f(t + half, stage, k2);
     if (failed(status)) return status;
@@ -33,13 +33,25 @@ struct RK4 {
   /// One step of length h from (t, x).
   template <typename Derivative, typename Scalar, typename X>
   [[nodiscard]] static Status step(Derivative&& f, Scalar t, Scalar h, X& x) noexcept {
-    X k1 = x;
+    X k1 = of_size(x);
     const Status status = f(t, x, k1);
     if (failed(status)) return status;
     return worse(status, step(f, t, h, k1, x));
   }
 
  private:
+  /// Something of the size of x, whose entries are not set if x is one of this library's matrices.
+  template <typename X>
+  [[nodiscard]] static X of_size(const X& x) noexcept {
+    return x;
+  }
+  template <int Rows, int Cols, typename Scalar>
+  [[nodiscard]] static Matrix<Rows, Cols, Scalar> of_size(const Matrix<Rows, Cols, Scalar>& x) noexcept {
+    Matrix<Rows, Cols, Scalar> result;
+    result.resize(x.rows(), x.cols());
+    return result;
+  }
+
   /// x + h k.
   template <typename Scalar, typename X>
   [[nodiscard]] static X plus(const X& x, const Scalar& h, const X& k) noexcept {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/types.hpp"
 #include "fpbm/core/unrolled.hpp"
@@ -66,24 +68,34 @@ class DampedGram {
              const Scalar& length = Scalar(1)) = delete;
 
   /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
-  /// Returns kDamped where Δ is not zero, or why there is no factor.
-  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound) noexcept {
-    rows_ = rows;
-    for (Eigen::Index i = lengths(); i < J_.rows(); ++i) {
-      for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
+  /// Returns kDamped where Δ is not zero, or why there is no factor. sigma, unless null, gets the lower bound
+  /// 1/√tr((JJᵀ)⁻¹) on σ_min(J) of a pair or of W = I, if J has a factor and no angular rows, and damping is on.
+  [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
+                              [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
+    if constexpr (kTurns > 0) {
+      rows_ = rows;
+      for (Eigen::Index i = lengths(); i < J_.rows(); ++i) {
+        for (Eigen::Index k = 0; k < extent<N>(rows_.rows()); ++k) rows_.coeffRef(k, i) *= Value(length_);
+      }
     }
-    const Status status = factor_.factor(rows_);
+    const Status status = factor_.factor(kTurns > 0 ? rows_ : rows);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
     // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
     const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
     const Scalar bound = threshold * inverse_bound;
-    const Mask<Scalar> regular = bound * first(factor_.inverse_trace()) <= Scalar(1);
+    const Scalar trace = first(factor_.inverse_trace());
+    const Mask<Scalar> regular = bound * trace <= Scalar(1);
+    if constexpr (kTurns == 0 && !kInLanes<Scalar>) {
+      if (sigma != nullptr && status == Status::kOk) *sigma = Scalar(1) / std::sqrt(trace);
+    }
     if constexpr (kInLanes<Scalar>) {
       factor_.set_nan_unless(regular);
       return status;
     } else {
-      return status == Status::kOk && regular ? status : damped(threshold, status);
+      if (status == Status::kOk && regular) return status;
+      if constexpr (kTurns == 0) rows_ = rows;
+      return damped(threshold, status);
     }
   }
 
@@ -175,7 +187,7 @@ class DampedGram {
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set in regular postures if there are no angular rows.
   RowFactor<M, N, Value> factor_;  ///< Of DJC.
   Cholesky<M, Value> damped_;      ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
   Scalar lost_{0};                 ///< tr Δ/ε²: about the number of lost directions.
