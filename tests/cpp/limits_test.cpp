@@ -59,6 +59,20 @@ template <int N, typename Result>
                    (change.cwiseAbs() - bounds.acceleration).maxCoeff()});
 }
 
+/// Largest excess over the bounds on velocity and acceleration by differences of the commanded positions of two ticks,
+/// the first of which began at q; negative where they keep both. Less the round-off of such differences.
+template <int N>
+[[nodiscard]] double violation_by_differences(const JointLimits<N>& bounds, const Vector<N>& q, const Vector<N>& before,
+                                              const Vector<N>& now) {
+  const Vector<N> first = (before - q) / kTick;
+  const Vector<N> second = (now - before) / kTick;
+  const Vector<N> change = (second - first) / kTick;
+  const double round_off = 8.0 * std::numeric_limits<double>::epsilon() * now.cwiseAbs().maxCoeff() / (kTick * kTick);
+  return std::max((second.cwiseAbs() - bounds.velocity).maxCoeff(),
+                  (change.cwiseAbs() - bounds.acceleration).maxCoeff()) -
+         round_off;
+}
+
 struct Tally {
   int rollouts = 0;
   long ticks = 0;
@@ -78,6 +92,7 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
     const Limits<std::decay_t<decltype(scheme)>::kLevel, N> limits(bounds, kTick);
     CompiledTracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
     auto reference = Reference<Space>::hold(tracker.tip());
+    Vector<N> previous = tracker.state().q;
     for (int i = 0; i < 200; ++i) {
       if (i % 20 == 0) reference = wild_reference<Space>(random, tracker.tip());
       const State<N> before = tracker.state();
@@ -85,6 +100,10 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
       ASSERT_TRUE(tick.q.allFinite() && tick.qd.allFinite() && tick.qdd.allFinite()) << "seed " << seed;
       const double broken = violation(bounds, before, tick);
       ASSERT_LE(broken, kSlack) << "seed " << seed << ", tick " << i;
+      if (i > 0) {
+        ASSERT_LE(violation_by_differences<N>(bounds, previous, before.q, tick.q), kSlack) << "tick " << i;
+      }
+      previous = before.q;
       ASSERT_FALSE(failed(tick.status));
       ASSERT_EQ(complaint([&] { tracker.require_viable(limits); }), "") << "seed " << seed << ", tick " << i;
       ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);

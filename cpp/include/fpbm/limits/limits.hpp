@@ -112,6 +112,21 @@ class Limits {
     return good;
   }
 
+  /// Whether differences of commanded positions keep the bounds on velocity V and acceleration A in a tick of varying
+  /// acceleration: its mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends. The second
+  /// difference of positions over two such ticks is h (qd − v₁) + h (v₂ − qd), with qd between them: at most A h².
+  /// In a tick of constant acceleration within the bounds this holds, but for round-off.
+  [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
+    bool good = true;
+    for (Eigen::Index i = 0; i < to.q.size(); ++i) {
+      const Scalar v = (to.q.coeff(i) - from.q.coeff(i)) / tick_;
+      const Scalar change = bounds_.acceleration.coeff(i) * tick_ / Scalar(2);
+      good = good && std::abs(v) <= bounds_.velocity.coeff(i) && std::abs(v - from.qd.coeff(i)) <= change &&
+             std::abs(to.qd.coeff(i) - v) <= change;
+    }
+    return good;
+  }
+
   /// Whether joint i's envelopes allow all of a stop from a velocity at a constant deceleration.
   [[nodiscard]] bool allows_stop(Eigen::Index i, Scalar q, Scalar qd, Scalar deceleration) const noexcept {
     return upper_[i].allows_stop(q, qd, deceleration) && lower_[i].allows_stop(-q, -qd, deceleration);

@@ -18,7 +18,8 @@
 namespace fpbm {
 
 /// What a Tracker keeps from tick to tick, and how a tick ends: a step of RK4 that keeps every bound is taken as it is;
-/// otherwise the tick's mean motion is limited (Limiter).
+/// otherwise the tick's mean motion is limited (Limiter). If only the position at the step's end breaks a bound, the
+/// tick has its mean acceleration throughout.
 template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
@@ -88,7 +89,7 @@ class LimitedState {
     }
     if constexpr (kSecondOrder) {
       // A stack without bounds keeps the end of RK4's step.
-      if (limits().bounds_jerk() ||
+      if (limits().bounds_jerk() || !limits().admits_differences(state_, next) ||
           (has_lower_levels(loop.kinematics) && std::isfinite(limits().bounds().acceleration.minCoeff()))) {
         next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
       }

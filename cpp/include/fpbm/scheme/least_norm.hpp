@@ -8,6 +8,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/scheme/one_self_motion.hpp"
+#include "fpbm/scheme/weights.hpp"
 #include "fpbm/singular/damped_gram.hpp"
 
 namespace fpbm {
