@@ -73,6 +73,17 @@ template <int N>
          round_off;
 }
 
+/// σ of a tick is the bound of JJᵀ, whichever factorisation it comes from. JJᵀ knows σ² to round-off only.
+template <typename Space, typename Arm>
+void expect_sigma(const Arm& arm, const Vector<Arm::kDof>& q, double sigma) {
+  Kinematics<Space, Arm::kDof> kinematics;
+  arm.kinematics(q, kinematics);
+  const double bound = least_singular_value_bound(kinematics.J);
+  const double condition = kinematics.J.norm() / bound;
+  EXPECT_NEAR(sigma, bound,
+              std::min(1.0, 64.0 * std::numeric_limits<double>::epsilon() * condition * condition) * bound);
+}
+
 struct Tally {
   int rollouts = 0;
   long ticks = 0;
@@ -93,7 +104,9 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
     CompiledTracker tracker(arm, Space{}, scheme, viable_state(limits, random), {}, limits);
     auto reference = Reference<Space>::hold(tracker.tip());
     Vector<N> previous = tracker.state().q;
+    double sigma = 0.0;
     for (int i = 0; i < 200; ++i) {
+      if (i % 20 == 1) expect_sigma<Space>(arm, previous, sigma);
       if (i % 20 == 0) reference = wild_reference<Space>(random, tracker.tip());
       const State<N> before = tracker.state();
       const auto tick = tracker.tick(reference);
@@ -104,6 +117,7 @@ void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& mak
         ASSERT_LE(violation_by_differences<N>(bounds, previous, before.q, tick.q), kSlack) << "tick " << i;
       }
       previous = before.q;
+      sigma = tick.sigma;
       ASSERT_FALSE(failed(tick.status));
       ASSERT_EQ(complaint([&] { tracker.require_viable(limits); }), "") << "seed " << seed << ", tick " << i;
       ASSERT_TRUE(tick.scale >= 0.0 && tick.scale <= 1.0);

@@ -73,7 +73,8 @@ using WithSelfMotion = ::testing::Types<Shape<2, 3, 0>, Shape<3, 4, 1>, Shape<5,
                                         Shape<6, 7, 3>, Shape<6, 7, 3, float>>;
 TYPED_TEST_SUITE(SelfMotions, WithSelfMotion, ShapeNames);
 
-/// J v = 0; J y = b, of one b and of two; sᵀg for J s = t is tᵀμ for Jᵀμ = g; and no σ_min is below its bound.
+/// J v = 0; J y = b, of one b and of two; sᵀg for J s = t is tᵀμ for Jᵀμ = g; the trace of (JJᵀ)⁻¹; and no σ_min is
+/// below its bound.
 TYPED_TEST(SelfMotions, are_found_with_every_kind_of_factor) {
   using S = typename TypeParam::Scalar;
   constexpr int M = TypeParam::M;
@@ -105,6 +106,9 @@ TYPED_TEST(SelfMotions, are_found_with_every_kind_of_factor) {
       const auto size = static_cast<double>(s.norm() * real(g).norm());
       EXPECT_NEAR(static_cast<double>(motion.along(b, g)), static_cast<double>(s.dot(g.template cast<Real>())),
                   round_off * size);
+
+      const auto trace = static_cast<double>(pseudoinverse(exact).squaredNorm());
+      EXPECT_NEAR(static_cast<double>(motion.inverse_trace()), trace, round_off * trace);
 
       for (const double length : {0.3, 1.0, 4.0}) {
         RealMatrix metres = exact;
