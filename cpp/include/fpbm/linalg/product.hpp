@@ -23,13 +23,19 @@ template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;
   constexpr int kPaired = kRowsInPairs<Scalar> ? M - M % 2 : 0;
+  // Stored at the end: the result may be in memory that f reads, so far as the compiler knows.
+  Pair<Scalar> pairs[kPaired / 2 + 1];
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 8
 #endif
   for (int i = 0; i < kPaired; i += 2) {
-    f([i](const Scalar* column) { return Pair<Scalar>::load(column + i); }).store(result.data() + i);
+    pairs[i / 2] = f([i](const Scalar* column) { return Pair<Scalar>::load(column + i); });
   }
   for (int i = kPaired; i < M; ++i) result.coeffRef(i) = f([i](const Scalar* column) { return column[i]; });
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 8
+#endif
+  for (int i = 0; i < kPaired; i += 2) pairs[i / 2].store(result.data() + i);
   return result;
 }
 
@@ -55,8 +61,7 @@ template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Vector<Rows, Scalar> product(const Matrix<Rows, Cols, Scalar>& A,
                                            const Vector<Cols, Scalar>& b) noexcept {
   if constexpr (Rows != Eigen::Dynamic) {
-    const Vector<Cols, Scalar> c = b;  // The result may be b, so far as the compiler knows: b would be read again.
-    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows_of_product(rows, A, c); });
+    return by_rows<Rows, Scalar>([&](const auto& rows) { return rows_of_product(rows, A, b); });
   } else {
     Vector<Rows, Scalar> result;
     result.resize(A.rows());
