@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
 
 #include "fpbm/core/mask.hpp"
@@ -37,7 +38,7 @@ class SpatialSelfMotion {
     K_[0] = over * cross(b, c);
     K_[1] = over * cross(c, a);
     K_[2] = over * ab;
-    for (int i = 0; i < 3; ++i) B_[i] = three(linear(i));
+    B_ = {three(linear(0)), three(linear(1)), three(linear(2))};
     X12_ = hand(three(angular(3), angular(4)));
     X34_ = hand(three(angular(5), angular(6)));
     rest_.factor(left(three(linear(3), linear(4)), X12_), left(three(linear(5), linear(6)), X34_));
@@ -113,7 +114,7 @@ class SpatialSelfMotion {
     const Three<Scalar> v = turns_of_null();
     Scalar square = rest_.inverse_square() + sum(dot(r12, r12) + dot(r34, r34));
     Three<Scalar> along_p = v.x * H[0], along_k = v.x * K_[0];
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       const Three<Scalar> r = K_[i] - times_lever(H[i].x, H[i].y, H[i].z);
       square += dot(H[i], H[i]) + dot(r, r);
     }
