@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "fpbm/core/status.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/linalg/null_basis.hpp"

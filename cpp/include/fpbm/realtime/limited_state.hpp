@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "fpbm/clearance/unguarded.hpp"
 #include "fpbm/core/parts.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <type_traits>
+#include <utility>
 
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/space.hpp"

@@ -16,7 +16,7 @@
 /// u = p + γ v with any p that does the task: J is solved itself, and the condition of JJᵀ does not enter.
 namespace fpbm {
 
-/// The law with one self-motion. With any solutions of J p = b, J r = xd and J s = Jd v,
+/// Sets u to the law with one self-motion. With any solutions of J p = b, J r = xd and J s = Jd v,
 ///
 ///   u = p + γ v,   γ = [α sᵀg + vᵀW(z − α p)] / vᵀWv − (1−α) vᵀp / vᵀv,
 ///   g = W(r − ρ v) = W J_W⁺xd,   ρ = vᵀWr / vᵀWv,   sᵀg = vᵀJdᵀμ, since Jᵀμ = g.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "fpbm/core/level.hpp"
 #include "fpbm/core/space.hpp"
 #include "fpbm/objective/null_space.hpp"
