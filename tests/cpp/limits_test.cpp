@@ -73,7 +73,7 @@ template <int N>
          round_off;
 }
 
-/// σ of a tick is the bound of JJᵀ, whichever factorisation it comes from. JJᵀ knows σ² to round-off only.
+/// σ of a tick is the bound from JJᵀ, whichever factorisation reports σ. The round-off of JJᵀ limits the agreement.
 template <typename Space, typename Arm>
 void expect_sigma(const Arm& arm, const Vector<Arm::kDof>& q, double sigma) {
   Kinematics<Space, Arm::kDof> kinematics;

@@ -23,7 +23,7 @@ template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;
   constexpr int kPaired = kRowsInPairs<Scalar> ? M - M % 2 : 0;
-  // Stored at the end: the result may be in memory that f reads, so far as the compiler knows.
+  // The loop stores no pair before all are computed: the compiler must assume that f reads the memory of the result.
   Pair<Scalar> pairs[kPaired / 2 + 1];
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 8

@@ -220,7 +220,8 @@ class Tracker {
     kept_.correction().begin(result.error, kinematics.length);
   }
 
-  /// The scheme's answer where update() was called, and σ from its factorisation, or from one more.
+  /// The scheme's answer where update() was called. σ comes from the scheme's factorisation, or from a factorisation of
+  /// JJᵀ if the scheme does not report σ.
   static void resolve(Loop& loop, const Target& reference, X& dx, Result& result) noexcept {
     result.sigma = Scalar(-1);
     result.status = loop.resolve(reference, dx, &result.sigma);

@@ -40,7 +40,7 @@ struct RK4 {
   }
 
  private:
-  /// Something of the size of x, whose entries are not set if x is one of this library's matrices.
+  /// A value of the size of x. The entries of a Matrix are not set; any other type is copied.
   template <typename X>
   [[nodiscard]] static X of_size(const X& x) noexcept {
     return x;
