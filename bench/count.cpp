@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "jobs.hpp"
+#include "torch.hpp"
 
 // Under callgrind: a dump for each call, named after its job. See count.py.
 // Under lackey, which traces memory: each call is between two stores to `mark`. See stalls.py, which reads the address
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
   count_parts<PandaPose>(calls);
   count<Step<Ours<Case<Planar<7>, fpbm::Position<2>>, Law::kFPBM>>>("step/planar7/position/fpbm", calls);
   count<Step<Ours<Case<Panda, fpbm::Position<3>>, Law::kFPBM>>>("step/panda/position/fpbm", calls);
+  count<Step<TorchSolver>>("step/ur5e/torch/fpbm_damped", calls);
   count<Rk4Step<4, Law::kFPBM>>("rk4/planar4/position/fpbm", calls);
   count<Tick<false>>("loop/panda/pose/tick", calls);
   count<Tick<true>>("loop/panda/pose/tick_jerk", calls);

@@ -34,7 +34,7 @@ JOBS = [
         f"kinematics/{case}",
         *(f"{part}/{case}/{scheme}" for part in ("resolve", "step") for scheme in schemes),
     ]
-]
+] + ["step/ur5e/torch/fpbm_damped"]
 
 
 class Stores:

@@ -101,22 +101,22 @@ TEST(Robot, places_its_links_at_their_joints_frames) {
   }
 }
 
-/// S J and S J̇ of a task by central differences of its point and of J.
+/// S J and S J̇ of a task by central differences of its point and of J q̇.
 template <typename Task>
 void expect_derivatives(Task task) {
   using Space = typename Task::Space;
   struct At {
     typename Space::template Point<double> x;
-    Matrix<Space::kRows, 7> J;
-    Matrix<Space::kRows, 7> Jd;
+    Vector<Space::kRows> xd;
     Matrix<Task::kRows, Space::kRows> S;
+    LevelRows<Task::kRows, 7, double> rows;
   };
   task.bind(panda());
   const auto at = [&](const Vector<7>& q, const Vector<7>& qd) {
     RobotState<7> state;
     panda().update(q, qd, state);
     At result;
-    task.evaluate(panda(), state, result.x, result.J, result.Jd, result.S);
+    task.evaluate(panda(), state, result.x, result.xd, result.S, TaskRows(result.rows, 0));
     return result;
   };
   Random random(3);
@@ -132,18 +132,21 @@ void expect_derivatives(Task task) {
           Space::template difference<double>(at(q + step, qd).x, at(q - step, qd).x) / (2.0 * h);
       J.col(j) = here.S * change;
     }
-    EXPECT_LT((here.S * here.J - J).norm(), 1e-8);
+    EXPECT_LT((here.rows.J - J).norm(), 1e-8);
+    EXPECT_LT((here.S * here.xd - J * qd).norm(), 1e-8);
+    Matrix<Task::kRows, 7> Jd;
+    for (int j = 0; j < 7; ++j) {
+      const Vector<7> unit = Vector<7>::Unit(j);
+      Vector<Space::kRows> rate = (at(q + h * qd, unit).xd - at(q - h * qd, unit).xd) / (2.0 * h);
+      if constexpr (std::is_same_v<Task, AxisTask<>>) rate -= cross(here.xd, here.x) * here.x.dot(at(q, unit).xd);
+      Jd.col(j) = here.S * rate;
+    }
+    EXPECT_LT((here.rows.Jd - Jd).norm(), 1e-7);
     if constexpr (std::is_same_v<Task, AxisTask<>>) {
       // Of the angular velocity at right angles to the axis.
-      const auto turning = [&](const At& state) {
-        const Vector<3> w = state.J * qd;
-        return Vector<3>(w - w.dot(state.x) * state.x);
-      };
+      const auto turning = [&](const At& state) { return Vector<3>(state.xd - state.xd.dot(state.x) * state.x); };
       const Vector<3> rate = (turning(at(q + h * qd, qd)) - turning(at(q - h * qd, qd))) / (2.0 * h);
-      EXPECT_LT((here.S * (here.Jd * qd - rate)).norm(), 1e-7);
-    } else {
-      const Matrix<Space::kRows, 7> rate = (at(q + h * qd, qd).J - at(q - h * qd, qd).J) / (2.0 * h);
-      EXPECT_LT((here.Jd - rate).norm(), 1e-7);
+      EXPECT_LT((here.rows.Jd * qd - here.S * rate).norm(), 1e-7);
     }
   }
 }

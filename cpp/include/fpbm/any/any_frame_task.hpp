@@ -88,39 +88,50 @@ class AnyFrameTask {
   }
 
   [[nodiscard]] int rows() const noexcept { return count_; }
-  /// The coordinate that row i is; -1 where it is a component along an axis of the frame.
-  [[nodiscard]] int coordinate(int i) const noexcept {
-    return in_frame_ || kind_ == FrameCoordinates::kAxis ? -1 : rows_[static_cast<std::size_t>(i)];
-  }
 
   template <typename Robot>
   void bind(const Robot& robot) {
     frame_.bind(robot);
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x,
-                Matrix<6, Robot::kDof>& J, Matrix<6, Robot::kDof>& Jd, Matrix<Eigen::Dynamic, 6>& S) const noexcept {
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x, Vector<6>& xd,
+                Matrix<Eigen::Dynamic, 6>& S, Rows level) const noexcept {
     x.is_axis = kind_ == FrameCoordinates::kAxis;
     x.is_empty = count_ == 0;
     S.resize(count_, 6);
     if (count_ == 0) return;
     x.at = frame_.at(robot, state);
-    robot.jacobian(state, frame_.link(), x.at.p, J, Jd);
-    if (x.is_axis) {
-      x.at.R = times(x.at.R, to_axis_);
-      if (state.moves) add_spin(J, robot.angular_velocity(state, frame_.link()), column(x.at.R, 2), Jd);
-    }
+    if (x.is_axis) x.at.R = times(x.at.R, to_axis_);
+    // Along the frame's axes, or the base frame's: of linear and angular rows.
+    const bool along_frame = x.is_axis || in_frame_;
+    std::array<Vector<3>, 6> axes;
     for (int i = 0; i < count_; ++i) {
       const int row = x.is_axis ? 3 + i : rows_[static_cast<std::size_t>(i)];
+      const double unit = row < 3 ? 1.0 : robot.length();
       for (int j = 0; j < 6; ++j) {
-        const bool same_part = (row < 3) == (j < 3);
-        if (x.is_axis || in_frame_) {
-          S(i, j) = same_part ? x.at.R(j % 3, row % 3) : 0.0;
-        } else {
-          S(i, j) = row == j ? 1.0 : 0.0;
-        }
+        const double entry = along_frame ? x.at.R(j % 3, row % 3) : j == row ? 1.0 : 0.0;
+        S(i, j) = (row < 3) == (j < 3) ? unit * entry : 0.0;
       }
+      const int part = row < 3 ? 0 : 3;
+      axes[static_cast<std::size_t>(i)] = Vector<3>(S(i, part), S(i, part + 1), S(i, part + 2));
+    }
+    const Vector<3> w = robot.angular_velocity(state, frame_.link());
+    const Vector<3> a = column(x.at.R, 2);
+    const Vector<3> turning = x.is_axis ? cross(w, a) : filled<Vector<3>>(3);
+    const auto set = [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {
+      const auto angular_rates = without_spin(columns.angular, rates.angular, a, turning);
+      for (int i = 0; i < count_; ++i) {
+        const bool linear = !x.is_axis && rows_[static_cast<std::size_t>(i)] < 3;
+        const Vector<3>& axis = axes[static_cast<std::size_t>(i)];
+        level.set(i, j, along(axis, linear ? columns.linear : columns.angular),
+                  along(axis, linear ? rates.linear : angular_rates));
+      }
+    };
+    const Vector<3> v = robot.columns(state, frame_.link(), x.at.p, set);
+    for (int i = 0; i < 3; ++i) {
+      xd(i) = v(i);
+      xd(3 + i) = w(i);
     }
   }
 

@@ -38,23 +38,15 @@ class AnyPostureTask {
     require_different("joints", std::vector<int>(joints_.data(), joints_.data() + count_), robot.dof());
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<kMaxDof>& x,
-                Matrix<kMaxDof, Robot::kDof>& J, Matrix<kMaxDof, Robot::kDof>& Jd,
-                Matrix<Eigen::Dynamic, kMaxDof>& S) const noexcept {
+  template <typename Robot, typename Rows>
+  void evaluate([[maybe_unused]] const Robot& robot, const typename Robot::State& state, Vector<kMaxDof>& x,
+                Vector<kMaxDof>& xd, Matrix<Eigen::Dynamic, kMaxDof>& S, Rows level) const noexcept {
     x = filled<Vector<kMaxDof>>(kMaxDof);
     S.resize(count_, kMaxDof);
-    if (count_ == 0) return;
-    J.resize(kMaxDof, robot.dof());
-    Jd.resize(kMaxDof, robot.dof());
-    for (int j = 0; j < robot.dof(); ++j) {
-      for (int i = 0; i < count_; ++i) {
-        J(i, j) = j == joints_(i) ? 1.0 : 0.0;
-        Jd(i, j) = 0.0;
-      }
-    }
     for (int i = 0; i < count_; ++i) {
       x(i) = state.q(joints_(i));
+      xd(i) = state.qd(joints_(i));
+      level.set_unit(i, joints_(i));
       S(i, i) = 1.0;
     }
   }

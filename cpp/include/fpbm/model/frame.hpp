@@ -82,11 +82,11 @@ struct Frame {
     rotate(y, z, link.tilt.cosine.pair(), link.tilt.sine.pair());
   }
 
-  void store(Transform<Scalar>& to) const noexcept {
-    p.store(to.p.data());
-    x.store(to.R.data());
-    y.store(to.R.data() + 3);
-    z.store(to.R.data() + 6);
+  void store(Vector<3, Scalar>& to_p, Matrix<3, 3, Scalar>& to_R) const noexcept {
+    p.store(to_p.data());
+    x.store(to_R.data());
+    y.store(to_R.data() + 3);
+    z.store(to_R.data() + 6);
   }
 
  private:

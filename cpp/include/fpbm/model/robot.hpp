@@ -6,6 +6,7 @@
 #include "fpbm/core/validation.hpp"
 #include "fpbm/model/chain.hpp"
 #include "fpbm/model/frame.hpp"
+#include "fpbm/model/screws.hpp"
 #include "fpbm/model/serial_arm.hpp"
 
 namespace fpbm {
@@ -14,11 +15,17 @@ namespace fpbm {
 /// Robot::update() fills it.
 template <int N, typename Scalar = double>
 struct RobotState {
-  Vector<N, Scalar> q;                                        ///< [rad] or [m]
-  Vector<N, Scalar> qd;                                       ///< [rad/s] or [m/s]
-  std::array<Transform<Scalar>, kCapacity<N> + 1> placement;  ///< Of the base and each joint; z is the joint's axis.
-  Matrix<3, N, Scalar> w;  ///< Column i: angular velocity of the link that joint i moves [rad/s].
-  bool moves = true;       ///< False: qd was not given, J̇ is not needed.
+  Vector<N, Scalar> q;   ///< [rad] or [m]
+  Vector<N, Scalar> qd;  ///< [rad/s] or [m/s]
+  /// Of the base and each joint; z is the joint's axis.
+  std::array<Vector<3, Scalar>, kCapacity<N> + 1> p;
+  std::array<Matrix<3, 3, Scalar>, kCapacity<N> + 1> R;
+  Screws<N, Scalar> screws;  ///< Axes of the joints, and how their links turn.
+  bool moves = true;         ///< False: qd was not given, J̇ is not needed.
+
+  RobotState() noexcept {}  // NOLINT(modernize-use-equals-default): braces would set all bytes to 0.
+
+  [[nodiscard]] Transform<Scalar> placement(std::size_t i) const noexcept { return {p[i], R[i]}; }
 };
 
 /// A chain of N joints, whose links tasks refer to. Immutable.
@@ -42,7 +49,7 @@ class Robot {
     Transform<Scalar> link;
     for (int i = 0; i < dof(); ++i) {
       link = link * chain.joints[index(i)].placement;
-      ends_[index(i + 1)] = inverse(zero.placement[index(i + 1)]) * link;
+      ends_[index(i + 1)] = inverse(zero.placement(index(i + 1))) * link;
     }
     tip_ = ends_[index(dof())] * chain.tip;
   }
@@ -70,11 +77,10 @@ class Robot {
     state.q = q;
     state.qd = qd;
     state.moves = true;
-    state.placement[0] = {};
-    state.w.resize(3, dof());
-    arm_.visit_joints(q, qd, [&](Eigen::Index i, const Frame<Scalar>& frame, const SplitVector<Scalar>& w) noexcept {
-      frame.store(state.placement[index(i + 1)]);
-      w.store(state.w.data() + 3 * i);
+    state.p[0] = filled<Vector3>(3);
+    state.R[0] = identity<Matrix<3, 3, Scalar>>();
+    arm_.place(q, qd, state.screws, [&](Eigen::Index i, const Frame<Scalar>& frame) noexcept {
+      frame.store(state.p[index(i + 1)], state.R[index(i + 1)]);
     });
   }
 
@@ -85,79 +91,85 @@ class Robot {
   }
   /// That frame in the base frame. seen: in_joint().
   [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
-    return state.placement[index(joints_before(link))] * seen;
+    return state.placement(index(joints_before(link))) * seen;
   }
 
+  /// Its axes, the columns. seen: those of in_joint().
+  [[nodiscard]] Matrix<3, 3, Scalar> axes(const State& state, int link,
+                                          const Matrix<3, 3, Scalar>& seen) const noexcept {
+    return times(state.R[index(joints_before(link))], seen);
+  }
   /// Its origin. seen: in_joint().
   [[nodiscard]] Vector3 point(const State& state, int link, const Vector3& seen) const noexcept {
-    const Transform<Scalar>& placement = state.placement[index(joints_before(link))];
-    const Vector3 turned = times(placement.R, seen);
-    return entrywise(turned, [&](Eigen::Index i) { return placement.p.coeff(i) + turned.coeff(i); });
+    const std::size_t joint = index(joints_before(link));
+    const Vector3 turned = times(state.R[joint], seen);
+    return entrywise(turned, [&](Eigen::Index i) { return state.p[joint].coeff(i) + turned.coeff(i); });
   }
   /// Angular velocity of a link, in the base frame's axes [rad/s].
   [[nodiscard]] Vector3 angular_velocity(const State& state, int link) const noexcept {
     const Eigen::Index joints = joints_before(link);
-    return joints > 0 ? Vector3(column(state.w, joints - 1)) : filled<Vector3>(3);
+    return joints > 0 ? state.screws.angular_velocity(joints - 1) : filled<Vector3>(3);
   }
 
-  /// J and J̇ of a frame of a link with its origin at p, in the base frame's axes: linear rows [m], or linear and then
-  /// angular ones [rad].
+  /// Calls f(i, columns, rates) with columns i and i + 1 of J and of J̇, in the base frame's axes, of a point p of a
+  /// link: linear rows [m] and angular ones [rad]. Returns the velocity of the point [m/s].
   ///
   /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a joint that turns, [z; 0] for one that slides. That of J̇ is
-  /// [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md). Columns of joints beyond the link are 0.
+  /// [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md). Columns of joints beyond the link, and J̇
+  /// of a state without velocities, are 0.
+  template <typename F>
+  [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
+    typename Axes::Point point(SplitVector<Scalar>::load(p.data()));
+    const bool slides = arm_.slides();
+    each_pair(state, link, [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
+      const auto columns = Axes::columns(i, joints, point, arm_.turns(), slides);
+      f(i, columns, state.moves ? Axes::rates(i, joints, columns, point, state.qd) : Axes::ColumnPair::zero());
+    });
+    return point.velocity();
+  }
+
+  /// The same of the angular rows alone.
+  template <typename F>
+  [[gnu::always_inline]] void angular_columns(const State& state, int link, const F& f) const noexcept {
+    const bool slides = arm_.slides();
+    each_pair(state, link, [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
+      const auto columns = Axes::angular_columns(i, joints, arm_.turns(), slides);
+      f(i, columns, Axes::angular_rates(joints, columns));
+    });
+  }
+
+  /// J and J̇ of a point p of a link, as columns(), as matrices: linear rows, or linear and then angular ones.
   template <int M>
   void jacobian(const State& state, int link, const Vector3& p, Matrix<M, N, Scalar>& J,
                 Matrix<M, N, Scalar>& Jd) const noexcept {
     static_assert(M == 3 || M == 6, "a frame has 3 linear rows, and 3 angular ones");
-    start(link, state, J, Jd);
-    Vector3 u(Scalar(0), Scalar(0), Scalar(0));
-    for (Eigen::Index i = joints_before(link); i-- > 0;) {
-      const Transform<Scalar>& placement = state.placement[index(i + 1)];
-      const Vector3 z = column(placement.R, 2);
-      const Vector3 lever = entrywise(p, [&](Eigen::Index k) { return p.coeff(k) - placement.p.coeff(k); });
-      const Vector3 l = arm_.turns().coeff(i) > Scalar(0) ? cross(z, lever) : z;
-      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return arm_.turns().coeff(i) * z.coeff(k); });
-      store(J, 0, i, l);
-      if constexpr (M == 6) store(J, 3, i, a);
-      if (!state.moves) continue;
-      const Vector3 w = column(state.w, i);
-      const Vector3 turning = cross(w, l);
-      const Vector3 carried = cross(a, u);
-      store(Jd, 0, i, entrywise(l, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }));
-      if constexpr (M == 6) store(Jd, 3, i, cross(w, a));
-      u = entrywise(u, [&](Eigen::Index k) { return u.coeff(k) + state.qd.coeff(i) * l.coeff(k); });
-    }
-  }
-
-  /// The angular rows of jacobian() [rad].
-  void angular_jacobian(const State& state, int link, Matrix<3, N, Scalar>& J,
-                        Matrix<3, N, Scalar>& Jd) const noexcept {
-    start(link, state, J, Jd);
-    for (Eigen::Index i = joints_before(link); i-- > 0;) {
-      const Vector3 z = column(state.placement[index(i + 1)].R, 2);
-      const Vector3 a = entrywise(z, [&](Eigen::Index k) { return arm_.turns().coeff(i) * z.coeff(k); });
-      store(J, 0, i, a);
-      if (state.moves) store(Jd, 0, i, cross(column(state.w, i), a));
-    }
+    J.resize(M, dof());
+    Jd.resize(M, dof());
+    columns(state, link, p, [&](Eigen::Index i, const auto& columns, const auto& rates) noexcept {
+      columns.store(J, i);
+      rates.store(Jd, i);
+    });
   }
 
  private:
+  using Axes = Screws<N, Scalar>;
+
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] Eigen::Index joints_before(int link) const noexcept { return link == kTip ? dof() : link; }
 
-  /// Gives J and J̇ their size, and zeros in the columns of joints beyond a link.
-  template <int M>
-  void start(int link, const State& state, Matrix<M, N, Scalar>& J, Matrix<M, N, Scalar>& Jd) const noexcept {
-    J.resize(M, dof());
-    Jd.resize(M, dof());
-    for (Eigen::Index j = joints_before(link); j < dof(); ++j) {
-      for (int i = 0; i < M; ++i) J.coeffRef(i, j) = Scalar(0);
-      for (int i = 0; state.moves && i < M; ++i) Jd.coeffRef(i, j) = Scalar(0);
+  /// Calls f(i, joints) with joints i and i + 1, those nearest to the link first; those beyond the link have no axis.
+  template <typename F>
+  [[gnu::always_inline]] void each_pair(const State& state, int link, const F& f) const noexcept {
+    const auto pairs = pairs_of(extent<N>(dof()));
+    const Eigen::Index moving = joints_before(link);
+    if (moving == dof()) {
+      each(Constant<0>{}, pairs, [&](auto k) noexcept {
+        const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
+        f(i, state.screws.joints(i));
+      });
+      return;
     }
-  }
-  template <int M>
-  static void store(Matrix<M, N, Scalar>& to, int row, Eigen::Index j, const Vector3& from) noexcept {
-    for (int k = 0; k < 3; ++k) to.coeffRef(row + k, j) = from.coeff(k);
+    for (Eigen::Index i = 2 * (pairs - 1); i >= 0; i -= 2) f(i, state.screws.joints(i).first(moving - i));
   }
 
   SerialArm<N, Scalar> arm_;

@@ -19,6 +19,9 @@ namespace fpbm {
 template <int N, typename Scalar>
 class Screws {
  public:
+  using Two = Pair<Scalar>;
+  using Two3 = Vector<3, Two>;  ///< Vectors of two joints, side by side.
+
   /// A joint's axis, a point of it, and the angular velocity of what the joint moves.
   struct Joint {
     SplitVector<Scalar> axis;
@@ -26,60 +29,17 @@ class Screws {
     SplitVector<Scalar> w;
   };
 
-  /// Joints i and i + 1; where there is no second, anything finite. i is even.
+  /// Joints i and i + 1, where there is none a Joint{}. i is even.
   void set(Eigen::Index i, const Joint& a, const Joint& b) noexcept {
     joints_[static_cast<std::size_t>(i / 2)] = {both(a.axis, b.axis), both(a.point, b.point), both(a.w, b.w)};
   }
 
-  void set_tip(const SplitVector<Scalar>& p) noexcept {
-    tip_ = both(p, p);
-    u_ = both({}, {});
-  }
-
-  /// Columns i and i + 1 of J, and of Jd along qd; those of joints nearer the tip come before. turns is 1 for a joint
-  /// that turns and 0 for one that slides.
-  template <bool kWithRate, bool kSlides, int M>
-  [[gnu::always_inline]] void columns(Eigen::Index i, [[maybe_unused]] const Vector<N, Scalar>& turns,
-                                      [[maybe_unused]] const Vector<N, Scalar>& qd, Matrix<M, N, Scalar>& J,
-                                      [[maybe_unused]] Matrix<M, N, Scalar>& Jd) noexcept {
-    const Joints& joints = joints_[static_cast<std::size_t>(i / 2)];
-    const Two3 &axis = joints.axis, &point = joints.point, &w = joints.w;
-    const Two3 lever = entrywise(tip_, [&](Eigen::Index k) { return tip_.coeff(k) - point.coeff(k); });
-    Columns columns{cross<Two>(axis, lever), axis};
-    if constexpr (kSlides) {
-      const Two turn = two_of(turns, i);
-      const Two slide = Two(Scalar(1)) - turn;
-      const Two3 turned = columns.linear;
-      columns = {entrywise(axis, [&](Eigen::Index k) { return turn * turned.coeff(k) + slide * axis.coeff(k); }),
-                 entrywise(axis, [&](Eigen::Index k) { return turn * axis.coeff(k); })};
-    }
-    columns.store(J, i);
-    if constexpr (kWithRate) {
-      const Two3 &l = columns.linear, &a = columns.angular;
-      const Two rate = two_of(qd, i);
-      const Two3 moved = entrywise(l, [&](Eigen::Index k) { return rate * l.coeff(k); });
-      for (int row = 0; row < 3; ++row) u_(row) += Two(moved(row).second(), Scalar(0));
-      const Two3 turning = cross<Two>(w, l);
-      const Two3 carried = cross<Two>(a, u_);
-      Columns{entrywise(turning, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }), cross<Two>(w, a)}
-          .store(Jd, i);
-      for (int row = 0; row < 3; ++row) u_(row) = Two(u_(row).first() + moved(row).first());
-    }
-  }
-
- private:
-  using Two = Pair<Scalar>;
-  using Two3 = Vector<3, Two>;  ///< Vectors of two joints, side by side.
-
-  struct Joints {
-    Two3 axis;
-    Two3 point;
-    Two3 w;
-  };
-
-  struct Columns {
+  /// Columns of two joints, of J or of Jd.
+  struct ColumnPair {
     Two3 linear;
     Two3 angular;
+
+    [[nodiscard]] static ColumnPair zero() noexcept { return {both({}, {}), both({}, {})}; }
 
     /// As columns i and, where there is one, i + 1 of a matrix of six rows, or of the three linear ones.
     template <int M>
@@ -92,6 +52,7 @@ class Screws {
                    firsts<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i));
     }
 
+   private:
     template <int M>
     static void store_one(const Two& a, const Two& b, [[maybe_unused]] const Two& c, Scalar* to) noexcept {
       a.store(to);
@@ -104,13 +65,92 @@ class Screws {
     }
   };
 
+  /// A point that the joints move, and uᵢ of the joints at hand.
+  class Point {
+   public:
+    explicit Point(const SplitVector<Scalar>& p) noexcept : p_(both(p, p)), u_(both({}, {})) {}
+
+    /// Of the point, once rates() was called for all joints that move the point.
+    [[nodiscard]] Vector<3, Scalar> velocity() const noexcept {
+      return entrywise_as<Scalar>(u_, [&](Eigen::Index k) { return u_.coeff(k).first(); });
+    }
+
+   private:
+    friend class Screws;
+
+    Two3 p_;
+    Two3 u_;  ///< Of a pair of joints, then of the joint before the pair, twice.
+  };
+
+  /// Two joints side by side.
+  struct JointPair {
+    Two3 axis;
+    Two3 point;
+    Two3 w;
+
+    /// Only the first `count` of them have an axis.
+    [[nodiscard]] JointPair first(Eigen::Index count) const noexcept {
+      const Two mask(Scalar(count > 0 ? 1 : 0), Scalar(count > 1 ? 1 : 0));
+      return {entrywise(axis, [&](Eigen::Index k) { return mask * axis.coeff(k); }), point, w};
+    }
+  };
+  /// Joints i and i + 1.
+  [[nodiscard]] const JointPair& joints(Eigen::Index i) const noexcept {
+    return joints_[static_cast<std::size_t>(i / 2)];
+  }
+
+  /// Columns i and i + 1 of J. turns is 1 for a joint that turns and 0 for one that slides; slides: whether there is a
+  /// 0.
+  [[nodiscard, gnu::always_inline]] static ColumnPair columns(Eigen::Index i, const JointPair& joints,
+                                                              const Point& point, const Vector<N, Scalar>& turns,
+                                                              bool slides) noexcept {
+    const Two3& axis = joints.axis;
+    const Two3 lever = entrywise(axis, [&](Eigen::Index k) { return point.p_.coeff(k) - joints.point.coeff(k); });
+    const Two3 turned = cross<Two>(axis, lever);
+    if (!slides) return {turned, axis};
+    const Two turn = two_of(turns, i);
+    const Two slide = Two(Scalar(1)) - turn;
+    return {entrywise(axis, [&](Eigen::Index k) { return turn * turned.coeff(k) + slide * axis.coeff(k); }),
+            entrywise(axis, [&](Eigen::Index k) { return turn * axis.coeff(k); })};
+  }
+
+  /// Those of Jd along qd. Call once for each pair of joints that move the point, those nearer the point first.
+  [[nodiscard, gnu::always_inline]] static ColumnPair rates(Eigen::Index i, const JointPair& joints,
+                                                            const ColumnPair& columns, Point& point,
+                                                            const Vector<N, Scalar>& qd) noexcept {
+    const Two3& w = joints.w;
+    const Two3 &l = columns.linear, &a = columns.angular;
+    const Two rate = two_of(qd, i);
+    const Two3 moved = entrywise(l, [&](Eigen::Index k) { return rate * l.coeff(k); });
+    for (int row = 0; row < 3; ++row) point.u_(row) += Two(moved(row).second(), Scalar(0));
+    const Two3 turning = cross<Two>(w, l);
+    const Two3 carried = cross<Two>(a, point.u_);
+    for (int row = 0; row < 3; ++row) point.u_(row) = Two(point.u_(row).first() + moved(row).first());
+    return {entrywise(turning, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }), cross<Two>(w, a)};
+  }
+
+  /// The angular rows of columns(), and their rates.
+  [[nodiscard, gnu::always_inline]] static Two3 angular_columns(Eigen::Index i, const JointPair& joints,
+                                                                const Vector<N, Scalar>& turns, bool slides) noexcept {
+    const Two turn = slides ? two_of(turns, i) : Two(Scalar(1));
+    return entrywise(joints.axis, [&](Eigen::Index k) { return turn * joints.axis.coeff(k); });
+  }
+  [[nodiscard, gnu::always_inline]] static Two3 angular_rates(const JointPair& joints, const Two3& columns) noexcept {
+    return cross<Two>(joints.w, columns);
+  }
+
+  /// Of what joint i moves [rad/s].
+  [[nodiscard]] Vector<3, Scalar> angular_velocity(Eigen::Index i) const noexcept {
+    const Two3& w = joints(i).w;
+    return entrywise_as<Scalar>(w,
+                                [&](Eigen::Index k) { return i % 2 == 0 ? w.coeff(k).first() : w.coeff(k).second(); });
+  }
+
+ private:
   [[nodiscard]] static Two3 both(const SplitVector<Scalar>& a, const SplitVector<Scalar>& b) noexcept {
     return {firsts(a.xy, b.xy), seconds(a.xy, b.xy), Two(a.z, b.z)};
   }
-
-  Two3 tip_;
-  Two3 u_;  ///< Of the pair at hand, then of the joint before it, twice.
-  std::array<Joints, (kCapacity<N> + 1) / 2> joints_;
+  std::array<JointPair, (kCapacity<N> + 1) / 2> joints_;
 };
 
 }  // namespace fpbm

@@ -83,31 +83,17 @@ class SerialArm {
   /// prismatic joints. 1 where that is zero.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
+  /// Whether a joint is prismatic.
+  [[nodiscard]] bool slides() const noexcept { return slides_ != 0; }
   /// 1 for each joint that turns, 0 for a prismatic one.
   [[nodiscard]] const Vector<N, Scalar>& turns() const noexcept { return turns_; }
 
-  /// Calls visit(i, frame, w) for each joint i, from the base on: a frame that joint i moves, with the joint's axis as
-  /// its z axis, and its angular velocity. The frame differs from the joint's by a constant rotation about z.
+  /// Axes of the joints at (q, qd). Calls visit(i, frame) for each joint i, from the base on, with a frame that joint i
+  /// moves and whose z axis is the joint's: it differs from the joint's frame by a constant rotation about z.
   template <typename Visit>
-  void visit_joints(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd, const Visit& visit) const noexcept {
-    using Two = Pair<Scalar>;
-    const Vector<N, Scalar> angles =
-        entrywise(q, [&](Eigen::Index i) { return turns_.coeff(i) * q.coeff(i) + offsets_.coeff(i); });
-    Vector<N, Scalar> sines(dof_);
-    Vector<N, Scalar> cosines(dof_);
-    sincos(angles, sines, cosines);
-    Frame<Scalar> frame(base_);
-    SplitVector<Scalar> w;
-    each(Constant<0>{}, extent<N>(dof_), [&](Eigen::Index i) {
-      if (slides(i)) {
-        frame.p += Two(q.coeff(i)) * frame.z;
-      } else {
-        w += Two(qd.coeff(i)) * frame.z;
-      }
-      frame.turn(Two(cosines.coeff(i)), Two(sines.coeff(i)));
-      visit(i, frame, w);
-      frame.pass(links_[static_cast<std::size_t>(i)]);
-    });
+  void place(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd, Screws<N, Scalar>& axes,
+             const Visit& visit) const noexcept {
+    slides_ == 0 ? place<false>(q, qd, axes, visit) : place<true>(q, qd, axes, visit);
   }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
@@ -144,21 +130,21 @@ class SerialArm {
 
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
-  /// A pass along the chain finds the joints' axes; J and Jd follow from these. With a code of its own for chains of
-  /// which no joint slides.
-  template <bool kWithRate, bool kSlides, typename Space>
-  [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
-                                                    [[maybe_unused]] const Vector<N, Scalar>& qd,
-                                                    Kinematics<Space, N, Scalar>& out) const noexcept {
-    constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
-    static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
-                  "a serial arm has tasks Position<3> and Pose");
+  /// Number of joints, known at compile time where loops are unrolled. Of an arm with joints that slide in a loop:
+  /// unrolled, it would take as long to compile as that of all others.
+  template <bool kSlides>
+  [[nodiscard]] auto joints() const noexcept {
+    return extent < kSlides ? Eigen::Dynamic : N > (dof_);
+  }
+
+  /// A pass along the chain finds the joints' axes. Returns the frame at the end of the last link.
+  template <bool kWithRate, bool kSlides, typename Visit>
+  [[gnu::always_inline]] Frame<Scalar> pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
+                                            Screws<N, Scalar>& axes, const Visit& visit) const noexcept {
     using Two = Pair<Scalar>;
     using Joint = typename Screws<N, Scalar>::Joint;
-    // Of an arm with joints that slide in a loop: unrolled, it would take as long to compile as that of all others.
-    const auto n = extent < kSlides ? Eigen::Dynamic : N > (dof_);
+    const auto n = joints<kSlides>();
     const auto pairs = pairs_of(n);
-
     Angles<N, Scalar> angles = angles_of<N, Scalar>(extent<N>(dof_));
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * Eigen::Index(k);
@@ -169,39 +155,66 @@ class SerialArm {
     Angles<N, Scalar> cosines;
     sincos(angles, sines, cosines);
 
-    Screws<N, Scalar> screws;
     Frame<Scalar> frame(base_);
     SplitVector<Scalar> w;  // Angular velocity of the frame.
-    const auto pass = [&](Eigen::Index i) -> Joint {
-      if (kSlides && slides(i)) {
-        frame.p += Two(q.coeff(i)) * frame.z;
-      } else if constexpr (kWithRate) {
-        w += Two(qd.coeff(i)) * frame.z;
-      }
-      const Joint joint{frame.z, frame.p, w};
-      frame.turn(Two(cosines.coeff(i)), Two(sines.coeff(i)));
-      frame.pass(links_[static_cast<std::size_t>(i)]);
-      return joint;
-    };
     each(Constant<0>{}, pairs, [&](auto k) {
+      Joint joints[2];
       const Eigen::Index i = 2 * Eigen::Index(k);
-      const Joint joint = pass(i);
-      screws.set(i, joint, i + 1 < n ? pass(i + 1) : Joint{});
+      for (Eigen::Index j = i; j < i + 2 && j < n; ++j) {
+        if (kSlides && slides(j)) {
+          frame.p += Two(q.coeff(j)) * frame.z;
+        } else if constexpr (kWithRate) {
+          w += Two(qd.coeff(j)) * frame.z;
+        }
+        joints[j - i] = {frame.z, frame.p, w};
+        frame.turn(Two(cosines.coeff(j)), Two(sines.coeff(j)));
+        visit(j, frame);
+        frame.pass(links_[static_cast<std::size_t>(j)]);
+      }
+      axes.set(i, joints[0], joints[1]);
     });
+    return frame;
+  }
+
+  /// Two functions, for chains of which no joint slides and for others.
+  template <bool kSlides, typename Visit>
+  [[gnu::flatten, gnu::noinline]] void place(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
+                                             Screws<N, Scalar>& axes, const Visit& visit) const noexcept {
+    (void)pass<true, kSlides>(q, qd, axes, visit);
+  }
+
+  /// Tip, J and Jd. With a code of its own for chains of which no joint slides.
+  template <bool kWithRate, bool kSlides, typename Space>
+  [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
+                                                    [[maybe_unused]] const Vector<N, Scalar>& qd,
+                                                    Kinematics<Space, N, Scalar>& out) const noexcept {
+    constexpr bool kWithOrientation = std::is_same_v<Space, Pose>;
+    static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
+                  "a serial arm has tasks Position<3> and Pose");
+    using Axes = Screws<N, Scalar>;
+    struct Pass {  // One object, which g++ keeps in memory: a tip of its own takes registers that the columns need.
+      Axes axes;
+      typename Axes::Point tip{{}};
+    } at;
+    Frame<Scalar> frame = pass<kWithRate, kSlides>(q, qd, at.axes, [](Eigen::Index, const Frame<Scalar>&) noexcept {});
+    const auto n = joints<kSlides>();
+    const auto pairs = pairs_of(n);
 
     out.length = length_;
     if constexpr (kWithOrientation) {
       frame.turn(tip_.cosine.pair(), tip_.sine.pair());
-      frame.store(out.tip);
+      frame.store(out.tip.p, out.tip.R);
     } else {
       frame.p.store(out.tip.data());
     }
     out.J.resize(Space::kRows, n);
     if constexpr (kWithRate) out.Jd.resize(Space::kRows, n);
-    screws.set_tip(frame.p);
+    at.tip = typename Axes::Point(frame.p);
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
-      screws.template columns<kWithRate, kSlides>(i, turns_, qd, out.J, out.Jd);
+      const auto columns = Axes::columns(i, at.axes.joints(i), at.tip, turns_, kSlides);
+      columns.store(out.J, i);
+      if constexpr (kWithRate) Axes::rates(i, at.axes.joints(i), columns, at.tip, qd).store(out.Jd, i);
     });
   }
 

@@ -54,15 +54,16 @@ struct ByLevels {
       constexpr int kIndex = decltype(k)::value;
       const auto& [J, Jd] = std::get<kIndex>(kinematics.levels);
       constexpr int M = Stack_::kRows[kIndex];
-      const auto none = filled<Vector<M, Scalar>>(J.rows());
-      Reference<Position<M>, Scalar> command{none, none, none};
-      command_level<kIndex>(kinematics, reference, command);
       if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || J.rows() == 0)) return;
-      Vector<M, Scalar> r = kLevel == Level::kAcceleration ? command.xdd : command.xd;
+      Vector<M, Scalar> xd;
+      Vector<M, Scalar> r;
+      xd.resize(J.rows());
+      r.resize(J.rows());
+      command_level<kIndex>(kinematics, reference, xd, r);
       if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
       if constexpr (kIndex == 0) {
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve_rows(r, command.xd, J, Jd, state, result, sigma);
+        status = scheme.resolve_rows(r, xd, J, Jd, state, result, sigma);
         if constexpr (Stack_::kLevels > 1) space.add(J);
       } else {
         if (space.rank() == space.size()) return;
@@ -88,10 +89,10 @@ struct ByLevels {
     (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
   }
 
-  /// The commands of a level's tasks: xd, and at acceleration level xdd, without J̇ qd.
+  /// Commands of a level's tasks: xd, and b_k without J̇ qd.
   template <int k, int M>
   void command_level(const Kinematics<Space, kDof, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
-                     Reference<Position<M>, Scalar>& command) const noexcept {
+                     Vector<M, Scalar>& to_xd, Vector<M, Scalar>& to_b) const noexcept {
     Eigen::Index to_row = 0;
     Space::each([&](auto space, auto i, int row) noexcept {
       using Part = decltype(space);
@@ -114,12 +115,12 @@ struct ByLevels {
           }
         };
         if constexpr (kLevel == Level::kAcceleration) {
-          put(command.xd, [&](Eigen::Index j) { return xd.coeff(j); });
-          put(command.xdd, [&](Eigen::Index j) {
+          put(to_xd, [&](Eigen::Index j) { return xd.coeff(j); });
+          put(to_b, [&](Eigen::Index j) {
             return xdd.coeff(j) + task.k1 * (xd.coeff(j) - task.xd.coeff(j)) + task.k2 * error.coeff(j);
           });
         } else {
-          put(command.xd, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); });
+          put(to_b, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); });
         }
         to_row += task.S.rows();
       }

@@ -1,31 +1,28 @@
 #pragma once
 
 #include "fpbm/core/direction.hpp"
-#include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/link.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
+#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 
-/// Makes J̇ q̇ [rad/s²] the drift of ω⊥, the angular velocity at right angles to an axis a of the frame:
+/// Rates of ω⊥, the angular velocity at right angles to an axis a of the frame, for rows of two joints side by side:
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
-/// Without the last term, rotation about a, which lower levels determine, would disturb the motion of a. J, J̇: the last
-/// three rows are angular; those of J̇ are changed. w: ω.
-template <int M, int N, typename Scalar>
-void add_spin(const Matrix<M, N, Scalar>& J, const Vector<3, Scalar>& w, const Vector<3, Scalar>& a,
-              Matrix<M, N, Scalar>& Jd) noexcept {
-  const auto angular = [](const auto& rows, Eigen::Index j) noexcept {
-    return Vector<3, Scalar>(rows.coeff(M - 3, j), rows.coeff(M - 2, j), rows.coeff(M - 1, j));
-  };
-  const Vector<3, Scalar> turning = cross(w, a);
-  for (Eigen::Index j = 0; j < J.cols(); ++j) {
-    const Scalar spin = dot(angular(J, j), a);
-    for (int i = 0; i < 3; ++i) Jd.coeffRef(M - 3 + i, j) -= spin * turning.coeff(i);
-  }
+/// Without the last term, rotation about a, which lower levels determine, would disturb the motion of a. columns,
+/// rates: of the angular rows of J and J̇. turning: ω × a.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Vector<3, Pair<Scalar>> without_spin(
+    const Vector<3, Pair<Scalar>>& columns, const Vector<3, Pair<Scalar>>& rates, const Vector<3, Scalar>& a,
+    const Vector<3, Scalar>& turning) noexcept {
+  using Two = Pair<Scalar>;
+  const Two spin = along(a, columns);
+  return entrywise(rates, [&](Eigen::Index k) { return rates.coeff(k) - spin * Two(turning.coeff(k)); });
 }
 
 /// Alignment of an axis a of a frame with a direction d that may move: 2 rows. The rotation about the axis is free.
@@ -33,7 +30,7 @@ void add_spin(const Matrix<M, N, Scalar>& J, const Vector<3, Scalar>& w, const V
 /// The error is the rotation vector of the smallest rotation from a to d. The rows are the components of the angular
 /// velocity along two unit vectors b₁, b₂ of the frame at right angles to a: S = [b₁ b₂]ᵀ. The angle θ between a and d
 /// obeys θ̇ + kθ = 0 at velocity level from everywhere but θ = π, and θ̈ + k₁θ̇ + k₂θ = 0 at acceleration level from
-/// rest, whatever the rotation about a: see add_spin().
+/// rest, whatever the rotation about a: see without_spin().
 template <typename Scalar_ = double>
 class AxisTask {
  public:
@@ -62,17 +59,23 @@ class AxisTask {
     axes_.bind(robot);
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
-                Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
-                Matrix<2, 3, Scalar>& S) const noexcept {
-    const Matrix<3, 3, Scalar> axes = axes_.at(robot, state).R;  // b₁, b₂ and a.
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x, Vector<3, Scalar>& xd,
+                Matrix<2, 3, Scalar>& S, Rows level) const noexcept {
+    const Matrix<3, 3, Scalar> axes = axes_.axes(robot, state);  // b₁, b₂ and a.
     x = column(axes, 2);
-    robot.angular_jacobian(state, frame.link(), J, Jd);
-    if (state.moves) add_spin(J, robot.angular_velocity(state, frame.link()), x, Jd);
+    xd = robot.angular_velocity(state, frame.link());
     for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 3; ++j) S(i, j) = axes(j, i);
+      for (int j = 0; j < 3; ++j) S(i, j) = robot.length() * axes(j, i);
     }
+    const Vector<3, Scalar> turning = cross(xd, x);
+    const Vector<3, Scalar> b1(S(0, 0), S(0, 1), S(0, 2));
+    const Vector<3, Scalar> b2(S(1, 0), S(1, 1), S(1, 2));
+    robot.angular_columns(state, frame.link(), [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {
+      const auto of_axis = without_spin(columns, rates, x, turning);
+      level.set(0, j, along(b1, columns), along(b1, of_axis));
+      level.set(1, j, along(b2, columns), along(b2, of_axis));
+    });
   }
 
  private:

@@ -30,6 +30,11 @@ class LinkFrame {
   [[nodiscard]] Transform<Scalar> at(const Robot& robot, const typename Robot::State& state) const noexcept {
     return robot.frame(state, link_, in_joint_);
   }
+  /// Its axes, the columns.
+  template <typename Robot>
+  [[nodiscard]] Matrix<3, 3, Scalar> axes(const Robot& robot, const typename Robot::State& state) const noexcept {
+    return robot.axes(state, link_, in_joint_.R);
+  }
   /// Its origin.
   template <typename Robot>
   [[nodiscard]] Vector<3, Scalar> origin(const Robot& robot, const typename Robot::State& state) const noexcept {

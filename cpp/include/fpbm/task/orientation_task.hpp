@@ -3,6 +3,7 @@
 #include "fpbm/core/orientation.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
+#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 
@@ -22,13 +23,17 @@ struct OrientationTask {
     frame.bind(robot);
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Matrix<3, 3, Scalar>& x,
-                Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
-                Matrix<3, 3, Scalar>& S) const noexcept {
-    x = frame.at(robot, state).R;
-    robot.angular_jacobian(state, frame.link(), J, Jd);
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Matrix<3, 3, Scalar>& x, Vector<3, Scalar>& xd,
+                Matrix<3, 3, Scalar>& S, Rows level) const noexcept {
+    x = frame.axes(robot, state);
+    xd = robot.angular_velocity(state, frame.link());
+    const Pair<Scalar> unit(robot.length());
+    robot.angular_columns(state, frame.link(), [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {
+      for (int i = 0; i < 3; ++i) level.set(i, j, unit * columns.coeff(i), unit * rates.coeff(i));
+    });
     S = identity<Matrix<3, 3, Scalar>>();
+    for (int i = 0; i < 3; ++i) S.coeffRef(i, i) = robot.length();
   }
 };
 

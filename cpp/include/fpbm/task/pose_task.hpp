@@ -3,6 +3,7 @@
 #include "fpbm/core/space.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
+#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 
@@ -22,13 +23,26 @@ struct PoseTask {
     frame.bind(robot);
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Transform<Scalar>& x,
-                Matrix<6, Robot::kDof, Scalar>& J, Matrix<6, Robot::kDof, Scalar>& Jd,
-                Matrix<6, 6, Scalar>& S) const noexcept {
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Transform<Scalar>& x, Vector<6, Scalar>& xd,
+                Matrix<6, 6, Scalar>& S, Rows level) const noexcept {
     x = frame.at(robot, state);
-    robot.jacobian(state, frame.link(), x.p, J, Jd);
+    const Vector<3, Scalar> w = robot.angular_velocity(state, frame.link());
+    const Scalar length = robot.length();
+    const auto set = [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {
+      for (int i = 0; i < 3; ++i) {
+        const Pair<Scalar> unit(length);
+        level.set(i, j, columns.linear.coeff(i), rates.linear.coeff(i));
+        level.set(3 + i, j, unit * columns.angular.coeff(i), unit * rates.angular.coeff(i));
+      }
+    };
+    const Vector<3, Scalar> v = robot.columns(state, frame.link(), x.p, set);
     S = identity<Matrix<6, 6, Scalar>>();
+    for (int i = 0; i < 3; ++i) {
+      S.coeffRef(3 + i, 3 + i) = length;
+      xd.coeffRef(i) = v.coeff(i);
+      xd.coeffRef(3 + i) = w.coeff(i);
+    }
   }
 };
 

@@ -5,6 +5,7 @@
 #include "fpbm/core/space.hpp"
 #include "fpbm/task/link_frame.hpp"
 #include "fpbm/task/task_gains.hpp"
+#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
 
@@ -14,8 +15,9 @@ namespace fpbm {
 /// evaluate() in every state, for the task's
 ///
 ///   x      point of the Space, in the base frame, as references have it
-///   J, J̇   in the Space's rows, along the base frame's axes [m, rad]; J̇ if the state moves
-///   S      selection: the task's rows are S J. If kWhole, S is the identity, and only its diagonal is read.
+///   xd     its velocity J q̇, in the Space's rows, along the base frame's axes [m/s, rad/s]
+///   S      selection, in metres: angular columns are multiplied by the robot's length. If kWhole, S is diagonal.
+///   level  the task's rows S J and S J̇
 template <int M = 3, typename Scalar_ = double>
 struct PositionTask {
   using Scalar = Scalar_;
@@ -35,20 +37,29 @@ struct PositionTask {
     require_different("rows", rows, 3);
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x,
-                Matrix<3, Robot::kDof, Scalar>& J, Matrix<3, Robot::kDof, Scalar>& Jd,
-                Matrix<M, 3, Scalar>& S) const noexcept {
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<3, Scalar>& x, Vector<3, Scalar>& xd,
+                Matrix<M, 3, Scalar>& S, Rows level) const noexcept {
     x = frame.origin(robot, state);
-    robot.jacobian(state, frame.link(), x, J, Jd);
     Matrix<3, 3, Scalar> axes = identity<Matrix<3, 3, Scalar>>();
-    if (in_frame) axes = frame.at(robot, state).R;
+    if (in_frame) axes = frame.axes(robot, state);
     for (int i = 0; i < M; ++i) {
       for (int j = 0; j < 3; ++j) S.coeffRef(i, j) = axes.coeff(j, rows[static_cast<std::size_t>(i)]);
     }
+    // Row of each coordinate, -1 where there is none: columns.linear stays in registers where k below is constant.
+    int row_of[3] = {-1, -1, -1};
+    for (int i = 0; i < M; ++i) row_of[rows[static_cast<std::size_t>(i)]] = i;
+    xd = robot.columns(state, frame.link(), x, [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {
+      for (int i = 0; in_frame && i < M; ++i) {
+        const Vector<3, Scalar> axis = column(axes, rows[static_cast<std::size_t>(i)]);
+        level.set(i, j, along(axis, columns.linear), along(axis, rates.linear));
+      }
+      for (int k = 0; !in_frame && k < 3; ++k) {
+        const int i = row_of[k];
+        if (M == 3 || i >= 0) level.set(i, j, columns.linear.coeff(k), rates.linear.coeff(k));
+      }
+    });
   }
-  /// The coordinate that row i is; -1 where it is a component along an axis of the frame.
-  [[nodiscard]] int coordinate(int i) const noexcept { return in_frame ? -1 : rows[static_cast<std::size_t>(i)]; }
 
  private:
   [[nodiscard]] static std::array<int, M> first_rows() noexcept {

@@ -24,16 +24,14 @@ struct PostureTask {
     require_different("joints", joints, robot.dof());
   }
 
-  template <typename Robot>
-  void evaluate(const Robot& robot, const typename Robot::State& state, Vector<M, Scalar>& x,
-                Matrix<M, Robot::kDof, Scalar>& J, Matrix<M, Robot::kDof, Scalar>& Jd,
-                Matrix<M, M, Scalar>& S) const noexcept {
-    J.setZero(M, robot.dof());
-    if (state.moves) Jd.setZero(M, robot.dof());
+  template <typename Robot, typename Rows>
+  void evaluate([[maybe_unused]] const Robot& robot, const typename Robot::State& state, Vector<M, Scalar>& x,
+                Vector<M, Scalar>& xd, Matrix<M, M, Scalar>& S, Rows level) const noexcept {
     for (int i = 0; i < M; ++i) {
       const int joint = joints[static_cast<std::size_t>(i)];
       x(i) = state.q(joint);
-      J(i, joint) = Scalar(1);
+      xd(i) = state.qd(joint);
+      level.set_unit(i, joint);
     }
     S = identity<Matrix<M, M, Scalar>>();
   }

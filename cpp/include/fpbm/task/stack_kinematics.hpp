@@ -8,25 +8,10 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/robot.hpp"
-#include "fpbm/task/coordinate_of.hpp"
 #include "fpbm/task/stack.hpp"
+#include "fpbm/task/task_rows.hpp"
 
 namespace fpbm {
-
-/// Rows of a level: J and J̇, in metres.
-template <int M, int N, typename Scalar>
-struct LevelRows {
-  Matrix<M, N, Scalar> J;
-  Matrix<M, N, Scalar> Jd;
-
-  // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
-  LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
-
-  void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
-    J.resize(rows, dof);
-    Jd.resize(rows, dof);
-  }
-};
 
 /// What a task adds to its rows: its gains, its selection S, in metres, and its velocity J qd in the rows of its space.
 template <typename Task>
@@ -160,55 +145,15 @@ class RobotTasks {
     std::apply([&](auto&... level) { (level.resize(stack_.rows(k++), robot_.dof()), ...); }, out.levels);
     int row = 0;  // Of the task on its level.
     stack_.each([&](const auto& task, auto i) noexcept {
-      using Task = std::decay_t<decltype(task)>;
       constexpr int kIndex = decltype(i)::value;
       if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
-      constexpr int kSpace = Task::Space::kRows;
       auto& [k1, k2, S, xd] = std::get<kIndex>(out.tasks);
       k1 = task.gains.k1;
       k2 = task.gains.k2;
-      Matrix<kSpace, kDof, Scalar> J;
-      Matrix<kSpace, kDof, Scalar> Jd;
-      task.evaluate(robot_, state, std::get<kIndex>(out.tip), J, Jd, S);
-      if (rows_of(task) == 0) return;
-      if constexpr (Task::kWhole) {
-        for (Eigen::Index j = kSpace - Task::Space::kTurns; j < S.rows(); ++j) S(j, j) *= out.length;
-      } else {
-        for (int j = kSpace - Task::Space::kTurns; j < kSpace; ++j) {
-          for (Eigen::Index r = 0; r < S.rows(); ++r) S(r, j) *= out.length;
-        }
-      }
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      select(task, S, J, row, level.J);
-      if (state.moves) {
-        select(task, S, Jd, row, level.Jd);
-        if constexpr (Task::kWhole && Task::kRows == Eigen::Dynamic) {
-          for (Eigen::Index j = 0; j < S.rows(); ++j) {
-            xd(j) = sum_over(state.qd, [&](Eigen::Index joint) { return J.coeff(j, joint) * state.qd.coeff(joint); });
-          }
-        } else {
-          xd = product(J, state.qd);
-        }
-      }
+      task.evaluate(robot_, state, std::get<kIndex>(out.tip), xd, S, TaskRows(level, row));
       row += rows_of(task);
     });
-  }
-
-  /// Writes S A to the rows of `to` from `row` on.
-  template <typename Task, typename Selection, typename Rows, typename LevelMatrix>
-  static void select(const Task& task, const Selection& S, const Rows& A, int row, LevelMatrix& to) noexcept {
-    for (Eigen::Index i = 0; i < S.rows(); ++i) {
-      const int from = CoordinateOf<Task>::row(task, static_cast<int>(i));
-      for (Eigen::Index j = 0; j < A.cols(); ++j) {
-        if (from >= 0) {
-          to.coeffRef(row + i, j) = S.coeff(i, from) * A.coeff(from, j);
-        } else {
-          Scalar sum(0);
-          for (int k = 0; k < Task::Space::kRows; ++k) sum += S.coeff(i, k) * A.coeff(k, j);
-          to.coeffRef(row + i, j) = sum;
-        }
-      }
-    }
   }
 
   Robot_ robot_;

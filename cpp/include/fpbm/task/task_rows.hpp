@@ -1,0 +1,73 @@
+#pragma once
+
+#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/pair.hpp"
+
+namespace fpbm {
+
+/// Rows of a level: J and J̇, in metres.
+template <int M, int N, typename Scalar>
+struct LevelRows {
+  Matrix<M, N, Scalar> J;
+  Matrix<M, N, Scalar> Jd;
+
+  // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
+  LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
+
+  void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
+    J.resize(rows, dof);
+    Jd.resize(rows, dof);
+  }
+};
+
+/// The rows of one task on its level, which Task::evaluate() sets: S J and S J̇ of its first rows, from row `first` of
+/// the level on.
+template <int M, int N, typename Scalar>
+class TaskRows {
+ public:
+  TaskRows(LevelRows<M, N, Scalar>& level, int first) noexcept : level_(level), first_(first) {}
+
+  /// Columns j and, where there is one, j + 1 of row i.
+  void set(Eigen::Index i, Eigen::Index j, const Pair<Scalar>& J, const Pair<Scalar>& Jd) noexcept {
+    set_two(level_.J, first_ + i, j, J);
+    set_two(level_.Jd, first_ + i, j, Jd);
+  }
+
+  /// Row i: 1 for a joint and 0 for the others. J̇ is 0.
+  void set_unit(Eigen::Index i, Eigen::Index joint) noexcept {
+    for (Eigen::Index j = 0; j < level_.J.cols(); ++j) {
+      level_.J.coeffRef(first_ + i, j) = j == joint ? Scalar(1) : Scalar(0);
+      level_.Jd.coeffRef(first_ + i, j) = Scalar(0);
+    }
+  }
+
+  /// All rows of a task that has whole matrices.
+  template <int Rows>
+  void set(const Matrix<Rows, N, Scalar>& J, const Matrix<Rows, N, Scalar>& Jd) noexcept {
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      for (Eigen::Index i = 0; i < J.rows(); ++i) {
+        level_.J.coeffRef(first_ + i, j) = J.coeff(i, j);
+        level_.Jd.coeffRef(first_ + i, j) = Jd.coeff(i, j);
+      }
+    }
+  }
+
+ private:
+  static void set_two(Matrix<M, N, Scalar>& to, Eigen::Index i, Eigen::Index j, const Pair<Scalar>& two) noexcept {
+    to.coeffRef(i, j) = two.first();
+    if (j + 1 < to.cols()) to.coeffRef(i, j + 1) = two.second();
+  }
+
+  LevelRows<M, N, Scalar>& level_;
+  int first_;
+};
+
+/// aᵀv of two vectors v side by side.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Pair<Scalar> along(const Vector<3, Scalar>& a,
+                                                            const Vector<3, Pair<Scalar>>& v) noexcept {
+  using Two = Pair<Scalar>;
+  return Two(a.coeff(0)) * v.coeff(0) + Two(a.coeff(1)) * v.coeff(1) + Two(a.coeff(2)) * v.coeff(2);
+}
+
+}  // namespace fpbm
