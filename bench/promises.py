@@ -60,6 +60,9 @@ def rows(results: Results) -> list[list[str]]:
         count, bar = instructions(results, job), 0.75 if job.endswith("tick") else 0.8
         share = count / before if count else None
         add(f"instructions of {job.replace('/', ' ')}: share of those before", share, bar, "{:.2f}")
+    torch, pose = (results.least(f"step/{row}/fpbm_damped/fpbm_cpp") for row in ("ur5e/torch", "panda/pose"))
+    of_pose = torch / pose if torch and pose else None
+    add("UR5e step of FPBM, position and axis of the tip: share of a Panda pose step", of_pose, 1.1, "{:.2f}")
     many = results.least("python/panda/pose/fpbm/fpbm_cpp_many")
     add("Panda pose step of FPBM from Python, 10,000 states a call, on one thread", many, 600.0, "{:.0f} ns")
     if results.values.get("isolated"):  # On a shared core this would be a promise about others.
