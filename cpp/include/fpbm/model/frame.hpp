@@ -82,11 +82,12 @@ struct Frame {
     rotate(y, z, link.tilt.cosine.pair(), link.tilt.sine.pair());
   }
 
-  void store(Vector<3, Scalar>& to_p, Matrix<3, 3, Scalar>& to_R) const noexcept {
-    p.store(to_p.data());
-    x.store(to_R.data());
-    y.store(to_R.data() + 3);
-    z.store(to_R.data() + 6);
+  /// Origin and axes, the columns.
+  void store(Vector<3, Scalar>& origin, Matrix<3, 3, Scalar>& axes) const noexcept {
+    p.store(origin.data());
+    x.store(axes.data());
+    y.store(axes.data() + 3);
+    z.store(axes.data() + 6);
   }
 
  private:
