@@ -102,45 +102,44 @@ TEST(Robot, places_its_links_at_their_joints_frames) {
 }
 
 /// S J and S J̇ of a task by central differences of its point and of J q̇.
-template <typename Task>
-void expect_derivatives(Task task) {
+template <int N, typename Task>
+void expect_derivatives(const Robot<N>& robot, Task task) {
   using Space = typename Task::Space;
   struct At {
     typename Space::template Point<double> x;
     Vector<Space::kRows> xd;
     Matrix<Task::kRows, Space::kRows> S;
-    LevelRows<Task::kRows, 7, double> rows;
+    LevelRows<Task::kRows, N, double> rows;
   };
-  task.bind(panda());
-  const auto at = [&](const Vector<7>& q, const Vector<7>& qd) {
-    RobotState<7> state;
-    panda().update(q, qd, state);
+  task.bind(robot);
+  const int dof = robot.dof();
+  const auto at = [&](const Vector<N>& q, const Vector<N>& qd) {
+    RobotState<N> state;
+    robot.update(q, qd, state);
     At result;
-    task.evaluate(panda(), state, result.x, result.xd, result.S, TaskRows(result.rows, 0));
+    result.rows.resize(Task::kRows, dof);
+    task.evaluate(robot, state, result.x, result.xd, result.S, TaskRows(result.rows, 0));
     return result;
   };
+  const double h = 1e-6;
   Random random(3);
   for (int trial = 0; trial < trials(50); ++trial) {
-    const Vector<7> q = random_posture(random);
-    const Vector<7> qd = random.uniform(7, -1.0, 1.0);
+    const Vector<N> q = random.uniform(dof, -2.0, 2.0);
+    const Vector<N> qd = random.uniform(dof, -1.0, 1.0);
     const At here = at(q, qd);
-    const double h = 1e-6;
-    Matrix<Task::kRows, 7> J;
-    for (int j = 0; j < 7; ++j) {
-      const Vector<7> step = h * Vector<7>::Unit(j);
+    Matrix<Task::kRows, N> J(Task::kRows, dof);
+    Matrix<Task::kRows, N> Jd(Task::kRows, dof);
+    for (int j = 0; j < dof; ++j) {
+      const Vector<N> unit = Vector<N>::Unit(dof, j);
       const Vector<Space::kRows> change =
-          Space::template difference<double>(at(q + step, qd).x, at(q - step, qd).x) / (2.0 * h);
+          Space::template difference<double>(at(q + h * unit, qd).x, at(q - h * unit, qd).x) / (2.0 * h);
       J.col(j) = here.S * change;
-    }
-    EXPECT_LT((here.rows.J - J).norm(), 1e-8);
-    EXPECT_LT((here.S * here.xd - J * qd).norm(), 1e-8);
-    Matrix<Task::kRows, 7> Jd;
-    for (int j = 0; j < 7; ++j) {
-      const Vector<7> unit = Vector<7>::Unit(j);
       Vector<Space::kRows> rate = (at(q + h * qd, unit).xd - at(q - h * qd, unit).xd) / (2.0 * h);
       if constexpr (std::is_same_v<Task, AxisTask<>>) rate -= cross(here.xd, here.x) * here.x.dot(at(q, unit).xd);
       Jd.col(j) = here.S * rate;
     }
+    EXPECT_LT((here.rows.J - J).norm(), 1e-8);
+    EXPECT_LT((here.S * here.xd - here.rows.J * qd).norm(), 1e-12);
     EXPECT_LT((here.rows.Jd - Jd).norm(), 1e-7);
     if constexpr (std::is_same_v<Task, AxisTask<>>) {
       // Of the angular velocity at right angles to the axis.
@@ -151,21 +150,31 @@ void expect_derivatives(Task task) {
   }
 }
 
-TEST(Task, has_the_rows_of_its_point_s_derivative) {
+/// Of every link: even and odd numbers of joints before the link, with and without prismatic joints.
+template <int N>
+void expect_derivatives_of_all_tasks(const Chain<>& chain) {
+  const Robot<N> robot(chain);
   Transform<> offset;
   offset.p = Vector<3>(0.1, -0.2, 0.05);
   offset.R = rotation(Vector<3>(0.3, 0.5, -0.2));
   const TaskGains<> gains(1.0, 1.0);
-  for (const int link : {kTip, 0, 3, 7}) {
-    SCOPED_TRACE(link);
+  for (int link = kTip; link <= robot.dof(); ++link) {
+    SCOPED_TRACE(testing::Message() << robot.dof() << " joints, link " << link);
     const LinkFrame<double> frame{link, offset};
-    expect_derivatives(PositionTask<>{frame, gains});
-    expect_derivatives(PositionTask<2>{frame, gains, {2, 0}, true});
-    expect_derivatives(OrientationTask<>{frame, gains});
-    expect_derivatives(PoseTask<>{frame, gains});
-    expect_derivatives(AxisTask<>{frame, gains, Vector<3>(0.0, 2.0, 1.0)});
+    expect_derivatives(robot, PositionTask<>{frame, gains});
+    expect_derivatives(robot, PositionTask<2>{frame, gains, {2, 0}});
+    expect_derivatives(robot, PositionTask<2>{frame, gains, {2, 0}, true});
+    expect_derivatives(robot, OrientationTask<>{frame, gains});
+    expect_derivatives(robot, PoseTask<>{frame, gains});
+    expect_derivatives(robot, AxisTask<>{frame, gains, Vector<3>(0.0, 2.0, 1.0)});
   }
-  expect_derivatives(PostureTask<3>{gains, {6, 0, 3}});
+  expect_derivatives(robot, PostureTask<3>{gains, {5, 0, 3}});
+}
+
+TEST(Task, has_the_rows_of_its_point_s_derivative) {
+  expect_derivatives_of_all_tasks<6>(presets::ur5e());
+  expect_derivatives_of_all_tasks<7>(presets::panda());
+  expect_derivatives_of_all_tasks<Eigen::Dynamic>(panda_on_rail());
 }
 
 TEST(Direction, difference_turns_one_to_the_other) {
