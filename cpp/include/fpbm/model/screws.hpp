@@ -65,12 +65,12 @@ class Screws {
     }
   };
 
-  /// A point that the joints move, and uᵢ of the joints at hand.
+  /// A point that the joints move [m], and uᵢ of the current pair of joints [m/s].
   class Point {
    public:
     explicit Point(const SplitVector<Scalar>& p) noexcept : p_(both(p, p)), u_(both({}, {})) {}
 
-    /// Of the point, once rates() was called for all joints that move the point.
+    /// Velocity of the point [m/s]. Call after rates() was called for all joints that move the point.
     [[nodiscard]] Vector<3, Scalar> velocity() const noexcept {
       return entrywise_as<Scalar>(u_, [&](Eigen::Index k) { return u_.coeff(k).first(); });
     }
@@ -99,8 +99,8 @@ class Screws {
     return joints_[static_cast<std::size_t>(i / 2)];
   }
 
-  /// Columns i and i + 1 of J. turns is 1 for a joint that turns and 0 for one that slides; slides: whether there is a
-  /// 0.
+  /// Columns i and i + 1 of J. turns: 1 for a revolute joint, 0 for a prismatic joint. slides: whether the chain has a
+  /// prismatic joint.
   [[nodiscard, gnu::always_inline]] static ColumnPair columns(Eigen::Index i, const JointPair& joints,
                                                               const Point& point, const Vector<N, Scalar>& turns,
                                                               bool slides) noexcept {
@@ -139,7 +139,7 @@ class Screws {
     return cross<Two>(joints.w, columns);
   }
 
-  /// Of what joint i moves [rad/s].
+  /// Angular velocity of the link that joint i moves [rad/s].
   [[nodiscard]] Vector<3, Scalar> angular_velocity(Eigen::Index i) const noexcept {
     const Two3& w = joints(i).w;
     return entrywise_as<Scalar>(w,
