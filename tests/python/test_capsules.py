@@ -144,7 +144,7 @@ def test_cylinder(radius: float, length: float) -> None:
     points = np.vstack([rim - end, rim + end])
     assert outside(points, [fit]) <= 0.0
     r = np.linspace(radius, np.hypot(radius, length / 2), 100_001)
-    best = np.min(np.pi * r * r * (np.maximum(length - 2 * np.sqrt(r * r - radius**2), 0) + 4 / 3 * r))
+    best = np.min(np.pi * r * r * (np.maximum(length - 2 * np.sqrt((r - radius) * (r + radius)), 0) + 4 / 3 * r))
     assert volume([fit]) <= best * (1 + 1e-6)
     assert np.all(fit.a[:2] == 0)
     assert np.all(fit.b[:2] == 0)
