@@ -23,7 +23,7 @@ struct PyTick {
   JointVector qdd;
   Status status;
   double scale;
-  std::uint32_t saturated;
+  JointBits saturated;
   double sigma;
   Eigen::VectorXd error;
   std::optional<PyNearest> nearest;

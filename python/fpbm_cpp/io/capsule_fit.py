@@ -22,6 +22,8 @@ STARTS = 4  # Lines that the search starts from.
 APART = 0.9  # Cosine of the least angle between two of them.
 BALL = 0.1  # Capsules shorter than this are started from twice, once made longer; points fill a ball of radius 1.
 ACTIVE = 40  # Points that the search sees at first; those that it leaves outside join them.
+GOLDEN = (np.sqrt(5.0) - 1) / 2
+ROUNDS = 24  # Of the golden section on a line: its share of the radii's range is 1e-5 in the end.
 MARKS = (np.sqrt(2.0), np.pi)  # Without a common measure, so that points of equal marks are equal but for round-off.
 ROOM = 1e-12  # Of the radius, as a share of the coordinates: rounding in whoever computes a distance.
 
@@ -59,9 +61,8 @@ def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = Fals
 def fit_cylinder(radius: float, length: float) -> Fit:
     """The smallest capsule about the z axis that contains a cylinder about it, whose middle is the origin."""
     half = length / 2
-    return _on_line(
-        np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([[radius, 0, -half], [radius, 0, half]]), np.zeros(2)
-    )
+    rim = np.array([[radius, 0, -half], [radius, 0, half]])
+    return _on_lines(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), rim, np.zeros(2))[0]
 
 
 def enclosing(a: Array, b: Array, points: Array, radii: Array) -> Fit:
@@ -128,31 +129,50 @@ def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
         away = shadows - middles[:, None, :]
         far = np.argmax(np.sqrt(np.einsum("dni,dni->dn", away, away)) + radii, axis=1)
         middles = middles + away[each, far] / step
-    return [_on_line(middle, u, points, radii) for middle, u in zip(middles, directions)]
+    return _on_lines(middles, directions, points, radii)
 
 
-def _on_line(origin: Array, u: Array, points: Array, radii: Array) -> Fit:
-    """The smallest capsule whose axis is on a line: the larger r, the shorter its axis may be."""
-    optimize = extra("scipy.optimize", "a capsule that fits", "clearance")
-    s = (points - origin) @ u
-    d = np.linalg.norm(points - origin - np.outer(s, u), axis=1)
+def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) -> list[Fit]:
+    """The smallest capsule whose axis is on each line (D, 3): the larger r, the shorter its axis may be.
 
-    def ends(r: float) -> tuple[float, float]:
-        reach = np.sqrt(np.maximum((r - radii) ** 2 - d * d, 0.0))
-        low, high = float(np.min(s + reach)), float(np.max(s - reach))
-        return (low, high) if low < high else ((low + high) / 2,) * 2
+    A golden-section search over r, on all lines at once.
+    """
+    away = points - origins[:, None]  # (D, N, 3)
+    s = np.einsum("dnk,dk->dn", away, directions)
+    d = np.linalg.norm(away - s[:, :, None] * directions[:, None], axis=2)
 
-    def volume(r: float) -> float:
+    def ends(r: Array) -> tuple[Array, Array]:
+        reach = np.sqrt(np.maximum((r[:, None] - radii) ** 2 - d * d, 0.0))
+        low, high = np.min(s + reach, axis=1), np.max(s - reach, axis=1)
+        middle = (low + high) / 2
+        return np.minimum(low, middle), np.maximum(high, middle)
+
+    def volume(r: Array) -> Array:
         low, high = ends(r)
-        return r * r * (high - low + 4 / 3 * r)
+        return np.asarray(r * r * (high - low + 4 / 3 * r))
 
-    least = float(np.max(d + radii))
-    most = float(np.max(np.hypot(s - (s.min() + s.max()) / 2, d) + radii))  # Of a ball.
-    # Where the volume falls infinitely fast from the least radius, it does not over the root.
-    found = optimize.minimize_scalar(lambda x: volume(least + (most - least) * x * x), bounds=(0, 1), method="bounded")
-    r = min(least, most, least + (most - least) * float(found.x) ** 2, key=volume)
-    low, high = ends(r)
-    return enclosing(origin + low * u, origin + high * u, points, radii)
+    least = np.max(d + radii, axis=1)
+    middles = (s.min(axis=1) + s.max(axis=1)) / 2
+    most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Of a ball.
+
+    def radius(x: Array) -> Array:  # Where the volume falls infinitely fast from the least radius, it does not over x.
+        return np.asarray(least + (most - least) * x * x)
+
+    inner, outer = np.zeros(len(s)), np.ones(len(s))
+    near, far = (inner + share * (outer - inner) for share in (1 - GOLDEN, GOLDEN))
+    at_near, at_far = volume(radius(near)), volume(radius(far))
+    for _ in range(ROUNDS):
+        nearer = at_near < at_far
+        inner, outer = np.where(nearer, inner, near), np.where(nearer, far, outer)
+        tried = np.where(nearer, outer - GOLDEN * (outer - inner), inner + GOLDEN * (outer - inner))
+        at = volume(radius(tried))
+        near, far = np.where(nearer, tried, far), np.where(nearer, near, tried)
+        at_near, at_far = np.where(nearer, at, at_far), np.where(nearer, at_near, at)
+    tried = np.stack([least, most, radius(near), radius(far)])
+    best = np.argmin([volume(r) for r in tried], axis=0)
+    low, high = ends(np.take_along_axis(tried, best[None], axis=0)[0])
+    a, b = (origins + end[:, None] * directions for end in (low, high))
+    return [enclosing(*axis, points, radii) for axis in zip(a, b)]
 
 
 def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
