@@ -16,6 +16,7 @@ STUBS = Path(__file__).parent.parent / "python" / "fpbm_cpp" / "_core.pyi"
 def with_types(text: str) -> str:
     """With members of enums and tuples of words as type checkers want them."""
     text = re.sub(r"^(\w+): tuple = ", r"\1: tuple[str, ...] = ", text, flags=re.MULTILINE)
+    text = re.sub(r"^(\w+: tuple\[str, \.\.\.\]) = \('(\w+)'\)$", r"\1 = ('\2',)", text, flags=re.MULTILINE)
     text = re.sub(r"^    (\w+): typing\.ClassVar\[Status\].*$", r"    \1 = ...", text, flags=re.MULTILINE)
     return text.replace("    @classmethod\n    def __new__(cls, value):\n        ...\n", "")
 

@@ -3,28 +3,24 @@
 #include "fpbm/any/make_arm.hpp"
 
 namespace fpbm::bindings {
+namespace {
 
-Arm::Arm(const JointVector& lengths) : any(make_planar_arm(lengths)), source(lengths) {
-  for (Eigen::Index i = 1; i <= lengths.size(); ++i) joint_names.push_back("joint_" + std::to_string(i));
-}
-
-Arm::Arm(const Chain<>& chain) : any(make_arm(chain)), source(chain) {
-  for (const Joint<>& joint : chain.joints) {
-    if (joint.mimic.joint < 0) joint_names.push_back(joint.name);
-  }
-}
-
-Chain<> Arm::chain() const {
-  if (const auto* chain = std::get_if<Chain<>>(&source)) return *chain;
+/// An arm in the plane: joints about z at each link's start, with the links along x.
+Chain<> chain_of(const JointVector& lengths) {
   Chain<> chain;
-  for (const double length : std::get<JointVector>(source)) {
+  for (const double length : lengths) {
     Joint<> joint;
     joint.placement = chain.tip;
-    joint.name = joint_names[chain.joints.size()];
+    joint.name = "joint_" + std::to_string(chain.joints.size() + 1);
     chain.joints.push_back(joint);
     chain.tip.p = {length, 0.0, 0.0};
   }
   return chain;
 }
+
+}  // namespace
+
+Arm::Arm(const JointVector& lengths) : Arm(make_planar_arm(lengths), lengths, chain_of(lengths), true) {}
+Arm::Arm(const Chain<>& chain) : Arm(make_arm(chain), chain, chain, false) {}
 
 }  // namespace fpbm::bindings

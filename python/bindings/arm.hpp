@@ -7,11 +7,9 @@
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/core/validation.hpp"
 #include "fpbm/model/chain.hpp"
+#include "model.hpp"
 
 namespace fpbm::bindings {
-
-inline constexpr int kDynamic = Eigen::Dynamic;
-using JointVector = Vector<kDynamic>;
 
 /// Tip, J and Jd in any task space, from an arm or from elsewhere.
 struct AnyKinematics {
@@ -30,25 +28,15 @@ void require_enough_joints(Eigen::Index dof) {
   }
 }
 
-/// An arm of either kind, with what it was made from.
-struct Arm {
+/// An arm of either kind.
+struct Arm : Model {
+  using Any = std::variant<AnyArm<Position<2>>, AnyArm<Position<3>>>;
+
   explicit Arm(const JointVector& lengths);
   explicit Arm(const Chain<>& chain);
-  virtual ~Arm() = default;  // So that Python gets back the object of the class that it made.
 
-  std::variant<AnyArm<Position<2>>, AnyArm<Position<3>>> any;
+  Any any;
   std::variant<JointVector, Chain<>> source;  ///< Link lengths [m] of an arm in the plane, the chain of one in space.
-  std::vector<std::string> joint_names;
-
-  [[nodiscard]] int dof() const noexcept {
-    return std::visit([](const auto& arm) { return arm.dof(); }, any);
-  }
-  [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept {
-    return std::visit([](const auto& arm) -> const JointLimits<kDynamic>& { return arm.limits(); }, any);
-  }
-
-  /// Its joints from base to tip; of an arm in the plane, about z at each link's start, with the links along x.
-  [[nodiscard]] Chain<> chain() const;
 
   /// Calls visitor(arm, Space) with the AnyArm and the task space of that name.
   /// Throws std::invalid_argument where there is none.
@@ -64,6 +52,10 @@ struct Arm {
   }
 
  private:
+  template <typename Source>
+  Arm(const Any& any_, const Source& source_, const Chain<>& chain, bool in_plane)
+      : Model(tree_of(chain), in_plane), any(any_), source(source_) {}
+
   template <typename Positions>
   static Positions positions(const AnyArm<Positions>&) {
     return {};

@@ -9,64 +9,28 @@
 #include "arrays.hpp"
 #include "fpbm/model/dh.hpp"
 #include "fpbm/model/presets.hpp"
+#include "joints.hpp"
 
 namespace fpbm::bindings {
 namespace {
-
-constexpr std::array kTypes{"revolute", "continuous", "prismatic"};
-
-JointType joint_type(const std::string& type, const validation::Argument& name) {
-  for (std::size_t i = 0; i < kTypes.size(); ++i) {
-    if (type == kTypes[i]) return static_cast<JointType>(i);
-  }
-  validation::reject(name, " = '" + type + "': must be 'revolute', 'continuous' or 'prismatic'");
-}
 
 /// A chain of fpbm_cpp.Joint, or of anything with its attributes.
 Chain<> chain_of(const py::typing::List<py::object>& joints, const ArrayLike& tip) {
   Chain<> chain;
   for (const py::handle given : joints) {
     const validation::Argument name = validation::element("joints", static_cast<Eigen::Index>(chain.joints.size()));
-    const auto number = [&](const char* attribute) { return py::cast<double>(given.attr(attribute)); };
-    const auto array = [&](const char* attribute) { return ArrayLike(py::object(given.attr(attribute))); };
-    Joint<> joint;
-    joint.type = joint_type(py::cast<std::string>(given.attr("type")), name + ".type");
-    joint.placement = transform(array("placement"), (name + ".placement").text().c_str());
-    joint.axis = fixed_vector<3>(array("axis"), (name + ".axis").text().c_str());
-    joint.bounds = {number("lower"), number("upper"),           number("velocity"),    number("acceleration"),
-                    number("jerk"),  number("velocity_offset"), number("deceleration")};
-    joint.name = py::cast<std::string>(given.attr("name"));
-    if (const py::object mimic = given.attr("mimic"); !mimic.is_none()) {
-      const auto [index, ratio, offset] = py::cast<std::tuple<int, double, double>>(mimic);
-      if (index < 0) validation::fail(name + ".mimic[0]", index, "the index of a joint");
-      joint.mimic = {index, ratio, offset};
-    }
-    chain.joints.push_back(joint);
+    chain.joints.push_back(joint_of_python(given, name));
   }
   chain.tip = transform(tip, "tip");
   return chain;
 }
 
-using PlainChain = py::typing::Tuple<py::typing::List<py::typing::Dict<py::str, py::object>>, Array>;
+using PlainChain = py::typing::Tuple<py::typing::List<PlainJoint>, Array>;
 
 /// A chain as Python makes its joints from: a dictionary for each, and the tip.
 PlainChain plain(const Chain<>& chain) {
   py::list joints;
-  for (const Joint<>& joint : chain.joints) {
-    py::typing::Dict<py::str, py::object> fields;
-    fields["type"] = kTypes[static_cast<std::size_t>(joint.type)];
-    fields["placement"] = array_of(joint.placement);
-    fields["axis"] = array_of(joint.axis);
-    fields["lower"] = joint.bounds.lower;
-    fields["upper"] = joint.bounds.upper;
-    fields["velocity"] = joint.bounds.velocity;
-    fields["acceleration"] = joint.bounds.acceleration;
-    fields["jerk"] = joint.bounds.jerk;
-    fields["velocity_offset"] = joint.bounds.velocity_offset;
-    fields["deceleration"] = joint.bounds.deceleration;
-    fields["name"] = joint.name;
-    joints.append(fields);
-  }
+  for (const Joint<>& joint : chain.joints) joints.append(fields_of(joint));
   return py::make_tuple(joints, array_of(chain.tip));
 }
 
@@ -172,37 +136,19 @@ ParameterError
 }  // namespace
 
 void bind_arm(py::module_& m) {
-  m.attr("MAX_DOF") = kMaxDof;
   py::tuple names(std::size(presets::kAll));
   for (std::size_t i = 0; i < std::size(presets::kAll); ++i) names[i] = presets::kAll[i].name;
   m.attr("PRESETS") = names;
   bind_kinematics(m);
 
   const auto task = py::arg("task") = "position";
-  py::class_<Arm>(m, "Arm", "The compiled part of an arm: in the plane, of link lengths, or in space, of joints.")
+  py::class_<Arm, Model>(m, "Arm",
+                         "The compiled part of an arm: in the plane, of link lengths, or in space, of joints.")
       .def(py::init([](const ArrayLike& lengths) { return Arm(joint_vector(lengths, "lengths")); }), py::arg("lengths"))
       .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip) {
              return Arm(chain_of(joints, tip));
            }),
            py::arg("joints"), py::arg("tip"))
-      .def_property_readonly("dof", &Arm::dof, "Number of joints n.")
-      .def_property_readonly(
-          "joint_names", [](const Arm& arm) { return arm.joint_names; }, "Names of the joints, from the base on.")
-      .def(
-          "bounds",
-          [](const Arm& arm) -> py::typing::Dict<py::str, Array> {
-            const auto& limits = arm.limits();
-            py::dict bounds;
-            bounds["lower"] = array_of(limits.lower);
-            bounds["upper"] = array_of(limits.upper);
-            bounds["velocity"] = array_of(limits.velocity);
-            bounds["acceleration"] = array_of(limits.acceleration);
-            bounds["jerk"] = array_of(limits.jerk);
-            bounds["velocity_offset"] = array_of(limits.velocity_offset);
-            bounds["deceleration"] = array_of(limits.deceleration);
-            return bounds;
-          },
-          "The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.")
       .def("forward", &forward, py::arg("q"),
            "Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous\n"
            "matrix, shape (4, 4), of one in space. q: shape (n,) [rad].")

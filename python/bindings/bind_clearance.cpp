@@ -13,8 +13,8 @@
 
 namespace fpbm::bindings {
 
-Clearance<kDynamic> clearance_of(const Arm& arm, const py::object& given) {
-  if (given.is_none()) return {arm.chain(), {}, {}, 0.0};
+Clearance<kDynamic> clearance_of(const Model& model, const py::object& given) {
+  if (given.is_none()) return {model.tree, {}, {}, 0.0};
   if (!py::hasattr(given, "capsules")) validation::reject("clearance", ": must be a Clearance");
   const auto name = [](const py::handle& shape) { return py::cast<std::string>(shape.attr("name")); };
   std::vector<LinkCapsule<>> capsules;
@@ -27,13 +27,13 @@ Clearance<kDynamic> clearance_of(const Arm& arm, const py::object& given) {
     obstacles.emplace_back(name(each), py::cast<const Shape&>(each).any);
   }
   using Allowed = std::vector<Clearance<kDynamic>::Names>;
-  Clearance<kDynamic> clearance(arm.chain(), capsules, obstacles, py::cast<double>(given.attr("margin")),
+  Clearance<kDynamic> clearance(model.tree, capsules, obstacles, py::cast<double>(given.attr("margin")),
                                 py::cast<Allowed>(given.attr("allowed")));
   clearance.keep_away({py::cast<double>(given.attr("away_gain")), py::cast<double>(given.attr("away_range"))});
   return clearance;
 }
 
-void add_bounds(Clearance<kDynamic>& clearance, const Arm& arm, const py::object& bounds) {
+void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::object& bounds) {
   for (const py::handle each : bounds) {
     if (!py::hasattr(each, "task")) validation::reject("bounds", ": must be TaskBounds");
     const py::object task = each.attr("task");
@@ -42,7 +42,7 @@ void add_bounds(Clearance<kDynamic>& clearance, const Arm& arm, const py::object
     const auto vector = [](const py::handle& of, const char* key) {
       return fixed_vector<3>(ArrayLike(py::object(of.attr(key))), key);
     };
-    const LinkFrame<> frame = read_frame(task, arm);
+    const LinkFrame<> frame = read_frame(task, model);
     if (py::cast<std::string>(task.attr("kind")) == "axis") {
       const auto angle = [&](const char* key) { return py::cast<double>(each.attr(key)); };
       clearance.keep(AxisBounds<>{frame, vector(task, "axis"), vector(task, "x"), angle("least_angle"),
@@ -91,10 +91,10 @@ class PyClearance {
  public:
   using Pairs = std::vector<Clearance<kDynamic>::Names>;
 
-  PyClearance(const Arm& arm, const py::object& given) : clearance_(clearance_of(arm, given)) {}
+  PyClearance(const Model& model, const py::object& given) : clearance_(clearance_of(model, given)) {}
 
   [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) {
-    return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.links().dof())));
+    return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.robot().dof())));
   }
   [[nodiscard]] Pairs pairs() const { return names(clearance_.pairs()); }
   [[nodiscard]] Pairs left_out() const { return names(clearance_.left_out()); }
@@ -165,8 +165,8 @@ void bind_clearance(py::module_& m) {
             .format(nearest.pair.first, nearest.pair.second, nearest.distance);
       });
 
-  py::class_<PyClearance>(m, "Clearance", "The compiled part of a clearance, for one arm.")
-      .def(py::init<const Arm&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
+  py::class_<PyClearance>(m, "Clearance", "The compiled part of a clearance, for one robot.")
+      .def(py::init<const Model&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
       .def("nearest", &PyClearance::nearest, py::arg("q"))
       .def("pairs", &PyClearance::pairs)
       .def("left_out", &PyClearance::left_out);

@@ -109,21 +109,23 @@ class PyTracker {
   }
 
  public:
-  PyTracker(const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
+  PyTracker(const Model& model, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
             const OptionalArray& qdd0, const std::string& task, const py::object& stack, const py::object& limits,
             const TrackerOptions<>& options, const py::object& clearance, const py::object& task_bounds)
-      : dof_(arm.dof()), dt_(options.dt) {
+      : dof_(model.dof()), dt_(options.dt) {
     State<kDynamic> start{joint_vector(q0, "q0", dof_), JointVector::Zero(dof_)};
     if (qd0) start.qd = joint_vector(*qd0, "qd0", dof_);
     const JointVector before = qdd0 ? joint_vector(*qdd0, "qdd0", dof_) : JointVector::Zero(dof_);
-    const JointLimits<kDynamic> bounds = limits.is_none() ? arm.limits() : joint_limits(limits);
-    Clearance<kDynamic> shapes = clearance_of(arm, clearance);
-    add_bounds(shapes, arm, task_bounds);
+    const JointLimits<kDynamic> bounds = limits.is_none() ? model.limits() : joint_limits(limits);
+    Clearance<kDynamic> shapes = clearance_of(model, clearance);
+    add_bounds(shapes, model, task_bounds);
     if (!stack.is_none()) {
-      any_ = std::make_unique<StackLoop>(stack, scheme, arm, start, options, bounds, before, shapes);
+      any_ = std::make_unique<StackLoop>(stack, scheme, model, start, options, bounds, before, shapes);
       return;
     }
-    any_ = arm.visit(task, [&](const auto& any, auto space) {
+    const auto* arm = dynamic_cast<const Arm*>(&model);
+    if (arm == nullptr) validation::reject("stack", ": must be given for a Robot, which has no tip of its own");
+    any_ = arm->visit(task, [&](const auto& any, auto space) {
       using Space = decltype(space);
       require_enough_joints<Space>(dof_);
       return Any(make_tracker<Space>(scheme, {any, start, options, bounds, before, shapes}));
@@ -335,7 +337,7 @@ Raises
 ------
 ParameterError
     Where an argument is out of range, a limit is missing, or the start is beyond a limit or a bound, or not clear.)")
-      .def(py::init([](const Arm& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
+      .def(py::init([](const Model& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
                        const py::object& limits, double error_bound, double gain, double bound, double stall_time,
                        double radius, double brake, double null_damping, bool recovery, int measured_delay,

@@ -6,6 +6,7 @@ namespace py = pybind11;
 
 namespace fpbm::bindings {
 
+void bind_robot(py::module_& m);
 void bind_arm(py::module_& m);
 void bind_path(py::module_& m);
 void bind_scheme(py::module_& m);

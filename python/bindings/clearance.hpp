@@ -23,10 +23,10 @@ struct PyNearest {
 };
 
 /// What an fpbm_cpp.Clearance, or None, is for an arm. Throws std::invalid_argument where it does not fit.
-Clearance<kDynamic> clearance_of(const Arm& arm, const pybind11::object& given);
+Clearance<kDynamic> clearance_of(const Model& model, const pybind11::object& given);
 
 /// Adds bounds, a sequence of fpbm_cpp.TaskBounds. Throws std::invalid_argument where one does not suit the arm.
-void add_bounds(Clearance<kDynamic>& clearance, const Arm& arm, const pybind11::object& bounds);
+void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const pybind11::object& bounds);
 
 /// The pair of shapes nearest to one another in a posture; none where none is kept apart.
 std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q);

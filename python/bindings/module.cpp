@@ -28,6 +28,7 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled part of fpbm_cpp.";
   m.attr("__version__") = FPBM_VERSION;
   py::register_local_exception_translator(&translate);
+  fpbm::bindings::bind_robot(m);
   fpbm::bindings::bind_arm(m);
   fpbm::bindings::bind_path(m);
   fpbm::bindings::bind_scheme(m);

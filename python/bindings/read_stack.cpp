@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace fpbm::bindings {
 namespace {
 
-constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "posture"};
+constexpr const char* kKinds[] = {"position", "orientation", "pose", "axis", "center_of_mass", "posture"};
 constexpr const char* kRows[] = {"x", "y", "z", "rx", "ry", "rz"};
 /// Of an arm in the plane, which has no other rows: x, y, rz.
 constexpr AnyFrameTask::Selection kPlane = {true, true, false, false, false, true};
@@ -16,29 +17,23 @@ Value attribute(const py::handle& object, const char* name) {
   return py::cast<Value>(object.attr(name));
 }
 
-/// The link of a frame: 'tip', 'base', or the link that a joint moves.
-int link_of(const std::string& frame, const Arm& arm) {
-  if (frame == "tip") return Robot<kDynamic>::kTip;
-  if (frame == "base") return 0;
-  std::string known;
-  for (std::size_t i = 0; i < arm.joint_names.size(); ++i) {
-    if (arm.joint_names[i] == frame) return static_cast<int>(i) + 1;
-    known += ", '" + arm.joint_names[i] + "'";
-  }
-  validation::reject("frame", " = '" + frame + "': must be 'tip', 'base', or the joint of a link" + known);
+/// A frame of a robot, at an offset.
+LinkFrame<> frame_of(const Model& model, const std::string& name, const Transform<>& offset = {}) {
+  const auto [link, own] = model.frame(name);
+  return {link, own * offset};
 }
 
-std::vector<int> joints_of(const py::handle& given, const Arm& arm) {
+std::vector<int> joints_of(const py::handle& given, const Model& model) {
   std::vector<int> joints;
   if (given.is_none()) {
-    for (int i = 0; i < arm.dof(); ++i) joints.push_back(i);
+    for (int i = 0; i < model.dof(); ++i) joints.push_back(i);
     return joints;
   }
   for (const py::handle each : given) {
     const auto name = py::cast<std::string>(each);
-    const auto found = std::find(arm.joint_names.begin(), arm.joint_names.end(), name);
-    if (found == arm.joint_names.end()) validation::reject("joints", ": the arm has no joint '" + name + "'");
-    joints.push_back(static_cast<int>(found - arm.joint_names.begin()));
+    const auto found = std::find(model.joint_names.begin(), model.joint_names.end(), name);
+    if (found == model.joint_names.end()) validation::reject("joints", ": the robot has no joint '" + name + "'");
+    joints.push_back(static_cast<int>(found - model.joint_names.begin()));
   }
   return joints;
 }
@@ -57,17 +52,26 @@ AnyFrameTask::Selection rows_of(const py::handle& given, bool planar) {
   return selected;
 }
 
-AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Arm& arm, const TaskGains<>& gains) {
+AnyFrameTask frame_task(const py::handle& given, TaskKind kind, const Model& model, const TaskGains<>& gains) {
   AnyFrameTask::Selection selected{};
+  if (kind == TaskKind::kCenterOfMass) {
+    return AnyFrameTask(FrameCoordinates::kCenterOfMass, LinkFrame<>(0), gains,
+                        rows_of(given.attr("rows"), model.planar), false);
+  }
   Vector<3> axis(0.0, 0.0, 1.0);
   bool in_frame = false;
   if (kind == TaskKind::kAxis) {
     axis = fixed_vector<3>(ArrayLike(py::object(given.attr("axis"))), "axis");
   } else {
-    selected = rows_of(given.attr("rows"), std::holds_alternative<JointVector>(arm.source));
+    selected = rows_of(given.attr("rows"), model.planar);
     in_frame = attribute<std::string>(given, "axes") == "frame";
   }
-  return AnyFrameTask(static_cast<FrameCoordinates>(kind), read_frame(given, arm), gains, selected, in_frame, axis);
+  std::optional<LinkFrame<>> reference;
+  if (const py::object name = given.attr("reference_frame"); !name.is_none()) {
+    reference = frame_of(model, py::cast<std::string>(name));
+  }
+  return AnyFrameTask(static_cast<FrameCoordinates>(kind), read_frame(given, model), gains, selected, in_frame, axis,
+                      reference);
 }
 
 /// The tasks of a level as they are put into an AnyStack.
@@ -85,12 +89,13 @@ TaskGains<> gains_of(const py::handle& task, Level level) {
 }
 
 /// Puts a task of level k into the places of that level for both levels of schemes.
-StackTask place(const py::handle& given, std::size_t k, const Arm& arm, Places& velocity, Places& acceleration) {
+StackTask place(const py::handle& given, std::size_t k, const Model& model, Places& velocity, Places& acceleration) {
   const auto too_many = [&](const char* what) {
     const std::string argument = "stack.levels[" + std::to_string(k) + "]";
     validation::reject(argument, std::string(" has more than ") + what + ": move a task to another level");
   };
-  const auto name = attribute<std::string>(given, "kind");
+  auto name = attribute<std::string>(given, "kind");
+  if (name == "relative_pose") name = "pose";
   const auto kind = static_cast<TaskKind>(std::find(std::begin(kKinds), std::end(kKinds), name) - std::begin(kKinds));
   StackTask task{attribute<std::string>(given, "name"), kind, 3 * static_cast<int>(k), 0, {}};
   const auto put = [&](Places& places, Level level) {
@@ -98,12 +103,12 @@ StackTask place(const py::handle& given, std::size_t k, const Arm& arm, Places& 
     if (kind == TaskKind::kPosture) {
       places.posture = AnyPostureTask(task.joints, gains);
     } else {
-      places.frames[places.used++] = frame_task(given, kind, arm, gains);
+      places.frames[places.used++] = frame_task(given, kind, model, gains);
     }
   };
   if (kind == TaskKind::kPosture) {
     if (velocity.posture.rows() > 0) too_many("one PostureTask");
-    task.joints = joints_of(given.attr("joints"), arm);
+    task.joints = joints_of(given.attr("joints"), model);
     task.index += 2;
     task.size = static_cast<int>(task.joints.size());
   } else {
@@ -118,13 +123,13 @@ StackTask place(const py::handle& given, std::size_t k, const Arm& arm, Places& 
 
 }  // namespace
 
-LinkFrame<> read_frame(const py::handle& task, const Arm& arm) {
+LinkFrame<> read_frame(const py::handle& task, const Model& model) {
   Transform<> offset;
   if (!task.attr("offset").is_none()) offset = transform(ArrayLike(py::object(task.attr("offset"))), "offset");
-  return {link_of(attribute<std::string>(task, "frame"), arm), offset};
+  return frame_of(model, attribute<std::string>(task, "frame"), offset);
 }
 
-StackPlan read_stack(const py::object& stack, const Arm& arm) {
+StackPlan read_stack(const py::object& stack, const Model& model) {
   if (!py::hasattr(stack, "levels")) validation::reject("stack", ": must be a Stack");
   constexpr std::size_t kLevels = AnyStack::kLevels;
   const auto levels = attribute<py::tuple>(stack, "levels");
@@ -137,7 +142,7 @@ StackPlan read_stack(const py::object& stack, const Arm& arm) {
   std::array<Places, kLevels> acceleration;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     for (const py::handle given : levels[k]) {
-      const StackTask task = place(given, k, arm, velocity[k], acceleration[k]);
+      const StackTask task = place(given, k, model, velocity[k], acceleration[k]);
       const py::object target = given.attr(task.kind == TaskKind::kPosture ? "q" : "x");
       targets.push_back(target.is_none() ? std::nullopt : std::optional(read_target(task, target)));
       tasks.push_back(task);
@@ -146,7 +151,7 @@ StackPlan read_stack(const py::object& stack, const Arm& arm) {
   const auto whole = [](const auto& at) {
     return AnyStack(at[0].level(), at[1].level(), at[2].level(), at[3].level());
   };
-  return {arm.chain(), tasks, targets, static_cast<int>(levels.size()), whole(velocity), whole(acceleration)};
+  return {model.tree, tasks, targets, static_cast<int>(levels.size()), whole(velocity), whole(acceleration)};
 }
 
 StackTarget read_target(const StackTask& task, const py::handle& given) {
@@ -171,7 +176,8 @@ StackTarget read_target(const StackTask& task, const py::handle& given) {
   const ArrayLike point(x);
   const std::string name = task.name;
   switch (task.kind) {
-    case TaskKind::kPosition: target.at.p = fixed_vector<3>(point, name.c_str()); break;
+    case TaskKind::kPosition:
+    case TaskKind::kCenterOfMass: target.at.p = fixed_vector<3>(point, name.c_str()); break;
     case TaskKind::kOrientation:
       target.at.R = matrix(point, name.c_str(), 3, 3);
       if (!chain_check::is_rotation(target.at.R)) validation::reject(name, ": must be a rotation matrix");

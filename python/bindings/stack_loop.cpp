@@ -13,10 +13,10 @@
 
 namespace fpbm::bindings {
 
-StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Arm& arm, const State<kDynamic>& start,
+StackLoop::StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
                      const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
                      const Clearance<kDynamic>& clearance)
-    : dt_(options.dt), motion_(read_stack(stack, arm), scheme, start, options, limits, qdd0, clearance) {
+    : dt_(options.dt), motion_(read_stack(stack, model), scheme, start, options, limits, qdd0, clearance) {
   auto parts = std::make_shared<Parts>();
   for (const StackTask& task : motion_.plan().tasks) parts->emplace_back(task.name, task.size);
   parts_ = std::move(parts);

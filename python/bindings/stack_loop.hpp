@@ -30,7 +30,7 @@ class StackLoop {
   using Parts = std::vector<std::pair<std::string, int>>;
 
   /// stack: an fpbm_cpp.Stack. Throws std::invalid_argument where a task does not suit the arm, and as fpbm::Tracker.
-  StackLoop(const py::object& stack, const Scheme& scheme, const Arm& arm, const State<kDynamic>& start,
+  StackLoop(const py::object& stack, const Scheme& scheme, const Model& model, const State<kDynamic>& start,
             const TrackerOptions<>& options, const JointLimits<kDynamic>& limits, const JointVector& qdd0,
             const Clearance<kDynamic>& clearance);
 

@@ -13,7 +13,7 @@ StackMotion::StackMotion(const StackPlan& plan, const Scheme& scheme, const Stat
     : plan_(plan),
       dt_(options.dt),
       tracker_(
-          make_stack_tracker(scheme, {plan_.chain, plan_.at(scheme.level), start, options, limits, qdd0, clearance})),
+          make_stack_tracker(scheme, {plan_.tree, plan_.at(scheme.level), start, options, limits, qdd0, clearance})),
       held_(Reference<Space>::hold(tracker_->tip())) {
   for (std::size_t i = 0; i < plan_.tasks.size(); ++i) {
     if (plan_.targets[i]) put(plan_.tasks[i], *plan_.targets[i], held_);

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "arm.hpp"
 #include "fpbm/any/any_stack.hpp"
 #include "fpbm/core/level.hpp"
+#include "model.hpp"
 
 namespace fpbm::bindings {
 
 /// In the order of FrameCoordinates, then the posture.
-enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kPosture };
+enum class TaskKind { kPosition, kOrientation, kPose, kAxis, kCenterOfMass, kPosture };
 
 /// A task of a stack as Python has it.
 struct StackTask {
@@ -42,9 +42,9 @@ struct StackTarget {
   Vector<kDynamic> xdd;
 };
 
-/// What Python's Stack says, for an arm.
+/// What Python's Stack says, for a robot.
 struct StackPlan {
-  Chain<> chain;
+  Tree<> tree;
   std::vector<StackTask> tasks;
   std::vector<std::optional<StackTarget>> targets;  ///< Of each task, if it says one.
   int levels = 0;

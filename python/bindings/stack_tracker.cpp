@@ -16,7 +16,7 @@ class StackTrackerOf final : public StackTracker {
 
  public:
   StackTrackerOf(const Scheme_& scheme, const StackStart& from)
-      : tracker_(stack_tracker<TrackerGuard>(Robot<kDynamic>(from.chain), from.stack, scheme, from.start, from.options,
+      : tracker_(stack_tracker<TrackerGuard>(Robot<kDynamic>(from.tree), from.stack, scheme, from.start, from.options,
                                              Limits<kLevel, kDynamic>(from.limits, from.options.dt), from.qdd0,
                                              TrackerGuard(from.clearance))) {}
 

@@ -40,7 +40,7 @@ class StackTracker {
 
 /// What a tracker of a stack starts from, apart from its scheme.
 struct StackStart {
-  const Chain<>& chain;
+  const Tree<>& tree;
   const AnyStack& stack;
   const State<kDynamic>& start;
   const TrackerOptions<>& options;

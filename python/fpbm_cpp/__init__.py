@@ -5,7 +5,7 @@ schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration le
 FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
-from . import arms, paths, schemes, tasks
+from . import arms, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,
@@ -35,6 +35,7 @@ from .motion.simulation import simulate, track
 from .motion.sweeping import Sweep, sweep
 from .obstacle import Cuboid, HalfSpace
 from .paths import *
+from .robots import *
 from .schemes import *
 from .task_bounds import TaskBounds
 from .tasks import *
@@ -48,4 +49,4 @@ __all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", 
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]
-__all__ += arms.__all__ + paths.__all__ + schemes.__all__ + tasks.__all__
+__all__ += arms.__all__ + paths.__all__ + robots.__all__ + schemes.__all__ + tasks.__all__

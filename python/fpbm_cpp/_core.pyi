@@ -16,10 +16,13 @@ __all__: list[str] = [
     "LimitedMotion",
     "Limiter",
     "MAX_DOF",
+    "Model",
     "Nearest",
     "PRESETS",
     "Path",
     "PathFollower",
+    "ROBOT_PRESETS",
+    "Robot",
     "SaturatedLevels",
     "Scheme",
     "Shape",
@@ -42,6 +45,7 @@ __all__: list[str] = [
     "preset",
     "preset_capsules",
     "processor_kinds",
+    "robot_preset",
     "rollout",
     "rotation",
     "rotation_vector",
@@ -53,6 +57,60 @@ __all__: list[str] = [
     "waypoints",
     "with_rotation",
 ]
+
+class Model:
+    """
+    The compiled part of a robot or an arm: its joints and frames.
+    """
+    def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
+        """
+        The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.
+        """
+    @property
+    def dof(self) -> int:
+        """
+        Number of joints n that have a drive.
+        """
+    @property
+    def joint_names(self) -> list[str]:
+        """
+        Names of the joints that have a drive, from the base on.
+        """
+
+class Robot(Model):
+    """
+    The compiled part of a robot.
+    """
+    def __init__(
+        self,
+        joints: list[typing.Any],
+        frames: list[typing.Any],
+        base_mass: typing.SupportsFloat | typing.SupportsIndex,
+        base_center: numpy.typing.ArrayLike,
+    ) -> None: ...
+    def center_of_mass(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Centre of mass in the base frame, shape (3,) [m], the base included. q: (n,) [rad].
+
+        Raises ParameterError where the robot has no mass.
+        """
+    def forward(self, q: numpy.typing.ArrayLike, frame: str) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Pose of a frame in the base frame [m], a homogeneous matrix, shape (4, 4). q: (n,) [rad].
+        """
+    def jacobian(
+        self, q: numpy.typing.ArrayLike, frame: str, *, task: str = "pose"
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Jacobian of a frame, shape (m, n): its velocity is J qd, linear rows first, then angular, in the base
+        frame's axes. task: 'position', 'orientation' or 'pose'. q: (n,) [rad].
+        """
+    def jacobian_dot(
+        self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, frame: str, *, task: str = "pose"
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        dJ/dt along qd, shape (m, n): the frame's acceleration is J qdd + Jd qd. q, qd: (n,) [rad], [rad/s].
+        """
 
 class Kinematics:
     """
@@ -100,7 +158,7 @@ class Kinematics:
         f(q) in the base frame [m], shape (2,), (3,) or (4, 4).
         """
 
-class Arm:
+class Arm(Model):
     """
     The compiled part of an arm: in the plane, of link lengths, or in space, of joints.
     """
@@ -108,10 +166,6 @@ class Arm:
     def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
     @typing.overload
     def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
-    def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
-        """
-        The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.
-        """
     def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous
@@ -132,16 +186,6 @@ class Arm:
     ) -> Kinematics:
         """
         Tip, J and Jd of a task, 'position' or 'pose', at q, qd, shape (n,) [rad], [rad/s].
-        """
-    @property
-    def dof(self) -> int:
-        """
-        Number of joints n.
-        """
-    @property
-    def joint_names(self) -> list[str]:
-        """
-        Names of the joints, from the base on.
         """
 
 class Path:
@@ -275,9 +319,9 @@ class Nearest:
 
 class Clearance:
     """
-    The compiled part of a clearance, for one arm.
+    The compiled part of a clearance, for one robot.
     """
-    def __init__(self, arm: Arm, clearance: typing.Any) -> None: ...
+    def __init__(self, arm: Model, clearance: typing.Any) -> None: ...
     def left_out(self) -> list[tuple[str, str]]: ...
     def nearest(self, q: numpy.typing.ArrayLike) -> Nearest | None: ...
     def pairs(self) -> list[tuple[str, str]]: ...
@@ -610,7 +654,7 @@ class Tracker:
     """
     def __init__(
         self,
-        arm: Arm,
+        arm: Model,
         scheme: Scheme,
         q0: numpy.typing.ArrayLike,
         *,
@@ -798,6 +842,9 @@ def preset_capsules(
     list[tuple[str, str]],
 ]: ...
 def processor_kinds() -> list[str]: ...
+def robot_preset(
+    name: str,
+) -> tuple[list[tuple[dict[str, typing.Any], int]], list[tuple[str, int, numpy.typing.NDArray[numpy.float64]]]]: ...
 def rollout(
     arm: Arm,
     path: Path,
@@ -888,7 +935,8 @@ def waypoints(
 ) -> Path: ...
 def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -> Path: ...
 
-MAX_DOF: int = 32
+MAX_DOF: int = 64
 PRESETS: tuple[str, ...] = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")
+ROBOT_PRESETS: tuple[str, ...] = ("two_pandas",)
 TIME_LAWS: tuple[str, ...] = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"

@@ -58,6 +58,8 @@ class TaskBounds(Data):
             raise wrong("task", task, f" = {task!r:.80}: must be a PositionTask or an AxisTask")
         elif task.x is None:
             raise wrong("task.x", None, ": must be given, the direction from which the angle is measured")
+        if task.reference_frame is not None:
+            raise wrong("task.reference_frame", task.reference_frame, ": must be None, bounds are in the base frame")
         rows = len(task.rows or POSITION) if isinstance(task, PositionTask) else 1
         for name, missing in (("lower", -inf), ("upper", inf)):
             values = getattr(self, name)

@@ -12,13 +12,16 @@ from ._types import ArrayField, OptionalArrayField
 from .errors import not_one_of, wrong
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
 
-__all__ = ["AxisTask", "OrientationTask", "PoseTask", "PositionTask", "PostureTask", "Stack", "Task"]
+__all__ = ["AxisTask", "CenterOfMassTask", "OrientationTask", "PoseTask", "PositionTask", "PostureTask"]
+__all__ += ["RelativePoseTask", "Stack", "Task"]
 
 POSITION = ("x", "y", "z")
 ROTATION = ("rx", "ry", "rz")
-FRAME = "'tip', 'base', or a joint's name: the frame of the link that this joint moves, after its motion."
+FRAME = "'tip' of an arm, a frame of a Robot, 'base', or a joint's name: of the link that it moves, after its motion."
+REFERENCE = "Another frame, which the task is relative to in place of the base frame: its point, rows and path."
 TARGET = "Its target, if no path or reference is given; where it starts if not given."
 OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="The task's frame, seen from that frame.")
+ROWS = "Some of the rows x, y, z, rx, ry, rz that the task has; None: all."
 AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Whose axes the rows are along.")
 
 
@@ -49,6 +52,7 @@ class FrameTask(Task):
     _: KW_ONLY
     x: OptionalArrayField = parameter(TARGET, default=None, shape="(3,) or (3, 3) or (4, 4)", unit="m")
     offset: OptionalArrayField = parameter(like=OFFSET, default=None)
+    reference_frame: str | None = parameter(REFERENCE, default=None)
     point_shape: ClassVar[tuple[int, ...]] = (3,)
 
     def _finish(self) -> None:
@@ -57,30 +61,32 @@ class FrameTask(Task):
             raise wrong("x", self.x, f" has shape {self.x.shape}: must have {self.point_shape}")
 
 
+def check_rows(rows: Sequence[str] | None, all_rows: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Rows that a task selects, as a tuple. Raises ParameterError unless they are some of its rows, each once."""
+    if rows is None:
+        return None
+    if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):
+        raise wrong("rows", rows, f" = {rows!r:.80}: must be some of {', '.join(all_rows)}")
+    for i, row in enumerate(rows := tuple(rows)):
+        if row not in all_rows:
+            raise not_one_of("rows", row, all_rows)
+        if row in rows[:i]:
+            raise wrong("rows", rows, f" has {row!r} twice")
+    return rows
+
+
 @data
 class RowsTask(FrameTask):
     """A task of a frame that selects rows."""
 
     all_rows: ClassVar[tuple[str, ...]]
     _: KW_ONLY
-    rows: Sequence[str] | None = parameter(
-        "Some of the rows x, y, z, rx, ry, rz that the task has; None: all.", default=None
-    )
+    rows: Sequence[str] | None = parameter(ROWS, default=None)
     axes: str = parameter(like=AXES, default="base")
 
     def _finish(self) -> None:
         super()._finish()
-        rows = self.rows
-        if rows is None:
-            return
-        if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):
-            raise wrong("rows", rows, f" = {rows!r:.80}: must be some of {', '.join(self.all_rows)}")
-        for i, row in enumerate(rows := tuple(rows)):
-            if row not in self.all_rows:
-                raise not_one_of("rows", row, self.all_rows)
-            if row in rows[:i]:
-                raise wrong("rows", rows, f" has {row!r} twice")
-        object.__setattr__(self, "rows", rows)
+        object.__setattr__(self, "rows", check_rows(self.rows, self.all_rows))
 
 
 @data
@@ -110,6 +116,36 @@ class PoseTask(RowsTask):
     kind = "pose"
     all_rows = POSITION + ROTATION
     point_shape = (4, 4)
+
+
+@data
+class RelativePoseTask(PoseTask):
+    """The pose of a frame in another frame of the robot: a grasp with two hands. Its point has shape (4, 4) [m].
+
+    PositionTask, OrientationTask and AxisTask with reference_frame= are relative likewise.
+    """
+
+    kind = "relative_pose"
+    reference_frame: str | None = parameter(REFERENCE, default=None)
+
+    def _finish(self) -> None:
+        super()._finish()
+        if self.reference_frame is None:
+            raise wrong("reference_frame", None, " = None: must be a frame of the robot")
+
+
+@data
+class CenterOfMassTask(Task):
+    """The position of the robot's centre of mass, or some of its coordinates. Its point has shape (3,) [m]."""
+
+    kind = "center_of_mass"
+    _: KW_ONLY
+    x: OptionalArrayField = parameter(TARGET, default=None, shape="(3,)", unit="m")
+    rows: Sequence[str] | None = parameter(ROWS, default=None)
+
+    def _finish(self) -> None:
+        super()._finish()
+        object.__setattr__(self, "rows", check_rows(self.rows, POSITION))
 
 
 @data
@@ -147,7 +183,16 @@ class PostureTask(Task):
 
 # By the kind that a table has.
 TASKS: dict[str, type[Task]] = {
-    each.kind: each for each in (PositionTask, OrientationTask, PoseTask, AxisTask, PostureTask)
+    each.kind: each
+    for each in (
+        PositionTask,
+        OrientationTask,
+        PoseTask,
+        AxisTask,
+        RelativePoseTask,
+        CenterOfMassTask,
+        PostureTask,
+    )
 }
 
 
@@ -183,7 +228,7 @@ class Stack:
 
     def error_sizes(self, dof: int) -> list[int]:
         """Numbers in the error of each task, for that many joints."""
-        sizes = {"pose": 6, "posture": dof}
+        sizes = {"pose": 6, "relative_pose": 6, "posture": dof}
         return [len(getattr(task, "joints", None) or ()) or sizes.get(task.kind, 3) for task in self.tasks]
 
     def follower(self, name: str | None = None) -> Task:

@@ -7,10 +7,13 @@
 #include "fpbm/any/any_weights.hpp"
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/center_of_mass_task.hpp"
 #include "fpbm/task/pose_task.hpp"
 #include "fpbm/task/position_task.hpp"
 #include "fpbm/task/posture_task.hpp"
+#include "fpbm/task/relative_task.hpp"
 #include "support/arms.hpp"
+#include "support/bodies.hpp"
 
 /// Stacks of tasks that are known at run time move as those of fixed types.
 namespace fpbm::test::any_stack {
@@ -103,6 +106,45 @@ TEST(AnyStack, has_tasks_side_by_side) {
   }
 }
 
+/// S J and S J̇ of a task in one state of a robot.
+template <typename Task>
+[[nodiscard]] auto rows_in(const Robot<kDynamic>& robot, Task task) {
+  constexpr int kRows = Task::kRows;
+  task.bind(robot);
+  Random random(7);
+  RobotState<kDynamic> state;
+  robot.update(random.uniform(robot.dof(), -1.0, 1.0), random.uniform(robot.dof(), -1.0, 1.0), state);
+  LevelRows<kRows, kDynamic, double> rows;
+  rows.resize(rows_of(task), robot.dof());
+  typename Task::Space::template Point<double> x;
+  Vector<Task::Space::kRows> xd;
+  Matrix<kRows, Task::Space::kRows> S;
+  task.evaluate(robot, state, x, xd, S, TaskRows(rows, 0));
+  return std::pair{Eigen::MatrixXd(rows.J), Eigen::MatrixXd(rows.Jd)};
+}
+
+TEST(AnyFrameTask, has_the_rows_of_relative_tasks_and_of_the_center_of_mass) {
+  Tree<> tree = two_pandas(true);
+  for (auto& each : tree.joints) each.moved = {1.0, Vector<3>(0.1, 0.2, 0.3)};
+  const Robot<kDynamic> robot(tree);
+  const LinkFrame<> right = frame_of(tree, "right_tip");
+  const LinkFrame<> left = frame_of(tree, "left_tip");
+  const auto expect_same = [](const auto& one, const auto& other) {
+    ASSERT_EQ(one.first.rows(), other.first.rows());
+    EXPECT_LT((one.first - other.first).norm() + (one.second - other.second).norm(), 1e-12);
+  };
+  const auto any = [&](FrameCoordinates kind, const AnyFrameTask::Selection& selected = kAll) {
+    return rows_in(robot, AnyFrameTask(kind, left, kGains, selected, false, {0.0, 0.0, 1.0}, right));
+  };
+  expect_same(any(FrameCoordinates::kPose), rows_in(robot, RelativePoseTask<>{{left, kGains}, right}));
+  expect_same(any(FrameCoordinates::kAxis), rows_in(robot, RelativeTask{AxisTask<>{left, kGains}, right}));
+  expect_same(any(FrameCoordinates::kPosition, kHeight),
+              rows_in(robot, RelativeTask{PositionTask<1>{left, kGains, {2}}, right}));
+  expect_same(any(FrameCoordinates::kCenterOfMass, kHeight), rows_in(robot, CenterOfMassTask<1>{kGains, {2}}));
+  EXPECT_EQ(complaint([&] { (void)frame_of(tree, "lft_tip"); }),
+            "frame = 'lft_tip': must be one of the tree's: 'torso_tip' 'right_tip' 'left_tip'");
+}
+
 /// A pose whose rotation about the frame's z axis is free.
 TEST(AnyStack, has_poses_of_fewer_rows) {
   auto tracker = at_run_time(
@@ -124,7 +166,7 @@ TEST(AnyStack, refuses_what_does_not_suit) {
   EXPECT_THROW(AnyFrameTask(FrameCoordinates::kAxis, LinkFrame<>(0), kGains, kAll, false, Vector<3>::Zero()),
                std::invalid_argument);
   EXPECT_THROW(AnyPostureTask({}, kGains), std::invalid_argument);
-  EXPECT_THROW(AnyPostureTask(std::vector<int>(33, 0), kGains), std::invalid_argument);
+  EXPECT_THROW(AnyPostureTask(std::vector<int>(kMaxDof + 1, 0), kGains), std::invalid_argument);
   const auto build = [](const AnyLevel& first) {
     return at_run_time(AnyStack(first, no_level(), no_level(), no_level()));
   };

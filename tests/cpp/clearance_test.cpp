@@ -8,7 +8,7 @@
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 
-/// Links, distances along motions, and what is sure of them.
+/// Levers, distances along motions, and what is sure of them.
 namespace fpbm::test::clearance_laws {
 namespace {
 
@@ -17,65 +17,50 @@ using Joints = Vector<kOpen>;
 
 struct Case {
   std::string name;
-  Chain<> chain;
+  Tree<> tree;
 };
 
-[[nodiscard]] std::vector<Case> arms() {
-  return {
-      {"panda", presets::panda()}, {"ur5e", presets::ur5e()}, {"rail", panda_on_rail()}, {"coupled", coupled_panda()}};
+[[nodiscard]] std::vector<Case> robots() {
+  return {{"panda", tree_of(presets::panda())}, {"ur5e", tree_of(presets::ur5e())},
+          {"rail", tree_of(panda_on_rail())},   {"coupled", tree_of(coupled_panda())},
+          {"two on a torso", two_pandas(true)}, {"two", two_pandas(false)}};
 }
 
-[[nodiscard]] Clearance<kOpen> surrounded(const Chain<>& chain, Random& random) {
+[[nodiscard]] Clearance<kOpen> surrounded(const Tree<>& tree, Random& random) {
   std::vector<Obstacle<>> obstacles;
   for (int k = 0; k < 3; ++k) obstacles.push_back(random_obstacle(random, 1.5, k));
-  return {chain, sticks(chain, 0.05), obstacles, 0.0};
+  return {tree, sticks(tree, 0.05), obstacles, 0.0};
 }
 
-TEST(Links, the_last_one_carries_the_tip) {
-  for (const auto& [name, chain] : arms()) {
+TEST(Levers, bound_how_far_joints_move_points) {
+  for (const auto& [name, tree] : robots()) {
     SCOPED_TRACE(name);
-    const auto arm = any_arm(chain);
-    const Links<kOpen> links(chain);
-    ASSERT_EQ(links.dof(), arm.dof());
-    for (std::uint32_t seed = 0; seed < 20; ++seed) {
-      const Joints q = Random(seed).uniform(arm.dof(), -1.5, 1.5);
-      Links<kOpen>::Frames frames;
-      links.place(q, frames);
-      Kinematics<Position<3>, kOpen> kinematics;
-      arm.kinematics(q, kinematics);
-      const auto& last = frames[static_cast<std::size_t>(links.count())];
-      const Vector<3> tip = last.p + last.R * links.in_frame(links.count(), chain.tip.p);
-      EXPECT_LE((tip - kinematics.tip).norm(), 1e-13);
-    }
-  }
-}
-
-TEST(Links, no_joint_moves_a_point_by_more_than_its_lever) {
-  for (const auto& [name, chain] : arms()) {
-    SCOPED_TRACE(name);
-    const Links<kOpen> links(chain);
+    const Robot<kOpen> robot(tree);
+    const Levers<> levers_of(tree);
     Random random(3);
     double tightest = 1e9;
     for (int trial = 0; trial < trials(2000); ++trial) {
-      Links<kOpen>::Frames frames;
-      Joints q(links.dof());
-      const auto limits = any_arm(chain).limits();
+      Joints q(robot.dof());
       for (Eigen::Index i = 0; i < q.size(); ++i) {
-        q(i) = std::max(limits.lower(i), -3.0) +
-               random.uniform(0.0, 1.0) * (std::min(limits.upper(i), 3.0) - std::max(limits.lower(i), -3.0));
+        const double low = std::max(robot.limits().lower(i), -3.0);
+        q(i) = low + random.uniform(0.0, 1.0) * (std::min(robot.limits().upper(i), 3.0) - low);
       }
-      links.place(q, frames);
-      const Eigen::Index link = 1 + trial % links.count();
+      RobotState<kOpen> state;
+      robot.update(q, state);
+      const int link = 1 + trial % robot.joints();
       const Vector<3> point = random.uniform(3, -0.2, 0.2);
-      const auto levers = links.levers(link, point);
-      const auto& frame = frames[static_cast<std::size_t>(link)];
-      const Vector<3> x = frame.p + frame.R * point;
-      for (Eigen::Index k = 0; k < links.count(); ++k) {
-        const auto& joint = frames[static_cast<std::size_t>(k + 1)];
-        const Vector<3> z = joint.R.col(2);
-        const Vector<3> arm = x - joint.p;
-        const double moves = k >= link ? 0.0 : links.turns(k) ? cross(z, arm).norm() : 1.0;
+      const auto levers = levers_of(link, point);
+      Transform<> offset;
+      offset.p = point;
+      const Vector<3> x = robot.point(state, link, robot.in_joint(link, offset).p);
+      for (Eigen::Index k = 0; k < robot.joints(); ++k) {
+        const auto joint = static_cast<std::size_t>(k + 1);
+        const Vector<3> z = state.R[joint].col(2);
+        const Vector<3> arm = x - state.p[joint];
+        const bool moved = (robot.moved_by(link) >> k & 1U) != 0;
+        const double moves = !moved ? 0.0 : robot.turns(k) ? cross(z, arm).norm() : 1.0;
         ASSERT_LE(moves, levers(k) + 1e-12) << "joint " << k << " of link " << link;
+        ASSERT_EQ(moved, levers(k) > 0.0);
         if (moves > 0.0) tightest = std::min(tightest, levers(k) / moves);
       }
     }
@@ -86,19 +71,18 @@ TEST(Links, no_joint_moves_a_point_by_more_than_its_lever) {
 /// The gradient of the nearest point's gap is that of the distance.
 TEST(Separation, its_gradient_is_that_of_the_distance) {
   int compared = 0;
-  for (const auto& [name, chain] : arms()) {
+  for (const auto& [name, tree] : robots()) {
     for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(100)); ++seed) {
       Random random(seed);
-      auto clearance = surrounded(chain, random);
-      const Joints q = random.uniform(clearance.links().dof(), -1.5, 1.5);
+      auto clearance = surrounded(tree, random);
+      const Joints q = random.uniform(clearance.robot().dof(), -1.5, 1.5);
       clearance.place(q);
       for (const ShapePair& pair : clearance.pairs()) {
         clearance.place(q);
         const Separation<kOpen, double> plane(clearance, pair);
         if (plane.distance < 0.01) continue;
-        const auto gradient = plane.gradient[0] + plane.at * (plane.gradient[1] - plane.gradient[0]);
-        EXPECT_NEAR(std::min(plane.gap[0], plane.gap[1]), plane.distance, 1e-12);
-        const Joints analytic = clearance.links().by_drive(gradient);
+        EXPECT_NEAR(std::min(plane.gap(0), plane.gap(1)), plane.distance, 1e-12);
+        const Joints analytic = clearance.robot().drives().by_drive(plane.of_distance());
         constexpr double kStep = 1e-6;
         for (Eigen::Index i = 0; i < q.size(); ++i) {
           const auto distance = [&](double step) {
@@ -122,11 +106,11 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
 TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
   int sure = 0;
   int clear = 0;
-  for (const auto& [name, chain] : arms()) {
+  for (const auto& [name, tree] : robots()) {
     for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(3000)); ++seed) {
       Random random(seed);
-      auto clearance = surrounded(chain, random);
-      const Eigen::Index n = clearance.links().dof();
+      auto clearance = surrounded(tree, random);
+      const Eigen::Index n = clearance.robot().dof();
       const Joints q = random.uniform(n, -1.5, 1.5);
       clearance.place(q);
       if (!(clearance.nearest_pair().second > 0.0)) continue;
@@ -164,7 +148,7 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
 /// Numbers that are none make it unsure.
 TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
   Random random(5);
-  auto clearance = surrounded(presets::panda(), random);
+  auto clearance = surrounded(tree_of(presets::panda()), random);
   const Joints q = (Joints(7) << 0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8).finished();
   const Joints none = Joints::Zero(7);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

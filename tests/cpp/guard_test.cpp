@@ -428,7 +428,7 @@ void expect_slow_tip() {
     clearance.keep(bounds);
     const auto arm = any_arm(chain);
     Random random(3);
-    const Vector<kOpen> q = spread_posture(chain, 3);
+    const Vector<kOpen> q = spread_posture(arm.limits(), 3);
     GuardedTracker<kLevel> tracker(arm, Position<3>{}, scheme<kLevel>(), State<kOpen>{q, 0.0 * q},
                                    TrackerOptions<>{kTick}, Limits<kLevel, kOpen>(arm.limits(), kTick), 0.0 * q,
                                    Guard<kLevel, kOpen>(clearance));
@@ -461,7 +461,7 @@ TEST(Guard, names_what_is_wrong) {
     bounds.velocity = velocity;
     return complaint([&] { Clearance<7>(chain, {}, {}, 0.0).keep(bounds); });
   };
-  EXPECT_EQ(bounded(8, 1.0, 1.0), "frame = 8: must be the number of a link, at most 7");
+  EXPECT_EQ(bounded(8, 1.0, 1.0), "frame = 8: must be the number of a link, at most 7, or Robot::kTip");
   EXPECT_EQ(bounded(7, 2.0, 1.0), "lower[0] = 2: must be below upper");
   EXPECT_EQ(bounded(7, 1.0, 0.0), "velocity = 0: must be positive, or infinite");
   const std::vector<LinkCapsule<>> hand = {{7, {Vector<3>::Zero(), chain.tip.p, 0.05}, "hand"}};

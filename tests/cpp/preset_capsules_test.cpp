@@ -95,13 +95,11 @@ TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
 /// Neighbours share the joint between them: a gap there would let something through.
 TEST(PresetCapsules, neighbours_touch) {
   for (const Case& arm : every_preset()) {
-    const Links<kOpen> links(arm.chain);
-    Links<kOpen>::Frames frames;
-    links.place(Vector<kOpen>::Zero(links.dof()), frames);
+    const Robot<kOpen> robot(arm.chain);
+    RobotState<kOpen> state;
+    robot.update(Vector<kOpen>::Zero(robot.dof()), state);
     const auto at_zero = [&](const LinkCapsule<>& each) {
-      const auto& [a, b, radius] = each.capsule;
-      return placed(Capsule<>{links.in_frame(each.link, a), links.in_frame(each.link, b), radius},
-                    frames[static_cast<std::size_t>(each.link)]);
+      return placed(each.capsule, robot.frame(state, each.link, robot.in_joint(each.link, {})));
     };
     std::vector<double> least(arm.chain.joints.size(), 1.0);
     for (const LinkCapsule<>& one : arm.capsules) {

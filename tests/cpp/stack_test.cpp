@@ -10,11 +10,14 @@
 
 #include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/task/axis_task.hpp"
+#include "fpbm/task/center_of_mass_task.hpp"
 #include "fpbm/task/orientation_task.hpp"
 #include "fpbm/task/pose_task.hpp"
 #include "fpbm/task/position_task.hpp"
 #include "fpbm/task/posture_task.hpp"
+#include "fpbm/task/relative_task.hpp"
 #include "support/arms.hpp"
+#include "support/bodies.hpp"
 #include "support/random.hpp"
 
 /// Stacks of tasks in strict priority: tasks are what they say they are, no level disturbs a higher one, and no bound
@@ -102,8 +105,10 @@ TEST(Robot, places_its_links_at_their_joints_frames) {
 }
 
 /// S J and S J̇ of a task by central differences of its point and of J q̇.
-template <int N, typename Task>
-void expect_derivatives(const Robot<N>& robot, Task task) {
+template <typename Task>
+inline constexpr bool kIsAxis = std::is_same_v<Task, AxisTask<>> || std::is_same_v<Task, RelativeTask<AxisTask<>>>;
+template <int N, int Joints, typename Task>
+void expect_derivatives(const Robot<N, double, Joints>& robot, Task task) {
   using Space = typename Task::Space;
   struct At {
     typename Space::template Point<double> x;
@@ -114,7 +119,7 @@ void expect_derivatives(const Robot<N>& robot, Task task) {
   task.bind(robot);
   const int dof = robot.dof();
   const auto at = [&](const Vector<N>& q, const Vector<N>& qd) {
-    RobotState<N> state;
+    RobotState<N, double, Joints> state;
     robot.update(q, qd, state);
     At result;
     result.rows.resize(Task::kRows, dof);
@@ -135,13 +140,13 @@ void expect_derivatives(const Robot<N>& robot, Task task) {
           Space::template difference<double>(at(q + h * unit, qd).x, at(q - h * unit, qd).x) / (2.0 * h);
       J.col(j) = here.S * change;
       Vector<Space::kRows> rate = (at(q + h * qd, unit).xd - at(q - h * qd, unit).xd) / (2.0 * h);
-      if constexpr (std::is_same_v<Task, AxisTask<>>) rate -= cross(here.xd, here.x) * here.x.dot(at(q, unit).xd);
+      if constexpr (kIsAxis<Task>) rate -= cross(here.xd, here.x) * here.x.dot(at(q, unit).xd);
       Jd.col(j) = here.S * rate;
     }
     EXPECT_LT((here.rows.J - J).norm(), 1e-8);
     EXPECT_LT((here.S * here.xd - here.rows.J * qd).norm(), 1e-12);
     EXPECT_LT((here.rows.Jd - Jd).norm(), 1e-7);
-    if constexpr (std::is_same_v<Task, AxisTask<>>) {
+    if constexpr (kIsAxis<Task>) {
       // Of the angular velocity at right angles to the axis.
       const auto turning = [&](const At& state) { return Vector<3>(state.xd - state.xd.dot(state.x) * state.x); };
       const Vector<3> rate = (turning(at(q + h * qd, qd)) - turning(at(q - h * qd, qd))) / (2.0 * h);
@@ -175,6 +180,53 @@ TEST(Task, has_the_rows_of_its_point_s_derivative) {
   expect_derivatives_of_all_tasks<6>(presets::ur5e());
   expect_derivatives_of_all_tasks<7>(presets::panda());
   expect_derivatives_of_all_tasks<Eigen::Dynamic>(panda_on_rail());
+}
+
+/// Frames of two arms, of the torso that carries both, and of one arm; a link that moves both moves nothing.
+template <int N, int Joints>
+void expect_derivatives_of_relative_tasks(const Tree<>& tree) {
+  const Robot<N, double, Joints> robot(tree);
+  Transform<> offset;
+  offset.p = Vector<3>(0.1, -0.2, 0.05);
+  offset.R = rotation(Vector<3>(0.3, 0.5, -0.2));
+  const TaskGains<> gains(1.0, 1.0);
+  for (const auto& [link, other] : {std::pair{9, 16}, {16, 8}, {9, 1}, {4, 0}, {5, 3}, {2, 9}}) {
+    SCOPED_TRACE(testing::Message() << "link " << link << " in " << other);
+    const LinkFrame<> frame{link, offset};
+    const LinkFrame<> reference{other, inverse(offset)};
+    expect_derivatives(robot, RelativePoseTask<>{{frame, gains}, reference});
+    expect_derivatives(robot, RelativeTask{PositionTask<2>{frame, gains, {2, 0}}, reference});
+    expect_derivatives(robot, RelativeTask{PositionTask<2>{frame, gains, {2, 0}, true}, reference});
+    expect_derivatives(robot, RelativeTask{OrientationTask<>{frame, gains}, reference});
+    expect_derivatives(robot, RelativeTask{AxisTask<>{frame, gains, Vector<3>(0.0, 2.0, 1.0)}, reference});
+  }
+  expect_derivatives(robot, CenterOfMassTask<>{gains});
+  expect_derivatives(robot, CenterOfMassTask<2>{gains, {2, 0}});
+}
+
+TEST(Task, of_a_tree_has_the_rows_of_its_point_s_derivative) {
+  Tree<> tree = two_pandas(true);
+  Random random(6);
+  tree.base = {3.0, random.uniform(3, -0.3, 0.3)};
+  for (auto& each : tree.joints) each.moved = {random.uniform(0.1, 4.0), random.uniform(3, -0.2, 0.2)};
+  tree.joints[5].joint.type = JointType::kPrismatic;
+  expect_derivatives_of_relative_tasks<16, 16>(tree);
+  tree.joints[7].joint.mimic = {3, -0.7, 0.2};
+  tree.joints[12].joint.mimic = {1, 0.5, 0.0};
+  expect_derivatives_of_relative_tasks<14, 16>(tree);
+  expect_derivatives_of_relative_tasks<Eigen::Dynamic, Eigen::Dynamic>(tree);
+}
+
+TEST(Task, names_what_does_not_suit_a_tree) {
+  const Robot<16> robot(two_pandas(true));
+  const TaskGains<> gains(1.0, 1.0);
+  const auto bound = [&](auto task) { return complaint([&] { task.bind(robot); }); };
+  EXPECT_EQ(bound(RelativePoseTask<>{{{9}, gains}, {9}}),
+            "reference_frame: moves with the task's frame, must be of another link");
+  EXPECT_EQ(bound(PoseTask<>{{kTip}, gains}),
+            "frame = -1: must be the number of a link: a tree has no tip, name one of its frames");
+  EXPECT_EQ(bound(RelativePoseTask<>{{{9}, gains}, {17}}), "frame = 17: must be the number of a link, at most 16");
+  EXPECT_EQ(bound(CenterOfMassTask<>{gains}), "robot: has no mass, must have masses of links");
 }
 
 TEST(Direction, difference_turns_one_to_the_other) {

@@ -47,20 +47,18 @@ template <Level kLevel>
 /// A frame on a link, from the clearance's own kinematics of another object.
 struct Frame {
   LinkFrame<> frame;
-  Links<kOpen> links;
   Chain<> chain;
 
-  Frame(const Chain<>& chain_, int link, const Transform<>& offset)
-      : frame(link, offset), links(chain_), chain(chain_) {}
+  Frame(const Chain<>& chain_, int link, const Transform<>& offset) : frame(link, offset), chain(chain_) {}
 
-  /// By products of the joints' transformations, without Links.
+  /// By products of the joints' transformations, without Robot.
   [[nodiscard]] Transform<> at(const Vector<kOpen>& q) const {
-    const Vector<kOpen> all = links.motion(q);
     Transform<> pose;
     const auto count = frame.link() == kTip ? static_cast<Eigen::Index>(chain.joints.size()) : frame.link();
     for (Eigen::Index i = 0; i < count; ++i) {
       const Joint<>& joint = chain.joints[static_cast<std::size_t>(i)];
-      const double position = all(i) + (joint.mimic.joint < 0 ? 0.0 : joint.mimic.offset);
+      const int leader = joint.mimic.joint < 0 ? static_cast<int>(i) : joint.mimic.joint;
+      const double position = (joint.mimic.joint < 0 ? 1.0 : joint.mimic.ratio) * q(leader) + joint.mimic.offset;
       Transform<> moved;
       const Vector<3> axis = joint.axis.normalized();
       if (joint.type == JointType::kPrismatic) {
@@ -87,7 +85,7 @@ template <Level kLevel>
 [[nodiscard]] Excess pull(const Chain<>& chain, std::uint32_t seed, int ticks) {
   Random random(seed);
   const AnyArm<Position<3>> arm = any_arm(chain);
-  const Vector<kOpen> q0 = spread_posture(chain, static_cast<int>(seed % 7) + 1);
+  const Vector<kOpen> q0 = spread_posture(arm.limits(), static_cast<int>(seed % 7) + 1);
   const auto joints = static_cast<int>(chain.joints.size());
   const auto link = [&](bool tip) { return tip ? kTip : std::max(2, joints - 1 - static_cast<int>(seed % 3)); };
   const auto offset = [&] {

@@ -445,7 +445,10 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[[task]]\nkind = 'posture'", "run.task: must be the name of a position or a pose of the stack"),
         (f"{ARM}[[task]]\nkind = 'pose'\n[run]\ntask = 'seam'", "run.task = 'seam': must be the name of a position or"),
         (f"{ARM}[[task]]\nkind = 'pose'\nlevel = 1", "task.level = 1: must be less, as level 0 is empty"),
-        (f"{ARM}[[task]]\nkind = 'pose'\nframe = 'hand'", "frame = 'hand': must be 'tip', 'base', or the joint"),
+        (
+            f"{ARM}[[task]]\nkind = 'pose'\nframe = 'hand'",
+            "frame = 'hand': must be a frame, or the joint of a link: 'base', 'tip'",
+        ),
         (f"task = 1\n{ARM}", "task = 1: must be a table"),
         (f"{ARM}[[bounds]]\nupper = 1", "bounds[0].task: is missing"),
         (f"{ARM}[[bounds]]\ntask = {{kind = 'pose'}}", "bounds[0].task.kind = 'pose': must be one of position, axis"),

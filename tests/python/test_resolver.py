@@ -165,7 +165,7 @@ def test_repr_and_level():
         (lambda: fp.WMVN([1, 0]), r"weights\[1\] = 0: must be positive"),
         (lambda: fp.WMVN([1, np.nan]), r"weights\[1\] = nan: must be positive"),
         (lambda: fp.WMVN([]), "weights has 0 entries"),
-        (lambda: fp.WMVN(np.ones(33)), "weights has 33 entries"),
+        (lambda: fp.WMVN(np.ones(65)), "weights has 65 entries"),
         (lambda: fp.WMVN("heavy"), "weights = 'heavy': must be real numbers"),
         (lambda: fp.WMVN(np.ones((2, 2, 2))), r"weights = .*: must be real numbers of shape \(n,\) or \(n, n\)"),
         (lambda: fp.WMVN(np.ones((2, 3))), r"weights = .*: must be real numbers of shape \(n,\) or \(n, n\)"),
@@ -301,7 +301,7 @@ def test_kinematics_of_ones_own(q0):
         (lambda: fp.Kinematics(np.diag([1, 1, 2, 1]), np.ones((6, 7))), r"tip.R: must be a rotation matrix"),
         (lambda: fp.Kinematics([0, np.nan], np.ones((2, 4))), r"tip\[1\] = nan: must be finite"),
         (lambda: fp.Kinematics([0, 0], [[1, 2], [3, np.inf]]), r"J\[1, 1\] = inf: must be finite"),
-        (lambda: fp.Kinematics([0, 0], np.ones((2, 33))), "a row of J has 33 entries"),
+        (lambda: fp.Kinematics([0, 0], np.ones((2, 65))), "a row of J has 65 entries"),
         (lambda: fp.Kinematics("here", np.ones((2, 4))), "tip: must be real numbers"),
     ],
 )

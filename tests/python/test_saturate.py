@@ -12,8 +12,8 @@ PROBLEMS = int(os.environ.get("FPBM_PROBLEMS", "150"))
 
 
 def random_problem(rng):
-    """2 to 32 joints, 1 to 6 levels of sizes from 1e-4 to 1e4, with rows that are zero, repeat or depend on others."""
-    n = int(rng.integers(2, 33))
+    """2 to 64 joints, 1 to 6 levels of sizes from 1e-4 to 1e4, with rows that are zero, repeat or depend on others."""
+    n = int(rng.integers(2, 65))
     lower, upper = -rng.uniform(0.1, 1.1, n), rng.uniform(0.1, 1.1, n)
     levels = []
     for _ in range(rng.integers(1, 7)):
@@ -177,7 +177,7 @@ def test_three_tasks_by_hand():
         ({"levels": [([[1, 0]], [1, 2])]}, r"levels\[0\]'s b"),
         ({"levels": [([[1, 0, 0]], [1])]}, r"levels\[0\]'s J"),
         ({"levels": [([[1, np.nan]], [1])]}, "finite"),
-        ({"levels": [(np.zeros((33, 2)), np.zeros(33))]}, "number of rows"),
+        ({"levels": [(np.zeros((65, 2)), np.zeros(65))]}, "number of rows"),
         ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper, which is 1"),
         ({"upper": [1, np.nan]}, r"upper\[1\]"),
         ({"rest": [0, 3]}, r"rest\[1\] = 3: must be from lower to upper"),

@@ -151,8 +151,8 @@ def test_bounds_of_a_table():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: fp.SerialArm([]), "joints has 0 entries: must have 1 to 32"),
-        (lambda: fp.SerialArm([fp.Joint()] * 33), "joints has 33 entries: must have 1 to 32"),
+        (lambda: fp.SerialArm([]), "joints has 0 entries: must have 1 to 64"),
+        (lambda: fp.SerialArm([fp.Joint()] * 65), "joints has 65 entries: must have 1 to 64"),
         (
             lambda: fp.SerialArm([fp.Joint("helical")]),
             "type = 'helical': must be one of revolute, continuous, prismatic",

@@ -303,8 +303,11 @@ def test_wrong_tasks(make, message):
     ("stack", "message"),
     [
         (3, "stack: must be a Stack"),
-        (fp.Stack(fp.PoseTask("elbow")), "frame = 'elbow': must be 'tip', 'base', or"),
-        (fp.Stack(fp.PostureTask(joints=("elbow",))), "joints: the arm has no joint 'elbow'"),
+        (
+            fp.Stack(fp.PoseTask("elbow")),
+            "frame = 'elbow': must be a frame, or the joint of a link: 'base', 'tip', 'panda_joint1'",
+        ),
+        (fp.Stack(fp.PostureTask(joints=("elbow",))), "joints: the robot has no joint 'elbow'"),
         (fp.Stack(fp.PostureTask([1, 2])), "posture"),
         (fp.Stack([fp.PoseTask(), fp.PositionTask()]), "rows of level.0. = 9"),
         (fp.Stack([fp.AxisTask(name=n) for n in "abc"]), "more than two tasks of frames"),

@@ -533,12 +533,12 @@ REFUSED = {
     ),
     # The way.
     two_links(joint("a", "base", "tip", type="fixed")): (
-        "no joints move between base 'base' and tip 'tip': must be 1 to 32"
+        "no joints move between base 'base' and tip 'tip': must be 1 to 64"
     ),
-    robot(link("tip")): "no joints move between base 'tip' and tip 'tip': must be 1 to 32",
-    robot(link("0", *map(str, range(1, 33)), "tip"), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(32))).replace(
-        "</robot>", joint("last", "32", "tip") + "</robot>"
-    ): "33 joints move between base '0' and tip 'tip': must be 1 to 32",
+    robot(link("tip")): "no joints move between base 'tip' and tip 'tip': must be 1 to 64",
+    robot(link("0", *map(str, range(1, 65)), "tip"), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(64))).replace(
+        "</robot>", joint("last", "64", "tip") + "</robot>"
+    ): "65 joints move between base '0' and tip 'tip': must be 1 to 64",
     # Mimics.
     three_links(mimic("a"), Z + LIMIT): "mimics form a loop: 'a', 'a'",
     three_links(mimic("b"), mimic("a")): "mimics form a loop: 'a', 'b', 'a'",
@@ -552,11 +552,11 @@ REFUSED = {
     three_links(Z + LIMIT, mimic("a", limit="")): "joint 'b' is revolute and has no <limit> with a velocity",
     three_links(Z + LIMIT, mimic("a")).replace("revolute", "fixed", 1): ("no joints move but those that are held: 'b'"),
     robot(
-        link("base", "tip", *(f"l{i}" for i in range(40))),
+        link("base", "tip", *(f"l{i}" for i in range(71))),
         joint("j0", "base", "tip", mimic("j1")),
-        *(joint(f"j{i + 1}", "base", f"l{i}", mimic(f"j{i + 2}")) for i in range(39)),
-        joint("j40", "base", "l39"),
-    ): "joint 'j0': more than 32 joints mimic one another in a row",
+        *(joint(f"j{i + 1}", "base", f"l{i}", mimic(f"j{i + 2}")) for i in range(70)),
+        joint("j71", "base", "l70"),
+    ): "joint 'j0': more than 64 joints mimic one another in a row",
 }
 
 
@@ -580,7 +580,7 @@ def test_refused(text: str, message: str, write) -> None:
             "tip 'torso' is not below base 'hand', they have 'torso' in common: "
             "base must lie between the root 'root' and the tip",
         ),
-        ("hand", "hand", "no joints move between base 'hand' and tip 'hand': must be 1 to 32"),
+        ("hand", "hand", "no joints move between base 'hand' and tip 'hand': must be 1 to 64"),
     ],
 )
 def test_links_with_no_chain_between(tip: str, base: str, message: str, write) -> None:
@@ -605,9 +605,9 @@ def test_names_of_no_links(tip: str, base: str | None, message: str, write) -> N
     assert (caught.value.name, caught.value.value) == (("tip", tip) if base is None else ("base", base))
 
 
-def test_32_joints_are_read(write) -> None:
-    text = robot(link(*map(str, range(33))), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(32)))
-    assert len(read_urdf(write(text), "32")[0]) == 32
+def test_64_joints_are_read(write) -> None:
+    text = robot(link(*map(str, range(65))), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(64)))
+    assert len(read_urdf(write(text), "64")[0]) == 64
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
@@ -773,7 +773,7 @@ def test_ur5() -> None:
 
 
 # Sensors that nothing moves, grippers' fingers, wheels and joints locked by their bounds.
-KNOWN_REASONS = ("must be 1 to 32", "those that are held", "must be positive", "must be below")
+KNOWN_REASONS = ("must be 1 to 64", "those that are held", "must be positive", "must be below")
 
 
 @with_robots

@@ -37,11 +37,11 @@ def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None)
     name = os.fsdecode(path)
     try:
         links, every = read_robot(name)
-        above = _tree(links, every)
+        above = tree_of(links, every)
         way = _way(above, tip, base)
-        follows = _follows(way, {joint.name: joint.mimic for joint in every})
+        follows = follows_of(way, {joint.name: joint.mimic for joint in every})
         joints, places, held = _chain(way, follows)
-        joints, frame = _coupled(joints, follows), places[tip][1]
+        joints, frame = coupled_joints(joints, follows), places[tip][1]
         places = _all_places(above, places)
     except ParameterError:
         raise
@@ -55,7 +55,8 @@ def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None)
     return joints, frame, places
 
 
-def _tree(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
+def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
+    """The joint above each link; a ValueError says why they are no tree."""
     above: Tree = dict.fromkeys(links)
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
@@ -68,14 +69,15 @@ def _tree(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
     try:
         TopologicalSorter({link: (joint.parent,) for link, joint in above.items() if joint}).prepare()
     except CycleError as error:
-        raise ValueError(f"its links form a loop: {_listed(error.args[1])}") from None
+        raise ValueError(f"its links form a loop: {listed(error.args[1])}") from None
     roots = [link for link, joint in above.items() if joint is None]
     if len(roots) != 1:
-        raise ValueError(f"links that are no joint's child: {_listed(roots)}: must be one, the root")
+        raise ValueError(f"links that are no joint's child: {listed(roots)}: must be one, the root")
     return above
 
 
-def _listed(names: Iterable[str]) -> str:
+def listed(names: Iterable[str]) -> str:
+    """Names as messages show them, 12 at most."""
     shown = list(map(repr, names))
     more = [f"{len(shown) - 12} more"] if len(shown) > 12 else []
     return ", ".join(shown[:12] + more) or "none"
@@ -118,10 +120,10 @@ def _hint(above: Tree, link: str) -> str:
     leaves = (name for name in above if name not in parents)
     ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
     close = difflib.get_close_matches(link, list(above)[:300])  # Of thousands it would take long.
-    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {_listed(ends)}"
+    return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {listed(ends)}"
 
 
-def _follows(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
+def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
     """For each joint on the way that mimics: the joint that it follows in the end, which mimics none."""
     follows = {}
     for joint in way:
@@ -136,7 +138,7 @@ def _follows(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> d
             if leader not in mimics:
                 raise ValueError(f"joint {passed[-1]!r} mimics {leader!r}, which does not exist")
             if leader in passed:
-                raise ValueError(f"mimics form a loop: {_listed([*passed[passed.index(leader) :], leader])}")
+                raise ValueError(f"mimics form a loop: {listed([*passed[passed.index(leader) :], leader])}")
             if len(passed) > MAX_DOF:
                 raise ValueError(f"joint {joint.name!r}: more than {MAX_DOF} joints mimic one another in a row")
         if not (0.0 < abs(ratio) < inf and abs(offset) < 1e100):
@@ -151,27 +153,32 @@ def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Jo
     moving = {joint.name for joint in way if joint.type != "fixed"}
     joints: list[Joint] = []
     held = []
-    frame = _frame()
+    frame = frame_at()
     places: Places = {way[0].parent: (0, frame)}
     for joint in way:
         if joint.type not in TYPES:
             raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES[:-1])} or fixed")
         frame = frame @ pose(joint.xyz, joint.rpy)
         if joint.type != "fixed":
-            if not np.any(joint.axis):
-                raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
             leader, _, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
             if leader in moving:
-                joints.append(_joint(joint, frame))
-                frame = _frame()
+                joints.append(chain_joint(joint, frame))
+                frame = frame_at()
             else:
                 held.append(joint)
-                along = offset * np.array(joint.axis) / np.linalg.norm(joint.axis)
-                frame = frame @ (_frame(p=along) if joint.type == "prismatic" else _frame(R=rotation(along)))
+                frame = frame @ step_of(joint, offset)
         places[joint.child] = (len(joints), frame)
     if not joints:
-        raise ValueError(f"no joints move but those that are held: {_listed(joint.name for joint in held)}")
+        raise ValueError(f"no joints move but those that are held: {listed(joint.name for joint in held)}")
     return joints, places, held
+
+
+def step_of(joint: UrdfJoint, position: float) -> Array:
+    """What a joint at a position moves its link by."""
+    if not np.any(joint.axis):
+        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
+    along = position * np.array(joint.axis) / np.linalg.norm(joint.axis)
+    return frame_at(p=along) if joint.type == "prismatic" else frame_at(R=rotation(along))
 
 
 def _all_places(above: Tree, known: Places) -> Places:
@@ -195,16 +202,20 @@ def _all_places(above: Tree, known: Places) -> Places:
 def pose(xyz: ArrayLike, rpy: Iterable[float]) -> Array:
     """The frame of a URDF's <origin>."""
     roll, pitch, yaw = rpy
-    return _frame(xyz, rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0]))
+    return frame_at(xyz, rotation([0, 0, yaw]) @ rotation([0, pitch, 0]) @ rotation([roll, 0, 0]))
 
 
-def _frame(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> Array:
+def frame_at(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> Array:
+    """A homogeneous matrix."""
     T = np.eye(4)
     T[:3, 3], T[:3, :3] = p, R
     return T
 
 
-def _joint(joint: UrdfJoint, placement: Array) -> Joint:
+def chain_joint(joint: UrdfJoint, placement: Array) -> Joint:
+    """A joint that moves, with its bounds; a ValueError says what is wrong with them."""
+    if not np.any(joint.axis):
+        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
     # The format's defaults.
     limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, "jerk": inf, **joint.limit}
     if joint.type == "continuous":
@@ -232,7 +243,7 @@ def _envelope(joint: UrdfJoint) -> dict[str, float]:
     return {"velocity_offset": offset, "deceleration": deceleration}
 
 
-def _coupled(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
+def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
     """The joints with their mimics, and each leader bounded so that its followers stay within their own bounds."""
     coupled = list(joints)
     index = {joint.name: i for i, joint in enumerate(joints)}

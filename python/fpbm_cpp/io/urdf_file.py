@@ -1,10 +1,14 @@
 """The links and joints of a URDF file: what a chain is made of.
 
-Meshes, masses, transmissions and simulators' extras are not read.
+Meshes, transmissions and simulators' extras are not read, masses where they are asked for.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numpy as np
+
+from .._types import Array
 from .xml_file import Element, Kept, named, read_xml
 
 # The attributes that are read, by the elements that they are in.
@@ -22,6 +26,18 @@ KEPT: Kept = {
         "mimic": ("joint", "multiplier", "offset"),
     },
 }
+INERTIALS: Kept = {
+    **KEPT,
+    ("robot", "link"): {"inertial": ()},
+    ("robot", "link", "inertial"): {"origin": ("xyz",), "mass": ("value",)},
+}
+
+
+class Mass(NamedTuple):
+    """Mass of a link [kg], and its centre in the link's frame [m]."""
+
+    mass: float
+    center: Array
 
 
 @dataclass(frozen=True)
@@ -42,7 +58,24 @@ class UrdfJoint:
 
 def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
     """Read the names of the links, and the joints; a ValueError says what is wrong with the file."""
-    robot = read_xml(path, KEPT)
+    return _links_and_joints(read_xml(path, KEPT))
+
+
+def read_robot_with_masses(path: str) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
+    """The same, and the masses of the links that have one."""
+    robot = read_xml(path, INERTIALS)
+    links, joints = _links_and_joints(robot)
+    masses: dict[str, Mass] = {}
+    for name, link in named(robot.all("link")).items():
+        for inertial in link.all("inertial")[:1]:
+            (mass,) = inertial.numbers("mass", "value", [0.0], f"link {name!r}")
+            if mass < 0.0:
+                raise ValueError(f"link {name!r}: mass = {mass:g}: must not be negative")
+            masses[name] = Mass(mass, np.array(inertial.numbers("origin", "xyz", [0.0] * 3, f"link {name!r}")))
+    return links, joints, masses
+
+
+def _links_and_joints(robot: Element) -> tuple[list[str], list[UrdfJoint]]:
     for joint in robot.all("joint"):
         joint.require_one_each(f"joint {joint.attributes.get('name')!r}")
     links, joints = named(robot.all("link")), named(robot.all("joint"))

@@ -11,15 +11,37 @@
 /// Arms with shapes, and surroundings for them.
 namespace fpbm::test {
 
-/// A capsule along each link, from its joint to the next.
-[[nodiscard]] inline std::vector<LinkCapsule<>> sticks(const Chain<>& chain, double radius) {
+/// A capsule along each link, from its joint to the next, or to a frame.
+[[nodiscard]] inline std::vector<LinkCapsule<>> sticks(const Tree<>& tree, double radius) {
   std::vector<LinkCapsule<>> capsules;
-  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-    const Vector<3> end = i + 1 < chain.joints.size() ? chain.joints[i + 1].placement.p : chain.tip.p;
-    if (i + 1 < chain.joints.size() && !(end.norm() > 0.01)) continue;
-    capsules.push_back({static_cast<int>(i) + 1, {Vector<3>::Zero(), end, radius}, "link" + std::to_string(i + 1)});
-  }
+  const auto add = [&](int link, const Vector<3>& end, bool is_last) {
+    if (link == 0 || (!is_last && !(end.norm() > 0.01))) return;
+    capsules.push_back({link, {Vector<3>::Zero(), end, radius}, "link" + std::to_string(link)});
+  };
+  for (const auto& [joint, parent, moved] : tree.joints) add(parent, joint.placement.p, false);
+  for (const auto& [name, link, offset] : tree.frames) add(link, offset.p, true);
   return capsules;
+}
+[[nodiscard]] inline std::vector<LinkCapsule<>> sticks(const Chain<>& chain, double radius) {
+  return sticks(tree_of(chain), radius);
+}
+
+/// Two Pandas, on a torso that leans and turns, or side by side.
+[[nodiscard]] inline Tree<> two_pandas(bool with_torso) {
+  if (!with_torso) return presets::two_pandas();
+  Tree<> tree;
+  Chain<> torso;
+  torso.joints.resize(2);
+  torso.joints[0].axis = {0.0, 1.0, 0.0};
+  torso.joints[1].placement.p = {0.0, 0.0, 0.4};
+  for (auto& joint : torso.joints) joint.bounds = {-0.7, 0.7, 1.0, 5.0};
+  const int chest = add_arm(tree, torso, "torso");
+  Transform<> place;
+  for (const char* name : {"right", "left"}) {
+    place.p(1) = tree.joints.size() == 2 ? -0.4 : 0.4;
+    add_arm(tree, presets::panda(), name, chest, place);
+  }
+  return tree;
 }
 
 [[nodiscard]] inline Vector<3> random_direction(Random& random) {

@@ -1,18 +1,21 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "fpbm/core/direction.hpp"
 #include "fpbm/core/space.hpp"
+#include "fpbm/model/center_of_mass.hpp"
 #include "fpbm/model/link.hpp"
 #include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/link_frame.hpp"
+#include "fpbm/task/relative_task.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
 
-/// What a task controls of a frame.
-enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis };
+/// What a task controls: coordinates of a frame, or the position of the centre of mass, which has no frame.
+enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis, kCenterOfMass };
 
 /// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows first,
 /// then angular, in the base frame's axes.
@@ -50,8 +53,8 @@ struct FrameSpace {
   }
 };
 
-/// A task of a frame whose kind and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask,
-/// and a pose of fewer rows.
+/// A task of a frame whose kind and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask, a
+/// pose of fewer rows, and all of them relative to another frame (RelativeTask); or a CenterOfMassTask.
 class AnyFrameTask {
  public:
   using Scalar = double;
@@ -67,11 +70,13 @@ class AnyFrameTask {
   AnyFrameTask() = default;
 
   /// selected: rows that the kind does not have are ignored; kAxis ignores all. in_frame: along the frame's axes,
-  /// otherwise the base frame's. axis: in the frame, read by kAxis alone. Throws std::invalid_argument where no row is
-  /// selected, or the axis is zero or not finite.
+  /// otherwise the base frame's. axis: in the frame, read by kAxis alone. reference: the frame that all is relative to,
+  /// in place of the base frame. Throws std::invalid_argument where no row is selected, or the axis is zero or not
+  /// finite.
   AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
-               bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0})
-      : gains(gains_), frame_(frame), kind_(kind), in_frame_(in_frame) {
+               bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0},
+               const std::optional<LinkFrame<>>& reference = std::nullopt)
+      : gains(gains_), frame_(frame), reference_(reference), kind_(kind), in_frame_(in_frame) {
     if (kind == FrameCoordinates::kAxis) {
       validation::require_finite("axis", axis);
       if (!(norm(axis) > 0.0)) validation::reject("axis", " is zero: must point somewhere");
@@ -81,7 +86,8 @@ class AnyFrameTask {
     }
     for (int row = 0; row < 6; ++row) {
       const bool linear = row < 3;
-      const bool has = linear ? kind != FrameCoordinates::kOrientation : kind != FrameCoordinates::kPosition;
+      const bool has = linear ? kind != FrameCoordinates::kOrientation
+                              : kind == FrameCoordinates::kOrientation || kind == FrameCoordinates::kPose;
       if (has && selected[static_cast<std::size_t>(row)]) rows_[static_cast<std::size_t>(count_++)] = row;
     }
     if (count_ == 0) validation::reject("rows", " select no row of the task: must select one");
@@ -91,7 +97,12 @@ class AnyFrameTask {
 
   template <typename Robot>
   void bind(const Robot& robot) {
+    if (kind_ == FrameCoordinates::kCenterOfMass) return require_mass(robot);
     frame_.bind(robot);
+    if (reference_) {
+      reference_->bind(robot);
+      require_relative_motion(robot, frame_, *reference_);
+    }
   }
 
   template <typename Robot, typename Rows>
@@ -101,6 +112,18 @@ class AnyFrameTask {
     x.is_empty = count_ == 0;
     S.resize(count_, 6);
     if (count_ == 0) return;
+    if (kind_ == FrameCoordinates::kCenterOfMass) return evaluate_center(robot, state, x, xd, S, level);
+    if (reference_) {
+      evaluate_frame(SeenFrom<Robot>(robot, state, *reference_), state, x, xd, S, level);
+    } else {
+      evaluate_frame(robot, state, x, xd, S, level);
+    }
+  }
+
+ private:
+  template <typename Robot, typename Rows>
+  void evaluate_frame(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x,
+                      Vector<6>& xd, Matrix<Eigen::Dynamic, 6>& S, Rows level) const noexcept {
     x.at = frame_.at(robot, state);
     if (x.is_axis) x.at.R = times(x.at.R, to_axis_);
     // Along the frame's axes, or the base frame's: of linear and angular rows.
@@ -135,8 +158,25 @@ class AnyFrameTask {
     }
   }
 
- private:
+  template <typename Robot, typename Rows>
+  void evaluate_center(const Robot& robot, const typename Robot::State& state, FrameSpace::Point<double>& x,
+                       Vector<6>& xd, Matrix<Eigen::Dynamic, 6>& S, Rows level) const noexcept {
+    x.at = {};
+    xd = filled<Vector<6>>(6);
+    Vector<3> v;
+    Matrix<3, Robot::kDof> J;
+    Matrix<3, Robot::kDof> Jd;
+    center_of_mass(robot, state, x.at.p, v, J, Jd);
+    for (int i = 0; i < 3; ++i) xd(i) = v(i);
+    for (int i = 0; i < count_; ++i) {
+      const int row = rows_[static_cast<std::size_t>(i)];
+      for (int j = 0; j < 6; ++j) S(i, j) = j == row ? 1.0 : 0.0;
+      for (Eigen::Index j = 0; j < J.cols(); j += 2) level.set(i, j, two_of_row(J, row, j), two_of_row(Jd, row, j));
+    }
+  }
+
   LinkFrame<> frame_ = LinkFrame<>(0);
+  std::optional<LinkFrame<>> reference_;
   FrameCoordinates kind_ = FrameCoordinates::kPose;
   bool in_frame_ = false;
   int count_ = 0;

@@ -10,34 +10,34 @@
 
 namespace fpbm {
 
-/// A sweep of an arm's joints, as joints of its chain.
+/// A sweep of a robot's drives, as one of its joints.
 template <int N, typename Scalar>
-struct ChainSweep {
-  using ChainVector = typename Links<N, Scalar>::ChainVector;
+struct JointSweep {
+  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
 
-  ChainVector way;
-  ChainVector tick;
-  ChainVector low;
-  ChainVector high;
-  ChainVector rest;  ///< Most that all but `way` displaces a joint, either way.
+  AllJoints way;
+  AllJoints tick;
+  AllJoints low;
+  AllJoints high;
+  AllJoints rest;  ///< Most that all but `way` displaces a joint, either way.
 
-  ChainSweep(const Links<N, Scalar>& links, const Sweep<N, Scalar>& sweep) noexcept
-      : way(links.motion(sweep.way)),
-        tick(links.motion(sweep.tick)),
-        low(links.least(sweep.low, sweep.high)),
-        high(-links.least(-sweep.high, -sweep.low)),
+  JointSweep(const Drives<N, Eigen::Dynamic, Scalar>& drives, const Sweep<N, Scalar>& sweep) noexcept
+      : way(drives.rates(sweep.way)),
+        tick(drives.rates(sweep.tick)),
+        low(drives.least(sweep.low, sweep.high)),
+        high(-drives.least(-sweep.high, -sweep.low)),
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 
   /// Least that all but `way` adds to what has this gradient.
-  [[nodiscard]] Scalar least(const ChainVector& gradient) const noexcept {
+  [[nodiscard]] Scalar least(const AllJoints& gradient) const noexcept {
     return least_of_own(gradient) + std::min(gradient.dot(tick), Scalar(0));
   }
   /// The same of low and high alone.
-  [[nodiscard]] Scalar least_of_own(const ChainVector& gradient) const noexcept {
+  [[nodiscard]] Scalar least_of_own(const AllJoints& gradient) const noexcept {
     return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum();
   }
-  /// Whether `way` and `tick` together never reduce what has this gradient. begun: of the sweep, by the chain's joints.
-  [[nodiscard]] bool opens(const ChainVector& gradient, const ChainVector& begun) const noexcept {
+  /// Whether `way` and `tick` together never reduce what has this gradient. begun: of the sweep, by the joints.
+  [[nodiscard]] bool opens(const AllJoints& gradient, const AllJoints& begun) const noexcept {
     return gradient.dot(begun) >= Scalar(0) && gradient.dot(tick) <= Scalar(0);
   }
 };
@@ -52,41 +52,50 @@ struct Bend {
   Scalar c1 = Scalar(0);
   Scalar c2 = Scalar(0);
 
-  Bend(const Clearance<N, Scalar>& clearance, const ShapePair& pair, const ChainSweep<N, Scalar>& sweep) noexcept {
-    const auto& body = clearance.bodies()[pair.first];
+  Bend(const Clearance<N, Scalar>& clearance, const ShapePair& pair, const JointSweep<N, Scalar>& sweep) noexcept {
+    add(clearance, clearance.bodies()[pair.first], pair.by_first, sweep);
+    if (pair.by_second != 0) add(clearance, clearance.bodies()[pair.second], pair.by_second, sweep);
+  }
+
+ private:
+  /// That of the way of one body.
+  void add(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body, JointBits joints,
+           const JointSweep<N, Scalar>& sweep) noexcept {
     Scalar way(0);  // Turned by joints so far.
     Scalar rest(0);
-    for (Eigen::Index k = pair.world ? 0 : clearance.bodies()[pair.second].link; k < body.link; ++k) {
+    each_joint(joints, [&](Eigen::Index k) noexcept {
       const Scalar lever = body.levers(k);
       const Scalar v = std::abs(sweep.way(k));
       const Scalar e = sweep.rest(k);
-      const Scalar half = clearance.links().turns(k) ? Scalar(0.5) : Scalar(0);
+      const Scalar half = clearance.robot().turns(k) ? Scalar(0.5) : Scalar(0);
       c0 += lever * e * (half * e + rest);
       c1 += lever * (v * (Scalar(2) * half * e + rest) + e * way);
       c2 += lever * v * (half * v + way);
       way += Scalar(2) * half * v;
       rest += Scalar(2) * half * e;
-    }
+    });
   }
 };
 
 /// Most that a sweep's way, t of it, and its rest can bring a pair nearer, by the levers of its joints.
 template <int N, typename Scalar>
 [[nodiscard]] Scalar reach(const Clearance<N, Scalar>& clearance, const ShapePair& pair,
-                           const ChainSweep<N, Scalar>& sweep, Scalar t) noexcept {
-  const auto& body = clearance.bodies()[pair.first];
+                           const JointSweep<N, Scalar>& sweep, Scalar t) noexcept {
   Scalar sum(0);
-  for (Eigen::Index k = pair.world ? 0 : clearance.bodies()[pair.second].link; k < body.link; ++k) {
-    sum += body.levers(k) * (t * std::abs(sweep.way(k)) + sweep.rest(k));
-  }
+  const auto add = [&](const Body<Scalar>& body, JointBits joints) noexcept {
+    each_joint(joints,
+               [&](Eigen::Index k) noexcept { sum += body.levers(k) * (t * std::abs(sweep.way(k)) + sweep.rest(k)); });
+  };
+  add(clearance.bodies()[pair.first], pair.by_first);
+  if (pair.by_second != 0) add(clearance.bodies()[pair.second], pair.by_second);
   return sum;
 }
 
 /// What joints that take their own quickest stop may take from a gap, beyond its slope at their speed for some time.
 template <int N, typename Scalar>
-[[nodiscard]] Scalar beyond_slope(const ChainSweep<N, Scalar>& sweep,
-                                  const typename ChainSweep<N, Scalar>::ChainVector& speed,
-                                  const typename ChainSweep<N, Scalar>::ChainVector& gradient, Scalar time) noexcept {
+[[nodiscard]] Scalar beyond_slope(const JointSweep<N, Scalar>& sweep,
+                                  const typename JointSweep<N, Scalar>::AllJoints& speed,
+                                  const typename JointSweep<N, Scalar>::AllJoints& gradient, Scalar time) noexcept {
   Scalar beyond(0);
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     const Scalar least = std::min(gradient(k) * sweep.low(k), gradient(k) * sweep.high(k));
@@ -125,7 +134,7 @@ template <int N, typename Scalar>
     return drives.way.coeff(i) + drives.tick.coeff(i) + drives.low.coeff(i) + drives.high.coeff(i);
   };
   if (!is_finite(entrywise(drives.way, all))) return false;
-  const ChainSweep<N, Scalar> sweep(clearance.links(), drives);
+  const JointSweep<N, Scalar> sweep(clearance.robot().drives(), drives);
   clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
   OpenPairs& open = clearance.open();
   open.open_all();
@@ -138,7 +147,7 @@ template <int N, typename Scalar>
       const Scalar moves = pair.world ? time * clearance.obstacles()[pair.second].velocity.norm() : Scalar(0);
       if (moves > Scalar(0) && pairs == Pairs::kAtRest) return true;
       const Scalar most = clearance.margin() + moves;
-      if (clearance.roughly(pair) >= most + clearance.bodies()[pair.first].reach) return true;
+      if (clearance.roughly(pair) >= most + clearance.reach_of(pair)) return true;
       const Scalar needs = most + reach(clearance, pair, sweep, whole);
       const Nearest<Scalar> nearest = clearance.nearest_of(pair);
       if (nearest.distance >= needs) return true;
@@ -151,12 +160,13 @@ template <int N, typename Scalar>
       }
       const Bend<N, Scalar> bend(clearance, pair, sweep);
       Scalar sure = whole;
-      for (int e = 0; e < 2; ++e) {
-        const auto& g = plane.gradient[e];
-        const Scalar gap = plane.gap[e] - clearance.margin() - bend.c0 - time * std::max(plane.closing, Scalar(0));
+      for (int k = 0; k < 2 * plane.seconds; ++k) {
+        const auto g = plane.gradient_of(k % 2, k / 2);
+        const Scalar gap =
+            plane.gap(k % 2, k / 2) - clearance.margin() - bend.c0 - time * std::max(plane.closing, Scalar(0));
         const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
         Scalar far = furthest(gap + sweep.least(g), slope, bend.c2, whole);
-        if (far < whole && done == Scalar(0) && sweep.opens(g, clearance.links().motion(drives.begun))) {
+        if (far < whole && done == Scalar(0) && sweep.opens(g, clearance.robot().drives().rates(drives.begun))) {
           far = std::max(furthest(gap + sweep.least_of_own(g), bend.c1, bend.c2, whole), far);
         }
         sure = std::min(far, sure);  // In this order NaN stays.

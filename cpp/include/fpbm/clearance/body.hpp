@@ -4,21 +4,19 @@
 #include <string>
 #include <utility>
 
+#include "fpbm/clearance/levers.hpp"
 #include "fpbm/clearance/shape.hpp"
-#include "fpbm/model/links.hpp"
 
 namespace fpbm {
 
-/// One of an arm's capsules, and where it is. The body of a bound on a task is a point of a link, or a unit vector that
-/// turns with a link: a point that only turning joints move, by no more than their angles.
-template <int N, typename Scalar>
+/// One of a robot's capsules, and where it is. The body of a bound on a task is a point of a link, or a unit vector
+/// that turns with a link: a point that only turning joints move, by no more than their angles.
+template <typename Scalar>
 struct Body {
-  using ChainVector = typename Links<N, Scalar>::ChainVector;
-
-  Eigen::Index link;
-  Capsule<Scalar> in_link;
+  int link;
+  Capsule<Scalar> in_link;  ///< Seen from the link's joint.
   std::string name;
-  ChainVector levers;  ///< Of both ends, the longer.
+  Vector<Eigen::Dynamic, Scalar> levers;  ///< Of both ends, the longer, by joint.
   Capsule<Scalar> now;
   Vector<3, Scalar> centre;
   Scalar size;               ///< Radius of the ball around it.
@@ -26,24 +24,17 @@ struct Body {
   bool is_direction = false;
   Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Most toward a bound of a task.
 
-  Body(const Links<N, Scalar>& links, Eigen::Index link_, const Capsule<Scalar>& capsule, std::string name_)
+  /// capsule: in the link's frame, which the link's joint sees at in_joint.
+  Body(const Levers<Scalar>& levers_of, int link_, const Transform<Scalar>& in_joint, const Capsule<Scalar>& capsule,
+       std::string name_)
       : link(link_),
-        in_link(capsule),
+        in_link(placed(capsule, in_joint)),
         name(std::move(name_)),
-        levers(links.levers(link, capsule.a).cwiseMax(links.levers(link, capsule.b))) {
+        levers(levers_of(link, capsule.a).cwiseMax(levers_of(link, capsule.b))) {
     place({});
   }
 
-  /// A unit vector of a link, as a point that translations do not move. radius: see Clearance::keep_above().
-  [[nodiscard]] static Body direction(const Links<N, Scalar>& links, Eigen::Index link, const Vector<3, Scalar>& axis,
-                                      Scalar radius, std::string name) {
-    Body body(links, link, {axis, axis, radius}, std::move(name));
-    for (Eigen::Index k = 0; k < link; ++k) body.levers(k) = links.turns(k) ? Scalar(1) : Scalar(0);
-    body.is_direction = true;
-    return body;
-  }
-
-  /// frame: that of its link.
+  /// frame: that of the link's joint.
   void place(const Transform<Scalar>& frame) noexcept {
     now = placed(in_link, frame);
     set_ball();

@@ -12,21 +12,22 @@
 #include "fpbm/clearance/link_capsule.hpp"
 #include "fpbm/clearance/obstacle.hpp"
 #include "fpbm/clearance/open_pairs.hpp"
-#include "fpbm/model/links.hpp"
+#include "fpbm/model/robot.hpp"
 #include "fpbm/model/spread_posture.hpp"
 #include "fpbm/task/link_frame.hpp"
 
 namespace fpbm {
 
-/// What an arm must keep clear of: itself and its surroundings, by a margin. Shapes of the world may move; all else is
+/// What a robot must keep clear of: itself and its surroundings, by a margin. Shapes of the world may move; all else is
 /// settled at construction.
 template <int N, typename Scalar = double>
 class Clearance {
  public:
   using JointVector = Vector<N, Scalar>;
   using Vector3 = Vector<3, Scalar>;
-  using ChainVector = typename Links<N, Scalar>::ChainVector;
-  using Body = fpbm::Body<N, Scalar>;
+  using Tree = Robot<N, Scalar, Eigen::Dynamic>;  ///< Of joints that have a drive, and any that follow them.
+  using AllJoints = Vector<Eigen::Dynamic, Scalar>;
+  using Body = fpbm::Body<Scalar>;
   using Names = std::pair<std::string, std::string>;
 
   /// Most of the speed of a body over some coordinates of the base frame [m/s], or [rad/s] of a direction.
@@ -36,19 +37,19 @@ class Clearance {
     Scalar most;
   };
 
-  /// margin: least distance of a pair [m]. allowed: names of pairs that need not be kept apart. Links next to one
-  /// another need not either. Throws std::invalid_argument where a number is out of range, a link does not exist, or
-  /// the arm reaches beyond a prismatic joint without ends.
-  Clearance(const Chain<Scalar>& chain, const std::vector<LinkCapsule<Scalar>>& capsules,
+  /// source: the Tree or the Chain of the robot. margin: least distance of a pair [m]. allowed: names of pairs that
+  /// need not be kept apart. Links next to one another need not either. Throws std::invalid_argument where a number is
+  /// out of range, a link does not exist, or the robot reaches beyond a prismatic joint without ends.
+  template <typename Source>
+  Clearance(const Source& source, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
-      : links_(chain), tip_(chain.tip), obstacles_(obstacles), margin_(margin) {
+      : robot_(source), levers_(source), obstacles_(obstacles), margin_(margin) {
     validation::require_non_negative("margin", margin);
     for (std::size_t i = 0; i < capsules.size(); ++i) {
       const auto& [link, capsule, name] = capsules[i];
       const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
-      capsules[i].require_sound(argument, links_.count());
-      const Capsule<Scalar> placed{links_.in_frame(link, capsule.a), links_.in_frame(link, capsule.b), capsule.radius};
-      bodies_.emplace_back(links_, link, placed, name);
+      capsules[i].require_sound(argument, robot_.joints());
+      bodies_.emplace_back(levers_, link, robot_.in_joint(link, {}), capsule, name);
       if (!bodies_.back().levers.allFinite()) {
         validation::reject(argument, " moves with a prismatic joint that has no ends");
       }
@@ -62,26 +63,27 @@ class Clearance {
     };
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       for (std::size_t j = 0; j < bodies_.size(); ++j) {
-        if (bodies_[i].link <= bodies_[j].link + 1 || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
-        pairs_.push_back({i, j, false});
+        if (!may_meet(bodies_[i].link, bodies_[j].link) || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
+        pairs_.push_back(pair_of_bodies(i, j));
       }
       for (std::size_t j = 0; j < obstacles_.size(); ++j) {
         if (bodies_[i].link == 0 || is_allowed(bodies_[i].name, obstacles_[j].name)) continue;
-        pairs_.push_back({i, j, true});
+        pairs_.push_back({i, j, true, robot_.moved_by(bodies_[i].link), 0});
       }
     }
     shapes_ = bodies_.size();
-    leave_out_overlaps(chain);
+    leave_out_overlaps();
     open_.resize(pairs_.size());
     shape_pairs_ = pairs_.size();
   }
 
-  [[nodiscard]] const Links<N, Scalar>& links() const noexcept { return links_; }
+  [[nodiscard]] const Tree& robot() const noexcept { return robot_; }
   [[nodiscard]] const std::vector<Body>& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const std::vector<ShapePair>& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const std::vector<Obstacle<Scalar>>& obstacles() const noexcept { return obstacles_; }
   [[nodiscard]] Scalar margin() const noexcept { return margin_; }
-  [[nodiscard]] const typename Links<N, Scalar>::Frames& frames() const noexcept { return frames_; }
+  /// Of the robot where the clearance is placed.
+  [[nodiscard]] const typename Tree::State& state() const noexcept { return state_; }
 
   [[nodiscard]] Names names(const ShapePair& pair) const {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
@@ -118,14 +120,17 @@ class Clearance {
 
   /// The origin of a frame, as the body of a bound. Throws std::invalid_argument where there is no such link.
   [[nodiscard]] Body point_of(const LinkFrame<Scalar>& frame, const std::string& name) const {
-    const auto [link, pose] = in_link(frame);
-    return {links_, link, {links_.in_frame(link, pose.p), links_.in_frame(link, pose.p), -margin_}, name};
+    return body_of(frame, frame.offset().p, name);
   }
 
   /// The same of an axis of a frame, a unit vector.
   [[nodiscard]] Body direction_of(const LinkFrame<Scalar>& frame, const Vector3& axis, const std::string& name) const {
-    const auto [link, pose] = in_link(frame);
-    return Body::direction(links_, link, links_.in_frame(link, pose.R * axis), -margin_, name);
+    Body body = body_of(frame, frame.offset().R * axis, name);
+    body.is_direction = true;
+    each_joint(robot_.moved_by(body.link), [&](Eigen::Index k) { body.levers(k) = Scalar(robot_.turns(k) ? 1 : 0); });
+    const Matrix<3, 3, Scalar> R = robot_.in_joint(frame.link(), frame.offset()).R;
+    body.in_link.a = body.in_link.b = R * axis;
+    return body;
   }
 
   /// Keeps n·x of the point x of a body at offset or above. The radius of the body, −margin(), takes the margin of
@@ -133,7 +138,7 @@ class Clearance {
   void keep_above(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
     if (!(deceleration > Scalar(0))) validation::fail("acceleration", deceleration, "positive, or infinite");
     body.deceleration = deceleration;
-    pairs_.push_back({bodies_.size(), obstacles_.size(), true});
+    pairs_.push_back({bodies_.size(), obstacles_.size(), true, robot_.moved_by(body.link), 0});
     obstacles_.push_back({body.name, HalfSpace<Scalar>{n, offset}});
     bodies_.push_back(std::move(body));
     open_.resize(pairs_.size());
@@ -152,18 +157,16 @@ class Clearance {
                        [](const auto& each) { return !each.velocity.isZero(Scalar(0)); });
   }
 
-  /// Places the arm's capsules at a posture.
+  /// Places the robot's capsules at a posture.
   void place(const JointVector& q) noexcept {
-    links_.place(q, frames_);
-    const auto frame = [this](const Body& body) -> const auto& {
-      return frames_[static_cast<std::size_t>(body.link)];
-    };
+    robot_.update(q, state_);
+    const auto frame = [this](const Body& body) { return state_.placement(static_cast<std::size_t>(body.link)); };
     for (std::size_t i = 0; i < shapes_; ++i) bodies_[i].place(frame(bodies_[i]));
     for (std::size_t i = shapes_; i < bodies_.size(); ++i) bodies_[i].place_in_bound(frame(bodies_[i]));
     for (SpeedBound& bound : speed_bounds_) bound.body.place_in_bound(frame(bound.body));
   }
 
-  /// A lower bound on the distance of a pair where the arm is placed, found faster than nearest_of().
+  /// A lower bound on the distance of a pair where the robot is placed, found faster than nearest_of().
   [[nodiscard]] Scalar roughly(const ShapePair& pair) const noexcept {
     const Body& body = bodies_[pair.first];
     if (pair.world) return obstacles_[pair.second].at_least(body.centre, body.size);
@@ -176,15 +179,19 @@ class Clearance {
     return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, bodies_[pair.second].now);
   }
 
-  /// Sets how far each capsule's axis may be moved by joints of the chain that move by no more than so much.
-  void set_reach(const ChainVector& most) noexcept {
+  /// Sets how far each capsule's axis may be moved by joints that move by no more than so much.
+  void set_reach(const AllJoints& most) noexcept {
     for (Body& body : bodies_) body.reach = body.levers.dot(most);
+  }
+  /// How far a pair's axes may be moved toward one another, at most.
+  [[nodiscard]] Scalar reach_of(const ShapePair& pair) const noexcept {
+    return bodies_[pair.first].reach + (pair.by_second != 0 ? bodies_[pair.second].reach : Scalar(0));
   }
 
   /// Pairs that a question is still open about, for who asks it.
   [[nodiscard]] OpenPairs& open() noexcept { return open_; }
 
-  /// The pair of shapes that is nearest to one another where the arm is placed, and its distance; infinite without
+  /// The pair of shapes that is nearest to one another where the robot is placed, and its distance; infinite without
   /// pairs.
   [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept { return nearest_pair(0, shape_pairs_); }
 
@@ -200,22 +207,33 @@ class Clearance {
   }
 
  private:
-  /// Link and pose of a frame in that of the link's joint.
-  [[nodiscard]] std::pair<Eigen::Index, Transform<Scalar>> in_link(const LinkFrame<Scalar>& frame) const {
-    constexpr int kTip = -1;
-    if (frame.link() == kTip) return {links_.count(), tip_ * frame.offset()};
-    if (frame.link() < 0 || frame.link() > links_.count()) {
-      validation::fail("frame", frame.link(), "the number of a link, at most ", static_cast<int>(links_.count()));
-    }
-    return {frame.link(), frame.offset()};
+  /// Whether links are different, and none carries the joint that moves the other. A chain's later link comes first.
+  [[nodiscard]] bool may_meet(int first, int second) const noexcept {
+    return first > second && robot_.parent(first) != second;
+  }
+  [[nodiscard]] ShapePair pair_of_bodies(std::size_t i, std::size_t j) const noexcept {
+    const JointBits first = robot_.moved_by(bodies_[i].link);
+    const JointBits second = robot_.moved_by(bodies_[j].link);
+    return {i, j, false, first & ~second, second & ~first};
+  }
+  /// A point of a frame's link, given in the link's frame but for the tip's, as the body of a bound.
+  [[nodiscard]] Body body_of(const LinkFrame<Scalar>& frame, const Vector3& point, const std::string& name) const {
+    robot_.require_link("frame", frame.link());
+    const bool is_tip = frame.link() == Tree::kTip;
+    const int link = is_tip ? robot_.joints() : frame.link();
+    const Transform<Scalar> to_joint = robot_.in_joint(link, {});
+    Transform<Scalar> at;
+    at.p = point;
+    const Vector3 in_link = is_tip ? (inverse(to_joint) * robot_.in_joint(frame.link(), at)).p : point;
+    return {levers_, link, to_joint, {in_link, in_link, -margin_}, name};
   }
 
-  void leave_out_overlaps(const Chain<Scalar>& chain) {
+  void leave_out_overlaps() {
     if (pairs_.empty()) return;
     constexpr int kPostures = 256;
     std::vector<bool> apart(pairs_.size(), false);
     for (int k = 0; k < kPostures; ++k) {
-      place(spread_posture(chain, k));
+      place(spread_posture(robot_.limits(), k));
       for (std::size_t p = 0; p < pairs_.size(); ++p) {
         if (!apart[p]) apart[p] = roughly(pairs_[p]) >= margin_ || nearest_of(pairs_[p]).distance >= margin_;
       }
@@ -225,8 +243,8 @@ class Clearance {
     pairs_ = kept;
   }
 
-  Links<N, Scalar> links_;
-  Transform<Scalar> tip_;     ///< In the frame of the last joint.
+  Tree robot_;
+  Levers<Scalar> levers_;
   std::vector<Body> bodies_;  ///< Those of bounds of tasks come last.
   std::size_t shapes_ = 0;    ///< Number of bodies that are shapes.
   std::size_t shape_pairs_ = 0;
@@ -237,7 +255,7 @@ class Clearance {
   OpenPairs open_;
   Scalar margin_;
   Away<Scalar> away_;
-  typename Links<N, Scalar>::Frames frames_;
+  typename Tree::State state_;
 };
 
 }  // namespace fpbm

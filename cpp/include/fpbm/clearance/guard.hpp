@@ -28,12 +28,12 @@ class Guard {
   using JointLimits = Limits<kLevel, N, Scalar>;
 
   explicit Guard(const Clearance<N, Scalar>& clearance)
-      : clearance_(clearance), plan_(clearance.links().dof()), sweep_(plan_.sweep()) {}
+      : clearance_(clearance), plan_(clearance.robot().dof()), sweep_(plan_.sweep()) {}
 
   /// Starts from a state after a tick of acceleration last. Throws std::invalid_argument, with the pair's names, where
   /// the arm is not clear of all, or cannot stop clear of it.
   void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
-    validation::require_size("clearance's joints", clearance_.links().dof(), start.q.size());
+    validation::require_size("clearance's joints", clearance_.robot().dof(), start.q.size());
     if (empty()) return;
     clearance_.place(start.q);
     const auto [pair, distance] = clearance_.nearest_pair();
@@ -78,16 +78,16 @@ class Guard {
     const Scalar time = average + kSoft;
     // Velocity at the tick's end, after letting go of the acceleration: qd + late h u.
     const Scalar late = plan_.latency(limits);
-    ChainSweep<N, Scalar> sweep(clearance_.links(), sweep_);
+    JointSweep<N, Scalar> sweep(clearance_.robot().drives(), sweep_);
     const JointVector way = ticks / (Scalar(1) + plan_.average()) * sweep_.way;
-    sweep.way = clearance_.links().motion(way);
-    ChainSweep<N, Scalar> fastest = sweep;
-    fastest.way = (time / kShare) * clearance_.links().motion(fastest_of(limits, state, late));
+    sweep.way = clearance_.robot().drives().rates(way);
+    JointSweep<N, Scalar> fastest = sweep;
+    fastest.way = (time / kShare) * clearance_.robot().drives().rates(fastest_of(limits, state, late));
     // No pair whose distance exceeds a reach of fastest needs a row; bend takes no more than its reach times all turns.
     const auto most = (sweep.way.cwiseAbs() + sweep.rest).eval();
     const Scalar turned = most.sum();
     clearance_.set_reach(fastest.way + sweep.rest + turned * most);
-    const auto speed = clearance_.links().motion(state.qd);
+    const auto speed = clearance_.robot().drives().rates(state.qd);
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
@@ -100,7 +100,7 @@ class Guard {
       const auto& body = clearance_.bodies()[pair.first];
       // A bound with its own deceleration may need more distance than the quickest stop.
       const bool gentle = &pair >= first_bound && std::isfinite(body.deceleration);
-      if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + body.reach + moves) continue;
+      if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + clearance_.reach_of(pair) + moves) continue;
       const Bend<N, Scalar> bend(clearance_, pair, sweep);
       const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
       const Scalar far =
@@ -112,9 +112,9 @@ class Guard {
       const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
       const auto nearest = plane.of_distance();
       for (int e = 0; e < (between ? 1 : 2); ++e) {
-        const Scalar gap = between ? plane.distance : plane.gap[e];
-        const auto& gradient = between ? nearest : plane.gradient[e];
-        const JointVector g = clearance_.links().by_drive(gradient);
+        const Scalar gap = between ? plane.distance : plane.gap(e);
+        const auto gradient = between ? nearest : plane.gradient_of(e);
+        const JointVector g = clearance_.robot().drives().by_drive(gradient);
         const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
         Scalar allowed = kShare * left / time;
         if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, body, h);
@@ -198,7 +198,7 @@ class Guard {
  private:
   /// Most speed v at which a gap s may close. A body with a deceleration a brakes by a, v²/2a + v h ≤ s − s₀/2, until
   /// s₀ = a τ², from where v = s/τ decelerates by less.
-  [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const Body<N, Scalar>& body, Scalar h) noexcept {
+  [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const Body<Scalar>& body, Scalar h) noexcept {
     const Scalar a = body.deceleration;
     const Scalar last = a * kTail * kTail;
     if (!(gap > last)) return std::min(hard, std::max(gap, Scalar(0)) / kTail);

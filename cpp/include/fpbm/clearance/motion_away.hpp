@@ -12,19 +12,19 @@ namespace fpbm {
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> motion_away(const Clearance<N, Scalar>& clearance) noexcept {
   const Away<Scalar>& away = clearance.away();
-  using ChainVector = typename Clearance<N, Scalar>::ChainVector;
-  ChainVector sum = ChainVector::Zero(clearance.links().count());
+  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
+  AllJoints sum = AllJoints::Zero(clearance.robot().joints());
   for (const ShapePair& pair : clearance.pairs()) {
     if (clearance.roughly(pair) >= clearance.margin() + away.range) continue;
     const Separation<N, Scalar> plane(clearance, pair);
     for (int e = 0; e < 2; ++e) {
-      const Scalar near = Scalar(1) - (plane.gap[e] - clearance.margin()) / away.range;
+      const Scalar near = Scalar(1) - (plane.gap(e) - clearance.margin()) / away.range;
       if (!(near > Scalar(0))) continue;
       const Scalar share = std::min(near, Scalar(1));
-      sum += away.gain * share * share * plane.gradient[e];
+      sum += away.gain * share * share * plane.gradient_of(e);
     }
   }
-  return clearance.links().by_drive(sum);
+  return clearance.robot().drives().by_drive(sum);
 }
 
 }  // namespace fpbm

@@ -1,24 +1,30 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "fpbm/clearance/clearance.hpp"
 
 namespace fpbm {
 
-/// A plane between the shapes of a pair, with normal n, fixed to the second one: both ends of the first one's axis stay
-/// on its side for as long as their gaps n·x − radius − (support of the second along n) are not negative, and the
-/// distance is never less than the smaller gap. Where the shapes are nearest to one another, it equals that.
+/// A direction n that separates the shapes of a pair, fixed to the link that the ways to both have in common: n·a of an
+/// end a of the first one's axis, less its radius, exceeds that of an end b of the second one's, plus its radius, by a
+/// gap, and the distance is never less than the smallest gap. Where the shapes are nearest to one another, it equals
+/// that. A second one that does not move has one end: its support along n.
 template <int N, typename Scalar>
 struct Separation {
-  using ChainVector = typename Clearance<N, Scalar>::ChainVector;
+  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
   using Vector3 = Vector<3, Scalar>;
 
   Scalar distance;
-  Scalar closing;  ///< Speed of the second shape toward the first [m/s].
-  Scalar gap[2];
-  ChainVector gradient[2];  ///< Of the gaps, by the chain's joints.
-  Scalar at;                ///< Where the first one's axis is nearest: 0 at one end, 1 at the other.
+  Scalar closing;          ///< Speed of the second shape toward the first [m/s].
+  Scalar along[2];         ///< n·a − radius.
+  Scalar beyond[2];        ///< n·b + radius.
+  AllJoints gradient[2];   ///< Of along, by the joints.
+  AllJoints of_beyond[2];  ///< That of beyond, where the second one moves.
+  int seconds = 1;         ///< Number of ends of the second one.
+  Scalar at;               ///< Where the first one's axis is nearest: 0 at one end, 1 at the other.
+  Scalar at_second = Scalar(0);
 
   Separation(const Clearance<N, Scalar>& clearance, const ShapePair& pair) noexcept
       : Separation(clearance, pair, clearance.nearest_of(pair)) {}
@@ -29,52 +35,74 @@ struct Separation {
     const Vector3& n = found.normal;
     distance = found.distance;
     closing = Scalar(0);
-    Scalar beyond;
-    Eigen::Index from = 0;
+    set_ends(clearance, body, pair.by_first, n, -body.now.radius, along, gradient);
+    at = nearest_on(body.now, found.on_first + body.now.radius * n);
     if (pair.world) {
       const auto& obstacle = clearance.obstacles()[pair.second];
-      beyond = obstacle.support_along(n);
+      beyond[0] = obstacle.support_along(n);
       closing = n.dot(obstacle.velocity);
-    } else {
-      const auto& other = clearance.bodies()[pair.second];
-      beyond = support(other.now, n);
-      from = other.link;
-    }
-    const Vector3 ends[2] = {body.now.a, body.now.b};
-    const Vector3 axis = body.now.b - body.now.a;
-    const Scalar squared = axis.squaredNorm();
-    const Vector3 on_axis = found.on_first + body.now.radius * n - body.now.a;
-    at = squared > Scalar(0) ? std::clamp(axis.dot(on_axis) / squared, Scalar(0), Scalar(1)) : Scalar(0);
-    for (int e = 0; e < 2; ++e) {
-      gap[e] = n.dot(ends[e]) - body.now.radius - beyond;
-      gradient[e].setZero(clearance.links().count());
-    }
-    const Vector3 moments[2] = {cross(ends[0], n), cross(ends[1], n)};
-    if (body.is_direction) {
-      set_direction(clearance, body.link, moments[0]);
       return;
     }
-    for (Eigen::Index k = from; k < body.link; ++k) {
-      const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
-      const Vector3 z = frame.R.col(2);
-      const bool turns = clearance.links().turns(k);
-      // n · (z × (x − p)) = z · ((x − p) × n)
-      const Vector3 offset = cross(frame.p, n);
-      for (int e = 0; e < 2; ++e) gradient[e](k) = turns ? z.dot(moments[e] - offset) : z.dot(n);
+    const auto& other = clearance.bodies()[pair.second];
+    if (pair.by_second == 0) {
+      beyond[0] = support(other.now, n);
+      return;
     }
+    seconds = 2;
+    set_ends(clearance, other, pair.by_second, n, other.now.radius, beyond, of_beyond);
+    at_second = nearest_on(other.now, found.on_first - (found.distance + other.now.radius) * n);
   }
 
-  /// Gradient of the distance, by the chain's joints.
-  [[nodiscard]] ChainVector of_distance() const noexcept { return gradient[0] + at * (gradient[1] - gradient[0]); }
+  /// Of end e of the first one and end f of the second one.
+  [[nodiscard]] Scalar gap(int e, int f) const noexcept { return along[e] - beyond[f]; }
+  [[nodiscard]] AllJoints gradient_of(int e, int f) const noexcept {
+    return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - of_beyond[f]);
+  }
+  /// Of end e of the first one and the support of the second one.
+  [[nodiscard]] Scalar gap(int e) const noexcept {
+    return along[e] - (seconds == 1 ? beyond[0] : std::max(beyond[0], beyond[1]));
+  }
+  [[nodiscard]] AllJoints gradient_of(int e) const noexcept {
+    return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - between(of_beyond, at_second));
+  }
+  /// Gradient of the distance, by the joints.
+  [[nodiscard]] AllJoints of_distance() const noexcept {
+    const AllJoints first = between(gradient, at);
+    return seconds == 1 ? first : AllJoints(first - between(of_beyond, at_second));
+  }
 
  private:
-  /// Of a direction x, which only turning joints move: n · (z × x) = z · (x × n).
-  void set_direction(const Clearance<N, Scalar>& clearance, Eigen::Index link, const Vector3& moment) noexcept {
-    for (Eigen::Index k = 0; k < link; ++k) {
-      if (clearance.links().turns(k)) {
-        gradient[0](k) = gradient[1](k) = clearance.frames()[static_cast<std::size_t>(k + 1)].R.col(2).dot(moment);
+  [[nodiscard]] static AllJoints between(const AllJoints (&ends)[2], Scalar share) noexcept {
+    return ends[0] + share * (ends[1] - ends[0]);
+  }
+
+  /// Where on a capsule's axis a point is.
+  [[nodiscard]] static Scalar nearest_on(const Capsule<Scalar>& capsule, const Vector3& point) noexcept {
+    const Vector3 axis = capsule.b - capsule.a;
+    const Scalar squared = axis.squaredNorm();
+    const Vector3 offset = point - capsule.a;
+    return squared > Scalar(0) ? std::clamp(axis.dot(offset) / squared, Scalar(0), Scalar(1)) : Scalar(0);
+  }
+
+  /// n·x + more at both ends x of a body's axis, and its gradient by the joints.
+  static void set_ends(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body, JointBits joints,
+                       const Vector3& n, Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
+    const auto& state = clearance.state();
+    const Vector3 moments[2] = {cross(body.now.a, n), cross(body.now.b, n)};
+    value[0] = n.dot(body.now.a) + more;
+    value[1] = n.dot(body.now.b) + more;
+    for (auto& each : gradient) each.setZero(clearance.robot().joints());
+    each_joint(joints, [&](Eigen::Index k) noexcept {
+      const auto joint = static_cast<std::size_t>(k + 1);
+      const Vector3 z = state.R[joint].col(2);
+      if (!clearance.robot().turns(k)) {
+        if (!body.is_direction) gradient[0](k) = gradient[1](k) = z.dot(n);
+        return;
       }
-    }
+      // n · (z × (x − p)) = z · ((x − p) × n), and without p of a direction.
+      const Vector3 offset = body.is_direction ? Vector3(Vector3::Zero()) : cross(state.p[joint], n);
+      for (int e = 0; e < 2; ++e) gradient[e](k) = z.dot(moments[e] - offset);
+    });
   }
 };
 

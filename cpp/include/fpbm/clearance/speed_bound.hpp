@@ -8,20 +8,21 @@ namespace fpbm {
 
 /// Gradient of n·x by the drives, for the point x of a body, where the clearance is placed: nᵀJ.
 template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> gradient_along(const Clearance<N, Scalar>& clearance, const Body<N, Scalar>& body,
+[[nodiscard]] Vector<N, Scalar> gradient_along(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body,
                                                const Vector<3, Scalar>& n) noexcept {
-  typename Clearance<N, Scalar>::ChainVector row = Clearance<N, Scalar>::ChainVector::Zero(clearance.links().count());
+  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
+  AllJoints row = AllJoints::Zero(clearance.robot().joints());
   const Vector<3, Scalar> moment = cross(body.now.a, n);
-  for (Eigen::Index k = 0; k < body.link; ++k) {
-    const Transform<Scalar>& frame = clearance.frames()[static_cast<std::size_t>(k + 1)];
-    const Vector<3, Scalar> z = frame.R.col(2);
-    if (clearance.links().turns(k)) {
-      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(frame.p, n)));
+  each_joint(clearance.robot().moved_by(body.link), [&](Eigen::Index k) noexcept {
+    const auto joint = static_cast<std::size_t>(k + 1);
+    const Vector<3, Scalar> z = clearance.state().R[joint].col(2);
+    if (clearance.robot().turns(k)) {
+      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(clearance.state().p[joint], n)));
     } else if (!body.is_direction) {
       row(k) = z.dot(n);
     }
-  }
-  return clearance.links().by_drive(row);
+  });
+  return clearance.robot().drives().by_drive(row);
 }
 
 /// Adds a row n · v ≤ most for each speed bound that a tick's motion u would exceed with the velocity v, with n along

@@ -1,17 +1,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "fpbm/core/float_model.hpp"
 
 namespace fpbm {
 
 /// Largest number of joints of an arm whose size is known at run time (N = Eigen::Dynamic).
-inline constexpr int kMaxDof = 32;
+inline constexpr int kMaxDof = 64;
 
 /// Rows or columns that memory is reserved for: N, or kMaxDof where N is known at run time.
 template <int N>
 inline constexpr int kCapacity = (N == Eigen::Dynamic) ? kMaxDof : N;
+
+/// A bit for each joint: bit i is joint i's.
+using JointBits = std::uint64_t;
+[[nodiscard]] constexpr JointBits joint_bit(Eigen::Index i) noexcept {
+  return JointBits(1) << i;
+}
 
 /// Matrix that never touches the heap, whatever its size.
 /// Unaligned, so that objects that hold one may be embedded, copied and passed between translation units built with

@@ -2,8 +2,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bitset>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <limits>
 
 #include "fpbm/linalg/sums.hpp"
@@ -11,10 +12,10 @@
 namespace fpbm {
 
 /// The joints that a motion in a null space keeps on their bounds. No more can be held than that space has dimensions;
-/// kMost is the most that it may have.
+/// kMost is the most that it may have; kEntries is the number of rows of its basis Z at most.
 ///
-/// Z is its basis (joints × dimensions). Keeps Z_heldᵀ = QR of the rows of the joints held, one column for each.
-template <int kMost, typename Scalar>
+/// Keeps Z_heldᵀ = QR of the rows of the joints held, one column for each.
+template <int kMost, int kEntries, typename Scalar>
 class HeldJoints {
  public:
   static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
@@ -43,12 +44,12 @@ class HeldJoints {
 
   void clear() noexcept {
     count_ = 0;
-    fixed_ = 0;
+    fixed_.reset();
   }
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] const Held& operator[](int i) const noexcept { return held_[i]; }
   /// Whether a joint is held, or rests because the held joints do.
-  [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return (fixed_ >> joint & 1U) != 0; }
+  [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return fixed_[index(joint)]; }
 
   /// The goal plus the least motion Z y that keeps the held joints at rest.
   template <typename Basis, typename Motion>
@@ -88,7 +89,7 @@ class HeldJoints {
     Scalar amplified(1);
     for (int i = 0; i < count_; ++i) amplified += std::abs(share.coeff(i));
     if (rate * remaining <= round_off() * std::min(amplified, kAmplified)) {
-      fixed_ |= bit(joint);
+      fixed_[index(joint)] = true;
       return true;
     }
     if (spare && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
@@ -101,7 +102,7 @@ class HeldJoints {
  private:
   using Free = Eigen::Matrix<Scalar, Eigen::Dynamic, 1, Eigen::ColMajor | Eigen::DontAlign, kMost, 1>;
 
-  [[nodiscard]] static constexpr std::uint64_t bit(Eigen::Index joint) noexcept { return std::uint64_t(1) << joint; }
+  [[nodiscard]] static std::size_t index(Eigen::Index joint) noexcept { return static_cast<std::size_t>(joint); }
 
   /// c in Z_joint = Σ c_i Z_held(i), of the joint that was split last.
   [[nodiscard]] Free shares() const noexcept {
@@ -144,8 +145,8 @@ class HeldJoints {
   }
 
   void find_fixed() noexcept {
-    fixed_ = 0;
-    for (int i = 0; i < count_; ++i) fixed_ |= bit(held_[i].joint);
+    fixed_.reset();
+    for (int i = 0; i < count_; ++i) fixed_[index(held_[i].joint)] = true;
   }
 
   /// Z_jointᵀ = Σ R_[i][k] Q_[i] + Q_[k], over i < k: column k, not yet of length 1. Gram and Schmidt, twice, so that Q
@@ -170,7 +171,7 @@ class HeldJoints {
   }
 
   int count_ = 0;
-  std::uint64_t fixed_ = 0;  ///< Bit i is set where has(i).
+  std::bitset<kEntries> fixed_;  ///< Bit i is set where has(i).
   Held held_[kMost];
   Free Q_[kMost + 1];
   Scalar R_[kMost + 1][kMost + 1];

@@ -142,7 +142,7 @@ class NullSpaceSaturation {
   static constexpr int kMost = kCapacity<N>;
   using All = Eigen::Matrix<Scalar, kAll, 1, Eigen::ColMajor | Eigen::DontAlign, kMost + P, 1>;  ///< Joints, then rows.
   using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
-  using Held = HeldJoints<kMost, Scalar>;
+  using Held = HeldJoints<kMost, kMost + P, Scalar>;
 
   /// Share of |v|² from which on v has lost a few digits at most.
   static constexpr Scalar kRegular = Scalar(1e-4);
@@ -186,7 +186,11 @@ class NullSpaceSaturation {
   }
 
   static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
-    (held < joints ? result.joints : result.rows) |= std::uint32_t(1) << (held < joints ? held : held - joints);
+    if (held < joints) {
+      result.joints |= joint_bit(held);
+    } else {
+      result.rows |= std::uint32_t(1) << (held - joints);
+    }
   }
 
   Basis Z_;  ///< Basis of the null space, in each joint's unit.

@@ -53,7 +53,7 @@ class StopPlan {
     }
     profile_.wait = let_go_;
     for (Eigen::Index i = 0; i < last.size(); ++i) {
-      if (!keeps_bounds(limits, i, state)) own_ |= std::uint32_t(1) << i;
+      if (!keeps_bounds(limits, i, state)) own_ |= joint_bit(i);
     }
   }
 
@@ -201,7 +201,7 @@ class StopPlan {
   JointVector last_;           ///< Acceleration of the tick before the plan.
   Scalar let_go_ = Scalar(0);  ///< Ticks in which it is let go: none where no jerk is bounded.
   JointVector velocity_;       ///< Velocity afterwards.
-  std::uint32_t own_ = 0;      ///< Bit i is set where joint i takes its own quickest stop.
+  JointBits own_ = 0;          ///< Bit i is set where joint i takes its own quickest stop.
   Scalar k_ = Scalar(0);       ///< Ticks done.
 };
 

@@ -38,12 +38,18 @@ struct Chain<Scalar, Eigen::Dynamic> {
   Transform<Scalar> tip = {};
 };
 
+/// Joint i of a chain.
+template <typename Scalar, int Length>
+[[nodiscard]] const auto& joint_of(const Chain<Scalar, Length>& chain, Eigen::Index i) noexcept {
+  return chain.joints[static_cast<std::size_t>(i)];
+}
+
 namespace chain_check {
 
-/// How messages name joint i.
-template <typename Scalar, int Length>
-validation::Argument name_of(const Chain<Scalar, Length>& chain, Eigen::Index i) {
-  const std::string_view name = chain.joints[static_cast<std::size_t>(i)].name;
+/// How messages name joint i of a chain or a tree.
+template <typename Source>
+validation::Argument name_of(const Source& source, Eigen::Index i) {
+  const std::string_view name = joint_of(source, i).name;
   return name.empty() ? validation::element("joints", i) : validation::Argument("joint '") + name + "'";
 }
 
@@ -84,27 +90,39 @@ void require_bounds(const validation::Argument& name, JointType type, const Join
   validation::require_non_negative(name + ".velocity_offset", velocity_offset);
 }
 
+template <typename Scalar, typename Name>
+void require_joint(const validation::Argument& name, const Joint<Scalar, Name>& joint) {
+  require_transform(name + ".placement", joint.placement);
+  validation::require_finite(name + ".axis", joint.axis);
+  if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
+  require_bounds(name, joint.type, joint.bounds);
+}
+
 }  // namespace chain_check
 
-/// Number of joints of a chain, checked for an arm of n joints (Eigen::Dynamic: any number).
+/// Number of joints of a chain, checked.
 ///
-/// Throws std::invalid_argument, with the joint's name where it has one, where that number is not n or exceeds kMaxDof,
-/// an axis is zero, a number is not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
+/// Throws std::invalid_argument, with the joint's name where it has one, where that number exceeds kMaxDof, an axis is
+/// zero, a number is not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
 template <typename Scalar, int Length>
-Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dynamic) {
+Eigen::Index require_joints(const Chain<Scalar, Length>& chain) {
   const auto dof = static_cast<Eigen::Index>(chain.joints.size());
   validation::require_dof("joints", dof, 1);
-  if (n != Eigen::Dynamic) validation::require_size("joints", dof, n);
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const auto& joint = chain.joints[static_cast<std::size_t>(i)];
-    const validation::Argument name = chain_check::name_of(chain, i);
-    chain_check::require_transform(name + ".placement", joint.placement);
-    validation::require_finite(name + ".axis", joint.axis);
-    if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
-    if (joint.mimic.joint >= 0) validation::reject(name, " moves with another: must be in a CoupledArm");
-    chain_check::require_bounds(name, joint.type, joint.bounds);
-  }
+  for (Eigen::Index i = 0; i < dof; ++i) chain_check::require_joint(chain_check::name_of(chain, i), joint_of(chain, i));
   chain_check::require_transform("tip", chain.tip);
+  return dof;
+}
+
+/// The same for an arm of n joints (Eigen::Dynamic: any number) without joints that follow others.
+template <typename Scalar, int Length>
+Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dynamic) {
+  if (n != Eigen::Dynamic) validation::require_size("joints", static_cast<Eigen::Index>(chain.joints.size()), n);
+  const Eigen::Index dof = require_joints(chain);
+  for (Eigen::Index i = 0; i < dof; ++i) {
+    if (joint_of(chain, i).mimic.joint >= 0) {
+      validation::reject(chain_check::name_of(chain, i), " moves with another: must be in a CoupledArm");
+    }
+  }
   return dof;
 }
 

@@ -42,14 +42,24 @@ class Screws {
     [[nodiscard]] static ColumnPair zero() noexcept { return {both({}, {}), both({}, {})}; }
 
     /// As columns i and, where there is one, i + 1 of a matrix of six rows, or of the three linear ones.
-    template <int M>
-    [[gnu::always_inline]] void store(Matrix<M, N, Scalar>& to, Eigen::Index i) const noexcept {
+    template <typename To>
+    [[gnu::always_inline]] void store(To& to, Eigen::Index i) const noexcept {
+      constexpr int M = To::RowsAtCompileTime;
       if (i + 1 < to.cols()) {
         store_one<M>(seconds<Scalar>(linear(0), linear(1)), seconds<Scalar>(linear(2), angular(0)),
                      seconds<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i + 1));
       }
       store_one<M>(firsts<Scalar>(linear(0), linear(1)), firsts<Scalar>(linear(2), angular(0)),
                    firsts<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i));
+    }
+
+    /// Columns i and i + 1 of a matrix of six rows; zeros where there is none.
+    template <typename From>
+    [[nodiscard]] static ColumnPair load(const From& from, Eigen::Index i) noexcept {
+      const auto two = [&](Eigen::Index row) {
+        return Two(from.coeff(row, i), i + 1 < from.cols() ? from.coeff(row, i + 1) : Scalar(0));
+      };
+      return {{two(0), two(1), two(2)}, {two(3), two(4), two(5)}};
     }
 
    private:
@@ -88,9 +98,9 @@ class Screws {
     Two3 point;
     Two3 w;
 
-    /// Only the first `count` of them have an axis.
-    [[nodiscard]] JointPair first(Eigen::Index count) const noexcept {
-      const Two mask(Scalar(count > 0 ? 1 : 0), Scalar(count > 1 ? 1 : 0));
+    /// Only those whose bits are set have an axis.
+    [[nodiscard]] JointPair only(JointBits bits) const noexcept {
+      const Two mask(Scalar(bits & 1U), Scalar(bits >> 1 & 1U));
       return {entrywise(axis, [&](Eigen::Index k) { return mask * axis.coeff(k); }), point, w};
     }
   };

@@ -12,6 +12,7 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/chain.hpp"
+#include "fpbm/model/forward_pass.hpp"
 #include "fpbm/model/frame.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/link.hpp"
@@ -33,11 +34,10 @@ class SerialArm {
   /// not finite, a placement's R is no rotation, or a joint's lower bound is not below its upper.
   template <int Length = Eigen::Dynamic>
   explicit SerialArm(const Chain<Scalar, Length>& chain)
-      : dof_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(dof_)) {
-    turns_ = filled<Vector<N, Scalar>>(dof_, Scalar(1));
-    offsets_ = filled<Vector<N, Scalar>>(dof_);
+      : pass_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(pass_.dof())) {
+    const Eigen::Index dof = pass_.dof();
     Transform<Scalar> turned_back;
-    for (Eigen::Index i = 0; i < dof_; ++i) {
+    for (Eigen::Index i = 0; i < dof; ++i) {
       const auto& joint = chain.joints[static_cast<std::size_t>(i)];
       const Matrix<3, 3, Scalar> to_axis = z_to(joint.axis);
       Transform<Scalar> step = turned_back * joint.placement;
@@ -46,14 +46,10 @@ class SerialArm {
       if (i == 0) {
         base_ = step;
       } else {
-        const DecomposedLink<Scalar> between(step);
-        links_[static_cast<std::size_t>(i - 1)] = LinkPassage<Scalar>(between.link);
-        offsets_(i - 1) += between.before;
-        offsets_(i) = between.after;
+        pass_.connect(i - 1, step);
       }
       if (joint.type == JointType::kPrismatic) {
-        turns_(i) = Scalar(0);
-        slides_ |= std::uint32_t(1) << i;
+        pass_.set_prismatic(i);
         const Scalar range = joint.bounds.upper - joint.bounds.lower;
         if (std::isfinite(range)) length_ += range;
       }
@@ -62,12 +58,10 @@ class SerialArm {
     }
     length_ += norm(chain.tip.p);
     if (!(length_ > Scalar(0))) length_ = Scalar(1);
-    const DecomposedLink<Scalar> last(turned_back * chain.tip);
-    links_[static_cast<std::size_t>(dof_ - 1)] = LinkPassage<Scalar>(last.link);
-    offsets_(dof_ - 1) += last.before;
     using std::cos;
     using std::sin;
-    tip_ = {Twice<Scalar>(cos(last.after)), Twice<Scalar>(sin(last.after))};
+    const Scalar after = pass_.connect(dof - 1, turned_back * chain.tip).after;
+    tip_ = {Twice<Scalar>(cos(after)), Twice<Scalar>(sin(after))};
   }
 
   /// The same arm for another Scalar.
@@ -76,37 +70,24 @@ class SerialArm {
     return SerialArm<N, Other>(*this);
   }
 
-  [[nodiscard]] int dof() const noexcept { return static_cast<int>(dof_); }
+  [[nodiscard]] int dof() const noexcept { return static_cast<int>(pass_.dof()); }
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
   /// Characteristic length [m]: the way from the first joint to the tip, from joint to joint, with the finite ranges of
   /// prismatic joints. 1 where that is zero.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
-  /// Whether a joint is prismatic.
-  [[nodiscard]] bool slides() const noexcept { return slides_ != 0; }
-  /// 1 for each joint that turns, 0 for a prismatic one.
-  [[nodiscard]] const Vector<N, Scalar>& turns() const noexcept { return turns_; }
-
-  /// Axes of the joints at (q, qd). Calls visit(i, frame) for each joint i, from the base on, with a frame that joint i
-  /// moves and whose z axis is the joint's: it differs from the joint's frame by a constant rotation about z.
-  template <typename Visit>
-  void place(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd, Screws<N, Scalar>& axes,
-             const Visit& visit) const noexcept {
-    slides_ == 0 ? place<false>(q, qd, axes, visit) : place<true>(q, qd, axes, visit);
-  }
-
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
                   Kinematics<Space, N, Scalar>& out) const noexcept {
-    slides_ == 0 ? forward_pass<true, false>(q, qd, out) : forward_pass<true, true>(q, qd, out);
+    pass_.slides() ? forward_pass<true, true>(q, qd, out) : forward_pass<true, false>(q, qd, out);
   }
 
   /// Tip and J at q; does not touch Jd.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
-    slides_ == 0 ? forward_pass<false, false>(q, q, out) : forward_pass<false, true>(q, q, out);
+    pass_.slides() ? forward_pass<false, true>(q, q, out) : forward_pass<false, false>(q, q, out);
   }
 
  private:
@@ -115,73 +96,11 @@ class SerialArm {
 
   template <typename Other>
   explicit SerialArm(const SerialArm<N, Other>& arm)
-      : dof_(arm.dof_),
+      : pass_(arm.pass_),
         base_(arm.base_.template cast<Scalar>()),
-        turns_(arm.turns_.template cast<Scalar>()),
-        offsets_(arm.offsets_.template cast<Scalar>()),
-        slides_(arm.slides_),
         tip_(arm.tip_.template cast<Scalar>()),
         length_(static_cast<Scalar>(arm.length_)),
-        limits_(arm.limits_.template cast<Scalar>()) {
-    for (std::size_t i = 0; i < links_.size(); ++i) links_[i] = arm.links_[i].template cast<Scalar>();
-  }
-
-  using Vector3 = Vector<3, Scalar>;
-
-  [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
-
-  /// Number of joints, known at compile time where loops are unrolled. Of an arm with joints that slide in a loop:
-  /// unrolled, it would take as long to compile as that of all others.
-  template <bool kSlides>
-  [[nodiscard]] auto joints() const noexcept {
-    return extent < kSlides ? Eigen::Dynamic : N > (dof_);
-  }
-
-  /// A pass along the chain finds the joints' axes. Returns the frame at the end of the last link.
-  template <bool kWithRate, bool kSlides, typename Visit>
-  [[gnu::always_inline]] Frame<Scalar> pass(const Vector<N, Scalar>& q, [[maybe_unused]] const Vector<N, Scalar>& qd,
-                                            Screws<N, Scalar>& axes, const Visit& visit) const noexcept {
-    using Two = Pair<Scalar>;
-    using Joint = typename Screws<N, Scalar>::Joint;
-    const auto n = joints<kSlides>();
-    const auto pairs = pairs_of(n);
-    Angles<N, Scalar> angles = angles_of<N, Scalar>(extent<N>(dof_));
-    each(Constant<0>{}, pairs, [&](auto k) {
-      const Eigen::Index i = 2 * Eigen::Index(k);
-      const Two turned = kSlides ? two_of(turns_, i) * two_of(q, i) : two_of(q, i);
-      set_two_of(angles, i, turned + two_of(offsets_, i));
-    });
-    Angles<N, Scalar> sines;
-    Angles<N, Scalar> cosines;
-    sincos(angles, sines, cosines);
-
-    Frame<Scalar> frame(base_);
-    SplitVector<Scalar> w;  // Angular velocity of the frame.
-    each(Constant<0>{}, pairs, [&](auto k) {
-      Joint joints[2];
-      const Eigen::Index i = 2 * Eigen::Index(k);
-      for (Eigen::Index j = i; j < i + 2 && j < n; ++j) {
-        if (kSlides && slides(j)) {
-          frame.p += Two(q.coeff(j)) * frame.z;
-        } else if constexpr (kWithRate) {
-          w += Two(qd.coeff(j)) * frame.z;
-        }
-        joints[j - i] = {frame.z, frame.p, w};
-        frame.turn(Two(cosines.coeff(j)), Two(sines.coeff(j)));
-        visit(j, frame);
-        frame.pass(links_[static_cast<std::size_t>(j)]);
-      }
-      axes.set(i, joints[0], joints[1]);
-    });
-    return frame;
-  }
-
-  /// As the public place(), for chains without prismatic joints, or for the others.
-  template <bool kSlides, typename Visit>
-  [[gnu::flatten, gnu::noinline]] void place(const Vector<N, Scalar>& q, const Vector<N, Scalar>& qd,
-                                             Screws<N, Scalar>& axes, const Visit& visit) const noexcept {
-    (void)pass<true, kSlides>(q, qd, axes, visit);
-  }
+        limits_(arm.limits_.template cast<Scalar>()) {}
 
   /// Tip, J and Jd. One function serves chains without prismatic joints, another serves the others.
   template <bool kWithRate, bool kSlides, typename Space>
@@ -198,8 +117,8 @@ class SerialArm {
       Axes axes;
       typename Axes::Point tip{{}};
     } at;
-    Frame<Scalar> frame = pass<kWithRate, kSlides>(q, qd, at.axes, [](Eigen::Index, const Frame<Scalar>&) noexcept {});
-    const auto n = joints<kSlides>();
+    Frame<Scalar> frame = pass_.template operator()<kWithRate, kSlides>(base_, q, qd, at.axes, AlongChain{});
+    const auto n = pass_.template joints<kSlides>();
     const auto pairs = pairs_of(n);
 
     out.length = length_;
@@ -214,20 +133,16 @@ class SerialArm {
     at.tip = typename Axes::Point(frame.p);
     each(Constant<0>{}, pairs, [&](auto k) {
       const Eigen::Index i = 2 * (pairs - 1 - Eigen::Index(k));
-      const auto columns = Axes::columns(i, at.axes.joints(i), at.tip, turns_, kSlides);
+      const auto columns = Axes::columns(i, at.axes.joints(i), at.tip, pass_.turns(), kSlides);
       columns.store(out.J, i);
       if constexpr (kWithRate) Axes::rates(i, at.axes.joints(i), columns, at.tip, qd).store(out.Jd, i);
     });
   }
 
-  Eigen::Index dof_;
-  Transform<Scalar> base_;                               ///< The first joint's frame at zero.
-  std::array<LinkPassage<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
-  Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: a frame's angle is turns q + offset.
-  Vector<N, Scalar> offsets_;
-  std::uint32_t slides_ = 0;  ///< Bit i is set where joint i is prismatic.
-  FixedTurn<Scalar> tip_;     ///< About z, from the frame of the last link's end to the tip's.
-  Scalar length_{0};          ///< [m]
+  ForwardPass<N, Scalar> pass_;
+  Transform<Scalar> base_;  ///< The first joint's frame at zero.
+  FixedTurn<Scalar> tip_;   ///< About z, from the frame of the last link's end to the tip's.
+  Scalar length_{0};        ///< [m]
   JointLimits<N, Scalar> limits_;
 };
 

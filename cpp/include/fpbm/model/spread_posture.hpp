@@ -2,27 +2,25 @@
 
 #include <cmath>
 
-#include "fpbm/model/chain.hpp"
+#include "fpbm/model/joint.hpp"
 
 namespace fpbm {
 
-/// Posture k of a sequence that fills the ranges of an arm's joints evenly, those without ends from −3 to 3: Weyl's,
-/// multiples of the roots of the primes, modulo 1.
-template <typename Scalar>
-[[nodiscard]] Vector<Eigen::Dynamic, Scalar> spread_posture(const Chain<Scalar>& chain, int k) {
-  constexpr int kPrimes[kMaxDof] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29,  31,  37,  41,  43,  47,  53,
-                                    59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109, 113, 127, 131};
-  Vector<Eigen::Dynamic, Scalar> q(static_cast<Eigen::Index>(chain.joints.size()));
-  Eigen::Index i = 0;
-  for (const Joint<Scalar>& joint : chain.joints) {
-    if (joint.mimic.joint >= 0) continue;
+/// Posture k of a sequence that fills the ranges of joints evenly, those without ends from −3 to 3: Weyl's, multiples
+/// of the roots of the primes, modulo 1.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> spread_posture(const JointLimits<N, Scalar>& limits, int k) {
+  constexpr int kPrimes[kMaxDof] = {2,   3,   5,   7,   11,  13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,
+                                    59,  61,  67,  71,  73,  79,  83,  89,  97,  101, 103, 107, 109, 113, 127, 131,
+                                    137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193, 197, 199, 211, 223,
+                                    227, 229, 233, 239, 241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311};
+  return entrywise(limits.lower, [&](Eigen::Index i) {
     const double way = (k + 1) * std::sqrt(static_cast<double>(kPrimes[i]));
     const auto share = static_cast<Scalar>(way - std::floor(way));
-    const Scalar low = std::isfinite(joint.bounds.lower) ? joint.bounds.lower : Scalar(-3);
-    const Scalar high = std::isfinite(joint.bounds.upper) ? joint.bounds.upper : Scalar(3);
-    q(i++) = low + share * (high - low);
-  }
-  return q.head(i);
+    const Scalar low = std::isfinite(limits.lower(i)) ? limits.lower(i) : Scalar(-3);
+    const Scalar high = std::isfinite(limits.upper(i)) ? limits.upper(i) : Scalar(3);
+    return low + share * (high - low);
+  });
 }
 
 }  // namespace fpbm

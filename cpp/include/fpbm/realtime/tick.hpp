@@ -17,7 +17,7 @@ struct TickOfRows {
   Vector<N, Scalar> qdd;       ///< Mean acceleration over the tick [rad/s²].
   Status status;               ///< Where it failed, why the arm brakes.
   Scalar scale;                ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
-  std::uint32_t saturated;     ///< Bit i is set where joint i is on a bound.
+  JointBits saturated;         ///< Bit i is set where joint i is on a bound.
   Scalar sigma;                ///< Lower bound on σ_min(J) at the tick's start, tight within a factor √M.
   Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
 };

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "fpbm/core/rotation.hpp"
-#include "fpbm/model/chain.hpp"
+#include "fpbm/model/tree.hpp"
 
 namespace fpbm {
 
@@ -46,6 +49,17 @@ class LinkFrame {
   Transform<Scalar> offset_;
   Transform<Scalar> in_joint_;  ///< The frame seen from the link's joint.
 };
+
+/// The frame of a tree by name. Throws std::invalid_argument where there is none.
+template <typename Scalar, int Joints, int Frames>
+[[nodiscard]] LinkFrame<Scalar> frame_of(const Tree<Scalar, Joints, Frames>& tree, std::string_view name) {
+  for (const auto& [other, link, offset] : tree.frames) {
+    if (other == name) return {link, offset};
+  }
+  std::string known;
+  for (const auto& frame : tree.frames) known += " '" + std::string(frame.name) + "'";
+  validation::reject("frame", " = '" + std::string(name) + "': must be one of the tree's:" + known);
+}
 
 /// Throws std::invalid_argument unless the M entries of a list are different numbers from 0 to count − 1.
 template <typename List>

@@ -61,7 +61,7 @@ struct PositionTask {
     });
   }
 
- private:
+  /// Coordinates 0 to M − 1.
   [[nodiscard]] static std::array<int, M> first_rows() noexcept {
     static_assert(M >= 1 && M <= 3, "a position has 1 to 3 rows");
     std::array<int, M> rows{};

@@ -62,6 +62,12 @@ class TaskRows {
   int first_;
 };
 
+/// Entries j and, where there is one, j + 1 of a row of a matrix.
+template <typename Whole, typename Scalar = typename Whole::Scalar>
+[[nodiscard]] Pair<Scalar> two_of_row(const Whole& matrix, Eigen::Index row, Eigen::Index j) noexcept {
+  return {matrix.coeff(row, j), j + 1 < matrix.cols() ? matrix.coeff(row, j + 1) : Scalar(0)};
+}
+
 /// aᵀv of two vectors v side by side.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Pair<Scalar> along(const Vector<3, Scalar>& a,

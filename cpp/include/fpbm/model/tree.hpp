@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fpbm/model/chain.hpp"
+
+namespace fpbm {
+
+/// Mass of a link, and where its centre is in the link's frame.
+template <typename Scalar = double>
+struct LinkMass {
+  Scalar mass = 0;                                               ///< [kg]
+  Vector<3, Scalar> centre = {Scalar(0), Scalar(0), Scalar(0)};  ///< [m]
+};
+
+/// A joint of a tree, the link that carries it, and the mass of the link that it moves. Link 0 is the base, link i + 1
+/// the one that joint i moves, with the joint's frame after its motion.
+template <typename Scalar = double, typename Name = std::string>
+struct TreeJoint {
+  Joint<Scalar, Name> joint = {};  ///< Placed in the frame of the link that carries it.
+  int parent = 0;                  ///< Number of that link: at most the joint's index.
+  LinkMass<Scalar> moved = {};
+};
+
+/// A named frame of a link.
+template <typename Scalar = double, typename Name = std::string>
+struct NamedFrame {
+  Name name = {};
+  int link = 0;
+  Transform<Scalar> offset = {};  ///< In the link's frame.
+};
+
+/// Joints from the base on, each behind the one that carries it: a Robot is built from them. With numbers of joints and
+/// frames that are known at compile time it takes no memory from a heap.
+template <typename Scalar = double, int Joints = Eigen::Dynamic, int Frames = Joints>
+struct Tree {
+  std::array<TreeJoint<Scalar, std::string_view>, Joints> joints = {};
+  std::array<NamedFrame<Scalar, std::string_view>, Frames> frames = {};
+  LinkMass<Scalar> base = {};  ///< Of link 0.
+};
+
+template <typename Scalar>
+struct Tree<Scalar, Eigen::Dynamic, Eigen::Dynamic> {
+  std::vector<TreeJoint<Scalar>> joints;
+  std::vector<NamedFrame<Scalar>> frames;
+  LinkMass<Scalar> base = {};
+};
+
+/// Joint i of a tree.
+template <typename Scalar, int Joints, int Frames>
+[[nodiscard]] const auto& joint_of(const Tree<Scalar, Joints, Frames>& tree, Eigen::Index i) noexcept {
+  return tree.joints[static_cast<std::size_t>(i)].joint;
+}
+
+/// Number of the link that carries joint i: of a chain, that of the joint before.
+template <typename Scalar, int Joints, int Frames>
+[[nodiscard]] int parent_of(const Tree<Scalar, Joints, Frames>& tree, Eigen::Index i) noexcept {
+  return tree.joints[static_cast<std::size_t>(i)].parent;
+}
+template <typename Scalar, int Length>
+[[nodiscard]] int parent_of(const Chain<Scalar, Length>&, Eigen::Index i) noexcept {
+  return static_cast<int>(i);
+}
+
+/// Number of joints of a tree, checked. Throws std::invalid_argument where that number exceeds kMaxDof or is zero, a
+/// joint is carried by a link that does not come before it, a frame is of a link that does not exist, or a number is
+/// out of range.
+template <typename Scalar, int Joints, int Frames>
+Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
+  validation::require_dof("joints", static_cast<Eigen::Index>(tree.joints.size()), 1);
+  for (std::size_t i = 0; i < tree.joints.size(); ++i) {
+    const validation::Argument name = chain_check::name_of(tree, static_cast<Eigen::Index>(i));
+    const auto& [joint, parent, moved] = tree.joints[i];
+    chain_check::require_joint(name, joint);
+    if (parent < 0 || parent > static_cast<int>(i)) {
+      validation::fail(name + ".parent", parent, "the number of a link before the joint's own, at most ",
+                       static_cast<int>(i));
+    }
+    validation::require_non_negative(name + ".moved.mass", moved.mass);
+    validation::require_finite(name + ".moved.centre", moved.centre);
+  }
+  for (std::size_t i = 0; i < tree.frames.size(); ++i) {
+    const auto& [frame_name, link, offset] = tree.frames[i];
+    const validation::Argument name = validation::element("frames", static_cast<Eigen::Index>(i));
+    if (link < 0 || link > static_cast<int>(tree.joints.size())) {
+      validation::fail(name + ".link", link, "the number of a link, at most ", static_cast<int>(tree.joints.size()));
+    }
+    chain_check::require_transform(name + ".offset", offset);
+  }
+  return static_cast<Eigen::Index>(tree.joints.size());
+}
+
+/// Adds an arm to a tree, placed in the frame of a link. Its joints' names begin with its own name, and its tip is the
+/// frame name_tip. Returns the number of its last link.
+template <typename Scalar>
+int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& name, int link = 0,
+            const Transform<Scalar>& placement = {}) {
+  const auto first = static_cast<int>(tree.joints.size());
+  for (const auto& [type, placed, axis, bounds, joint_name, mimic] : arm.joints) {
+    const bool is_first = static_cast<int>(tree.joints.size()) == first;
+    const Mimic<Scalar> follows{mimic.joint < 0 ? -1 : first + mimic.joint, mimic.ratio, mimic.offset};
+    tree.joints.push_back(
+        {{type, is_first ? placement * placed : placed, axis, bounds, name + "_" + joint_name, follows}, link, {}});
+    link = static_cast<int>(tree.joints.size());
+  }
+  tree.frames.push_back({name + "_tip", link, arm.tip});
+  return link;
+}
+
+/// A chain as a tree, whose frame "tip" is the chain's tip.
+template <typename Scalar, int Length>
+[[nodiscard]] Tree<Scalar> tree_of(const Chain<Scalar, Length>& chain) {
+  Tree<Scalar> tree;
+  for (const auto& [type, placement, axis, bounds, name, mimic] : chain.joints) {
+    const int parent = static_cast<int>(tree.joints.size());
+    tree.joints.push_back({{type, placement, axis, bounds, std::string(name), mimic}, parent, {}});
+  }
+  tree.frames.push_back({"tip", static_cast<int>(tree.joints.size()), chain.tip});
+  return tree;
+}
+
+}  // namespace fpbm

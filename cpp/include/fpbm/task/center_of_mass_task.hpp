@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include "fpbm/core/space.hpp"
+#include "fpbm/model/center_of_mass.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/task_gains.hpp"
+#include "fpbm/task/task_rows.hpp"
+
+namespace fpbm {
+
+/// Position of a robot's centre of mass: M of its coordinates, along the base frame's axes.
+template <int M = 3, typename Scalar_ = double>
+struct CenterOfMassTask {
+  using Scalar = Scalar_;
+  using Space = Position<3>;
+  using Vector3 = Vector<3, Scalar>;
+  static constexpr int kRows = M;
+  static constexpr bool kWhole = false;
+
+  TaskGains<Scalar> gains;
+  std::array<int, M> rows = PositionTask<M, Scalar>::first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
+
+  /// Throws std::invalid_argument where the robot has no mass, or rows are wrong.
+  template <typename Robot>
+  void bind(const Robot& robot) const {
+    require_different("rows", rows, 3);
+    require_mass(robot);
+  }
+
+  template <typename Robot, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Vector3& x, Vector3& xd,
+                Matrix<M, 3, Scalar>& S, Rows level) const noexcept {
+    Matrix<3, Robot::kDof, Scalar> J;
+    Matrix<3, Robot::kDof, Scalar> Jd;
+    center_of_mass(robot, state, x, xd, J, Jd);
+    for (int i = 0; i < M; ++i) {
+      const int row = rows[static_cast<std::size_t>(i)];
+      for (int j = 0; j < 3; ++j) S.coeffRef(i, j) = Scalar(j == row ? 1 : 0);
+      for (Eigen::Index j = 0; j < J.cols(); j += 2) level.set(i, j, two_of_row(J, row, j), two_of_row(Jd, row, j));
+    }
+  }
+};
+
+}  // namespace fpbm

@@ -1,0 +1,142 @@
+#pragma once
+
+#include "fpbm/task/link_frame.hpp"
+#include "fpbm/task/pose_task.hpp"
+#include "fpbm/task/task_rows.hpp"
+
+namespace fpbm {
+
+/// A robot as seen from one of its frames: all that tasks of frames ask a Robot for, in that frame's axes.
+template <typename Robot_>
+class SeenFrom {
+ public:
+  using Scalar = typename Robot_::Scalar;
+  using State = typename Robot_::State;
+  using Vector3 = Vector<3, Scalar>;
+
+  SeenFrom(const Robot_& robot, const State& state, const LinkFrame<Scalar>& reference) noexcept
+      : robot_(robot),
+        link_(reference.link()),
+        at_(reference.at(robot, state)),
+        back_(transposed(at_.R)),
+        w_(robot.angular_velocity(state, link_)) {}
+
+  [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
+  [[nodiscard]] Scalar length() const noexcept { return robot_.length(); }
+
+  [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
+    return inverse(at_) * robot_.frame(state, link, seen);
+  }
+  [[nodiscard]] Matrix<3, 3, Scalar> axes(const State& state, int link,
+                                          const Matrix<3, 3, Scalar>& seen) const noexcept {
+    return times(back_, robot_.axes(state, link, seen));
+  }
+  [[nodiscard]] Vector3 point(const State& state, int link, const Vector3& seen) const noexcept {
+    return times(back_, subtract(robot_.point(state, link, seen), at_.p));
+  }
+  [[nodiscard]] Vector3 angular_velocity(const State& state, int link) const noexcept {
+    return times(back_, subtract(robot_.angular_velocity(state, link), w_));
+  }
+
+  /// As Robot::columns(): J is Rᵀ (J_link − J_reference), both of the point p. Its rate has
+  ///
+  ///   J̇_reference of p as a point of the reference's link, and a × ṗ since p moves in it,    −Rᵀ w × (…) of the axes.
+  template <typename F>
+  Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
+    constexpr int N = Robot_::kDof;
+    Matrix<6, N, Scalar> J;
+    Matrix<6, N, Scalar> Jd;
+    Matrix<6, N, Scalar> own;
+    Matrix<6, N, Scalar> own_rates;
+    const Vector3 turned = times(at_.R, p);
+    const Vector3 place = entrywise(p, [&](Eigen::Index i) { return at_.p.coeff(i) + turned.coeff(i); });
+    const Vector3 v =
+        subtract(robot_.jacobian(state, link, place, J, Jd), robot_.jacobian(state, link_, place, own, own_rates));
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      const Vector3 along = cross(part(own, 3, j), v);
+      for (int row = 0; row < 6; ++row) {
+        J.coeffRef(row, j) -= own.coeff(row, j);
+        Jd.coeffRef(row, j) -= own_rates.coeff(row, j) + (row < 3 ? along.coeff(row) : Scalar(0));
+      }
+      for (int first = 0; first < 6; first += 3) {
+        const Vector3 column = part(J, first, j);
+        set(J, first, j, times(back_, column));
+        set(Jd, first, j, times(back_, subtract(part(Jd, first, j), cross(w_, column))));
+      }
+    }
+    using Columns = typename Robot_::Columns;
+    for (Eigen::Index j = 0; j < J.cols(); j += 2) f(j, Columns::load(J, j), Columns::load(Jd, j));
+    return times(back_, v);
+  }
+
+  template <typename F>
+  void angular_columns(const State& state, int link, const F& f) const noexcept {
+    (void)columns(
+        state, link, filled<Vector3>(3),
+        [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept { f(j, columns.angular, rates.angular); });
+  }
+
+ private:
+  using Six = Matrix<6, Robot_::kDof, Scalar>;
+
+  [[nodiscard]] static Vector3 subtract(const Vector3& a, const Vector3& b) noexcept {
+    return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - b.coeff(i); });
+  }
+  [[nodiscard]] static Vector3 part(const Six& of, int first, Eigen::Index j) noexcept {
+    return {of.coeff(first, j), of.coeff(first + 1, j), of.coeff(first + 2, j)};
+  }
+  static void set(Six& to, int first, Eigen::Index j, const Vector3& column) noexcept {
+    for (int row = 0; row < 3; ++row) to.coeffRef(first + row, j) = column.coeff(row);
+  }
+
+  const Robot_& robot_;
+  int link_;
+  Transform<Scalar> at_;  ///< The reference frame.
+  Matrix<3, 3, Scalar> back_;
+  Vector3 w_;  ///< Of the reference frame, in base axes.
+};
+
+/// Throws std::invalid_argument where no joint moves a frame relative to another.
+template <typename Robot, typename Scalar>
+void require_relative_motion(const Robot& robot, const LinkFrame<Scalar>& frame, const LinkFrame<Scalar>& reference) {
+  if (robot.moved_by(frame.link()) == robot.moved_by(reference.link())) {
+    validation::reject("reference_frame", ": moves with the task's frame, must be of another link");
+  }
+}
+
+/// A task of a frame relative to another frame of the robot, as that one moves: PositionTask, OrientationTask, PoseTask
+/// or AxisTask, whose point, reference and rows are in the axes of the reference frame in place of the base frame's.
+template <typename Task>
+struct RelativeTask {
+  using Scalar = typename Task::Scalar;
+  using Space = typename Task::Space;
+  static constexpr int kRows = Task::kRows;
+  static constexpr bool kWhole = Task::kWhole;
+
+  Task task;
+  LinkFrame<Scalar> reference;
+  TaskGains<Scalar> gains = task.gains;
+
+  /// Throws std::invalid_argument where a frame does not suit the robot, or both are of one link.
+  template <typename Robot>
+  void bind(const Robot& robot) {
+    task.bind(robot);
+    reference.bind(robot);
+    require_relative_motion(robot, task.frame, reference);
+  }
+
+  template <typename Robot, typename Point, typename Velocity, typename Selection, typename Rows>
+  void evaluate(const Robot& robot, const typename Robot::State& state, Point& x, Velocity& xd, Selection& S,
+                Rows level) const noexcept {
+    task.evaluate(SeenFrom<Robot>(robot, state, reference), state, x, xd, S, level);
+  }
+};
+
+template <typename Task>
+RelativeTask(const Task&, const LinkFrame<typename Task::Scalar>&) -> RelativeTask<Task>;
+
+/// Pose of a frame in another frame of the robot: a grasp with two hands.
+template <typename Scalar = double>
+using RelativePoseTask = RelativeTask<PoseTask<Scalar>>;
+
+}  // namespace fpbm

@@ -1,0 +1,159 @@
+#include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "fpbm/model/center_of_mass.hpp"
+#include "fpbm/model/robot_presets.hpp"
+#include "joints.hpp"
+#include "model.hpp"
+
+namespace fpbm::bindings {
+namespace {
+
+using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_>;
+using PlainFrame = py::typing::Tuple<py::str, py::int_, Array>;
+
+/// A class of its own: Python's Robot derives from it.
+struct PyRobot : Model {
+  using Model::Model;
+};
+
+LinkMass<> mass_of(double mass, const py::handle& center) {
+  return {mass, fixed_vector<3>(ArrayLike(py::reinterpret_borrow<py::object>(center)), "center")};
+}
+
+/// A tree of fpbm_cpp.TreeJoint and fpbm_cpp.NamedFrame, or of anything with their attributes.
+Tree<> tree_of_python(const py::typing::List<py::object>& joints, const py::typing::List<py::object>& frames,
+                      double base_mass, const ArrayLike& base_center) {
+  Tree<> tree;
+  tree.base = mass_of(base_mass, base_center);
+  for (const py::handle each : joints) {
+    const auto i = static_cast<Eigen::Index>(tree.joints.size());
+    tree.joints.push_back({joint_of_python(each.attr("joint"), validation::element("joints", i)),
+                           py::cast<int>(each.attr("parent")),
+                           mass_of(py::cast<double>(each.attr("mass")), each.attr("center"))});
+  }
+  for (const py::handle each : frames) {
+    tree.frames.push_back({py::cast<std::string>(each.attr("name")), py::cast<int>(each.attr("link")),
+                           transform(ArrayLike(py::object(each.attr("offset"))), "offset")});
+  }
+  return tree;
+}
+
+/// Frame, J and J̇ of a frame of a robot in one state.
+struct FrameState {
+  Transform<> at;
+  Matrix<6, kDynamic> J;
+  Matrix<6, kDynamic> Jd;
+
+  FrameState(const Model& model, const ArrayLike& q, const ArrayLike& qd, const std::string& frame) {
+    const auto [link, offset] = model.frame(frame);
+    RobotState<kDynamic> state;
+    model.robot.update(joint_vector(q, "q", model.dof()), joint_vector(qd, "qd", model.dof()), state);
+    at = model.robot.frame(state, link, model.robot.in_joint(link, offset));
+    model.robot.jacobian(state, link, at.p, J, Jd);
+  }
+};
+
+Array rows_of_task(const Matrix<6, kDynamic>& rows, const std::string& task) {
+  if (task == "pose") return array_of(rows);
+  if (task == "position") return array_of(Matrix<3, kDynamic>(rows.topRows<3>()));
+  if (task == "orientation") return array_of(Matrix<3, kDynamic>(rows.bottomRows<3>()));
+  validation::reject("task", " = '" + task + "': must be 'position', 'orientation' or 'pose'");
+}
+
+Array center_of_mass_at(const PyRobot& model, const ArrayLike& q) {
+  require_mass(model.robot);
+  RobotState<kDynamic> state;
+  model.robot.update(joint_vector(q, "q", model.dof()), state);
+  Vector<3> center;
+  Vector<3> velocity;
+  Matrix<3, kDynamic> J;
+  Matrix<3, kDynamic> Jd;
+  center_of_mass(model.robot, state, center, velocity, J, Jd);
+  return array_of(center);
+}
+
+/// The joints of a preset, with the numbers of the links that carry them, and its frames.
+py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>> robot_preset(
+    const std::string& name) {
+  for (const presets::RobotPreset& known : presets::kRobots) {
+    if (name != known.name) continue;
+    py::list joints;
+    py::list frames;
+    const Tree<> tree = known.tree();
+    for (const auto& [joint, parent, moved] : tree.joints) joints.append(py::make_tuple(fields_of(joint), parent));
+    for (const auto& [frame, link, offset] : tree.frames) frames.append(py::make_tuple(frame, link, array_of(offset)));
+    return py::make_tuple(joints, frames);
+  }
+  validation::reject("name", " = '" + name + "': must be one of ROBOT_PRESETS");
+}
+
+py::typing::Dict<py::str, Array> bounds_of(const Model& model) {
+  const auto& limits = model.limits();
+  py::dict bounds;
+  bounds["lower"] = array_of(limits.lower);
+  bounds["upper"] = array_of(limits.upper);
+  bounds["velocity"] = array_of(limits.velocity);
+  bounds["acceleration"] = array_of(limits.acceleration);
+  bounds["jerk"] = array_of(limits.jerk);
+  bounds["velocity_offset"] = array_of(limits.velocity_offset);
+  bounds["deceleration"] = array_of(limits.deceleration);
+  return bounds;
+}
+
+}  // namespace
+
+void bind_robot(py::module_& m) {
+  m.attr("MAX_DOF") = kMaxDof;
+  py::tuple names(std::size(presets::kRobots));
+  for (std::size_t i = 0; i < std::size(presets::kRobots); ++i) names[i] = presets::kRobots[i].name;
+  m.attr("ROBOT_PRESETS") = names;
+  m.def("robot_preset", &robot_preset, py::arg("name"));
+
+  py::class_<Model>(m, "Model", "The compiled part of a robot or an arm: its joints and frames.")
+      .def_property_readonly("dof", &Model::dof, "Number of joints n that have a drive.")
+      .def_property_readonly(
+          "joint_names", [](const Model& model) { return model.joint_names; },
+          "Names of the joints that have a drive, from the base on.")
+      .def("bounds", &bounds_of,
+           "The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.");
+
+  const auto task = py::arg("task") = "pose";
+  py::class_<PyRobot, Model>(m, "Robot", "The compiled part of a robot.")
+      .def(py::init([](const py::typing::List<py::object>& joints, const py::typing::List<py::object>& frames,
+                       double base_mass, const ArrayLike& base_center) {
+             return PyRobot(tree_of_python(joints, frames, base_mass, base_center));
+           }),
+           py::arg("joints"), py::arg("frames"), py::arg("base_mass"), py::arg("base_center"))
+      .def(
+          "forward",
+          [](const PyRobot& model, const ArrayLike& q, const std::string& frame) {
+            return array_of(FrameState(model, q, q, frame).at);
+          },
+          py::arg("q"), py::arg("frame"),
+          "Pose of a frame in the base frame [m], a homogeneous matrix, shape (4, 4). q: (n,) [rad].")
+      .def(
+          "jacobian",
+          [](const PyRobot& model, const ArrayLike& q, const std::string& frame, const std::string& name) {
+            return rows_of_task(FrameState(model, q, q, frame).J, name);
+          },
+          py::arg("q"), py::arg("frame"), py::kw_only(), task,
+          "Jacobian of a frame, shape (m, n): its velocity is J qd, linear rows first, then angular, in the base\n"
+          "frame's axes. task: 'position', 'orientation' or 'pose'. q: (n,) [rad].")
+      .def(
+          "jacobian_dot",
+          [](const PyRobot& model, const ArrayLike& q, const ArrayLike& qd, const std::string& frame,
+             const std::string& name) { return rows_of_task(FrameState(model, q, qd, frame).Jd, name); },
+          py::arg("q"), py::arg("qd"), py::arg("frame"), py::kw_only(), task,
+          "dJ/dt along qd, shape (m, n): the frame's acceleration is J qdd + Jd qd. q, qd: (n,) [rad], [rad/s].")
+      .def("center_of_mass", &center_of_mass_at, py::arg("q"),
+           "Centre of mass in the base frame, shape (3,) [m], the base included. q: (n,) [rad].\n\n"
+           "Raises ParameterError where the robot has no mass.");
+}
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,26 @@
+#include "model.hpp"
+
+namespace fpbm::bindings {
+
+std::pair<int, Transform<>> Model::frame(const std::string& name) const {
+  constexpr std::size_t kShown = 12;
+  if (name == "base") return {0, {}};
+  std::string known;
+  std::size_t count = 0;
+  const auto list = [&](const std::string& other) {
+    if (++count <= kShown) known += ", '" + other + "'";
+  };
+  for (const auto& [other, link, offset] : tree.frames) {
+    if (other == name) return {link, offset};
+    list(other);
+  }
+  for (std::size_t i = 0; i < tree.joints.size(); ++i) {
+    const std::string& joint = tree.joints[i].joint.name;
+    if (joint == name) return {static_cast<int>(i) + 1, {}};
+    list(joint);
+  }
+  if (count > kShown) known += " and " + std::to_string(count - kShown) + " more";
+  validation::reject("frame", " = '" + name + "': must be a frame, or the joint of a link: 'base'" + known);
+}
+
+}  // namespace fpbm::bindings

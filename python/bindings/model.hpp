@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fpbm/model/robot.hpp"
+
+namespace fpbm::bindings {
+
+inline constexpr int kDynamic = Eigen::Dynamic;
+using JointVector = Vector<kDynamic>;
+
+/// The joints and frames of a robot or an arm, for tasks, clearance and all else that reads a robot's state.
+struct Model {
+  explicit Model(const Tree<>& tree_, bool planar_ = false) : tree(tree_), robot(tree_), planar(planar_) {
+    for (const auto& [joint, parent, moved] : tree.joints) {
+      if (joint.mimic.joint < 0) joint_names.push_back(joint.name);
+    }
+  }
+  virtual ~Model() = default;  // So that Python gets back the object of the class that it made.
+
+  [[nodiscard]] int dof() const noexcept { return robot.dof(); }
+  [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return robot.limits(); }
+  /// Link and offset of a frame: 'base', a named frame, or the link that the joint of that name moves.
+  /// Throws std::invalid_argument where there is none.
+  [[nodiscard]] std::pair<int, Transform<>> frame(const std::string& name) const;
+
+  Tree<> tree;
+  Robot<kDynamic> robot;
+  bool planar;                           ///< Whether it is an arm in the plane.
+  std::vector<std::string> joint_names;  ///< Of the drives.
+};
+
+}  // namespace fpbm::bindings

@@ -1,0 +1,165 @@
+"""Trees of joints from URDF files, with masses: what a Robot is made of."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from .._core import MAX_DOF
+from ..arms import Joint
+from ..errors import ParameterError, not_one_of, wrong
+from ..robots import NamedFrame, TreeJoint
+from .urdf import Places, Tree, chain_joint, coupled_joints, follows_of, frame_at, pose, step_of, tree_of
+from .urdf_file import Mass, UrdfJoint, read_robot_with_masses
+
+TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+BASES = ("fixed", "planar")
+
+
+def read_tree(
+    path: str | os.PathLike[str],
+    *,
+    base: str | None = None,
+    locked: Mapping[str, float] | None = None,
+    tips: Iterable[str] | None = None,
+) -> dict[str, Any]:
+    """The arguments of a Robot, as Robot.from_urdf() says."""
+    name = os.fsdecode(path)
+    if base is not None and base not in BASES:
+        raise not_one_of("base", base, BASES)
+    try:
+        links, every, masses = read_robot_with_masses(name)
+        above = tree_of(links, every)
+        held = _held(above, every, dict(locked or {}), tips)
+        return _robot(above, every, masses, held, base)
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def _held(
+    above: Tree, every: Iterable[UrdfJoint], locked: dict[str, float], tips: Iterable[str] | None
+) -> dict[str, float]:
+    """Positions of the joints that are held, by name."""
+    joints = {joint.name: joint for joint in every}
+    for name, position in locked.items():
+        if name not in joints or joints[name].type in ("fixed", "floating", "planar"):
+            close = difflib.get_close_matches(name, list(joints)[:300])
+            hint = f", perhaps {' or '.join(map(repr, close))}" if close else ""
+            raise wrong("locked", name, f" has {name!r}: must be names of joints that move{hint}")
+        if (mimic := joints[name].mimic) is not None:
+            raise wrong("locked", name, f" has {name!r}, which mimics {mimic[0]!r}: lock that one")
+        low, high = _range(joints[name])
+        if not low <= position <= high:
+            raise ParameterError(
+                "locked", None, position, f"locked[{name!r}] = {position:g}: must be from {low:g} to {high:g}"
+            )
+    held = {name: float(position) for name, position in locked.items()}
+    if tips is not None:
+        needed = _needed(above, joints, [tips] if isinstance(tips, str) else list(tips))
+        for name, joint in joints.items():
+            if name not in needed and joint.mimic is None and joint.type != "fixed":
+                low, high = _range(joint)
+                held.setdefault(name, min(max(0.0, low), high))
+    return held
+
+
+def _needed(above: Tree, joints: Mapping[str, UrdfJoint], tips: list[str]) -> set[str]:
+    """Names of the joints that move a tip, and of those that they mimic."""
+    needed: set[str] = set()
+    for tip in tips:
+        if tip not in above:
+            close = difflib.get_close_matches(str(tip), list(above)[:300])
+            raise wrong("tips", tip, f" has {tip!r}: must be links" + (f", perhaps {close[0]!r}" if close else ""))
+        link = tip
+        while (joint := above[link]) is not None:
+            while joint.name not in needed:
+                needed.add(joint.name)
+                if joint.mimic is None or joint.mimic[0] not in joints:
+                    break
+                joint = joints[joint.mimic[0]]
+            link = above[link].parent  # type: ignore[union-attr]
+    return needed
+
+
+def _range(joint: UrdfJoint) -> tuple[float, float]:
+    return (-inf, inf) if joint.type == "continuous" else (joint.limit.get("lower", 0.0), joint.limit.get("upper", 0.0))
+
+
+def _planar_base() -> list[Joint]:
+    """Joints that move a base along x and y, and turn it about z."""
+    return [
+        Joint("prismatic", axis=(1, 0, 0), name="base_x"),
+        Joint("prismatic", axis=(0, 1, 0), name="base_y"),
+        Joint("continuous", axis=(0, 0, 1), name="base_yaw"),
+    ]
+
+
+def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
+    """All joints, each behind the one that carries it; a chain's joints in a row."""
+    below: dict[str, list[UrdfJoint]] = {link: [] for link in above}
+    for joint in filter(None, above.values()):
+        below[joint.parent].append(joint)
+    left = [joint for link, joint_above in above.items() if joint_above is None for joint in below[link][::-1]]
+    while left:
+        joint = left.pop()
+        yield joint
+        left += below[joint.child][::-1]
+
+
+def _robot(
+    above: Tree, every: list[UrdfJoint], masses: Mapping[str, Mass], held: Mapping[str, float], base: str | None
+) -> dict[str, Any]:
+    follows = follows_of(every, {joint.name: joint.mimic for joint in every})
+    joints = _planar_base() if base == "planar" else []
+    parents = list(range(len(joints)))
+    root = next(link for link, joint in above.items() if joint is None)
+    places = {root: (len(joints), frame_at())}
+    for joint in _depth_first(above):
+        number, frame = places[joint.parent]
+        frame = frame @ pose(joint.xyz, joint.rpy)
+        if joint.type not in TYPES:
+            raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES)}")
+        if joint.type in ("floating", "planar") and base is None:
+            raise ValueError(f"joint {joint.name!r} is {joint.type}: base= must be 'fixed' or 'planar', in its place")
+        if joint.type in ("revolute", "continuous", "prismatic"):
+            leader, ratio, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
+            if leader in held:
+                frame = frame @ step_of(joint, ratio * held[leader] + offset)
+            else:
+                joints.append(chain_joint(joint, frame))
+                parents.append(number)
+                number, frame = len(joints), frame_at()
+        places[joint.child] = (number, frame)
+    if not 1 <= len(joints) <= MAX_DOF:
+        raise ValueError(
+            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}, the others locked=, or left by tips="
+        )
+    moving = {joint.name for joint in joints}
+    coupled = coupled_joints(joints, {name: follow for name, follow in follows.items() if name in moving})
+    weights = _weights(places, masses, len(joints) + 1)
+    return {
+        "joints": [
+            TreeJoint(joint, parent, mass=mass, center=center)
+            for joint, parent, (mass, center) in zip(coupled, parents, weights[1:])
+        ],
+        "named_frames": [NamedFrame(link, number, frame) for link, (number, frame) in places.items()],
+        "base_mass": weights[0].mass,
+        "base_center": weights[0].center,
+    }
+
+
+def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
+    """Mass and its centre of each link of the robot, which may be several of the file."""
+    total, moment = np.zeros(count), np.zeros((count, 3))
+    for link, (mass, center) in masses.items():
+        number, frame = places[link]
+        total[number] += mass
+        moment[number] += mass * (frame[:3, :3] @ center + frame[:3, 3])
+    return [Mass(float(m), s / m if m > 0.0 else s) for m, s in zip(total, moment)]
