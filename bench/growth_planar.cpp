@@ -22,8 +22,7 @@ bool add_all(std::integer_sequence<int, n...>) {
   return true;
 }
 
-using Sizes =
-    std::integer_sequence<int, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32>;
+using Sizes = std::integer_sequence<int, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32>;
 [[maybe_unused]] const bool kAdded = add_all(Sizes{});
 
 }  // namespace

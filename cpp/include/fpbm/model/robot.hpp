@@ -221,33 +221,44 @@ class Robot {
   using Drives_ = Drives<N, Joints, Scalar>;
   using JointVector = Vector<Joints, Scalar>;
 
-  /// Stores the joints' placements in a state, and continues from there where a link carries more joints than one.
-  struct AlongTree {
+  /// Stores the joints' placements in a state.
+  struct Storing {
+    Storing(const Robot& robot_, State& state_) noexcept : robot(robot_), state(state_) {}
+
     const Robot& robot;
     State& state;
 
-    void enter(Eigen::Index i, Frame<Scalar>& frame, SplitVector<Scalar>& w) const noexcept {
-      if ((robot.branches_ >> i & 1U) == 0) return;
-      const int parent = robot.parents_[index(i)];
-      frame = Frame<Scalar>(state.placement(index(parent)) * robot.starts_[index(i)]);
-      const Vector3 turning = robot.angular_velocity(state, parent);
-      w = SplitVector<Scalar>::load(turning.data());
-    }
+    static void enter(Eigen::Index, Frame<Scalar>&, SplitVector<Scalar>&) noexcept {}
     void leave(Eigen::Index i, const Frame<Scalar>& frame) const noexcept {
       frame.store(state.p[index(i + 1)], state.R[index(i + 1)]);
+    }
+  };
+  /// And continues from there at joints that are not carried by the link of the joint before.
+  struct StoringTree : Storing {
+    using Storing::Storing;
+
+    void enter(Eigen::Index i, Frame<Scalar>& frame, SplitVector<Scalar>& w) const noexcept {
+      if ((this->robot.branches_ >> i & 1U) == 0) return;
+      const int parent = this->robot.parents_[index(i)];
+      frame = Frame<Scalar>(this->state.placement(index(parent)) * this->robot.starts_[index(i)]);
+      const Vector3 turning = this->robot.angular_velocity(this->state, parent);
+      w = SplitVector<Scalar>::load(turning.data());
     }
   };
 
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] int number_of(int link) const noexcept { return link == kTip ? tip_link_ : link; }
 
-  /// One function serves robots without prismatic joints, another serves the others.
   void place(const JointVector& q, const JointVector& qd, State& state) const noexcept {
-    pass_.slides() ? place<true>(q, qd, state) : place<false>(q, qd, state);
+    branches_ == 0 ? place<Storing>(q, qd, state) : place<StoringTree>(q, qd, state);
   }
-  template <bool kSlides>
+  template <typename Along>
+  void place(const JointVector& q, const JointVector& qd, State& state) const noexcept {
+    pass_.slides() ? place<Along, true>(q, qd, state) : place<Along, false>(q, qd, state);
+  }
+  template <typename Along, bool kSlides>
   [[gnu::flatten, gnu::noinline]] void place(const JointVector& q, const JointVector& qd, State& state) const noexcept {
-    (void)pass_.template operator()<true, kSlides>(starts_[0], q, qd, state.screws, AlongTree{*this, state});
+    (void)pass_.template operator()<true, kSlides>(starts_[0], q, qd, state.screws, Along(*this, state));
   }
 
   /// Calls f(i, joints) with joints i and i + 1, the last first; those that do not move the link have no axis.
