@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "fpbm/core/direction.hpp"
 #include "fpbm/core/space.hpp"
@@ -75,8 +76,8 @@ class AnyFrameTask {
   /// finite.
   AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
                bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0},
-               const std::optional<LinkFrame<>>& reference = std::nullopt)
-      : gains(gains_), frame_(frame), reference_(reference), kind_(kind), in_frame_(in_frame) {
+               std::optional<LinkFrame<>> reference = std::nullopt)
+      : gains(gains_), frame_(frame), reference_(std::move(reference)), kind_(kind), in_frame_(in_frame) {
     if (kind == FrameCoordinates::kAxis) {
       validation::require_finite("axis", axis);
       if (!(norm(axis) > 0.0)) validation::reject("axis", " is zero: must point somewhere");

@@ -75,18 +75,18 @@ void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, S
     const auto& [mass, moment, momentum, v] = sums[i];
     const Vector3 z = column(state.R[i], 2);
     const Vector3 zd = cross(robot.angular_velocity(state, link), z);
-    Vector3 of_J = z;
-    Vector3 of_Jd = zd;
+    Vector3 column_of_joint = z;
+    Vector3 column_rate = zd;
     Scalar factor = share * mass;
     if (robot.turns(link - 1)) {
       const Vector3 lever = plus(moment, -mass, state.p[i]);
-      of_J = cross(z, lever);
-      of_Jd = plus(cross(zd, lever), Scalar(1), cross(z, plus(momentum, -mass, v)));
+      column_of_joint = cross(z, lever);
+      column_rate = plus(cross(zd, lever), Scalar(1), cross(z, plus(momentum, -mass, v)));
       factor = share;
     }
     for (int k = 0; k < 3; ++k) {
-      columns.coeffRef(k, link - 1) = factor * of_J.coeff(k);
-      column_rates.coeffRef(k, link - 1) = state.moves ? factor * of_Jd.coeff(k) : Scalar(0);
+      columns.coeffRef(k, link - 1) = factor * column_of_joint.coeff(k);
+      column_rates.coeffRef(k, link - 1) = state.moves ? factor * column_rate.coeff(k) : Scalar(0);
     }
   }
   robot.set_by_drive(columns, J);

@@ -102,8 +102,9 @@ int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& nam
   for (const auto& [type, placed, axis, bounds, joint_name, mimic] : arm.joints) {
     const bool is_first = static_cast<int>(tree.joints.size()) == first;
     const Mimic<Scalar> follows{mimic.joint < 0 ? -1 : first + mimic.joint, mimic.ratio, mimic.offset};
-    tree.joints.push_back(
-        {{type, is_first ? placement * placed : placed, axis, bounds, name + "_" + joint_name, follows}, link, {}});
+    std::string own_name = name;
+    own_name.append("_").append(joint_name);
+    tree.joints.push_back({{type, is_first ? placement * placed : placed, axis, bounds, own_name, follows}, link, {}});
     link = static_cast<int>(tree.joints.size());
   }
   tree.frames.push_back({name + "_tip", link, arm.tip});
