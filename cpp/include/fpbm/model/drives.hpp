@@ -103,7 +103,6 @@ class Drives {
     for (Eigen::Index i = 0; i < count; ++i) drives += joint_of(source, i).mimic.joint < 0 ? 1 : 0;
     validation::require_dof("joints with a drive", drives, 1);
     if constexpr (N != Eigen::Dynamic) validation::require_size("joints with a drive", drives, N);
-    if constexpr (Joints != Eigen::Dynamic) validation::require_size("joints", count, Joints);
     return drives;
   }
 

@@ -49,7 +49,7 @@ class Robot {
 
   /// Throws std::invalid_argument as require_joints() and Drives do.
   template <int Length = Eigen::Dynamic>
-  explicit Robot(const Chain<Scalar, Length>& chain) : pass_(require_joints(chain)), drives_(chain) {
+  explicit Robot(const Chain<Scalar, Length>& chain) : pass_(sized(require_joints(chain))), drives_(chain) {
     connect(chain);
     tip_link_ = static_cast<int>(pass_.dof());
     tip_ = ends_[index(tip_link_)] * chain.tip;
@@ -58,7 +58,7 @@ class Robot {
 
   /// Throws std::invalid_argument as require_tree() and Drives do.
   template <int Length, int Frames>
-  explicit Robot(const Tree<Scalar, Length, Frames>& tree) : pass_(require_tree(tree)), drives_(tree) {
+  explicit Robot(const Tree<Scalar, Length, Frames>& tree) : pass_(sized(require_tree(tree))), drives_(tree) {
     connect(tree);
     masses_[0] = tree.base;
     Scalar longest(0);
@@ -246,6 +246,10 @@ class Robot {
     }
   };
 
+  [[nodiscard]] static Eigen::Index sized(Eigen::Index joints) {
+    if constexpr (Joints != Eigen::Dynamic) validation::require_size("joints", joints, Joints);
+    return joints;
+  }
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] int number_of(int link) const noexcept { return link == kTip ? tip_link_ : link; }
 
