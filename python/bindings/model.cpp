@@ -4,7 +4,6 @@ namespace fpbm::bindings {
 
 std::pair<int, Transform<>> Model::frame(const std::string& name) const {
   constexpr std::size_t kShown = 12;
-  if (name == "base") return {0, {}};
   std::string known;
   std::size_t count = 0;
   const auto list = [&](const std::string& other) {
@@ -19,6 +18,7 @@ std::pair<int, Transform<>> Model::frame(const std::string& name) const {
     if (joint == name) return {static_cast<int>(i) + 1, {}};
     list(joint);
   }
+  if (name == "base") return {0, {}};  // Unless a frame has that name, as in UR's URDF files.
   if (count > kShown) known += " and " + std::to_string(count - kShown) + " more";
   validation::reject("frame", " = '" + name + "': must be a frame, or the joint of a link: 'base'" + known);
 }

@@ -22,7 +22,7 @@ struct Model {
 
   [[nodiscard]] int dof() const noexcept { return robot.dof(); }
   [[nodiscard]] const JointLimits<kDynamic>& limits() const noexcept { return robot.limits(); }
-  /// Link and offset of a frame: 'base', a named frame, or the link that the joint of that name moves.
+  /// Link and offset of a frame: a named one, the link that the joint of that name moves, or 'base'.
   /// Throws std::invalid_argument where there is none.
   [[nodiscard]] std::pair<int, Transform<>> frame(const std::string& name) const;
 

@@ -64,6 +64,10 @@ class Reference:
     def set(self, q: Array, qd: Array) -> None:
         positions, rates = self.ratio @ q + self.offset, self.ratio @ qd
         whole, v = pin.neutral(self.model), np.zeros(self.model.nv)
+        for joint in self.model.joints[2:]:  # Those that are held, where they are nearest to 0.
+            if joint.nq == 1:
+                low, high = self.model.lowerPositionLimit[joint.idx_q], self.model.upperPositionLimit[joint.idx_q]
+                whole[joint.idx_q] = min(max(0.0, low), high)
         for name, position, rate in zip(self.names, positions, rates):
             joint = self.model.joints[self.model.getJointId(name)]
             if joint.nq == 2:
@@ -126,6 +130,31 @@ def test_random_trees_are_pinocchio_s(write) -> None:
     assert worst < 1e-12
 
 
+ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots"
+
+
+@pytest.mark.skipif(not ROBOTS.exists(), reason="needs example-robot-data")
+@pytest.mark.parametrize(
+    ("urdf", "dof", "tips"),
+    [
+        ("g1_description/urdf/g1_29dof_rev_1_0.urdf", 29, None),
+        ("g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", 43, None),
+        ("baxter_description/urdf/baxter.urdf", 17, None),
+        ("go2_description/urdf/go2.urdf", 6, ["FL_foot", "RR_foot"]),
+        ("tiago_description/robots/tiago.urdf", 48, None),
+        ("icub_description/robots/icub.urdf", 32, None),
+        ("talos_data/robots/talos_full_v2.urdf", 32, None),
+        ("ur_description/urdf/ur5_robot.urdf", 6, None),
+    ],
+)
+def test_robots_are_pinocchio_s(urdf: str, dof: int, tips: list[str] | None) -> None:
+    file = ROBOTS / urdf
+    robot = fp.Robot.from_urdf(file, base="fixed", tips=tips)
+    assert robot.dof == dof
+    rng = np.random.default_rng(3)
+    assert max(expect_pinocchio(file.read_text(), robot, rng, list(robot.frames)) for _ in range(5)) < 1e-12
+
+
 def test_it_is_data(write) -> None:
     robot = fp.Robot.from_urdf(write(random_urdf(np.random.default_rng(2), 8)))
     again = pickle.loads(pickle.dumps(robot))
@@ -185,6 +214,11 @@ def test_planar_base(write) -> None:
         (TWO_ARMS, {"locked": {"wrist": 0}}, r"locked has 'wrist': must be names of joints that move"),
         (TWO_ARMS, {"locked": {"waist": 3}}, r"locked\['waist'\] = 3: must be from -1 to 2"),
         (TWO_ARMS, {"tips": ["left_tol"]}, r"tips has 'left_tol': must be links, perhaps 'left_tool'"),
+        (
+            robot_text(link("a"), link("b"), joint("j", "a", "b").replace('upper="2"', 'upper="-1"')),
+            {},
+            "joint 'j': lower = -1: must be below upper = -1, or be in locked=",
+        ),
         (TWO_ARMS, {"base": "wheels"}, r"base = 'wheels': must be"),
         (
             robot_text(link("world"), link("base"), joint("free", "world", "base", "floating")),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._core import MAX_DOF
+from .._types import Array
 from ..arms import Joint
 from ..errors import ParameterError, not_one_of, wrong
 from ..robots import NamedFrame, TreeJoint
@@ -133,7 +134,7 @@ def _robot(
             if leader in held:
                 frame = frame @ step_of(joint, ratio * held[leader] + offset)
             else:
-                joints.append(chain_joint(joint, frame))
+                joints.append(_moving_joint(joint, frame))
                 parents.append(number)
                 number, frame = len(joints), frame_at()
         places[joint.child] = (number, frame)
@@ -153,6 +154,13 @@ def _robot(
         "base_mass": weights[0].mass,
         "base_center": weights[0].center,
     }
+
+
+def _moving_joint(joint: UrdfJoint, frame: Array) -> Joint:
+    try:
+        return chain_joint(joint, frame)
+    except ValueError as error:
+        raise ValueError(f"{error}, or be in locked=") from None
 
 
 def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
