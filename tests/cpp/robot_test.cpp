@@ -84,10 +84,10 @@ struct Textbook {
       } else {
         moving.R = Eigen::AngleAxisd(q[i], Eigen::Vector3d(axis)).toRotationMatrix();
       }
-      const auto& on = frames[static_cast<std::size_t>(parent)];
+      const Transform<> on = frames[static_cast<std::size_t>(parent)];
       frames.push_back(on * joint.placement * moving);
       axes.emplace_back(frames.back().R * axis);
-      const Vector<3>& turning = w[static_cast<std::size_t>(parent)];
+      const Vector<3> turning = w[static_cast<std::size_t>(parent)];
       v.push_back(v[static_cast<std::size_t>(parent)] + cross<double>(turning, frames.back().p - on.p));
       w.push_back(turning);
       (slides ? v : w).back() += qd[i] * axes.back();
