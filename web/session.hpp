@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fpbm/clearance/link_capsule.hpp>
-#include <fpbm/model/links.hpp>
+#include <fpbm/model/robot.hpp>
 #include <fpbm/objective/null_space.hpp>
 #include <fpbm/realtime/path_follower.hpp>
 #include <fpbm/realtime/tracker.hpp>
@@ -28,7 +28,7 @@ class Session final : public Simulator {
   Session(const fpbm::Chain<>& chain, const std::vector<fpbm::LinkCapsule<>>& capsules, const Arm& arm,
           const Bounds& bounds, const JointVector& q0, const Path& path, const fpbm::TargetBounds<>& target_bounds,
           const Settings& settings)
-      : links_(chain),
+      : robot_(chain),
         capsules_(capsules),
         arm_(arm),
         bounds_(bounds),
@@ -104,11 +104,12 @@ class Session final : public Simulator {
     std::copy_n(state.qd.data(), N, view.qd);
     std::copy_n(place(at).data(), kAxes, view.tip);
     std::copy_n(place(reference).data(), kAxes, view.reference);
-    typename fpbm::Links<N>::Frames frames;
-    links_.place(state.q, frames);
-    for (std::size_t i = 0; i <= N; ++i) {
-      std::copy_n(frames[i].p.data(), 3, view.frames[i]);
-      std::copy_n(frames[i].R.data(), 9, view.frames[i] + 3);
+    fpbm::RobotState<N> placed;
+    robot_.update(state.q, placed);
+    for (int i = 0; i <= N; ++i) {
+      const fpbm::Transform<> link = robot_.frame(placed, i, robot_.in_joint(i, {}));
+      std::copy_n(link.p.data(), 3, view.frames[i]);
+      std::copy_n(link.R.data(), 9, view.frames[i] + 3);
     }
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
       const auto& [link, capsule, name] = capsules_[i];
@@ -206,7 +207,7 @@ class Session final : public Simulator {
   }
   [[nodiscard]] Point now() const noexcept { return following_ ? follower_.ahead(0.0).x : filter_.reference().x; }
 
-  fpbm::Links<N> links_;
+  fpbm::Robot<N> robot_;
   std::vector<fpbm::LinkCapsule<>> capsules_;
   Arm arm_;
   Bounds bounds_;
