@@ -6,7 +6,10 @@
 #include "fpbm/clearance/guard.hpp"
 #include "fpbm/clearance/task_bounds.hpp"
 #include "fpbm/model/robot.hpp"
+#include "fpbm/realtime/stack_tracker.hpp"
 #include "fpbm/realtime/tracker.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/posture_task.hpp"
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 #include "support/wild_reference.hpp"
@@ -451,6 +454,70 @@ void expect_slow_tip() {
 TEST(Guard, keeps_the_tip_s_speed) {
   expect_slow_tip<Level::kAcceleration>();
   expect_slow_tip<Level::kVelocity>();
+}
+
+/// Both hands of two Pandas jump to places that are 0.2 m apart, across one another: with and without a torso.
+template <int N, Level kLevel>
+void expect_arms_apart(bool with_torso) {
+  const Tree<> tree = two_pandas(with_torso);
+  const Robot<N> robot(tree);
+  constexpr double kMargin = 0.01;
+  const Limits<kLevel, N> limits(robot.limits(), kTick);
+  const auto scheme = [] {
+    if constexpr (kLevel == Level::kVelocity) {
+      return MVN<N>();
+    } else {
+      return Balanced<N>(0.0, UnitWeights{}, NullSpace<N>().with_damping(2.0));
+    }
+  }();
+  const TaskGains<> gains = kLevel == Level::kVelocity ? TaskGains<>(5.0) : TaskGains<>(10.0, 25.0);
+  const Stack stack(
+      TaskLevel(PositionTask<>{frame_of(tree, "right_tip"), gains}, PositionTask<>{frame_of(tree, "left_tip"), gains}),
+      PostureTask<N>{gains});
+  double nearest = 1e9;
+  double joints = 0.0;
+  int blocked = 0;
+  for (int seed = 0; seed < trials(4); ++seed) {
+    Random random(static_cast<std::uint32_t>(seed));
+    Vector<N> q = Vector<N>::Zero();
+    for (int i = 0; i < 14; ++i) q(N - 14 + i) = ready()(i % 7) + random.uniform(-0.3, 0.3);
+    Clearance<N> clearance(tree, sticks(tree, 0.05), {}, kMargin);
+    auto tracker = stack_tracker<Guard<kLevel, N>>(robot, stack, scheme, State<N>{q, 0.0 * q}, TrackerOptions<>{kTick},
+                                                   limits, Vector<N>(0.0 * q), Guard<kLevel, N>(clearance));
+    auto target = decltype(tracker)::Target::hold(tracker.tip());
+    Vector<N> before = q;
+    for (int k = 0; k < 3000; ++k) {
+      if (k % 600 == 0) {
+        const Vector<3> middle = random.uniform(3, -0.3, 0.3);
+        const Vector<3> center = middle + Vector<3>(0.5, 0.0, with_torso ? 0.8 : 0.4);
+        std::get<0>(target.x) = center + Vector<3>(0.0, 0.1, 0.0);
+        std::get<1>(target.x) = center - Vector<3>(0.0, 0.1, 0.0);
+      }
+      const auto tick = tracker.tick(target);
+      blocked += tick.status == Status::kBlocked ? 1 : 0;
+      for (int part = 1; part <= 2; ++part) {
+        clearance.place(q + (part / 2.0) * (tick.q - q));
+        nearest = std::min(nearest, clearance.nearest_pair().second - kMargin);
+      }
+      for (int i = 0; i < N; ++i) {
+        const double change = (tick.q(i) - 2.0 * q(i) + before(i)) / (kTick * kTick);
+        joints = std::max({joints, tick.q(i) - robot.limits().upper(i), robot.limits().lower(i) - tick.q(i),
+                           std::abs(tick.q(i) - q(i)) / (kTick * robot.limits().velocity(i)) - 1.0,
+                           std::abs(change) / robot.limits().acceleration(i) - 1.0});
+      }
+      before = q;
+      q = tick.q;
+    }
+  }
+  std::printf("two arms of %d joints: nearest %.1e beyond the margin, joints' bounds %.1e, blocked %d\n", N, nearest,
+              joints, blocked);
+  EXPECT_GE(nearest, -kSlack);
+  EXPECT_LE(joints, 1e-9);
+  EXPECT_GT(blocked, 0);
+}
+TEST(Guard, keeps_two_arms_apart) {
+  expect_arms_apart<14, Level::kVelocity>(false);
+  expect_arms_apart<16, Level::kAcceleration>(true);
 }
 
 TEST(Guard, names_what_is_wrong) {
