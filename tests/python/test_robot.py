@@ -250,3 +250,33 @@ def test_a_tracker_of_a_robot_needs_a_stack(write) -> None:
         fp.Tracker(robot, fp.MVN(), np.zeros(5), stack=fp.Stack(task))
     with pytest.raises(ParameterError, match="robot: has no mass"):
         fp.Tracker(robot, fp.MVN(), np.zeros(5), stack=fp.Stack(fp.CenterOfMassTask()))
+
+
+@pytest.mark.parametrize("level", ["acceleration", "velocity"])
+def test_a_grasp_holds_within_limits(level: str) -> None:
+    """The tray jumps beyond what the limits allow; positions, velocities and accelerations by differences of q."""
+    robot = fp.Robot.preset("two_pandas")
+    q = np.tile([0, -0.6, 0, -2.4, 0, 1.8, 0.785], 2)
+    stack = fp.Stack(
+        fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=400, k2=40_000, k=400),
+        fp.PoseTask("right_tip", name="tray"),
+        fp.PostureTask(q, k1=4, k2=4, k=2),
+    )
+    scheme = fp.MVN() if level == "velocity" else fp.Balanced(0, np.ones(14), null_damping=2)
+    tracker = fp.Tracker(robot, scheme, q, stack=stack)
+    start = tracker.tip["tray"]
+    rng, limits, slowed, path = np.random.default_rng(4), robot.limits, 0, [q, q]
+    for k in range(4000):
+        if k % 1000 == 0:
+            goal = start.copy()
+            goal[:3, 3] += rng.uniform(-0.4, 0.4, 3)
+            goal[:3, :3] = fp.rotation(rng.uniform(-0.6, 0.6, 3)) @ start[:3, :3]
+        tick = tracker.tick({"tray": goal})
+        assert np.abs(tick.errors["grasp"]).max() < 1e-6
+        slowed += tick.scales[1] < 1
+        path.append(tick.q)
+    assert slowed > 0
+    positions = np.array(path)
+    assert np.all((limits.lower <= positions) & (positions <= limits.upper))
+    assert np.all(np.abs(np.diff(positions, axis=0)) <= limits.velocity * 1e-3 * (1 + 1e-9))
+    assert np.all(np.abs(np.diff(positions, n=2, axis=0)) <= limits.acceleration * 1e-6 * (1 + 1e-9))
