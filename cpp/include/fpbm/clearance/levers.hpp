@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// How far the joints of a robot can move points of its links, in any posture.
+/// Bounds on the displacement of points of a robot's links by each joint, in every posture.
 template <typename Scalar = double>
 class Levers {
  public:
@@ -27,12 +27,13 @@ class Levers {
     }
   }
 
-  /// No unit of joint k moves a point of a link, given in the link's frame, by more than lever k. The distance of the
-  /// point to a turning joint's axis is no longer than the way there from link to link, less the part of the first step
-  /// along that axis. Infinite beyond a prismatic joint without ends; 0 of a joint that does not move the link.
+  /// Lever k bounds the displacement of a point of a link [m], given in the link's frame, per unit of joint k [rad] or
+  /// [m]. The distance from the point to the axis of a turning joint is at most the length of the chain between them,
+  /// where the first link counts without its component along the axis. Infinite if a prismatic joint without bounds is
+  /// in that chain; 0 if joint k does not move the link.
   [[nodiscard]] JointVector operator()(int link, const Vector<3, Scalar>& point) const {
     JointVector lever = filled<JointVector>(static_cast<Eigen::Index>(joints_.size()));
-    Scalar beyond = Scalar(0);  // Length of the way from the next joint's origin to the point.
+    Scalar beyond = Scalar(0);  // Length of the chain from the next joint's origin to the point [m].
     Vector<3, Scalar> step = point;
     while (link > 0) {
       const auto& [place, axis, range, turns, parent] = joints_[static_cast<std::size_t>(link - 1)];

@@ -7,10 +7,13 @@
 
 namespace fpbm {
 
-/// A direction n that separates the shapes of a pair, fixed to the link that the ways to both have in common: n·a of an
-/// end a of the first one's axis, less its radius, exceeds that of an end b of the second one's, plus its radius, by a
-/// gap, and the distance is never less than the smallest gap. Where the shapes are nearest to one another, it equals
-/// that. A second one that does not move has one end: its support along n.
+/// Separating planes of a pair of shapes, all with the normal n, which is fixed to the last link that both shapes'
+/// chains have in common.
+///
+/// An end a of the first capsule's axis and an end b of the second one's have the gap (n·a − radius of the first) −
+/// (n·b + radius of the second). The distance of the shapes is at least the smallest gap, and equal to it in the
+/// posture in which n is the normal of the nearest points. If no joint moves the second shape alone, its support along
+/// n takes the place of its ends.
 template <int N, typename Scalar>
 struct Separation {
   using AllJoints = typename Clearance<N, Scalar>::AllJoints;
@@ -18,8 +21,8 @@ struct Separation {
 
   Scalar distance;
   Scalar closing;          ///< Speed of the second shape toward the first [m/s].
-  Scalar along[2];         ///< n·a − radius.
-  Scalar beyond[2];        ///< n·b + radius.
+  Scalar along[2];         ///< n·a − radius of the first shape [m].
+  Scalar beyond[2];        ///< n·b + radius of the second shape, or its support [m].
   AllJoints gradient[2];   ///< Of along, by the joints.
   AllJoints of_beyond[2];  ///< That of beyond, where the second one moves.
   int seconds = 1;         ///< Number of ends of the second one.

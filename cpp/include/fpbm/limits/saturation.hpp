@@ -186,11 +186,8 @@ class NullSpaceSaturation {
   }
 
   static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
-    if (held < joints) {
-      result.joints |= joint_bit(held);
-    } else {
-      result.rows |= std::uint32_t(1) << (held - joints);
-    }
+    if (held < joints) result.joints |= joint_bit(held);
+    if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
   }
 
   Basis Z_;  ///< Basis of the null space, in each joint's unit.

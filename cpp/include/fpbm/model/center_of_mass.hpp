@@ -16,21 +16,22 @@ void require_mass(const Robot& robot) {
   validation::reject("robot", ": has no mass, must have masses of links");
 }
 
-/// Centre of mass of a robot, its base included [m], its velocity [m/s], and J and J̇ of it.
+/// Centre of mass of a robot with its base [m], the velocity of the centre [m/s], and J and J̇ of the centre, in the
+/// base frame.
 ///
-/// With masses mᵢ at cᵢ, m in all, and of the links that joint j moves m_j = Σ mᵢ and s_j = Σ mᵢ cᵢ: column j of J is
-/// z × (s_j − m_j p_j)/m for a joint that turns about z through p_j, z m_j/m for one that slides along it. J̇ is its
-/// derivative, with ż = w × z.
+/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. Over the links that joint j moves, m_j = Σ mᵢ and s_j = Σ mᵢ cᵢ.
+/// Column j of J is z × (s_j − m_j p_j)/m if the joint turns about z through p_j, and z m_j/m if it slides along z. J̇
+/// is the derivative of J, with ż = w × z (docs/equations.md).
 template <int N, typename Scalar, int Joints>
 void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, Scalar, Joints>& state,
                     Vector<3, Scalar>& centre, Vector<3, Scalar>& velocity, Matrix<3, N, Scalar>& J,
                     Matrix<3, N, Scalar>& Jd) noexcept {
   using Vector3 = Vector<3, Scalar>;
   struct Sums {
-    Scalar mass;       ///< Of a link and all beyond it.
-    Vector3 moment;    ///< Σ m c
-    Vector3 momentum;  ///< Σ m ċ
-    Vector3 v;         ///< Velocity of the link's placement.
+    Scalar mass;       ///< Of a link and all links that it carries [kg].
+    Vector3 moment;    ///< Σ m c [kg m]
+    Vector3 momentum;  ///< Σ m ċ [kg m/s]
+    Vector3 v;         ///< Velocity of the origin of the link's placement [m/s].
   };
   const auto plus = [](const Vector3& a, Scalar factor, const Vector3& b) noexcept {
     return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) + factor * b.coeff(i); });
@@ -44,8 +45,8 @@ void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, S
     own.v = filled<Vector3>(3);
     if (i > 0) {
       const auto parent = static_cast<std::size_t>(robot.parent(link));
-      const Vector3 way = plus(state.p[i], Scalar(-1), state.p[parent]);
-      own.v = plus(sums[parent].v, Scalar(1), cross(robot.angular_velocity(state, robot.parent(link)), way));
+      const Vector3 lever = plus(state.p[i], Scalar(-1), state.p[parent]);
+      own.v = plus(sums[parent].v, Scalar(1), cross(robot.angular_velocity(state, robot.parent(link)), lever));
       if (!robot.turns(link - 1)) own.v = plus(own.v, rates.coeff(link - 1), column(state.R[i], 2));
     }
     const auto& [mass, seen] = robot.mass(link);

@@ -85,13 +85,7 @@ class Drives {
   }
 
   /// The drive of joint i.
-  [[nodiscard]] Eigen::Index drive(Eigen::Index i) const noexcept {
-    if constexpr (kMayFollow) {
-      return drive_[index(i)];
-    } else {
-      return i;
-    }
-  }
+  [[nodiscard]] Eigen::Index drive(Eigen::Index i) const noexcept { return drive_[index(i)]; }
 
  private:
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }

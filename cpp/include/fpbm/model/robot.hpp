@@ -53,7 +53,7 @@ class Robot {
     connect(chain);
     tip_link_ = static_cast<int>(pass_.dof());
     tip_ = ends_[index(tip_link_)] * chain.tip;
-    set_length(way_to(chain, tip_link_) + norm(chain.tip.p));
+    set_length(chain_length(chain, tip_link_) + norm(chain.tip.p));
   }
 
   /// Throws std::invalid_argument as require_tree() and Drives do.
@@ -64,10 +64,10 @@ class Robot {
     Scalar longest(0);
     for (Eigen::Index link = 1; link <= pass_.dof(); ++link) {
       masses_[index(link)] = seen_from_joint(tree.joints[index(link - 1)].moved, link);
-      longest = std::max(longest, way_to(tree, link));
+      longest = std::max(longest, chain_length(tree, link));
     }
     for (const auto& frame : tree.frames) {
-      if (frame.link > 0) longest = std::max(longest, way_to(tree, frame.link) + norm(frame.offset.p));
+      if (frame.link > 0) longest = std::max(longest, chain_length(tree, frame.link) + norm(frame.offset.p));
     }
     set_length(longest);
   }
@@ -333,19 +333,19 @@ class Robot {
     }
   }
 
-  /// Length of the way from the first joint that moves a link to the link's own, with finite ranges of prismatic
-  /// joints [m].
+  /// Length of the chain from the first joint that moves a link to the link's own joint [m]. Finite ranges of prismatic
+  /// joints are added.
   template <typename Source>
-  [[nodiscard]] Scalar way_to(const Source& source, Eigen::Index link) const {
-    Scalar way(0);
+  [[nodiscard]] Scalar chain_length(const Source& source, Eigen::Index link) const {
+    Scalar length(0);
     while (link > 0) {
       const auto& joint = joint_of(source, link - 1);
       const Scalar range = joint.bounds.upper - joint.bounds.lower;
-      if (joint.type == JointType::kPrismatic && std::isfinite(range)) way += range;
+      if (joint.type == JointType::kPrismatic && std::isfinite(range)) length += range;
       link = parent_of(source, link - 1);
-      if (link > 0) way += norm(joint.placement.p);
+      if (link > 0) length += norm(joint.placement.p);
     }
-    return way;
+    return length;
   }
   [[nodiscard]] LinkMass<Scalar> seen_from_joint(const LinkMass<Scalar>& mass, Eigen::Index link) const {
     return {mass.mass, times(ends_[index(link)].R, mass.centre)};
