@@ -21,9 +21,8 @@ namespace fpbm {
 template <int N, typename Scalar>
 class ForwardPass {
  public:
-  explicit ForwardPass(Eigen::Index dof) : dof_(dof) {
-    turns_ = filled<Vector<N, Scalar>>(dof, Scalar(1));
-    offsets_ = filled<Vector<N, Scalar>>(dof);
+  explicit ForwardPass(Eigen::Index dof)
+      : dof_(dof), turns_(filled<Vector<N, Scalar>>(dof, Scalar(1))), offsets_(filled<Vector<N, Scalar>>(dof)) {
     for (auto& link : links_) link = LinkPassage<Scalar>({filled<Vector<3, Scalar>>(3), Scalar(1), Scalar(0)});
   }
 
