@@ -324,6 +324,9 @@ null_damping : float
     rest; 0 switches it off.
 recovery : bool
     Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
+keep_first_level : bool
+    Whether stop keeps the first level, the grasp of two arms say: its references are held, and the joints come to rest
+    in its null space, which takes longer than the stop of each joint by itself.
 measured_delay : int
     Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
     tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
@@ -340,11 +343,12 @@ ParameterError
       .def(py::init([](const Model& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
                        const py::object& limits, double error_bound, double gain, double bound, double stall_time,
-                       double radius, double brake, double null_damping, bool recovery, int measured_delay,
-                       const py::object& clearance, const py::object& task_bounds) {
+                       double radius, double brake, double null_damping, bool recovery, bool keep_first_level,
+                       int measured_delay, const py::object& clearance, const py::object& task_bounds) {
              const SingularDamping<> singular(radius, brake);
              TrackerOptions<> options{dt, error_bound, gain, bound, stall_time, singular, null_damping};
              options.recovery = recovery;
+             options.keep_first_level = keep_first_level;
              options.measured_delay = measured_delay;
              return PyTracker(arm, scheme, q0, qd0, qdd0, task, stack, limits, options, clearance, task_bounds);
            }),
@@ -355,6 +359,7 @@ ParameterError
            py::arg("singular_radius") = SingularDamping<>().radius(),
            py::arg("singular_brake") = SingularDamping<>().brake(),
            py::arg("null_damping") = TrackerOptions<>().null_damping, py::arg("recovery") = TrackerOptions<>().recovery,
+           py::arg("keep_first_level") = TrackerOptions<>().keep_first_level,
            py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
            py::arg("bounds") = py::tuple())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
@@ -404,7 +409,9 @@ The tasks keep their targets; tick.scales and enable() count the new levels. Com
 
 shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
 where no obstacle has that name, or the shape is of another kind.)")
-      .def("stop", &PyTracker::stop, "Brings every joint to rest as fast as the limits allow, until resume.")
+      .def("stop", &PyTracker::stop,
+           "Brings every joint to rest as fast as the limits allow, until resume; with keep_first_level, in the null\n"
+           "space of the first level.")
       .def("resume", &PyTracker::resume, "Follows references again.")
       .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")
       .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of its own state [rad/s].")

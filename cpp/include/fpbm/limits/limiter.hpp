@@ -63,6 +63,17 @@ class Limiter {
     return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
+  /// The motion of the first level as `desired` has it, that brings the arm to rest in the null space of that level.
+  template <typename Tasks, int P = 0>
+  [[nodiscard]] Found<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
+                                                 const JointVector& desired, const JointVector& last,
+                                                 const Rows<N, P, Scalar>& rows = {}) const noexcept {
+    const auto first = only_first(tasks);
+    const JointVector rest = brake_in_proportion(limits_, state, limits_.box(state, last));
+    const JointVector wanted = desired + null_space_motion(first, JointVector(rest - desired));
+    return motion(first, state, wanted, last, rows);
+  }
+
   /// The motion that brings the arm to rest, or one near to it that rows admit.
   template <int P = 0>
   [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last,

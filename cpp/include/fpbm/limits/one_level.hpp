@@ -10,6 +10,12 @@ template <int M, int N, typename Scalar>
   return J;
 }
 
+/// The levels without those below the first.
+template <int M, int N, typename Scalar>
+[[nodiscard]] const Matrix<M, N, Scalar>& only_first(const Matrix<M, N, Scalar>& J) noexcept {
+  return J;
+}
+
 /// A motion u in which every level has the same scale.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,

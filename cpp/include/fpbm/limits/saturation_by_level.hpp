@@ -10,6 +10,7 @@
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/damped_level.hpp"
+#include "fpbm/singular/scaled_level.hpp"
 
 namespace fpbm {
 
@@ -19,8 +20,8 @@ namespace fpbm {
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible.
 ///
 /// u* stands for the commands, b_k = J_k u*, and for the preferred null-space motion. J_k d = J_k u*. If every higher
-/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (DampedLevel, kLevelRadius). The
-/// first level is that of NullSpaceSaturation: J u* and the null-space motion of u* together.
+/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (ScaledLevel, DampedLevel,
+/// kLevelRadius). The first level is that of NullSpaceSaturation: J u* and the null-space motion of u* together.
 template <int N, typename Scalar, int P, int... M>
 class SaturationByLevel {
  public:
@@ -112,8 +113,9 @@ class SaturationByLevel {
     const JointVector projected = space.project(in_unit);
     const JointVector outside = in_unit - projected;
     const Vector<Mk, Scalar> r = product(scaled, outside);
-    DampedLevel<Mk, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar> * squared_norm(scaled));
-    return projected + space.add(scaled, r, damped);
+    const ScaledLevel<Mk, N, Scalar> level(scaled, r);
+    DampedLevel<Mk, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar>);
+    return projected + space.add(level.J, level.r, damped);
   }
 
   TaskLevels<N, Scalar, M...> levels_;

@@ -21,6 +21,8 @@ class TaskLevels {
       : enabled_(enabled), J_(J...) {}
 
   [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
+  /// Leaves out all levels below the first.
+  void disable_lower() noexcept { enabled_.fill(false); }
 
   /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first that are enabled.
   template <typename F>
@@ -50,6 +52,11 @@ template <int N, typename Scalar, int... M>
 }
 
 /// As for one level (one_level.hpp).
+template <int N, typename Scalar, int... M>
+[[nodiscard]] auto only_first(TaskLevels<N, Scalar, M...> levels) noexcept {
+  levels.disable_lower();
+  return levels;
+}
 template <int N, typename Scalar, int K>
 void set_scale(SaturatedLevels<N, Scalar, K>& motion, Scalar scale) noexcept {
   motion.scale = scale;

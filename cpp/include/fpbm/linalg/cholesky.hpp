@@ -81,6 +81,21 @@ class Cholesky {
     return x;
   }
 
+  /// B and b become D^(−1/2)L⁻¹B and D^(−1/2)L⁻¹b: with A = B Bᵀ, the rows of B are orthonormal then.
+  template <int N>
+  void orthonormalize(Matrix<M, N, Value>& B, Vector<M, Value>& b) const noexcept {
+    using std::sqrt;
+    const auto m = extent<M>(size_);
+    Vector<M, Value> root = b;
+    each(kFirst, m, [&](Eigen::Index i) { root.coeffRef(i) = sqrt(reciprocal_[i]); });
+    const auto apply = [&](Value* x) {
+      each(kFirst, m, [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { x[i] -= L_[i][j] * x[j]; }); });
+      each(kFirst, m, [&](Eigen::Index i) { x[i] *= root.coeff(i); });
+    };
+    for (Eigen::Index j = 0; j < B.cols(); ++j) apply(B.data() + j * size_);
+    apply(b.data());
+  }
+
   /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, tight within a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, extent<M>(size_)); }
 

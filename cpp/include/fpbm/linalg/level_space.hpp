@@ -6,6 +6,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/diagonal_level.hpp"
+#include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"
 
@@ -191,10 +192,8 @@ class LevelSpace {
     // Of a fixed size, all entries: the zeros above row k cost less than a loop of run-time length.
     const Eigen::Index begin = N == Eigen::Dynamic ? k : 0;
     const Eigen::Index end = N == Eigen::Dynamic ? size() : N;
-    Scalar along(0);
-    for (Eigen::Index i = begin; i < end; ++i) along += v[i] * x[i];
-    along *= beta_.coeff(k);
-    for (Eigen::Index i = begin; i < end; ++i) x[i] -= along * v[i];
+    const Scalar along = beta_.coeff(k) * paired_dot(v + begin, x + begin, end - begin);
+    subtract_multiple(x + begin, along, v + begin, end - begin);
   }
 
   /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of

@@ -8,6 +8,7 @@
 #include "fpbm/core/unrolled.hpp"
 #include "fpbm/linalg/inverse_trace.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/total.hpp"
 
 namespace fpbm {
@@ -39,6 +40,13 @@ class RowFactor {
       whole += square;
       each(kFirst, j, [&](Eigen::Index k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
       each(next(j), m, [&](auto i) {
+        if constexpr (kLong) {
+          Value* const row = Q_.data() + i * n;
+          const Value* const column = Q_.data() + j * n;
+          L_[i][j] = paired_dot(row, column, n) * reciprocal_[j];
+          subtract_multiple(row, L_[i][j], column, n);
+          return;
+        }
         const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
         L_[i][j] = share;
         each(kFirst, n, [&](Eigen::Index k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
@@ -133,6 +141,8 @@ class RowFactor {
   /// round-off.
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
+  /// Whether the columns of Q are long enough for loops over pairs of entries.
+  static constexpr bool kLong = std::is_same_v<Value, double> && (N == Eigen::Dynamic || N > kUnrolled);
 
   /// Number of rows of A.
   [[nodiscard]] auto rows() const noexcept { return extent<M>(Q_.cols()); }

@@ -37,6 +37,7 @@ class LimitedState {
         correction_(options),
         limiter_(limits),
         guard_(guard),
+        keeps_first_level_(options.keep_first_level),
         state_(start),
         last_(qdd0),
         progress_(options, start.q) {}
@@ -57,6 +58,8 @@ class LimitedState {
   [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
 
   [[nodiscard]] bool stopping() const noexcept { return stopping_; }
+  /// Whether a stop keeps the first level.
+  [[nodiscard]] bool keeps_first_level() const noexcept { return keeps_first_level_; }
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept {
     stopping_ = false;
@@ -142,7 +145,7 @@ class LimitedState {
       next = motion_.after(state_, u);
     }
     if constexpr (kGuarded) {
-      const bool braking = stopping_ || failed(result.status);
+      const bool braking = brakes(result.status);
       if (!guard_.empty() && (braking || !guard_.accepts(limits(), state_, next))) {
         const JointVector qdd = guard_.stop(limits(), state_, last_);
         next = motion_.after(state_, kSecondOrder ? qdd : JointVector(state_.qd + dt() * qdd));
@@ -172,12 +175,14 @@ class LimitedState {
                                                    const JointState& state, const JointVector& last,
                                                    const JointVector& desired, const Rows<N, P, Scalar>& rows,
                                                    Result& result) const noexcept {
-    const bool braking = stopping_ || result.status >= Status::kStalled;
+    const bool braking = brakes(result.status) || result.status == Status::kStalled;
     const bool gives_way = result.status == Status::kStalled;
     const auto tasks = jacobian_in_metres(kinematics);
     auto found = with_scale(tasks, state.qd, Scalar(0));
     if (braking) {
       found.u = limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{}).u;
+    } else if (stopping_) {
+      found = limiter_.stop_on_first_level(tasks, state, desired, last, rows);
     } else {
       found = limiter_.motion(tasks, state, desired, last, rows);
     }
@@ -191,6 +196,11 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+
+  /// Whether each joint brakes by itself: a stop that keeps the first level moves the joints together.
+  [[nodiscard]] bool brakes(Status status) const noexcept {
+    return (stopping_ && !keeps_first_level_) || failed(status);
+  }
 
   /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration. The
   /// step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion they would disturb
@@ -218,6 +228,7 @@ class LimitedState {
   Correction<kLevel, Space, Scalar> correction_;
   Limiter<kLevel, N, Scalar> limiter_;
   Guard_ guard_;
+  bool keeps_first_level_;
   JointState state_;
   JointVector last_;  ///< Acceleration of the last tick.
   Progress<Space, N, Scalar> progress_;

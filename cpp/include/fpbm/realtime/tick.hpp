@@ -67,6 +67,9 @@ struct TrackerOptions {
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
   bool recovery = true;
+  /// Whether stop() keeps the first level: its references are held at rest, and the joints come to rest in its null
+  /// space, which takes longer than the stop of each joint by itself. Without effect on resolve_measured().
+  bool keep_first_level = false;
   /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
   /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
   int measured_delay = 3;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fpbm/realtime/held_level.hpp"
 #include "fpbm/realtime/limited_state.hpp"
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "fpbm/realtime/measured_tick.hpp"
@@ -103,6 +104,7 @@ class Tracker {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
+    if (kept_.stopping() && kept_.keeps_first_level()) held_level_.hold(references);
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
@@ -168,10 +170,12 @@ class Tracker {
     return result;
   }
 
-  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called.
+  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called. With
+  /// options.keep_first_level, the joints come to rest in the null space of the first level.
   void stop() noexcept { kept_.stop(); }
   void resume() noexcept {
     kept_.resume();
+    held_level_.release();
     lower_levels_.release();
   }
 
@@ -232,6 +236,7 @@ class Tracker {
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
+  HeldLevel<Space, Scalar> held_level_;
   Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };

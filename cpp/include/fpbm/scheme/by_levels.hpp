@@ -10,6 +10,7 @@
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/damped_level.hpp"
+#include "fpbm/singular/scaled_level.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/stack_kinematics.hpp"
 
@@ -32,7 +33,7 @@ struct ByLevels {
   using Space = typename Stack_::Space;
 
   Scheme scheme;
-  Scalar radius;  ///< ε of the damping of the lower levels, as a share of ‖J_k‖_F.
+  Scalar radius;  ///< ε of the damping of the lower levels, for the rows of ScaledLevel.
 
   /// scheme: without feedback gains, which the tasks have. Throws std::invalid_argument where the radius is not in
   /// [0, 1].
@@ -69,8 +70,9 @@ struct ByLevels {
         if (space.rank() == space.size()) return;
         r -= product(J, result);
         if (!r.allFinite()) return;
-        DampedLevel<M, Scalar> damped(radius * radius * squared_norm(J));
-        result += space.add(J, r, damped);
+        const ScaledLevel<M, kDof, Scalar> level(J, r);
+        DampedLevel<M, Scalar> damped(radius * radius);
+        result += space.add(level.J, level.r, damped);
       }
     });
     if (failed(status)) return status;

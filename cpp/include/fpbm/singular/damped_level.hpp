@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// Radius of the damping of lower levels: ε as a share of ‖J_k‖_F. Of the 300 motions of Stack.keeps_every* with
-/// FPBM_ALL_TRIALS=1, 1 is not at rest after 40 s; with a radius of 0.05, 8.
+/// Radius ε of the damping of lower levels, whose rows are those of ScaledLevel. A circle of 0.1 m at 0.1 m/s on the
+/// second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by more than 67 µm.
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 

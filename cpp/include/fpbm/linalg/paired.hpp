@@ -1,0 +1,46 @@
+#pragma once
+
+#include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/product.hpp"
+
+/// Loops over columns in pairs of entries: g++ computes no sum in vector registers by itself, since the order of the
+/// additions changes its round-off.
+namespace fpbm {
+
+/// Σ a_i b_i over n entries.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Scalar paired_dot(const Scalar* a, const Scalar* b, Eigen::Index n) noexcept {
+  Eigen::Index i = 0;
+  Scalar sum(0);
+  if constexpr (kRowsInPairs<Scalar>) {
+    using Two = Pair<Scalar>;
+    Two even(Scalar(0));
+    Two odd(Scalar(0));
+    for (; i + 4 <= n; i += 4) {
+      even += Two::load(a + i) * Two::load(b + i);
+      odd += Two::load(a + i + 2) * Two::load(b + i + 2);
+    }
+    if (i + 2 <= n) {
+      even += Two::load(a + i) * Two::load(b + i);
+      i += 2;
+    }
+    even += odd;
+    sum = even.first() + even.second();
+  }
+  for (; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// a −= s b over n entries.
+template <typename Scalar>
+[[gnu::always_inline]] inline void subtract_multiple(Scalar* a, Scalar s, const Scalar* b, Eigen::Index n) noexcept {
+  Eigen::Index i = 0;
+  if constexpr (kRowsInPairs<Scalar>) {
+    using Two = Pair<Scalar>;
+    const Two share(s);
+    for (; i + 2 <= n; i += 2) (Two::load(a + i) - share * Two::load(b + i)).store(a + i);
+  }
+  for (; i < n; ++i) a[i] -= s * b[i];
+}
+
+}  // namespace fpbm
