@@ -33,5 +33,10 @@ def test_example(example: Path, tmp_path: Path) -> None:
 
 def test_pairs() -> None:
     assert len(EXAMPLES) >= 5
-    alone = {"08_mujoco_panda", "10_tune", "11_franka"}  # Simulators and an optimiser, driven from Python.
+    alone = {
+        "08_mujoco_panda",
+        "10_tune",
+        "11_franka",
+        "19_mujoco_tray",
+    }  # Simulators and an optimiser, driven from Python.
     assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES if path.stem not in alone)
