@@ -52,13 +52,11 @@ bool wipe(const char* name, double weight) {
   const auto down = fpbm::Reference<fpbm::Direction>::hold(fpbm::Vector<3>(0.0, 0.0, -1.0));
   for (int i = 0; i < 1500; ++i) (void)tracker.tick(here, down);  // Until the tip points down.
 
-  const fpbm::Path to(fpbm::Line<3>({0.0, 0.6, 0.0}), 2.5);  // [m], [s]
-  const fpbm::Path fro(fpbm::Line<3>({0.0, -0.6, 0.0}), 2.5);
-  const fpbm::Path on(fpbm::Line<3>({0.2, 0.0, 0.0}), 1.2);
-  const fpbm::Sequence first(fro, on);
-  const fpbm::Sequence second(to, on);
-  fpbm::PathFollower strokes(fpbm::Sequence(fpbm::Sequence(first, second), fpbm::Sequence(first, to)),
-                             std::get<0>(tracker.tip()));
+  const fpbm::Path there(fpbm::Line<3>({0.35, 0.0, 0.0}), 1.5);  // [m], [s]
+  const fpbm::Path back(fpbm::Line<3>({-0.35, 0.0, 0.0}), 1.5);
+  const fpbm::Path on(fpbm::Line<3>({0.0, 0.15, 0.0}), 1.2);
+  const fpbm::Sequence lap(fpbm::Sequence(there, on), fpbm::Sequence(back, on));
+  fpbm::PathFollower strokes(fpbm::Sequence(fpbm::Sequence(lap, lap), lap), std::get<0>(tracker.tip()));
   double error = 0.0, tilt = 0.0, travel = 0.0, speed = 0.0, acceleration = 0.0;
   Joints before = tracker.state().q;
   Joints qd_before = tracker.state().qd;
@@ -84,6 +82,6 @@ bool wipe(const char* name, double weight) {
 
 int main() {
   const bool light = wipe("light base", 0.05);
-  const bool heavy = wipe("heavy base", 20.0);
+  const bool heavy = wipe("heavy base", 60.0);
   return light && heavy ? 0 : 1;
 }

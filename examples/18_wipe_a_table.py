@@ -22,8 +22,9 @@ BASE = {"lower": [-np.inf] * 3, "upper": [np.inf] * 3, "velocity": [0.2, 0.2, 0.
 limits = fp.JointLimits(**{bound: np.append(base, getattr(arm, bound)) for bound, base in BASE.items()})
 q0 = np.array([0, 0, 0, 0, -0.3, 0, -2.2, 0, 2, 0.785])  # x, y [m], yaw, joints [rad]
 
-to, fro, on = fp.Line([0, 0.6, 0], 2.5), fp.Line([0, -0.6, 0], 2.5), fp.Line([0.2, 0, 0], 1.2)  # [m], [s]
-strokes = fro.then(on).then(to).then(on).then(fro).then(on).then(to)
+there, back, on = fp.Line([0.35, 0, 0], 1.5), fp.Line([-0.35, 0, 0], 1.5), fp.Line([0, 0.15, 0], 1.2)  # [m], [s]
+lap = there.then(on).then(back).then(on)
+strokes = lap.then(lap).then(lap)
 stack = fp.Stack(
     [
         fp.PositionTask("panda_link8", name="wipe", k1=40, k2=400),
@@ -48,7 +49,7 @@ def wipe(weight: float) -> tuple[np.ndarray, float, float]:
 
 
 if __name__ == "__main__":
-    for name, weight in {"light base": 0.05, "heavy base": 20.0}.items():
+    for name, weight in {"light base": 0.05, "heavy base": 60.0}.items():
         q, error, tilt = wipe(weight)
         qd = 1e3 * np.diff(q, axis=0)
         qdd = 1e3 * np.diff(qd, axis=0)

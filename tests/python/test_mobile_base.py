@@ -20,12 +20,11 @@ DT = 1e-3
 
 
 def test_the_tip_follows_3_m_within_the_base_s_bounds() -> None:
-    length = np.linalg.norm(
-        np.diff([example.strokes.sample(t)[0] for t in np.arange(0, 13.7, DT)], axis=0), axis=1
-    ).sum()
+    points = [example.strokes.sample(t)[0] for t in np.arange(0, example.strokes.duration, DT)]
+    length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
     assert length == pytest.approx(3.0, abs=1e-3)
     travel = {}
-    for weight in (0.05, 20.0):
+    for weight in (0.05, 60.0):
         q, error, tilt = example.wipe(weight)
         assert error < 1e-5  # [m]
         assert tilt < 1e-5  # [rad]
@@ -37,4 +36,4 @@ def test_the_tip_follows_3_m_within_the_base_s_bounds() -> None:
         travel[weight] = np.linalg.norm(np.diff(q[:, :2], axis=0), axis=1).sum()
         if weight < 1:
             assert abs(qd[:, :2]).max() == pytest.approx(0.2)  # The bounds are active, and the arm does the rest.
-    assert travel[0.05] > 1.8 * travel[20.0] > 1.0
+    assert travel[0.05] > 1.5 * travel[60.0] > 1.0
