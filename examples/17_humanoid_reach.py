@@ -46,18 +46,21 @@ def goals(x: float, z: float, yaw: float) -> dict[str, np.ndarray]:
     return poses
 
 
-def reach(*levels: fp.CenterOfMassTask) -> None:
-    """Print errors, waist and centre of mass at each place."""
+def reach(*levels: fp.CenterOfMassTask) -> list[np.ndarray]:
+    """Print errors, waist and centre of mass at each place; positions of the joints at each tick."""
     hands = [fp.PoseTask(LINKS[hand], name=hand, k1=20, k2=100) for hand in HANDS]
     stack = fp.Stack(hands, *levels, fp.PostureTask(q0, k1=4, k2=4))
     tracker = fp.Tracker(robot, fp.Balanced(0, np.ones(robot.dof), null_damping=2), q0, stack=stack, limits=limits)
+    q = [tracker.q]
     for place, at in PLACES.items():
         for _ in range(3000):  # three seconds
             tick = tracker.tick(goals(*at))
+            q.append(tick.q)
         off = max(np.linalg.norm(tick.errors[hand]) for hand in HANDS)
         moved = np.linalg.norm((robot.center_of_mass(tick.q) - robot.center_of_mass(q0))[:2])
         angles = ", ".join(f"{angle:5.2f}" for angle in tick.q[waist] + 0.0)
         print(f"  {place:8} hands off by {off:.0e} m and rad; waist {angles} rad; centre of mass {moved:.3f} m away")
+    return q
 
 
 if __name__ == "__main__":
