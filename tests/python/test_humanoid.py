@@ -73,6 +73,22 @@ def both_hands(gains: dict[str, float]) -> list[fp.PoseTask]:
     return [fp.PoseTask(LINKS[hand], name=hand, **gains) for hand in HANDS]
 
 
+def test_the_preset_is_the_file_s_robot(robot: fp.Robot) -> None:
+    preset = fp.Robot.preset("g1_upper_body")
+    assert preset.joint_names == robot.joint_names
+    for bound in ("lower", "upper", "velocity"):
+        np.testing.assert_array_equal(getattr(preset.limits, bound), getattr(robot.limits, bound))
+    assert preset.base_mass + sum(each.mass for each in preset.joints) == pytest.approx(
+        robot.base_mass + sum(each.mass for each in robot.joints), abs=1e-5
+    )
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        for link in LINKS.values():
+            np.testing.assert_allclose(preset.forward(q, link), robot.forward(q, link), rtol=0, atol=1e-12)
+        np.testing.assert_allclose(preset.center_of_mass(q), robot.center_of_mass(q), rtol=0, atol=2e-6)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_both_hands_are_there_in_the_allowed_steps(robot: fp.Robot, case: str) -> None:
     steps, repeat, left = CASES[case]
