@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,8 @@ def test_example(example: Path, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
     if "mujoco" in example.read_text():
         pytest.importorskip("mujoco")
+    if "example-robot-data" in example.read_text() and not list(metadata.distributions(name="example-robot-data")):
+        pytest.skip("needs example-robot-data")
     if "franka" in example.stem:
         pytest.importorskip("pylibfranka", exc_type=ImportError)
         pytest.importorskip("franky_sim", exc_type=ImportError)
