@@ -11,6 +11,7 @@ torque: Franka Control Interface documentation, "Limits for Panda".
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from xml.etree import ElementTree
 
 import numpy as np
@@ -30,22 +31,29 @@ INERTIAS = (
 COULOMB = (0.54615, 0.87224, 0.64068, 1.2794, 0.83904, 0.30301, 0.56489)  # [Nm]
 VISCOUS = 1.0  # [Nm s/rad]
 ARMATURE = 0.1  # [kg m²], what the rotors add behind their gears
+ONE = {"": np.eye(4)}
 TORQUE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # [Nm]
 
 
-def panda_mjcf(*, inertia_error: float = 0.0, friction: float = 1.0, timestep: float = 2.5e-4) -> str:
+def panda_mjcf(
+    *,
+    inertia_error: float = 0.0,
+    friction: float = 1.0,
+    timestep: float = 2.5e-4,
+    placements: Mapping[str, np.ndarray] = ONE,
+) -> str:
     """MJCF of the Panda with a torque motor on each joint and a site "tip" at its flange.
 
     inertia_error: relative error of every mass and inertia. friction: factor on all friction. The joints have no stops
-    and the links do not collide, so that a joint which leaves its range is seen.
+    and the links do not collide, so that a joint which leaves its range is seen. placements: (4, 4) poses of the bases
+    of several Pandas, by what their names begin with.
     """
-    arm = fp.SerialArm.preset("panda")
     heavier = 1 + inertia_error
     root = ElementTree.Element("mujoco", model="panda")
     _add(root, "compiler", angle="radian")
     _add(root, "option", timestep=timestep, integrator="implicitfast")
     defaults = _add(root, "default")
-    _add(defaults, "geom", contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
+    _add(defaults, "geom", mass=0, contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
     # As close to dry friction as the time step allows: MuJoCo's own setting lets a joint creep.
     dry = {"solreffriction": (2 * timestep, 1), "solimpfriction": (0.99, 0.999, 1e-3)}
     _add(defaults, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, armature=heavier * ARMATURE, **dry)
@@ -53,21 +61,29 @@ def panda_mjcf(*, inertia_error: float = 0.0, friction: float = 1.0, timestep: f
     world = _add(root, "worldbody")
     _add(world, "light", pos=(0.5, -1, 2), dir=(-0.3, 0.5, -1))
     _add(world, "geom", type="plane", size=(1, 1, 0.01), rgba=(0.75, 0.75, 0.75, 1))
-    body = world
+    motors = _add(root, "actuator")
+    for name, placement in placements.items():
+        base = _add(world, "body", name=f"{name}base", **_frame(placement))
+        _add_arm(base, motors, name, heavier, friction)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _add_arm(
+    body: ElementTree.Element, motors: ElementTree.Element, name: str, heavier: float, friction: float
+) -> None:
+    arm = fp.SerialArm.preset("panda")
     for i, (joint, (mass, centre, inertia), coulomb) in enumerate(zip(arm.joints, INERTIAS, COULOMB), 1):
         placement = np.asarray(joint.placement)
         _link(body, placement[:3, 3])
-        body = _add(body, "body", name=f"link{i}", **_frame(placement))
+        body = _add(body, "body", name=f"{name}link{i}", **_frame(placement))
         _add(body, "inertial", mass=heavier * mass, pos=centre, fullinertia=heavier * np.array(inertia))
-        _add(body, "joint", name=joint.name, frictionloss=friction * coulomb)
+        _add(body, "joint", name=f"{name}{joint.name}", frictionloss=friction * coulomb)
         _add(body, "geom", type="cylinder", size=(0.055, 0.06), rgba=(0.3, 0.3, 0.3, 1))
     _link(body, arm.tip[:3, 3])
-    _add(body, "site", name="tip", **_frame(arm.tip))
-
-    motors = _add(root, "actuator")
+    _add(body, "site", name=f"{name}tip", **_frame(arm.tip))
     for joint, torque in zip(arm.joints, TORQUE):
-        _add(motors, "motor", name=joint.name, joint=joint.name, forcerange=(-torque, torque))
-    return ElementTree.tostring(root, encoding="unicode")
+        joint_name = f"{name}{joint.name}"
+        _add(motors, "motor", name=joint_name, joint=joint_name, forcerange=(-torque, torque))
 
 
 def _link(body: ElementTree.Element, end: np.ndarray) -> None:

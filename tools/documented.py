@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 MADE = ("build/", "demo/", "dist/")  # Folders of results.
-USERS = {"my_arm.hpp", "main.cpp"}  # Files of a reader's own.
+USERS = {"my_arm.hpp", "my_robot.hpp", "main.cpp"}  # Files of a reader's own.
 CODE = re.compile(r"`([^`\n]+)`")
 FILE = re.compile(r"^(?:[\w.-]+/)*[\w.-]+\.(?:cpp|hpp|py|md|sh|json|yaml|toml|rst|txt)$")
 FOLDER = re.compile(r"^(?:[\w.-]+/)+$")

@@ -14,7 +14,7 @@
 namespace fpbm::bindings {
 namespace {
 
-using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_>;
+using PlainTreeJoint = py::typing::Tuple<PlainJoint, py::int_, py::float_, Array>;
 using PlainFrame = py::typing::Tuple<py::str, py::int_, Array>;
 
 /// A class of its own: Python's Robot derives from it.
@@ -78,17 +78,20 @@ Array center_of_mass_at(const PyRobot& model, const ArrayLike& q) {
   return array_of(center);
 }
 
-/// The joints of a preset, with the numbers of the links that carry them, and its frames.
-py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>> robot_preset(
+/// The joints of a preset, with the numbers of the links that carry them, the masses that they move and the centres of
+/// these, its frames, and mass and centre of the base.
+py::typing::Tuple<py::typing::List<PlainTreeJoint>, py::typing::List<PlainFrame>, py::float_, Array> robot_preset(
     const std::string& name) {
   for (const presets::RobotPreset& known : presets::kRobots) {
     if (name != known.name) continue;
     py::list joints;
     py::list frames;
     const Tree<> tree = known.tree();
-    for (const auto& [joint, parent, moved] : tree.joints) joints.append(py::make_tuple(fields_of(joint), parent));
+    for (const auto& [joint, parent, moved] : tree.joints) {
+      joints.append(py::make_tuple(fields_of(joint), parent, moved.mass, array_of(moved.centre)));
+    }
     for (const auto& [frame, link, offset] : tree.frames) frames.append(py::make_tuple(frame, link, array_of(offset)));
-    return py::make_tuple(joints, frames);
+    return py::make_tuple(joints, frames, tree.base.mass, array_of(tree.base.centre));
   }
   validation::reject("name", " = '" + name + "': must be one of ROBOT_PRESETS");
 }

@@ -844,7 +844,12 @@ def preset_capsules(
 def processor_kinds() -> list[str]: ...
 def robot_preset(
     name: str,
-) -> tuple[list[tuple[dict[str, typing.Any], int]], list[tuple[str, int, numpy.typing.NDArray[numpy.float64]]]]: ...
+) -> tuple[
+    list[tuple[dict[str, typing.Any], int, float, numpy.typing.NDArray[numpy.float64]]],
+    list[tuple[str, int, numpy.typing.NDArray[numpy.float64]]],
+    float,
+    numpy.typing.NDArray[numpy.float64],
+]: ...
 def rollout(
     arm: Arm,
     path: Path,
@@ -937,6 +942,6 @@ def with_rotation(path: Path, rotation: numpy.typing.ArrayLike, time_law: str) -
 
 MAX_DOF: int = 64
 PRESETS: tuple[str, ...] = ("panda", "fr3", "iiwa14", "gen3", "ur5e", "ur10e")
-ROBOT_PRESETS: tuple[str, ...] = ("two_pandas",)
+ROBOT_PRESETS: tuple[str, ...] = ("two_pandas", "g1_upper_body")
 TIME_LAWS: tuple[str, ...] = ("sin_squared", "quintic", "constant_speed")
 __version__: str = "0.1.0"

@@ -120,9 +120,12 @@ class Robot(Data, CoreRobot):
         """Robot of data sheets: one of ROBOT_PRESETS, 'two_pandas' say. Raises ParameterError."""
         if name not in ROBOT_PRESETS:
             raise not_one_of("name", name, ROBOT_PRESETS)
-        joints, frames = robot_preset(name)
+        joints, frames, mass, center = robot_preset(name)
         return cls(
-            [TreeJoint(Joint(**joint), parent) for joint, parent in joints], [NamedFrame(*frame) for frame in frames]
+            [TreeJoint(Joint(**joint), parent, mass=m, center=c) for joint, parent, m, c in joints],
+            [NamedFrame(*frame) for frame in frames],
+            base_mass=mass,
+            base_center=center,
         )
 
     @classmethod

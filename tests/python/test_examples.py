@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,8 @@ def test_example(example: Path, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
     if "mujoco" in example.read_text():
         pytest.importorskip("mujoco")
+    if "example-robot-data" in example.read_text() and not list(metadata.distributions(name="example-robot-data")):
+        pytest.skip("needs example-robot-data")
     if "franka" in example.stem:
         pytest.importorskip("pylibfranka", exc_type=ImportError)
         pytest.importorskip("franky_sim", exc_type=ImportError)
@@ -33,5 +36,10 @@ def test_example(example: Path, tmp_path: Path) -> None:
 
 def test_pairs() -> None:
     assert len(EXAMPLES) >= 5
-    alone = {"08_mujoco_panda", "10_tune", "11_franka"}  # Simulators and an optimiser, driven from Python.
+    alone = {
+        "08_mujoco_panda",
+        "10_tune",
+        "11_franka",
+        "19_mujoco_tray",
+    }  # Simulators and an optimiser, driven from Python.
     assert all(path.with_suffix(".cpp").exists() for path in EXAMPLES if path.stem not in alone)

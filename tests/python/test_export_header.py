@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 from collections.abc import Sequence
+from dataclasses import replace
+from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 
@@ -20,7 +22,7 @@ from scipy.spatial.transform import Rotation
 import fpbm_cpp as fp
 from fpbm_cpp.arms import Joint
 from fpbm_cpp.capsule import Capsule
-from fpbm_cpp.io.header import export_header, namespace_of
+from fpbm_cpp.io.header import export_header, export_tree, namespace_of
 
 pytest.importorskip("click")
 
@@ -32,6 +34,9 @@ from fpbm_cpp.io.urdf import read_urdf
 
 ROOT = Path(__file__).parents[2]
 EIGEN = Path("/usr/include/eigen3")
+CMEEL = find_spec("cmeel")
+G1_FILE = "cmeel.prefix/share/example-robot-data/robots/g1_description/urdf/g1_29dof_rev_1_0.urdf"
+G1 = Path(CMEEL.origin).parents[1] / G1_FILE if CMEEL and CMEEL.origin else None
 NASTY = ['say "hi"', "back\\slash", "two\nlines", "Gelenk für 関節", "what??/", "tab\there\x7f1", ""]
 
 
@@ -199,6 +204,93 @@ def test_header_computes_what_numpy_does(tmp_path: Path) -> None:
             np.testing.assert_allclose(Jd.reshape(6, n), ahead.imag / 1e-30, rtol=0, atol=1e-11)
 
 
+# Robots
+
+TREE_PROGRAM = """
+#include "tree.hpp"
+
+#include <cstdio>
+
+void print(double number) { std::printf("%.17g ", number); }
+void print(const char* name) { std::printf("%c%s%c", 0, name, 0); }
+
+template <typename Derived>
+void print(const Eigen::MatrixBase<Derived>& M) {
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    for (Eigen::Index j = 0; j < M.cols(); ++j) print(M(i, j));
+  }
+}
+
+void print(const fpbm::LinkMass<>& link) { print(link.mass), print(link.centre); }
+
+int main() {
+  const auto tree = t::tree();
+  const auto robot = t::robot();
+  print(robot.dof()), print(tree.base);
+  for (const char* name : t::kJointNames) print(name);
+  for (const auto& [joint, parent, moved] : tree.joints) {
+    print(joint.name.data()), print(static_cast<int>(joint.type));
+    print(joint.placement.p), print(joint.placement.R), print(joint.axis);
+    print(joint.bounds.lower), print(joint.bounds.upper), print(joint.bounds.velocity);
+    print(joint.mimic.joint), print(joint.mimic.ratio), print(joint.mimic.offset), print(parent), print(moved);
+  }
+  for (const auto& [name, link, offset] : tree.frames) {
+    print(name.data()), print(link), print(offset.p), print(offset.R);
+  }
+}
+"""
+
+
+def robot_of_branches() -> fp.Robot:
+    """A robot with two branches, joints that follow others, and masses."""
+    rng = np.random.default_rng(4)
+    types = ["revolute", "prismatic", "continuous", "revolute", "revolute", "revolute"]
+    mimics = {3: (1, 0.5, -0.2), 5: (0, 1.5, 0.1)}
+    joints = [
+        fp.TreeJoint(joint, parent, mass=0.3 * i, center=rng.uniform(-1, 1, 3) if i else (0, 0, 0))
+        for i, (joint, parent) in enumerate(zip(chain(6, types, mimics), (0, 1, 1, 3, 0, 5)))
+    ]
+    frames = [fp.NamedFrame(name, link, placed(rng)) for link, name in enumerate(NASTY[:5])]
+    return fp.Robot(joints, [*frames, fp.NamedFrame("as it is", 2)], base_mass=7.0, base_center=[0.1, 0, 1 / 3])
+
+
+@pytest.mark.skipif(not shutil.which("g++") or not EIGEN.exists(), reason="needs g++ and Eigen")
+def test_a_tree_is_the_robot_s(tmp_path: Path) -> None:
+    robot = robot_of_branches()
+    (tmp_path / "tree.hpp").write_text(export_tree(robot, name="t", source="robot"), encoding="utf-8")
+    (tmp_path / "main.cpp").write_text(TREE_PROGRAM)
+    flags = ["-std=c++17", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+    includes = ["-I", str(ROOT / "cpp/include"), "-isystem", str(EIGEN)]
+    subprocess.run(["g++", *flags, *includes, "main.cpp", "-o", "main"], cwd=tmp_path, check=True)
+    printed = subprocess.run([tmp_path / "main"], capture_output=True, check=True).stdout
+    parts = printed.decode().split("\0")
+    assert [part for part in parts[1::2] if part] == [
+        *(name or "joint_7" for name in robot.joint_names),
+        *(each.joint.name for each in robot.joints),
+        *robot.frames,
+    ]
+    kinds = ("revolute", "continuous", "prismatic")
+    expected = [4, robot.base_mass, *robot.base_center]
+    for each in robot.joints:
+        joint, mimic = each.joint, each.joint.mimic or (-1, 1.0, 0.0)
+        expected += [kinds.index(joint.type), *joint.placement[:3, 3], *joint.placement[:3, :3].ravel(), *joint.axis]
+        expected += [joint.lower, joint.upper, joint.velocity, *mimic, each.parent, each.mass, *each.center]
+    for frame in robot.named_frames:
+        expected += [frame.link, *frame.offset[:3, 3], *frame.offset[:3, :3].ravel()]
+    np.testing.assert_array_equal([float(number) for part in parts[::2] for number in part.split()], expected)
+
+
+def test_a_tree_of_float_and_long_sources() -> None:
+    robot = fp.Robot.preset("two_pandas")
+    text = export_tree(robot, name="n", source=", ".join(["a long link"] * 20), scalar="float")
+    assert "inline fpbm::Tree<float, 14, 2> tree() {\n  fpbm::Tree<float, 14, 2> tree;" in text
+    assert "return fpbm::Robot<kDof, float>(tree());" in text
+    first, second, third, *_ = text.splitlines()
+    assert all(line.startswith("// ") and len(line) <= 120 for line in (first, second, third))
+    with pytest.raises(fp.ParameterError, match="name = 'int'"):
+        export_tree(robot, name="int")
+
+
 # The text
 
 
@@ -315,11 +407,47 @@ def test_firmware_s_arms_are_as_written_today(name: str, tmp_path: Path) -> None
     assert out.read_bytes() == (ROOT / f"examples/firmware/{name}.hpp").read_bytes()
 
 
-def test_presets_have_their_own_tip() -> None:
+@pytest.mark.skipif(G1 is None or not G1.exists(), reason="needs example-robot-data")
+def test_upper_body_is_as_written_today(tmp_path: Path) -> None:
+    """If not: fpbm-cpp export-header g1_29dof_rev_1_0.urdf --base fixed --tip left_wrist_yaw_link --tip
+    right_wrist_yaw_link -o examples/17_upper_body.hpp"""
+    out = tmp_path / "17_upper_body.hpp"
+    assert G1 is not None
+    result = call(G1, "--base", "fixed", "--tip", "left_wrist_yaw_link", "--tip", "right_wrist_yaw_link", "-o", out)
+    assert (result.exit_code, result.output) == (0, "")
+    assert out.read_bytes() == (ROOT / "examples/17_upper_body.hpp").read_bytes()
+
+
+def test_command_writes_robots(arm: Path) -> None:
+    robot = fp.Robot.from_urdf(arm)
+    assert call(arm, "-o", "-").stdout == export_tree(robot, name="two", source="two.urdf")
+    tips = ("--tip", "mid", "--tip", "tip")
+    text = call(arm, *tips, "--base", "planar", "-o", "-").stdout
+    robot = fp.Robot.from_urdf(arm, base="planar")
+    frames = [frame for frame in robot.named_frames if frame.name != "base"]
+    source = "two.urdf, base planar, tips mid, tip"
+    assert text == export_tree(replace(robot, named_frames=frames), name="two", source=source)
+    two_pandas = fp.Robot.preset("two_pandas")
+    assert call("two_pandas", "-o", "-").stdout == export_tree(
+        two_pandas, name="two_pandas", source="preset two_pandas"
+    )
+    assert_refused(call(arm, "--tip", "top", "--tip", "tip", "-o", "-"), "tips has 'top': must be links, perhaps 'tip'")
+    assert_refused(call(arm, "--base", "wheels", "-o", "-"), "base = 'wheels': must be one of fixed, planar")
+    for wrong in ((arm, "--capsules"), ("two_pandas", "--capsules")):
+        result = call(*wrong, "-o", "-")
+        assert result.exit_code == 2
+        assert "--capsules are those of an arm: give one --tip." in result.output
+
+
+@pytest.mark.parametrize("preset", ["panda", "two_pandas"])
+def test_presets_have_their_own_tip(preset: str) -> None:
     for option in ("--tip", "--base"):
-        result = call("panda", option, "x", "-o", "-")
+        result = call(preset, option, "x", "-o", "-")
         assert result.exit_code == 2
         assert "--tip and --base are for URDF files" in result.output
+
+
+def test_presets_have_capsules() -> None:
     capsules = fp.Clearance.preset("panda").capsules
     assert call("panda", "-o", "-", "--capsules").stdout == export_header(
         fp.SerialArm.preset("panda").joints,
@@ -439,7 +567,7 @@ def test_errors_are_one_plain_line(arm: Path, tmp_path: Path, monkeypatch: pytes
 
 
 def test_wrong_usage(arm: Path) -> None:
-    for arguments, said in (((arm, "-o", "x.hpp"), "--tip"), ((arm, "--tip", "tip"), "--out"), ((), "ARM")):
+    for arguments, said in (((arm, "--tip", "tip"), "--out"), ((), "ARM")):
         result = call(*arguments)
         assert result.exit_code == 2
         assert said in result.output.splitlines()[-1]

@@ -15,6 +15,7 @@ mujoco = pytest.importorskip("mujoco")
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
 example = importlib.import_module("08_mujoco_panda")
 panda_mjcf = importlib.import_module("panda_mjcf")
+tray = importlib.import_module("19_mujoco_tray")
 
 HOME = example.HOME
 
@@ -152,3 +153,24 @@ def test_without_the_integral_an_error_stays():
 def test_a_fifth_of_the_mass_missing_is_too_much():
     motion = example.simulate(inertia_error=-0.2, end=4.0)
     assert rms(motion.during("circle", "tip")) > 1e-3
+
+
+def test_two_models_are_the_robot():
+    compiled, data = model(placements=tray.placements())
+    names = [compiled.joint(i).name for i in range(compiled.njnt)]
+    assert names == tray.ROBOT.joint_names
+    rng = np.random.default_rng(2)
+    for _ in range(100):
+        data.qpos[:] = rng.uniform(tray.ROBOT.limits.lower, tray.ROBOT.limits.upper)
+        mujoco.mj_kinematics(compiled, data)
+        for hand in tray.HANDS:
+            T = tray.ROBOT.forward(data.qpos, f"{hand}_tip")
+            np.testing.assert_allclose(data.site(f"{hand}_tip").xpos, T[:3, 3], rtol=0, atol=1e-9)
+
+
+def test_a_grasp_holds_by_torques():
+    relative, tracking = tray.simulate(duration=4.0, hold=0.5)
+    rms = np.sqrt(np.mean(relative**2, axis=0))
+    assert rms[0] < 2e-3  # [m]
+    assert rms[1] < 2e-3  # [rad]
+    assert tracking.max() < 5e-3  # [m]

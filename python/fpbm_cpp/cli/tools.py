@@ -4,13 +4,14 @@ import os
 import platform
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import click
 import numpy as np
 from click.shell_completion import get_completion_class
 
-from .._core import PRESETS, __version__
+from .._core import PRESETS, ROBOT_PRESETS, __version__
 from .._types import Array
 from ..arms import Joint, SerialArm
 from ..capsule import Capsule
@@ -20,6 +21,7 @@ from ..job import Motion, prepare
 from ..job.sections import Table
 from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
+from ..robots import Robot
 from ..schemes import SCHEMES
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .text import columns
@@ -118,31 +120,43 @@ def reproduce(out: Path) -> None:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
 
 
-@tool("Write an arm in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
+@tool("Write an arm or a robot in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
 @click.argument("arm", metavar="ARM", type=PLACE)
-@click.option("--tip", metavar="LINK", help="Link to move; needed for a URDF file.")
-@click.option("--base", metavar="LINK", help="Link that stays; the root unless given.")
+@click.option("--tip", metavar="LINK", multiple=True, help="Link to move: one of an arm, several of a robot.")
+@click.option(
+    "--base", metavar="LINK", help="Link of an arm that stays, the root unless given; of a robot: fixed or planar."
+)
 @click.option("-o", "--out", type=PLACE, metavar="FILE.hpp", required=True, help=HEADER)
 @click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
-@click.option("--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry.")
+@click.option(
+    "--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry; of an arm only."
+)
 @click.option(
     "--scalar", type=click.Choice(SCALARS), default="double", help="Type of all numbers; double unless given."
 )
 def export_header(
-    arm: Path, tip: str | None, base: str | None, out: Path, name: str | None, capsules: bool, scalar: str
+    arm: Path, tip: tuple[str, ...], base: str | None, out: Path, name: str | None, capsules: bool, scalar: str
 ) -> None:
-    """Write the arm of a URDF file, or a preset such as panda, as a C++ header.
+    """Write a URDF file, or a preset such as panda or two_pandas, as a C++ header.
 
-    The header constructs the arm from base to tip, with neither parser nor file when the program runs.
+    With one --tip, the header constructs the arm from base to tip. With several or none, it constructs the robot, a
+    tree of the joints that move the tips, with these links as frames; of all joints and links without a tip. The
+    program reads no file.
     """
     from ..io import write_whole
-    from ..io.header import export_header, namespace_of
+    from ..io.header import export_header, export_tree, namespace_of
 
     to_stdout = str(out) == "-"
     try:
-        joints, frame, shapes, source = _preset(arm, tip, base, capsules) or _urdf(arm, tip, base, capsules)
         name = name or namespace_of((arm if to_stdout else out).stem)
-        header = export_header(joints, frame, name=name, source=source, capsules=shapes, scalar=scalar)
+        if str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1):
+            if capsules:
+                raise click.UsageError("--capsules are those of an arm: give one --tip.")
+            robot, source = _robot(arm, tip, base)
+            header = export_tree(robot, name=name, source=source, scalar=scalar)
+        else:
+            joints, frame, shapes, source = _preset(arm, tip, base, capsules) or _urdf(arm, tip[0], base, capsules)
+            header = export_header(joints, frame, name=name, source=source, capsules=shapes, scalar=scalar)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     if to_stdout:
@@ -152,25 +166,46 @@ def export_header(
         write_whole(out.resolve(), header.encode())
 
 
-def _preset(arm: Path, tip: str | None, base: str | None, capsules: bool) -> Exported | None:
+def _preset(arm: Path, tip: Sequence[str], base: str | None, capsules: bool) -> Exported | None:
     if str(arm) not in PRESETS:
         return None
-    if tip or base:
-        raise click.UsageError(f"{arm} is a preset, from its base to its flange: --tip and --base are for URDF files.")
+    _require_no_links(arm, tip, base)
     preset = SerialArm.preset(str(arm))
     return preset.joints, preset.tip, Clearance.preset(str(arm)).capsules if capsules else None, f"preset {arm}"
 
 
-def _urdf(urdf: Path, tip: str | None, base: str | None, capsules: bool) -> Exported:
+def _urdf(urdf: Path, tip: str, base: str | None, capsules: bool) -> Exported:
     from ..io.capsules import capsules_of
     from ..io.urdf import read_urdf
 
-    if tip is None:
-        raise click.UsageError("Missing option '--tip'.")
     with file_errors("read", urdf):
         joints, frame = read_urdf(urdf, tip, base)
         shapes = capsules_of(urdf, tip, base) if capsules else None
-    return joints, frame, shapes, f"{urdf.name}, {f'base {base}, ' if base else ''}tip {tip}"
+    return joints, frame, shapes, _said(urdf, base, [tip])
+
+
+def _robot(urdf: Path, tips: Sequence[str], base: str | None) -> tuple[Robot, str]:
+    """The robot of a preset or of a file, whose frames are the tips if there are any."""
+    if str(urdf) in ROBOT_PRESETS:
+        _require_no_links(urdf, tips, base)
+        return Robot.preset(str(urdf)), f"preset {urdf}"
+    with file_errors("read", urdf):
+        robot = Robot.from_urdf(urdf, base=base, tips=tips or None)
+    frames = [frame for frame in robot.named_frames if not tips or frame.name in tips]
+    return replace(robot, named_frames=frames), _said(urdf, base, tips)
+
+
+def _require_no_links(preset: Path, tip: Sequence[str], base: str | None) -> None:
+    if tip or base:
+        raise click.UsageError(
+            f"{preset} is a preset, from its base to its flange: --tip and --base are for URDF files."
+        )
+
+
+def _said(urdf: Path, base: str | None, tips: Sequence[str]) -> str:
+    """What a comment says of where a file's joints come from."""
+    ends = [f"tip{'s' * (len(tips) > 1)} {', '.join(tips)}"] if tips else []
+    return ", ".join([urdf.name, *([f"base {base}"] if base else []), *ends])
 
 
 @click.command(

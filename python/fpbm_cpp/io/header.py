@@ -1,6 +1,7 @@
-"""Arms written as C++ headers, for programs that read no files."""
+"""Arms and robots written as C++ headers, for programs that read no files."""
 
 import re
+import textwrap
 from collections.abc import Sequence
 from math import inf
 
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..arms import Joint
 from ..capsule import Capsule
 from ..errors import not_one_of, wrong
+from ..robots import NamedFrame, Robot, TreeJoint
 
 SCALARS = ("double", "float")
 
@@ -20,6 +22,10 @@ delete do double dynamic_cast else enum explicit export extern false float for f
 namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires
 return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try
 typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq Eigen fpbm std"""
+
+BOUNDS = """\
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
+/// an end; what is left out has no bound."""
 
 
 def export_header(
@@ -39,46 +45,21 @@ def export_header(
     comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError where no namespace can
     have the name.
     """
-    if scalar not in SCALARS:
-        raise not_one_of("scalar", scalar, SCALARS)
-    if not all(_is_identifier(part) for part in name.split("::")):
-        raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
-    drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
-    width = max(map(len, drives), default=0)
-    names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
-    kind = "SerialArm" if len(drives) == len(joints) else "CoupledArm"
-    parts = [_joint_lines(i, joint, scalar) for i, joint in enumerate(joints)]
+    drives = _drives(joints, name, scalar)
+    kind = "SerialArm" if drives == len(joints) else "CoupledArm"
+    parts = [_joint_lines(f"  chain.joints[{i}]", joint, scalar) for i, joint in enumerate(joints)]
     parts.append(_transform_lines("  chain.tip", tip, scalar))
-    chain = "\n\n".join("\n".join(lines) for lines in parts if lines)
-    none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in chain else ""
     length = f"<{scalar}, {len(joints)}>"
     arm = f"fpbm::{kind}<kDof, {scalar}>"
     includes = ["array", f"fpbm/model/{'serial_arm' if kind == 'SerialArm' else 'coupled_arm'}.hpp"]
     if capsules is not None:
         includes += ["fpbm/clearance/clearance.hpp", "vector"]
-    origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
     return f"""\
-// Written by fpbm-cpp export-header{origin}. Do not edit: write it again.
-#pragma once
-
-{chr(10).join(f"#include <{include}>" for include in sorted(includes))}
-
-namespace {name} {{
-
-inline constexpr int kDof = {len(drives)};
-
-inline constexpr std::array<const char*, kDof> kJointNames = {{
-{names}
-}};
-
+{_begin(joints, name, source, includes)}
 /// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
-/// an end; what is left out has no bound.
+{BOUNDS}
 inline fpbm::Chain{length} chain() {{
-{none}  fpbm::Chain{length} chain;
-
-{chain}
-
+{_body(f"fpbm::Chain{length} chain", parts, scalar)}
   return chain;
 }}
 
@@ -86,6 +67,38 @@ inline {arm} arm() {{
   return {arm}(chain());
 }}
 {"" if capsules is None else _capsule_lines(capsules, scalar)}
+}}  // namespace {name}
+"""
+
+
+def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "double") -> str:
+    """Text of a C++ header that builds a robot, so that a program needs neither a parser nor a file.
+
+    It has kDof, kJointNames, tree(), with the masses of links and with all frames of the robot, and robot(). name,
+    source, scalar and what it raises are those of export_header().
+    """
+    joints = [each.joint for each in robot.joints]
+    drives = _drives(joints, name, scalar)
+    tree = f"fpbm::Tree<{scalar}, {len(joints)}, {len(robot.named_frames)}>"
+    followers = "" if drives == len(joints) else f", {len(joints)}"
+    kind = f"fpbm::Robot<kDof, {scalar}{followers}>"
+    parts = [_mass_lines("  tree.base", robot.base_mass, robot.base_center, scalar)]
+    parts += [_tree_joint_lines(f"  tree.joints[{i}]", each, scalar) for i, each in enumerate(robot.joints)]
+    parts += [_frame_lines(f"  tree.frames[{i}]", each, scalar) for i, each in enumerate(robot.named_frames)]
+    return f"""\
+{_begin(joints, name, source, ["array", "fpbm/model/robot.hpp"])}
+/// The joints from the base on, each placed in the frame of the link that carries it [m]; masses of the links [kg] and
+/// their centres [m]; frames. Link 0 is the base, link i + 1 the one that joint i moves.
+{BOUNDS}
+inline {tree} tree() {{
+{_body(f"{tree} tree", parts, scalar)}
+  return tree;
+}}
+
+inline {kind} robot() {{
+  return {kind}(tree());
+}}
+
 }}  // namespace {name}
 """
 
@@ -101,8 +114,66 @@ def _is_identifier(name: str) -> bool:
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
 
 
-def _joint_lines(i: int, joint: Joint, scalar: str) -> list[str]:
-    member = f"  chain.joints[{i}]"
+def _drives(joints: Sequence[Joint], name: str, scalar: str) -> int:
+    """Number of joints that have a drive. Raises ParameterError where scalar or name does not serve."""
+    if scalar not in SCALARS:
+        raise not_one_of("scalar", scalar, SCALARS)
+    if not all(_is_identifier(part) for part in name.split("::")):
+        raise wrong("name", name, f" = {name!r}: must be a C++ identifier that is not taken")
+    return sum(joint.mimic is None for joint in joints)
+
+
+def _begin(joints: Sequence[Joint], name: str, source: str, includes: Sequence[str]) -> str:
+    """The header to the names of the joints."""
+    drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
+    width = max(map(len, drives), default=0)
+    names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
+    origin = f" from {''.join(c if c.isprintable() else '?' for c in source)}" if source else ""
+    said = f"// Written by fpbm-cpp export-header{origin}. Do not edit: write it again."
+    return f"""\
+{textwrap.fill(said, 120, subsequent_indent="// ", break_long_words=False, break_on_hyphens=False)}
+#pragma once
+
+{chr(10).join(f"#include <{include}>" for include in sorted(includes))}
+
+namespace {name} {{
+
+inline constexpr int kDof = {len(drives)};
+
+inline constexpr std::array<const char*, kDof> kJointNames = {{
+{names}
+}};
+"""
+
+
+def _body(declaration: str, parts: Sequence[Sequence[str]], scalar: str) -> str:
+    """The declaration of what a function returns, and the lines that fill it."""
+    text = "\n\n".join("\n".join(lines) for lines in parts if lines)
+    none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in text else ""
+    return f"{none}  {declaration};\n\n{text}\n"
+
+
+def _tree_joint_lines(member: str, each: TreeJoint, scalar: str) -> list[str]:
+    return [
+        *_joint_lines(f"{member}.joint", each.joint, scalar),
+        f"{member}.parent = {each.parent};",
+        *_mass_lines(f"{member}.moved", each.mass, each.center, scalar),
+    ]
+
+
+def _mass_lines(member: str, mass: float, center: ArrayLike, scalar: str) -> list[str]:
+    return [f"{member} = {{{_number(mass, scalar)}, {_braced(center, scalar)}}};"] if mass else []
+
+
+def _frame_lines(member: str, frame: NamedFrame, scalar: str) -> list[str]:
+    return [
+        f"{member}.name = {_literal(frame.name)};",
+        f"{member}.link = {frame.link};",
+        *_transform_lines(f"{member}.offset", frame.offset, scalar),
+    ]
+
+
+def _joint_lines(member: str, joint: Joint, scalar: str) -> list[str]:
     lines = [
         f"{member}.name = {_literal(joint.name)};",
         f"{member}.type = fpbm::JointType::k{joint.type.capitalize()};",

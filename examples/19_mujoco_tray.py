@@ -1,0 +1,88 @@
+"""Two Pandas in MuJoCo carry a tray along a circle: the motion of 16_carry_a_tray by computed torque.
+
+Every millisecond the tracker gives positions, velocities and accelerations of the joints, and the torques are
+
+    tau = M(q) (qdd_r + K_d (qd_r - qd) + K_p (q_r - q)) + h(q, qd).
+
+The controller takes every mass and inertia for 2 % greater than it is, and does not know the friction. Nothing but
+these torques keeps the hands at the tray: the error of the relative pose is the distance that a grasp must yield.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+from panda_mjcf import panda_mjcf
+
+import fpbm_cpp as fp
+
+try:
+    import mujoco
+except ModuleNotFoundError:
+    sys.exit("this example needs MuJoCo: pip install mujoco")
+
+ROBOT = fp.Robot.preset("two_pandas")
+HANDS = ("right", "left")
+START = np.array([0.3, -0.6, 0, -2.4, 0, 1.8, 0.785, -0.3, -0.6, 0, -2.4, 0, 1.8, 0.785])  # [rad]
+STIFFNESS, DAMPING = 1e4, 200.0  # K_p [1/s²], K_d [1/s]
+DT = 1e-3  # A tick of the controller [s].
+STEPS = 4  # Steps of the simulation in a tick.
+
+
+def placements() -> dict[str, np.ndarray]:
+    """Bases of the arms, as in the preset."""
+    poses = {}
+    for hand, y in zip(HANDS, (-0.4, 0.4)):
+        poses[f"{hand}_"] = np.eye(4)
+        poses[f"{hand}_"][1, 3] = y
+    return poses
+
+
+def relative_error(data: mujoco.MjData, grasp: np.ndarray) -> tuple[float, float]:
+    """Distance [m] and angle [rad] of the left hand from where the right hand carries it."""
+    poses = []
+    for hand in HANDS:
+        site = data.site(f"{hand}_tip")
+        poses.append(np.vstack([np.column_stack([site.xmat.reshape(3, 3), site.xpos]), [0, 0, 0, 1]]))
+    off = np.linalg.inv(np.linalg.inv(poses[0]) @ poses[1]) @ grasp
+    return float(np.linalg.norm(off[:3, 3])), float(np.arccos(np.clip((np.trace(off[:3, :3]) - 1) / 2, -1, 1)))
+
+
+def simulate(duration: float = 6.0, hold: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors [m], [rad], and distances of the right hand from the path [m], at each tick."""
+    stack = fp.Stack(
+        fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=500, k2=62_500),
+        fp.PoseTask("right_tip", name="tray", k1=40, k2=400),
+        fp.PostureTask(START, k1=4, k2=4),
+    )
+    tracker = fp.Tracker(ROBOT, fp.Balanced(0, np.ones(14), null_damping=2), START, stack=stack, dt=DT)
+    circle = fp.Circle(0.1, duration).in_plane("yz")  # radius [m]
+    path, origin = tracker.follow(circle, task="tray"), ROBOT.forward(START, "right_tip")[:3, 3]
+    grasp = np.linalg.inv(ROBOT.forward(START, "right_tip")) @ ROBOT.forward(START, "left_tip")
+
+    arms = mujoco.MjModel.from_xml_string(panda_mjcf(placements=placements(), timestep=DT / STEPS))
+    belief = mujoco.MjModel.from_xml_string(panda_mjcf(placements=placements(), friction=0.0, inertia_error=0.02))
+    world, believed = mujoco.MjData(arms), mujoco.MjData(belief)
+    world.qpos[:] = START
+    torque = np.zeros(ROBOT.dof)
+    relative, tracking = [], []
+    for t in DT * np.arange(1, round((duration + hold) / DT) + 1):
+        tick = tracker.tick({"tray": path})
+        believed.qpos[:], believed.qvel[:] = world.qpos, world.qvel
+        mujoco.mj_forward(belief, believed)
+        qdd = tick.qdd + DAMPING * (tick.qd - world.qvel) + STIFFNESS * (tick.q - world.qpos)
+        mujoco.mj_mulM(belief, believed, torque, qdd)
+        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo bounds the torques.
+        mujoco.mj_step(arms, world, STEPS)
+        mujoco.mj_kinematics(arms, world)
+        relative.append(relative_error(world, grasp))
+        tracking.append(np.linalg.norm(world.site("right_tip").xpos - origin - circle.sample(min(t, duration))[0]))
+    return np.array(relative), np.array(tracking)
+
+
+if __name__ == "__main__":
+    relative, tracking = simulate()
+    rms = np.sqrt(np.mean(relative**2, axis=0))
+    print(f"relative pose of the hands off by {1e3 * rms[0]:.2f} mm and {1e3 * rms[1]:.2f} mrad rms, ", end="")
+    print(f"at most {1e3 * relative[:, 0].max():.2f} mm; tray off its path by {1e3 * tracking.max():.2f} mm at most")
