@@ -21,7 +21,7 @@ from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter
 from .robots import PLACE, Robot
 
 MARGIN = 0.01
-PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Joints of Robot.from_urdf(base="planar"), which SRDF files do not have.
+PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Of Robot.from_urdf(base="planar"): SRDF files do not have them.
 
 
 @data
@@ -29,8 +29,9 @@ class Clearance(Data):
     """What an arm or a Robot keeps clear of: of itself and of obstacles around it, by a margin.
 
     Kept apart are all capsules whose links are not next to one another, on one branch of a Robot or on two, and each
-    capsule of a link that moves from each obstacle; but for pairs that overlap in every posture, and for those that are allowed to meet. Names without which a
-    pair could not be told are given: 'link_3' to a capsule, 'obstacle_1' to an obstacle.
+    capsule of a link that moves from each obstacle; but for pairs that overlap in every posture, and for those that are
+    allowed to meet. Names without which a pair could not be told are given: 'link_3' to a capsule, 'obstacle_1' to an
+    obstacle.
 
     Raises ParameterError where a shape is none, an obstacle is not in the base frame or shares another's name, or an
     allowed name is nobody's.
@@ -82,7 +83,8 @@ class Clearance(Data):
     def preset(cls, name: str, *, obstacles: Sequence[Obstacle] = (), margin: float = MARGIN) -> Clearance:
         """Clearance of SerialArm.preset(name) or Robot.preset(name), by capsules that contain the maker's meshes.
 
-        Tools are not among them. Links that the joints' bounds keep apart anyway are allowed to meet. Raises ParameterError where there is none.
+        Tools are not among them. Links that the joints' bounds keep apart anyway are allowed to meet. Raises
+        ParameterError where there is none.
         """
         links, allowed = preset_capsules(name)
         capsules = [Capsule(link, a, b, radius, title) for link, a, b, radius, title in links]
@@ -213,7 +215,7 @@ class Clearance(Data):
 
 
 def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
-    """Positions (k, N) of all joints in postures that are given, or that an SRDF file has; None where there are none."""
+    """Positions (k, N) of all joints in postures that are given, or that an SRDF file has; None without any."""
     from .io.capsule_gaps import follow
     from .io.srdf import read_group_states
 

@@ -1,4 +1,4 @@
-"""Distances of a robot's links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
+"""Distances of links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Part(NamedTuple):
 
 @dataclass
 class Link:
-    """A link by its number in the tree, the number of the link that carries its joint (-1 of the base), and its parts."""
+    """A link by its number in the tree, that of the link that carries its joint (-1 of the base), and its parts."""
 
     number: int
     parent: int

@@ -27,7 +27,12 @@ class Postures:
     """How much closer than a margin the capsules of links are in some postures."""
 
     def __init__(
-        self, links: list[Link], joints: list[TreeJoint], required: Array, margin: float, but: Collection[tuple[int, int]]
+        self,
+        links: list[Link],
+        joints: list[TreeJoint],
+        required: Array,
+        margin: float,
+        but: Collection[tuple[int, int]],
     ) -> None:
         self.links, self.margin, self.count = links, margin, len(required)
         frames = link_frames(joints, np.vstack([required, postures([each.joint for each in joints], SPREAD)]))

@@ -39,7 +39,8 @@ class Clearance {
 
   /// source: the Tree or the Chain of the robot. margin: least distance of a pair [m]. allowed: names of pairs that
   /// need not be kept apart. Links next to one another need not either. Throws std::invalid_argument where a number is
-  /// out of range, a link does not exist, or a capsule is beyond a turning joint and a prismatic one without bounds on it.
+  /// out of range, a link does not exist, or a capsule is beyond a turning joint and a prismatic one without bounds on
+  /// it.
   template <typename Source>
   Clearance(const Source& source, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
@@ -205,18 +206,22 @@ class Clearance {
   }
 
  private:
-  /// A turning joint has no finite lever if a prismatic joint without bounds is between it and the capsule. A mobile base
-  /// whose turning joint is the last has such levers.
+  /// A turning joint has no finite lever if a prismatic joint without bounds is between it and the capsule. A mobile
+  /// base whose turning joint is the last has such levers.
   template <typename Source>
   void reject_unbounded(const Source& source, const validation::Argument& argument, int link) const {
     bool turns = false;
+    std::string rail;
     each_joint(robot_.moved_by(link), [&](Eigen::Index k) {
       const auto& joint = joint_of(source, k);
       turns = turns || robot_.turns(k);
-      if (!turns || robot_.turns(k) || (std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper))) return;
-      validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", std::string(joint.name),
-                         "', which has no bounds, behind a turning joint: give it lower and upper bounds");
+      const bool bounded = std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper);
+      if (turns && !robot_.turns(k) && !bounded) rail = joint.name;
     });
+    if (!rail.empty()) {
+      validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
+                         "', which has no bounds, behind a turning joint: give it lower and upper bounds");
+    }
     validation::reject(argument, ": is too large: its lever about a joint must be finite");
   }
   /// Whether links are different, and none carries the joint that moves the other. A chain's later link comes first.
