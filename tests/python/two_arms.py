@@ -34,7 +34,7 @@ def write(robots: Path, folder: Path) -> tuple[Path, Path]:
     arm = text[text.index("<link") : text.index("</robot>")].replace("package://example-robot-data/robots", str(robots))
     disabled = re.findall("<disable_collisions[^>]*>", (robots / "panda_description/srdf/panda.srdf").read_text())
     links = [BOX.format("stand", "0 0 0.45", "0.2 0.2 0.9"), BOX.format("torso", "0 0 0.06", "0.14 0.5 0.12"), WAIST]
-    pairs = []
+    pairs = ['<disable_collisions link1="stand" link2="torso" reason="Adjacent"/>']
     for side, sign in SIDES.items():
         links += [MOUNT.format(side, 0.25 * sign, -sign), arm.replace('"panda_', f'"{side}_panda_')]
         pairs += [each.replace('"panda_', f'"{side}_panda_') for each in disabled]
@@ -47,8 +47,7 @@ def write(robots: Path, folder: Path) -> tuple[Path, Path]:
 class Bodies:
     """Meshes of a robot's links and of boxes around it, as Coal measures them.
 
-    Pairs are all but those of one moving link or of two next to one another, those of names in `but`, and boxes with
-    links that nothing moves.
+    Pairs are all but those of one moving link, those of names in `but`, and boxes with links that nothing moves.
     """
 
     def __init__(
@@ -74,13 +73,8 @@ class Bodies:
             if meshes:
                 self._add(element.get("name", ""), trimesh.util.concatenate(meshes))
         numbers = {frame.name: frame.link for frame in robot.named_frames}
-        parents = [-1, *(each.parent for each in robot.joints)]
         self.pairs = [
-            (a, b)
-            for a, b in combinations(self.bodies, 2)
-            if numbers[a] not in (numbers[b], parents[numbers[b]])
-            and numbers[b] != parents[numbers[a]]
-            and frozenset((a, b)) not in but
+            (a, b) for a, b in combinations(self.bodies, 2) if numbers[a] != numbers[b] and frozenset((a, b)) not in but
         ]
         self.boxes = {each.name: each.pose for each in boxes}
         self.pairs += [(a, each) for a in self.bodies if numbers[a] != 0 for each in self.boxes]
