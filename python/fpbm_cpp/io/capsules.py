@@ -71,14 +71,14 @@ def capsules_of(
         raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry")
     names = sorted(shapes, key=lambda link: places[link][0])
     links = []
-    known: dict[bytes, list[Part]] = {}  # Arms of one kind have the same shapes.
+    fitted: dict[bytes, list[Part]] = {}  # Arms of one kind have the same shapes.
     for name in names:
         number, frame = places[name]
         moved = [shape.moved(frame) for shape in shapes[name]]
         key = b"/".join(each.points.tobytes() + each.sizes.tobytes() for each in moved)
-        if key not in known:
-            known[key] = _parts_of(moved, per_link)
-        links.append(Link(number, joints[number - 1].parent if number else -1, list(known[key])))
+        if key not in fitted:
+            fitted[key] = _parts_of(moved, per_link)
+        links.append(Link(number, joints[number - 1].parent if number else -1, list(fitted[key])))
     if finer and per_link > 1:
         refine(links, joints, per_link + MORE, margin)
     if required is not None:
