@@ -1,5 +1,4 @@
 #include "fpbm/clearance/preset_capsules.hpp"
-#include "fpbm/clearance/robot_capsules.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +6,12 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "fpbm/clearance/robot_capsules.hpp"
 #include "fpbm/model/presets.hpp"
+#include "fpbm/model/robot_presets.hpp"
 
 /// Capsules of presets.hpp's arms: on every link, apart where the arm is at home, and not too large. That they contain
 /// the links, tests/python/test_preset_capsules.py checks.
