@@ -15,6 +15,7 @@ from test_capsules import ROBOTS, with_robots
 
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
+from fpbm_cpp.io.capsule_gaps import link_frames, postures
 
 MOTIONS = int(os.environ.get("FPBM_MOTIONS", "20"))
 TICKS = 2000
@@ -248,6 +249,16 @@ def test_capsules_of_links_are_where_the_robot_has_them(options: dict[str, Any],
         if a < b and link[a] not in (link[b], parents[link[b]]) and link[b] != parents[link[a]]
     ]
     assert sorted(pairs) == expected
+
+
+def test_frames_in_which_gaps_are_measured_are_the_robot_s(tmp_path: Path) -> None:
+    robot = fp.Robot.from_urdf(robot_file(tmp_path), base="planar")
+    joints = [each.joint for each in robot.joints]
+    positions = postures(joints, 8)
+    drives = [i for i, joint in enumerate(joints) if joint.mimic is None]
+    for q, frames in zip(positions, link_frames(robot.joints, positions)):
+        for joint, frame in zip(joints, frames[1:]):
+            np.testing.assert_allclose(frame, robot.forward(q[drives], joint.name), atol=1e-12)
 
 
 def test_srdf_of_a_robot(tmp_path: Path) -> None:
