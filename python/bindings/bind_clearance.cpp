@@ -7,7 +7,7 @@
 
 #include "arrays.hpp"
 #include "clearance.hpp"
-#include "fpbm/clearance/preset_capsules.hpp"
+#include "fpbm/clearance/robot_capsules.hpp"
 #include "fpbm/clearance/task_bounds.hpp"
 #include "read_stack.hpp"
 
@@ -86,7 +86,7 @@ void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, cons
 
 namespace {
 
-/// A clearance for one arm.
+/// A clearance for one robot or arm.
 class PyClearance {
  public:
   using Pairs = std::vector<Clearance<kDynamic>::Names>;
@@ -115,8 +115,10 @@ using PlainPair = py::typing::Tuple<py::str, py::str>;
 /// Link, ends, radius and name of each of a preset's capsules; and the names of those that may meet.
 py::typing::Tuple<py::typing::List<PlainCapsule>, py::typing::List<PlainPair>> preset_capsules(
     const std::string& name) {
+  std::vector<presets::PresetCapsules> presets(std::begin(presets::kAllCapsules), std::end(presets::kAllCapsules));
+  presets.insert(presets.end(), std::begin(presets::kRobotCapsules), std::end(presets::kRobotCapsules));
   std::string names;
-  for (const auto& preset : presets::kAllCapsules) {
+  for (const auto& preset : presets) {
     names += (names.empty() ? "" : ", ") + std::string(preset.name);
     if (name != preset.name) continue;
     py::list capsules;

@@ -6,9 +6,12 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "fpbm/clearance/robot_capsules.hpp"
 #include "fpbm/model/presets.hpp"
+#include "fpbm/model/robot_presets.hpp"
 
 /// Capsules of presets.hpp's arms: on every link, apart where the arm is at home, and not too large. That they contain
 /// the links, tests/python/test_preset_capsules.py checks.
@@ -110,6 +113,37 @@ TEST(PresetCapsules, neighbours_touch) {
       }
     }
     EXPECT_LT(*std::max_element(least.begin(), least.end()), 0.0) << arm.name;
+  }
+}
+
+TEST(PresetCapsules, two_pandas_have_those_of_each_arm) {
+  Clearance<14> both(presets::two_pandas(), presets::capsules::two_pandas(), {}, 0.0,
+                     presets::never_meet::two_pandas());
+  Clearance<7> one(presets::panda(), presets::capsules::panda(), {}, 0.0, presets::never_meet::panda());
+  EXPECT_TRUE(both.left_out().empty());
+  const std::size_t count = one.bodies().size();
+  ASSERT_EQ(both.bodies().size(), 2 * count);
+  for (int k = 0; k < 20; ++k) {
+    const Vector<14> q = spread_posture(both.robot().limits(), k);
+    both.place(q);
+    for (const std::size_t arm : {0U, 1U}) {
+      one.place(arm == 0 ? Vector<7>(q.head<7>()) : Vector<7>(q.tail<7>()));
+      const Vector<3> place(0.0, arm == 0 ? -0.4 : 0.4, 0.0);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto& [moved, alone] = std::tie(both.bodies()[count * arm + i], one.bodies()[i]);
+        EXPECT_LT((moved.now.a - alone.now.a - place).norm() + (moved.now.b - alone.now.b - place).norm(), 1e-12);
+        EXPECT_EQ(moved.name, (arm == 0 ? "right_" : "left_") + alone.name);
+      }
+    }
+  }
+  for (const ShapePair& pair : one.pairs()) {
+    for (const std::string arm : {"right_", "left_"}) {
+      const auto [first, second] = one.names(pair);
+      const auto is = [&, first = first, second = second](const ShapePair& its) {
+        return both.names(its) == Clearance<14>::Names(arm + first, arm + second);
+      };
+      EXPECT_TRUE(std::any_of(both.pairs().begin(), both.pairs().end(), is)) << arm << first << " and " << second;
+    }
   }
 }
 

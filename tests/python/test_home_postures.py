@@ -273,7 +273,7 @@ def test_distances_of_capsules_are_those_of_the_compiled_part() -> None:
     rng = np.random.default_rng(1)
     arm = fp.SerialArm([fp.Joint(), fp.Joint(placement=placed(rng), axis=(0, 1, 0)), fp.Joint(placement=placed(rng))])
     q = rng.uniform(-3, 3, (200, 3))
-    frames = link_frames(arm.joints, q)
+    frames = link_frames([fp.TreeJoint(joint, i) for i, joint in enumerate(arm.joints)], q)
     poses = np.linalg.inv(frames[:, 0]) @ frames[:, 2]
     for _ in range(10):
         one, two = (Fit(*rng.uniform(-0.5, 0.5, (2, 3)), 0.01) for _ in range(2))
@@ -299,7 +299,7 @@ def test_gaps_are_measured_against_the_margin() -> None:
 
     def link(number: int) -> Link:
         shape = Shape(centers=np.zeros((1, 3)), radii=np.array([0.005]))
-        return Link(number, [Part(shape, Fit(np.zeros(3), np.zeros(3), 0.015))])
+        return Link(number, number - 1, [Part(shape, Fit(np.zeros(3), np.zeros(3), 0.015))])
 
     frames = np.tile(np.eye(4), (8, 3, 1, 1))
     frames[:, 2, 0, 3] = 0.06

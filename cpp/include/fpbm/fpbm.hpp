@@ -24,6 +24,7 @@
 #include "fpbm/clearance/obstacle.hpp"
 #include "fpbm/clearance/open_pairs.hpp"
 #include "fpbm/clearance/preset_capsules.hpp"
+#include "fpbm/clearance/robot_capsules.hpp"
 #include "fpbm/clearance/segment_cuboid.hpp"
 #include "fpbm/clearance/segment_segment.hpp"
 #include "fpbm/clearance/separation.hpp"

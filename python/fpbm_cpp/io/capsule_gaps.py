@@ -1,4 +1,4 @@
-"""Distances of an arm's links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
+"""Distances of links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 from .._core import rotation
 from .._types import Array
 from ..arms import Joint
+from ..robots import TreeJoint
 from .capsule_fit import Fit, distances, outermost
 from .urdf_shapes import Shape, together
 
@@ -36,14 +37,19 @@ class Part(NamedTuple):
 
 @dataclass
 class Link:
-    """A link by the number of joints that move it, and its parts."""
+    """A link by its number in the tree, that of the link that carries its joint (-1 of the base), and its parts."""
 
     number: int
+    parent: int
     parts: list[Part]
 
     @property
     def fits(self) -> list[Fit]:
         return [part.fit for part in self.parts]
+
+    def may_meet(self, later: Link) -> bool:
+        """Whether a link with a number that is not smaller is not this one, nor the one that this carries."""
+        return later.number > self.number and later.parent != self.number
 
 
 class Gaps:
@@ -61,7 +67,7 @@ class Gaps:
         self._left_out: dict[tuple[int, int], Array] = {}
         hulls = [_outer(link) for link in links]
         for i, j in combinations(range(len(links)), 2):
-            if links[j].number < links[i].number + 2:
+            if not links[i].may_meet(links[j]):
                 continue
             poses = inverse[:, links[i].number] @ frames[:, links[j].number]
             gaps = capsules_apart(links[i].fits, links[j].fits, poses)
@@ -119,6 +125,11 @@ def postures(joints: Sequence[Joint], count: int) -> Array:
     roots = np.sqrt([PRIMES[i % len(PRIMES)] for i in range(len(joints))])
     shares = np.outer(np.arange(1, count - 1), roots) % 1.0
     q = np.vstack([np.clip(np.zeros(len(joints)), low, high), (low + high) / 2, low + shares * (high - low)])
+    return follow(joints, q)
+
+
+def follow(joints: Sequence[Joint], q: Array) -> Array:
+    """Positions (count, n) with those of mimic joints set by their leaders."""
     for i, each in enumerate(joints):
         if each.mimic is not None:
             leader, ratio, offset = each.mimic
@@ -126,17 +137,17 @@ def postures(joints: Sequence[Joint], count: int) -> Array:
     return q
 
 
-def link_frames(joints: Sequence[Joint], q: Array) -> Array:
+def link_frames(joints: Sequence[TreeJoint], q: Array) -> Array:
     """Frames (count, n + 1, 4, 4) of the base and of each joint after its motion, for positions (count, n)."""
     frames = np.tile(np.eye(4), (len(q), len(joints) + 1, 1, 1))
-    for i, each in enumerate(joints):
+    for i, (each, parent) in enumerate((each.joint, each.parent) for each in joints):
         step = np.tile(np.eye(4), (len(q), 1, 1))
         axis = np.asarray(each.axis) / np.linalg.norm(each.axis)
         if each.type == "prismatic":
             step[:, :3, 3] = np.outer(q[:, i], axis)
         else:
             step[:, :3, :3] = [rotation(angle * axis) for angle in q[:, i]]
-        frames[:, i + 1] = frames[:, i] @ each.placement @ step
+        frames[:, i + 1] = frames[:, parent] @ each.placement @ step
     return frames
 
 

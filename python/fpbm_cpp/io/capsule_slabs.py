@@ -1,4 +1,4 @@
-"""Cuts that make capsules clear of one another in postures that an arm must be accepted in."""
+"""Cuts that make capsules clear of one another in postures that a robot must be accepted in."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from .._types import Array
-from ..arms import Joint
 from ..errors import extra
+from ..robots import TreeJoint
 from .capsule_fit import enclosing, fit_capsule
 from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures
 
@@ -27,16 +27,21 @@ class Postures:
     """How much closer than a margin the capsules of links are in some postures."""
 
     def __init__(
-        self, links: list[Link], joints: list[Joint], required: Array, margin: float, but: Collection[tuple[int, int]]
+        self,
+        links: list[Link],
+        joints: list[TreeJoint],
+        required: Array,
+        margin: float,
+        but: Collection[tuple[int, int]],
     ) -> None:
         self.links, self.margin, self.count = links, margin, len(required)
-        frames = link_frames(joints, np.vstack([required, postures(joints, SPREAD)]))
+        frames = link_frames(joints, np.vstack([required, postures([each.joint for each in joints], SPREAD)]))
         inverse = np.linalg.inv(frames)
         self.poses = {
             (i, j): inverse[:, one.number] @ frames[:, other.number]
             for i, one in enumerate(links)
             for j, other in enumerate(links)
-            if other.number >= one.number + 2 and (i, j) not in but
+            if one.may_meet(other) and (i, j) not in but
         }
         self.touching = {pair for pair in self.poses if self._touch(*pair)}
 
@@ -87,7 +92,7 @@ class Postures:
 
 
 def clear(
-    links: list[Link], joints: list[Joint], required: Array, margin: float, but: Collection[tuple[int, int]] = ()
+    links: list[Link], joints: list[TreeJoint], required: Array, margin: float, but: Collection[tuple[int, int]] = ()
 ) -> None:
     """Changes capsules until they keep the margin in the required postures (k, n), where the links do; but some pairs.
 

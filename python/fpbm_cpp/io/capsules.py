@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._types import Array
-from ..arms import Joint
 from ..capsule import Capsule
 from ..clearance import MARGIN
 from ..errors import wrong
+from ..robots import TreeJoint
 from .capsule_fit import Fit, fit_capsule, fit_cylinder
 from .capsule_gaps import Gaps, Link, Part, link_frames, postures
 from .capsule_slabs import clear
-from .urdf import read_places
+from .urdf import Places, read_places
 from .urdf_shapes import Shape, read_shapes, together
+from .urdf_tree import read_tree
 
 FAIR = 0.85  # More capsules than one have at most this share of its volume.
 CUTS = 6  # A cut is tried at each of so many parts of a shape.
@@ -31,9 +32,11 @@ GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsule
 
 def capsules_of(
     path: str | os.PathLike[str],
-    tip: str,
+    tip: str | None = None,
     base: str | None = None,
     *,
+    locked: Mapping[str, float] | None = None,
+    tips: Iterable[str] | None = None,
     per_link: int = 2,
     finer: bool = True,
     margin: float = MARGIN,
@@ -46,30 +49,36 @@ def capsules_of(
     or finer is False, a link may have one more where it would be taken to be closer to another link than a margin [m]:
     see Gaps. In the required postures (k, n) [rad] or [m], capsules keep the margin where clear() achieves that, by up
     to 8 capsules a link, but for allowed pairs of names.
-    Chain and joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip moves
-    belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as well.
-    Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm hold for
-    that posture alone. Visual geometry is not read: a link that has no other has no capsule.
+    Without tip, joints are those of Robot.from_urdf(path, base=base, locked=locked, tips=tips), which holds each other
+    joint. With tip, joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip
+    moves belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as
+    well. Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm
+    hold for that posture alone. Visual geometry is not read: a link that has no other has no capsule.
 
     Returns
     -------
     list of Capsule
-        From base to tip, in frames of the arm's links: that of link i is the file's own for the child of joint i.
+        From base to tip, in frames of the robot's links: that of link i is the file's own for the child of joint i.
 
     Raises ValueError where the file is no sound URDF, has no such chain or no collision geometry, or a mesh is not
     found or cannot be read; OSError where the file cannot be read; ImportError where an extra is missing.
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
-    joints, _, places = read_places(path, tip, base)
+    joints, places = _joints(path, tip, base, locked, tips)
     shapes = read_shapes(path)
     if not shapes:
         raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry")
     names = sorted(shapes, key=lambda link: places[link][0])
-    links = [
-        Link(places[name][0], _parts_of([shape.moved(places[name][1]) for shape in shapes[name]], per_link))
-        for name in names
-    ]
+    links = []
+    fitted: dict[bytes, list[Part]] = {}  # Arms of one kind have the same shapes.
+    for name in names:
+        number, frame = places[name]
+        moved = [shape.moved(frame) for shape in shapes[name]]
+        key = b"/".join(each.points.tobytes() + each.sizes.tobytes() for each in moved)
+        if key not in fitted:
+            fitted[key] = _parts_of(moved, per_link)
+        links.append(Link(number, joints[number - 1].parent if number else -1, list(fitted[key])))
     if finer and per_link > 1:
         refine(links, joints, per_link + MORE, margin)
     if required is not None:
@@ -80,13 +89,31 @@ def capsules_of(
     return [Capsule(number, fit.a, fit.b, fit.radius, name) for number, fit, name in fits]
 
 
-def refine(links: list[Link], joints: list[Joint], most: int, margin: float) -> None:
+def _joints(
+    path: str | os.PathLike[str],
+    tip: str | None,
+    base: str | None,
+    locked: Mapping[str, float] | None,
+    tips: Iterable[str] | None,
+) -> tuple[list[TreeJoint], Places]:
+    """The joints that move, as of a tree, and where each link of the file is."""
+    if tip is None:
+        tree = read_tree(path, base=base, locked=locked, tips=tips)
+        return tree["joints"], {frame.name: (frame.link, frame.offset) for frame in tree["named_frames"]}
+    for name, given in {"locked": locked, "tips": tips}.items():
+        if given is not None:
+            raise wrong(name, given, f" = {given!r:.60}: is for a Robot: give {name}= without tip=")
+    joints, _, places = read_places(path, tip, base)
+    return [TreeJoint(joint, i) for i, joint in enumerate(joints)], places
+
+
+def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float) -> None:
     """Cuts links further, into at most so many parts, where capsules are close and the links' hulls are not: see Gaps.
 
     Of all cuts of either link, the one is made after which the capsules are too close by least. A pair that is below
     the margin in all postures is left out by Clearance: no cut brings such a pair back.
     """
-    gaps = Gaps(links, link_frames(joints, postures(joints, POSTURES)), margin)
+    gaps = Gaps(links, link_frames(joints, postures([each.joint for each in joints], POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()
     known: dict[int, tuple[Part, list[list[Part]]]] = {}  # By the part's id: it and its halves.
     while pair := gaps.worst(given_up):

@@ -39,7 +39,8 @@ class Clearance {
 
   /// source: the Tree or the Chain of the robot. margin: least distance of a pair [m]. allowed: names of pairs that
   /// need not be kept apart. Links next to one another need not either. Throws std::invalid_argument where a number is
-  /// out of range, a link does not exist, or the robot reaches beyond a prismatic joint without ends.
+  /// out of range, a link does not exist, or a capsule is beyond a turning joint and a prismatic one without bounds on
+  /// it.
   template <typename Source>
   Clearance(const Source& source, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
@@ -50,9 +51,7 @@ class Clearance {
       const validation::Argument argument = validation::element("capsules", static_cast<Eigen::Index>(i));
       capsules[i].require_sound(argument, robot_.joints());
       bodies_.emplace_back(levers_, link, robot_.in_joint(link, {}), capsule, name);
-      if (!bodies_.back().levers.allFinite()) {
-        validation::reject(argument, " moves with a prismatic joint that has no ends");
-      }
+      if (!bodies_.back().levers.allFinite()) reject_unbounded(source, argument, link);
     }
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
       obstacles_[i].require_sound(validation::element("obstacles", static_cast<Eigen::Index>(i)));
@@ -207,6 +206,24 @@ class Clearance {
   }
 
  private:
+  /// A turning joint has no finite lever if a prismatic joint without bounds is between it and the capsule. A mobile
+  /// base whose turning joint is the last has such levers.
+  template <typename Source>
+  void reject_unbounded(const Source& source, const validation::Argument& argument, int link) const {
+    bool turns = false;
+    std::string rail;
+    each_joint(robot_.moved_by(link), [&](Eigen::Index k) {
+      const auto& joint = joint_of(source, k);
+      turns = turns || robot_.turns(k);
+      const bool bounded = std::isfinite(joint.bounds.lower) && std::isfinite(joint.bounds.upper);
+      if (turns && !robot_.turns(k) && !bounded) rail = joint.name;
+    });
+    if (!rail.empty()) {
+      validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
+                         "', which has no bounds, behind a turning joint: give it lower and upper bounds");
+    }
+    validation::reject(argument, ": is too large: its lever about a joint must be finite");
+  }
   /// Whether links are different, and none carries the joint that moves the other. A chain's later link comes first.
   [[nodiscard]] bool may_meet(int first, int second) const noexcept {
     return first > second && robot_.parent(first) != second;

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fpbm/clearance/preset_capsules.hpp"
+
+namespace fpbm {
+
+/// Adds the capsules of an arm to those of a tree, as add_arm() with the same name, link and placement added its joints
+/// behind `first` others. Names of capsules begin with the arm's name.
+template <typename Scalar>
+void add_capsules(std::vector<LinkCapsule<Scalar>>& capsules, const std::vector<LinkCapsule<Scalar>>& arm,
+                  const std::string& name, int first, int link = 0, const Transform<Scalar>& placement = {}) {
+  for (const auto& [own_link, capsule, own_name] : arm) {
+    const bool is_base = own_link == 0;
+    capsules.push_back(
+        {is_base ? link : first + own_link, is_base ? placed(capsule, placement) : capsule, name + "_" + own_name});
+  }
+}
+
+namespace presets {
+
+namespace capsules {
+
+/// presets::two_pandas(), without hands.
+[[nodiscard]] inline std::vector<LinkCapsule<>> two_pandas() {
+  std::vector<LinkCapsule<>> both;
+  Transform<> place;
+  place.p(1) = -0.4;
+  add_capsules(both, panda(), "right", 0, 0, place);
+  place.p(1) = 0.4;
+  add_capsules(both, panda(), "left", 7, 0, place);
+  return both;
+}
+
+}  // namespace capsules
+
+namespace never_meet {
+
+[[nodiscard]] inline std::vector<LinkNames> two_pandas() {
+  std::vector<LinkNames> both;
+  for (const std::string arm : {"right_", "left_"}) {
+    for (const auto& [first, second] : panda()) both.emplace_back(arm + first, arm + second);
+  }
+  return both;
+}
+
+}  // namespace never_meet
+
+inline constexpr PresetCapsules kRobotCapsules[] = {{"two_pandas", capsules::two_pandas, never_meet::two_pandas}};
+
+}  // namespace presets
+
+}  // namespace fpbm
