@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from .._core import TargetFilter
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
+from ..motion.run import Paths
 from ..motion.simulation import simulate
-from ..paths import Path
+from ..robots import Robot
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
 from ..tasks import Stack
@@ -40,8 +41,8 @@ def __getattr__(name: str) -> Any:
 
 
 def view(
-    arm: Arm,
-    path: Path,
+    arm: Arm | Robot,
+    path: Paths,
     scheme: Scheme,
     q0: ArrayLike,
     *,
@@ -74,7 +75,7 @@ def view(
 
 
 def servo(
-    arm: Arm,
+    arm: Arm | Robot,
     scheme: Scheme,
     q0: ArrayLike,
     *,

@@ -7,7 +7,7 @@ import numpy as np
 from .._core import rotation, rotation_vector
 from .._types import Array
 from ..arms import Arm
-from ..skeleton import joint_points, tip_axes
+from ..skeleton import frames_of
 from ..tasks import POSITION, ROTATION, AxisTask, RowsTask, Task
 
 
@@ -18,7 +18,7 @@ def in_space(points: Array) -> Array:
 
 def tip_pose(arm: Arm, q: Array) -> Array:
     """The tip's frame in a posture, shape (4, 4)."""
-    return _frame(tip_axes(arm, q), joint_points(arm, q)[-1])
+    return frames_of(arm, q, "tip")
 
 
 def frame_of(task: Task, x: Array) -> Array:
