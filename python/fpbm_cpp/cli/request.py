@@ -272,9 +272,12 @@ class Request:
             self.table["path"] = {each: path for each in tasks}
 
 
-def _locked(text: str) -> tuple[str, Any]:
+def _locked(text: str) -> tuple[str, float]:
     name, _, position = text.partition("=")
-    return name, _value(position)
+    try:
+        return name, float(position)
+    except ValueError:
+        raise click.ClickException(f"--locked = {text!r}: must be JOINT=NUMBER") from None
 
 
 def _arm(text: str) -> Table:

@@ -14,6 +14,7 @@ import numpy as np
 
 from .._core import Status, __version__, processor_kinds
 from ..arms import PlanarArm
+from ..errors import not_one_of
 from ..motion.run import ARRAYS, LIMITED, OF_STACKS, Run, RunStatus
 from ..robots import ROBOTS
 from ..schemes import SCHEMES
@@ -128,6 +129,8 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
 def _check_shapes(run: Run) -> None:
     """Raise ValueError unless all arrays of a run have the shapes that its arm and tasks ask for."""
     arm, stack = run.arm, run.stack
+    if run.kind not in ("position", "pose"):
+        raise not_one_of("task", run.kind, ("position", "pose"))
     rows = (2, 3) if isinstance(arm, PlanarArm) else (3, 6)
     error = (rows[run.kind == "pose"],)
     shapes = {name: (4, 4) if error == (6,) else error for name in ("x", "x_ref")} | {"error": error}

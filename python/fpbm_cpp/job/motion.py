@@ -177,9 +177,9 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     with job_errors():
         paths = make("path", pieces, arm) if is_by_task(path) else None
         run["task"], kind, *_ = led_paths(paths, job.get("run", {}).get("task"), stack)
-    if "q0" not in run:
-        preset = job["arm"].get("name")
-        run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
+        if "q0" not in run:
+            preset = job["arm"].get("name")
+            run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "bounds" in job:
         full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.
@@ -194,7 +194,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
     """What the full job has and the job did not say, by section, as in 'k1 = 10', but for what is off."""
-    texts = {section: list(_taken(job.get(section, {}), full[section])) for section in ("path", "scheme", "run")}
+    texts = {section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")}
     return {section: each for section, each in texts.items() if each}
 
 
@@ -257,30 +257,36 @@ def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float
         bounded = np.isfinite(lower) & np.isfinite(upper)
         posture = np.clip(0.0, lower, upper)
         posture[bounded] = (lower[bounded] + upper[bounded]) / 2
-        for jacobian in _jacobians(arm, task, stack):
-            posture = _bent(arm.limits, posture, jacobian)
+        for jacobian, columns in _jacobians(arm, posture, task, stack):
+            posture = _bent(arm.limits, posture, jacobian, columns)
     return [round(float(position), 4) for position in posture]
 
 
-def _jacobians(arm: Arm | Robot, task: str, stack: Stack | None) -> Iterator[Jacobian]:
-    """Those that are not to be singular: of the tip, or of each frame that a robot's tasks are of."""
+def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Array]]:
+    """Those that are not to be singular, of the tip or of each frame that a robot's tasks are of, and their joints.
+
+    The joints of a frame are those that move no other of these frames, if there are six.
+    """
     if not isinstance(arm, Robot):
-        yield lambda q: arm.jacobian(q, task=task)
+        yield lambda q: arm.jacobian(q, task=task), np.arange(arm.dof)
     elif stack is not None:
-        for frame in dict.fromkeys(each.frame for each in stack.tasks if isinstance(each, FrameTask)):
-            yield partial(arm.jacobian, frame=frame)
+        frames = dict.fromkeys(each.frame for each in stack.tasks if isinstance(each, FrameTask))
+        moving = {frame: arm.jacobian(q, frame).any(axis=0) for frame in frames}
+        shared = sum(moving.values()) > 1
+        for frame, joints in moving.items():
+            own = joints & ~shared
+            yield partial(arm.jacobian, frame=frame), np.flatnonzero(own if own.sum() >= 6 else joints)
 
 
-def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian) -> Array:
+def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Array) -> Array:
     """The middle of the limits with the fewest joints bent that make it about as far from singular as any are."""
-    moving = np.flatnonzero(jacobian(middle).any(axis=0))
-    room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[moving]
+    room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[columns]
     # The last joints change fastest: of long arms, those near the base stay as they are.
-    bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=len(moving)), MOST)))
+    bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=len(columns)), MOST)))
     bends = bends[np.argsort(np.abs(bends).sum(axis=1), kind="stable")]
     postures = np.tile(middle, (len(bends), 1))
-    postures[:, moving] += bends * room
-    sigma = np.linalg.svd(np.array([jacobian(q) for q in postures]), compute_uv=False)
+    postures[:, columns] += bends * room
+    sigma = np.linalg.svd(np.array([jacobian(q)[:, columns] for q in postures]), compute_uv=False)
     inverse_condition = sigma[:, -1] / np.maximum(sigma[:, 0], np.finfo(float).tiny)
     good = inverse_condition >= GOOD * inverse_condition.max()
     return np.asarray(postures[np.argmax(good)])

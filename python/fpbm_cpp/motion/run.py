@@ -199,18 +199,19 @@ class Run:
     def manipulability(self) -> Array:
         """sqrt(det(J J')) of the tip, shape (N,): 0 where the posture is singular (Yoshikawa, 1985).
 
-        Of a Robot, of the task that follows the path.
+        Of a Robot, of all tasks that follow a path.
         """
         J = self.jacobians()
         return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0))
 
     def jacobians(self) -> Array:
-        """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of the task that follows the path."""
-        m, arm = self.error.shape[1], self.arm
-        if not isinstance(arm, Robot):
-            return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, m, arm.dof)
-        J = task_jacobians(arm, self.q, self.led)
-        return J if self.kind == "pose" else J[:, :3]
+        """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of all tasks that follow a path."""
+        arm = self.arm
+        if isinstance(arm, Robot) and self.stack is not None:
+            led = map(self.stack.follower, self.paths)
+            return np.concatenate([task_jacobians(arm, self.q, task) for task in led], axis=1)
+        assert not isinstance(arm, Robot)
+        return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
 
     def arrays(self) -> dict[str, Any]:
         """All arrays by name; those of limits, of a clearance and of a stack only where there are some."""

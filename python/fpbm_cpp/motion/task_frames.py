@@ -9,7 +9,7 @@ import numpy as np
 from .._types import Array
 from ..robots import Robot
 from ..skeleton import frames_of, task_frames
-from ..tasks import FrameTask
+from ..tasks import FrameTask, PoseTask
 
 if TYPE_CHECKING:
     from .run import Run
@@ -39,10 +39,15 @@ def _in_base(run: Run, name: str, vectors: Array) -> Array:
 
 
 def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:
-    """Jacobian of a task's frame, seen from its reference frame, in the base frame's axes, shape (N, 6, n)."""
+    """Jacobian of a task, seen from its reference frame, in the base frame's axes, shape (N, m, n).
+
+    m is 6 of a PoseTask, else 3, of the position.
+    """
     p = task_frames(robot, q, task)[:, :3, 3]
     J = _jacobians_at(robot, q, task.frame, p)
-    return J if task.reference_frame is None else J - _jacobians_at(robot, q, task.reference_frame, p)
+    if task.reference_frame is not None:
+        J -= _jacobians_at(robot, q, task.reference_frame, p)
+    return J if isinstance(task, PoseTask) else J[:, :3]
 
 
 def _jacobians_at(robot: Robot, q: Array, frame: str, p: Array) -> Array:
