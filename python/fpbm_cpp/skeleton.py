@@ -39,7 +39,9 @@ def joint_points(arm: Arm | Robot, q: Array) -> Array:
         links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
     points, _, turns = _forward_pass(arm, q)
-    tips = [(points[..., link, :] + turns[..., link, :, :] @ offset[:3, 3])[..., None, :] for link, offset in _ends(arm)]
+    tips = [
+        (points[..., link, :] + turns[..., link, :, :] @ offset[:3, 3])[..., None, :] for link, offset in _ends(arm)
+    ]
     nowhere = np.full_like(points[..., :1, :], np.nan)
     return np.concatenate([points, *tips, nowhere], axis=-2)[..., _line(arm), :]
 
@@ -60,9 +62,9 @@ def length(arm: Arm | Robot, q: Array) -> float:
     """Length of the links from the base to the farthest tip, along the joints, in posture q, shape (n,) [m]."""
     points, line = joint_points(arm, q), _line(arm)
     far = {line[0]: 0.0}
-    for i, (a, b) in enumerate(zip(line, line[1:])):
+    for a, b, start, end in zip(line, line[1:], points, points[1:]):
         if -1 not in (a, b):
-            far[b] = far[a] + float(np.linalg.norm(points[i + 1] - points[i]))
+            far[b] = far[a] + float(np.linalg.norm(end - start))
     return max(far.values())
 
 

@@ -3,8 +3,9 @@
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
 A table has the kind and the parameters of its thing, by their names. A path's also say how it is laid and rotated:
-in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables; those of several tasks
-a table of them by the names of the tasks. A stack is a list of tables of tasks, each with its level, counted from 0.
+in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables; paths of several
+tasks a table of them by the names of the tasks. A stack is a list of tables of tasks, each with its level, counted from
+0.
 """
 
 import math

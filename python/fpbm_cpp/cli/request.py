@@ -15,7 +15,6 @@ from ..errors import not_one_of
 from ..job import JobError, Motion, prepare, read_job
 from ..job.sections import FREE, SECTIONS, Table, known
 from ..parameter import REQUIRED, Parameter
-from ..robots import Robot
 from ..table import is_by_task
 from .plain import PLACE, WIDTH, Plain, file_errors
 
@@ -173,7 +172,8 @@ class Request:
         if arm is not None:
             self.table["arm"] = _arm(arm)
         given = {option: value for option, value in values.items() if value not in (None, ())}
-        for option in sorted(given, key=lambda each: (each.key != "kind", each.key == "task")):  # What it is, then what it has.
+        # What something is, then what it has; tasks last, which go by the arm.
+        for option in sorted(given, key=lambda each: (each.key != "kind", each.key == "task")):
             self._put(option, given[option])
         names = {f"{option.section}.{option.key}": option for option in values}
         self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
@@ -200,9 +200,6 @@ class Request:
             table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):
             motion = prepare(table)
-        if (isinstance(motion.arm, Robot) or is_by_task(table.get("path"))) and "clearance" not in self.sections:
-            command = click.get_current_context().info_name
-            raise click.ClickException(f"{command} takes an arm and one path: for a robot or several paths, use track")
         if at_rest and motion.options.qd0 is not None:
             command = click.get_current_context().info_name
             raise click.ClickException(f"{command} begins at rest: leave qd0 out, or use track")
@@ -243,7 +240,7 @@ class Request:
         if key == "locked":
             value = dict(map(_locked, value))
         there = self.table.get(section)
-        if (isinstance(there, list) or is_by_task(there)) and key != "kind":
+        if there is not None and (isinstance(there, list) or is_by_task(there)) and key != "kind":
             many = f"there are {len(there)} {section}s in the file: change them there, or say --{section}"
             raise click.ClickException(f"{option.opts[0]}: {many}")
         if not isinstance(there, dict):
@@ -251,7 +248,6 @@ class Request:
         if key == "kind" and value in SECTIONS[section]:
             there = _of_kind(section, there, value)
         self.table[section] = {**there, key: value}
-
 
     def _put_tasks(self, tasks: Sequence[str]) -> None:
         """The task of the tip, or the one that is led; of a robot without tasks, frames whose poses are moved."""
@@ -292,7 +288,9 @@ def _arm(text: str) -> Table:
         return {"kind": "planar", "lengths": lengths}
     if Path(text).suffix or Path(text).exists():
         return {"kind": "urdf", "file": text}
-    raise click.ClickException(str(not_one_of("ARM", text, [*PRESETS, *ROBOT_PRESETS, "planar:1,1,1,1", "a URDF file"])))
+    raise click.ClickException(
+        str(not_one_of("ARM", text, [*PRESETS, *ROBOT_PRESETS, "planar:1,1,1,1", "a URDF file"]))
+    )
 
 
 def _of_kind(section: str, table: Any, kind: str) -> Table:

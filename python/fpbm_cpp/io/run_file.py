@@ -132,8 +132,9 @@ def _check_shapes(run: Run) -> None:
     if run.kind not in ("position", "pose"):
         raise not_one_of("task", run.kind, ("position", "pose"))
     rows = (2, 3) if isinstance(arm, PlanarArm) else (3, 6)
-    error = (rows[run.kind == "pose"],)
-    shapes = {name: (4, 4) if error == (6,) else error for name in ("x", "x_ref")} | {"error": error}
+    error: tuple[int, ...] = (rows[run.kind == "pose"],)
+    point = (4, 4) if error == (6,) else error
+    shapes = {"x": point, "x_ref": point, "error": error}
     shapes |= {name: () for name in ("t", "scale", "clearance")}
     if stack is not None:
         shapes |= {"scales": (len(stack.levels),), "task_errors": (sum(stack.error_sizes(arm.dof)),)}

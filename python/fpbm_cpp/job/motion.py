@@ -23,7 +23,7 @@ from ..io import write_whole
 from ..motion.run import Paths, Run
 from ..motion.simulation import led_paths, simulate, track, without_limits
 from ..parameter import REQUIRED
-from ..paths import PATH_OPTIONS
+from ..paths import PATH_OPTIONS, Path
 from ..robots import Robot
 from ..schemes import Scheme
 from ..table import is_by_task, to_table
@@ -108,6 +108,12 @@ class Motion:
         # A job says the damping of its scheme: 0 is none.
         return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
 
+    def of_one_arm(self) -> tuple[Arm, Path]:
+        """Arm and path, for sweep() and tune(). Raises JobError where there is a robot, or are several paths."""
+        if isinstance(self.arm, Robot) or isinstance(self.path, Mapping):
+            raise JobError(wrong("arm", None, ": must be an arm, along one path: track moves robots along several"))
+        return self.arm, self.path
+
     def with_scheme(self, options: Mapping[str, Any]) -> Motion:
         """The motion with other options of its scheme. Raises JobError."""
         scheme = {**self.job["scheme"], **{key: to_table(value) for key, value in options.items()}}
@@ -175,8 +181,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     if stack is None and run["task"] not in TIP_TASKS:
         raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():
-        paths = make("path", pieces, arm) if is_by_task(path) else None
-        run["task"], kind, *_ = led_paths(paths, job.get("run", {}).get("task"), stack)
+        run["task"], kind, *_ = led_paths(make("path", pieces, arm), job.get("run", {}).get("task"), stack)
         if "q0" not in run:
             preset = job["arm"].get("name")
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
@@ -194,7 +199,9 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
     """What the full job has and the job did not say, by section, as in 'k1 = 10', but for what is off."""
-    texts = {section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")}
+    texts = {
+        section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")
+    }
     return {section: each for section, each in texts.items() if each}
 
 
@@ -262,7 +269,7 @@ def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float
     return [round(float(position), 4) for position in posture]
 
 
-def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Array]]:
+def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Any]]:
     """Those that are not to be singular, of the tip or of each frame that a robot's tasks are of, and their joints.
 
     The joints of a frame are those that move no other of these frames, if there are six.
@@ -278,7 +285,7 @@ def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> It
             yield partial(arm.jacobian, frame=frame), np.flatnonzero(own if own.sum() >= 6 else joints)
 
 
-def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Array) -> Array:
+def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) -> Array:
     """The middle of the limits with the fewest joints bent that make it about as far from singular as any are."""
     room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[columns]
     # The last joints change fastest: of long arms, those near the base stay as they are.

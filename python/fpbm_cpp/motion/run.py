@@ -202,7 +202,7 @@ class Run:
         Of a Robot, of all tasks that follow a path.
         """
         J = self.jacobians()
-        return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0))
+        return np.asarray(np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)))
 
     def jacobians(self) -> Array:
         """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of all tasks that follow a path."""

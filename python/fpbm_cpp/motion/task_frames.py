@@ -35,7 +35,7 @@ def _in_base(run: Run, name: str, vectors: Array) -> Array:
     reference = run.stack.follower(name).reference_frame
     if reference is None:
         return vectors
-    return np.einsum("kij,kj->ki", frames_of(run.arm, run.q, reference)[:, :3, :3], vectors)
+    return np.asarray(np.einsum("kij,kj->ki", frames_of(run.arm, run.q, reference)[:, :3, :3], vectors))
 
 
 def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:

@@ -40,7 +40,8 @@ LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Postures at equal intervals of time, the tip's path and its target, and the tip's axes at the end.
 
-    Of a Robot, path, target and axes of each task that follows a path. An arm in space needs axes made with projection='3d', a planar arm plain ones.
+    Of a Robot, path, target and axes of each task that follows a path. An arm in space needs axes made with
+    projection='3d', a planar arm plain ones.
     """
     t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
     time = Normalize(0.0, float(t[-1]) or 1.0)

@@ -66,11 +66,12 @@ class LiveScene:
         q = loop.q
         self._arm.pose(q)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
-        gaps, frames = [nothing], [loop.frame(handle.task.name) for handle in self.handles]
+        gaps: list[Array] = []
+        frames = [loop.frame(handle.task.name) for handle in self.handles]
         for handle, frame in zip(self.handles, frames):
             handle.follow(frame)
             gaps.append(handle.gap(frame))
-        self._gap.points = np.concatenate(gaps).astype(np.float32)
+        self._gap.points = np.concatenate([nothing, *gaps]).astype(np.float32)
         if not isinstance(loop.arm, Robot):
             frames = [tip_pose(loop.arm, q)]
             self._tip.position, self._tip.wxyz = frames[0][:3, 3], SO3.from_matrix(frames[0][:3, :3]).wxyz
@@ -87,7 +88,9 @@ def _handles(server: ViserServer, loop: ServoLoop, size: float) -> list[Handle]:
     own = [task for task in loop.tasks if isinstance(task, FrameTask) and task.reference_frame is None]
     for i, task in enumerate(own):
         push = partial(loop.push, task=task.name)
-        handles.append(Handle(server.scene, i, isinstance(loop.arm, PlanarArm), task, loop.target_of(task.name), size, push))
+        handles.append(
+            Handle(server.scene, i, isinstance(loop.arm, PlanarArm), task, loop.target_of(task.name), size, push)
+        )
         if loop.stack is not None:
             handles[-1].label(server.scene)
     return handles

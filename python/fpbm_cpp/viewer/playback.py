@@ -24,8 +24,8 @@ class Playback:
     """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
 
     Curves are drawn through F frames: some of the samples, or all. tracks has tip and target for each path, at all
-    samples, shape (N, 3) [m]; the manipulability, shape (F,), is that at the frames. errors has the norms of errors at all samples, shape (N,), and
-    their units, by name.
+    samples, shape (N, 3) [m]; the manipulability, shape (F,), is that at the frames. errors has the norms of errors at
+    all samples, shape (N,), and their units, by name.
     """
 
     def __init__(self, run: Run, clearance: Clearance | None = None) -> None:

@@ -72,7 +72,7 @@ class Meshes:
             self._place()
 
     def configuration(self, q: Array) -> Array:
-        """Positions of the file's own joints: the robot's, those at which it holds others, and 0 for those of an arm."""
+        """Positions of the file's own joints: those of the robot, and of others where it holds them, or 0."""
         own = self._held | dict(zip(self._arm.joint_names, q))
         return np.array([own.get(name, 0.0) for name in self.robot.actuated_joint_names])
 
