@@ -704,7 +704,7 @@ def test_servo_has_no_path_and_always_limits() -> None:
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
     assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:", "Clearance:"]
     assert result.output.isascii()
-    assert len(examples("servo")) == 4
+    assert len(examples("servo")) == 5
     for option in ("--radius", "--hold", "--qd0", "--limits", "--no-limits"):
         assert call("servo", "panda", option, "1").exit_code == 2
 

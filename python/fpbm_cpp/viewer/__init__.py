@@ -103,9 +103,9 @@ def servo(
     is drawn translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings,
     which follow them at 0.3 m/s.
 
-    A stack replaces task. Each of its tasks of a frame has a handle with the task's name: arrows for a position, arcs
-    for an orientation or an axis. The z axis of the handle of an AxisTask is the target direction. targets is then a
-    dictionary of filters for positions and poses.
+    A stack replaces task, and a Robot needs one. Each of its tasks of a frame has a handle with the task's name, unless
+    the task is relative to another frame: arrows for a position, arcs for an orientation or an axis. The z axis of the
+    handle of an AxisTask is the target direction. targets is then a dictionary of filters for positions and poses.
 
     Raises what Tracker and view() raise, and ValueError where a filter is for another task or tick.
     """
