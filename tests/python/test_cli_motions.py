@@ -91,7 +91,7 @@ def test_help_of_a_motion(name: str) -> None:
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
     clear = ["Clearance:"] if name in ("track", "compare", "view") else []
     assert headings == ["Options:", "Arm and start:", "Path:", "Scheme:", "Joint limits:", *clear]
-    assert 2 <= len(examples(name)) <= 4
+    assert 2 <= len(examples(name)) <= 5
     for option in command.commands[name].params:
         assert isinstance(option, click.Argument) or option.help, option.name
 

@@ -39,7 +39,8 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     """Move an arm along a path, and say how it went.
 
     ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e, planar: and lengths of links as in planar:1,1,1,1, or a URDF file
-    with --tip. It may also be a robot: two_pandas, or a URDF file with a --task for each frame to move. Everything else has a default, and what was taken is printed. Several numbers go between commas.
+    with --tip. Or ARM is a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
+    Everything else has a default, and what was taken is printed. Several numbers go between commas.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
     Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.
@@ -161,9 +162,9 @@ def servo(request: Request, port: int, browser: bool) -> None:
 
     1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
     keeps the arm from the handle. A URDF file is shown with its meshes. What the arm keeps clear of is drawn as well;
-    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Of a robot, each --task is
-    a frame with a handle: two pose tasks side by side on a level, and a posture on the level below. Ctrl-C ends it. ARM
-    and the options are those of track; of a job, the path does not matter.
+    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Of a robot, each --task
+    is a frame with a handle: pose tasks, two side by side on a level, and a posture on the level below. Ctrl-C ends it.
+    ARM and the options are those of track; of a job, the path does not matter.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():
