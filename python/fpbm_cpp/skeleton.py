@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ._core import rotation
 from ._types import Array
 from .arms import Arm, Joint, PlanarArm, SerialArm
 from .errors import not_one_of
@@ -53,11 +52,6 @@ def joint_axes(arm: Arm | Robot, q: Array) -> Array:
     return _forward_pass(arm, q)[1]
 
 
-def tip_axes(arm: Arm, q: Array) -> Array:
-    """Axes of the tip in posture q, shape (n,), as columns: shape (2, 2) in the plane, (3, 3) in space."""
-    return rotation([0.0, 0.0, q.sum()])[:2, :2] if isinstance(arm, PlanarArm) else arm.forward(q)[:3, :3]
-
-
 def length(arm: Arm | Robot, q: Array) -> float:
     """Length of the links from the base to the farthest tip, along the joints, in posture q, shape (n,) [m]."""
     points, line = joint_points(arm, q), _line(arm)
@@ -93,12 +87,6 @@ def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
 
 def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
     """The frame of that name, as tasks have it, likewise. Raises ParameterError where there is none."""
-    link, offset = _place(arm, name)
-    return np.asarray(link_frames(arm, q)[..., link, :, :] @ offset)
-
-
-def _place(arm: Arm | Robot, name: str) -> tuple[int, Array]:
-    """Link and offset of a frame of that name, as trackers read it."""
     places = {"base": (0, np.eye(4))} | {each.name: (i, np.eye(4)) for i, each in enumerate(joints_of(arm), 1)}
     if isinstance(arm, Robot):
         places |= {each.name: (each.link, each.offset) for each in arm.named_frames}
@@ -109,7 +97,8 @@ def _place(arm: Arm | Robot, name: str) -> tuple[int, Array]:
         places["tip"] = len(places) - 1, arm.tip if isinstance(arm, SerialArm) else tip
     if name not in places:
         raise not_one_of("frame", name, places)
-    return places[name]
+    link, offset = places[name]
+    return np.asarray(link_frames(arm, q)[..., link, :, :] @ offset)
 
 
 def _parents(arm: Arm | Robot) -> list[int]:

@@ -121,6 +121,7 @@ def test_a_grasp_is_led_as_seen_from_the_other_hand() -> None:
     right, left = poses(run.q, "right_tip"), poses(run.q, "left_tip")
     np.testing.assert_allclose(run.x, np.linalg.inv(right) @ left, atol=1e-12)
     np.testing.assert_allclose(run.x_ref[-1, :3, 3], run.x[0, :3, 3] + [0, 0, -0.1], atol=1e-12)
+    np.testing.assert_allclose(right[-1, :3, 3] - right[0, :3, 3], [0, 0, 0.1], atol=0.02)
     (tip, target), _ = tracks(run)
     np.testing.assert_allclose(tip, left[:, :3, 3], atol=1e-12)
     seen = np.einsum("kij,kj->ki", right[:, :3, :3], run.x_ref[:, :3, 3]) + right[:, :3, 3]

@@ -164,17 +164,25 @@ class Run:
         """'position' or 'pose': what the task is that follows the path."""
         if self.stack is None:
             return self.task
-        return "pose" if isinstance(self.stack.follower(self.task), PoseTask) else "position"
+        return "pose" if isinstance(self.led, PoseTask) else "position"
 
     @property
     def paths(self) -> dict[str, Path]:
-        """The path of each task that follows one, by name."""
-        return dict(self.path) if isinstance(self.path, Mapping) else {self.task: self.path}
+        """The path of each task that follows one, by name; first that of the task of x, x_ref and error."""
+        given = self.path if isinstance(self.path, Mapping) else {self.task: self.path}
+        return {self.task: given[self.task], **given}
 
     @property
     def led(self) -> FrameTask:
         """The task that x, x_ref and error are of."""
         return PositionTask() if self.stack is None else self.stack.follower(self.task)
+
+    @property
+    def tips(self) -> list[FrameTask]:
+        """What is drawn as tips: an arm's tip; of a Robot, the tasks that follow paths."""
+        if not isinstance(self.arm, Robot) or self.stack is None:
+            return [PositionTask()]
+        return [self.stack.follower(name) for name in self.paths]
 
     @property
     def frames(self) -> dict[str, Array]:
@@ -207,10 +215,8 @@ class Run:
     def jacobians(self) -> Array:
         """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of all tasks that follow a path."""
         arm = self.arm
-        if isinstance(arm, Robot) and self.stack is not None:
-            led = map(self.stack.follower, self.paths)
-            return np.concatenate([task_jacobians(arm, self.q, task) for task in led], axis=1)
-        assert not isinstance(arm, Robot)
+        if isinstance(arm, Robot):
+            return np.concatenate([task_jacobians(arm, self.q, task) for task in self.tips], axis=1)
         return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
 
     def arrays(self) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from ..motion.run import Run
 from ..motion.task_errors import error_parts
 from ..motion.task_frames import tracks
 from ..robots import Robot
-from ..skeleton import frames_of, joint_labels, joint_points, joint_units, task_frames
+from ..skeleton import joint_labels, joint_points, joint_units, task_frames
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, inner_legend, over_time, side_legend
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
@@ -52,7 +52,7 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     tip = [line for each, _ in tracks(run) for line in axes.plot(*each.T, color=theme.tip, lw=2.4, label="tip")]
     target = draw_target(axes, run, theme)
     length, dimensions = 0.12 * _extent(run.arm, q[-1]), run.positions.shape[1]
-    for frame in _tips(run, q[-1]):
+    for frame in (task_frames(run.arm, q[-1], each) for each in run.tips):
         p = frame[:dimensions, 3]
         for axis, colour in zip(frame[:dimensions, :dimensions].T, theme.axes):
             axes.plot(*np.stack([p, p + length * axis]).T, color=colour, lw=1.6, zorder=3, **ROUND)
@@ -64,13 +64,6 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
     bar.outline.set(edgecolor=theme.ink, linewidth=0.7)
     head_legend(axes, theme, [tip[0], target[0]])
-
-
-def _tips(run: Run, q: Array) -> list[Array]:
-    """The frame of the tip in a posture; of a Robot, those of the tasks that follow paths."""
-    if isinstance(run.arm, Robot) and run.stack is not None:
-        return [task_frames(run.arm, q, run.stack.follower(name)) for name in run.paths]
-    return [frames_of(run.arm, q, "tip")]
 
 
 def _extent(arm: Arm | Robot, q: Array) -> float:

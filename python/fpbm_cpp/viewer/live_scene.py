@@ -13,10 +13,10 @@ from viser.transforms import SO3
 from .._types import Array
 from ..arms import PlanarArm
 from ..robots import Robot
-from ..skeleton import joint_points, length
+from ..skeleton import frames_of, joint_points, length
 from ..tasks import FrameTask
 from .controls import RATE
-from .frames import in_space, tip_pose
+from .frames import in_space
 from .handle import Handle
 from .loop import ServoLoop
 from .obstacles import can_be_dragged
@@ -73,7 +73,7 @@ class LiveScene:
             gaps.append(handle.gap(frame))
         self._gap.points = np.concatenate([nothing, *gaps]).astype(np.float32)
         if not isinstance(loop.arm, Robot):
-            frames = [tip_pose(loop.arm, q)]
+            frames = [frames_of(loop.arm, q, "tip")]
             self._tip.position, self._tip.wxyz = frames[0][:3, 3], SO3.from_matrix(frames[0][:3, :3]).wxyz
         self._passed.append(np.array([frame[:3, 3] for frame in frames]))
         self._way.points = np.concatenate([nothing, *map(segments, np.array(self._passed).swapaxes(0, 1))])

@@ -17,10 +17,9 @@ from ..arms import Arm, JointLimits
 from ..clearance import Clearance
 from ..robots import Robot
 from ..schemes import Scheme
-from ..skeleton import length
+from ..skeleton import frames_of, length
 from ..task_bounds import TaskBounds
 from ..tasks import Stack, Task
-from .frames import tip_pose
 from .obstacles import Obstacles
 from .strip import Strip
 from .targets import Targets
@@ -168,7 +167,7 @@ class ServoLoop:
 
     def frame(self, task: str) -> Array:
         """The frame of the task of that name, shape (4, 4); of an axis, z is its direction."""
-        return self._tracker.frame(task) if isinstance(self.arm, Robot) or self.stack else tip_pose(self.arm, self.q)
+        return frames_of(self.arm, self.q, "tip") if self.stack is None else self._tracker.frame(task)
 
     @property
     def time(self) -> float:

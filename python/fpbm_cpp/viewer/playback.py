@@ -12,10 +12,9 @@ from ..clearance import Clearance
 from ..motion.run import Run
 from ..motion.task_errors import error_parts
 from ..motion.task_frames import tracks
-from ..robots import Robot
 from ..skeleton import task_frames
 from ..tasks import PoseTask, PositionTask
-from .frames import in_space, point_of, tip_pose
+from .frames import in_space, point_of
 
 FRAMES = 500
 
@@ -52,12 +51,7 @@ class Playback:
 
     def pose(self, sample: int) -> Array:
         """The tip's frame at a sample, shape (4, 4); of a Robot, that of the task that follows the first path."""
-        return _pose(self.run, sample)
-
-
-def _pose(run: Run, sample: int) -> Array:
-    arm, q = run.arm, run.q[sample]
-    return task_frames(arm, q, run.led) if isinstance(arm, Robot) else tip_pose(arm, q)
+        return task_frames(self.run.arm, self.run.q[sample], self.run.tips[0])
 
 
 def _errors(run: Run) -> dict[str, tuple[Array, str]]:
@@ -80,6 +74,8 @@ def _at_start(run: Run) -> Run:
     q = run.status.q[None]
     zero = np.zeros_like(q)
     start = replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, error=np.zeros((1, run.error.shape[1])))
-    x = point_of(PoseTask() if run.kind == "pose" else PositionTask(), _pose(start, 0), run.x.shape[1:])[None]
+    x = point_of(
+        PoseTask() if run.kind == "pose" else PositionTask(), task_frames(run.arm, q[0], run.tips[0]), run.x.shape[1:]
+    )[None]
     start = replace(start, x=x, x_ref=x)
     return start if run.task_errors is None else replace(start, task_errors=np.zeros((1, run.task_errors.shape[1])))
