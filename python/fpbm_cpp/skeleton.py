@@ -8,12 +8,14 @@ from .errors import not_one_of
 from .robots import Robot
 from .tasks import FrameTask
 
+HINGE = Joint()  # Of planar arms, whose joints turn about z.
+
 
 def joints_of(arm: Arm | Robot) -> list[Joint]:
-    """The joints, mimic joints included."""
+    """The joints, mimic joints included; of a planar arm, their types and axes alone."""
     if isinstance(arm, Robot):
         return [each.joint for each in arm.joints]
-    return list(arm.joints) if isinstance(arm, SerialArm) else [Joint(name=name) for name in arm.joint_names]
+    return list(arm.joints) if isinstance(arm, SerialArm) else [HINGE] * arm.dof
 
 
 def joint_labels(arm: Arm | Robot) -> list[str]:
@@ -37,19 +39,12 @@ def joint_points(arm: Arm | Robot, q: Array) -> Array:
         heading = np.cumsum(q, axis=-1)
         links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
-    points, _, turns = _forward_pass(arm, q)
+    points, turns = _forward_pass(arm, q)
     tips = [
         (points[..., link, :] + turns[..., link, :, :] @ offset[:3, 3])[..., None, :] for link, offset in _ends(arm)
     ]
     nowhere = np.full_like(points[..., :1, :], np.nan)
     return np.concatenate([points, *tips, nowhere], axis=-2)[..., _line(arm), :]
-
-
-def joint_axes(arm: Arm | Robot, q: Array) -> Array:
-    """Unit vectors along the joints' axes in postures q, shape (..., n, 3), or (..., k, 3) with mimic joints."""
-    if isinstance(arm, PlanarArm):
-        return np.broadcast_to([0.0, 0.0, 1.0], (*q.shape, 3))
-    return _forward_pass(arm, q)[1]
 
 
 def length(arm: Arm | Robot, q: Array) -> float:
@@ -73,7 +68,7 @@ def link_frames(arm: Arm | Robot, q: Array) -> Array:
         heading = np.concatenate([np.zeros_like(q[..., :1]), np.cumsum(q, axis=-1)], axis=-1)
         turns = _rotations(np.array([0.0, 0.0, 1.0]), heading)
     else:
-        points, _, turns = _forward_pass(arm, q)
+        points, turns = _forward_pass(arm, q)
     frames = np.tile(np.eye(4), (*points.shape[:-1], 1, 1))
     frames[..., :3, :3], frames[..., :3, 3] = turns, points
     return frames
@@ -87,7 +82,8 @@ def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
 
 def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
     """The frame of that name, as tasks have it, likewise. Raises ParameterError where there is none."""
-    places = {"base": (0, np.eye(4))} | {each.name: (i, np.eye(4)) for i, each in enumerate(joints_of(arm), 1)}
+    names = arm.joint_names if isinstance(arm, PlanarArm) else [joint.name for joint in joints_of(arm)]
+    places = {"base": (0, np.eye(4))} | {name: (i, np.eye(4)) for i, name in enumerate(names, 1)}
     if isinstance(arm, Robot):
         places |= {each.name: (each.link, each.offset) for each in arm.named_frames}
     else:
@@ -125,23 +121,22 @@ def _line(arm: Arm | Robot) -> list[int]:
     return line
 
 
-def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array, Array]:
-    """Positions of base and joints; axes of the joints; rotations of base and links, after the joints' motion."""
+def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array]:
+    """Positions of base and joints, and rotations of base and links, after the joints' motion."""
     p = np.zeros((*q.shape[:-1], 3))
-    points, axes, turns = [p], [], [np.broadcast_to(np.eye(3), (*p.shape, 3))]
+    points, turns = [p], [np.broadcast_to(np.eye(3), (*p.shape, 3))]
     joints = joints_of(arm)
     for joint, parent, position in zip(joints, _parents(arm), _positions(joints, q)):
         p, R = points[parent], turns[parent]
         p, R = p + R @ joint.placement[:3, 3], R @ joint.placement[:3, :3]
         axis = joint.axis / np.linalg.norm(joint.axis)
-        axes.append(R @ axis)
         if joint.type == "prismatic":
-            p = p + position[..., None] * axes[-1]
+            p = p + position[..., None] * (R @ axis)
         else:
             R = R @ _rotations(axis, position)
         points.append(p)
         turns.append(R)
-    return np.stack(points, axis=-2), np.stack(axes, axis=-2), np.stack(turns, axis=-3)
+    return np.stack(points, axis=-2), np.stack(turns, axis=-3)
 
 
 def _positions(joints: list[Joint], q: Array) -> list[Array]:

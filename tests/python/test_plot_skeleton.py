@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
-from fpbm_cpp.skeleton import frames_of, joint_axes, joint_points
+from fpbm_cpp.skeleton import frames_of, joint_points, joints_of, link_frames
 
 
 def test_joint_points() -> None:
@@ -59,6 +59,12 @@ def test_joint_points_end_at_the_tip(name: str) -> None:
         if all(joint.mimic is None for joint in arm.joints[: i + 1]):
             here = fp.SerialArm(arm.joints[: i + 1])
             np.testing.assert_allclose(points[0, 0, i + 1], here.forward(q[0, 0, : i + 1])[:3, 3], atol=1e-14)
+
+
+def joint_axes(arm: fp.SerialArm | fp.PlanarArm, q: np.ndarray) -> np.ndarray:
+    """Along each joint, by the frame of the link that it moves."""
+    axes = np.array([joint.axis / np.linalg.norm(joint.axis) for joint in joints_of(arm)])
+    return np.einsum("...ij,...j->...i", link_frames(arm, q)[..., 1:, :3, :3], axes)
 
 
 @pytest.mark.parametrize("name", ["panda", "mixed"])

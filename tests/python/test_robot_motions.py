@@ -11,7 +11,7 @@ import pytest
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.motion.task_frames import tracks
-from fpbm_cpp.skeleton import frames_of, joint_axes, joint_points, joint_units, length, link_frames
+from fpbm_cpp.skeleton import frames_of, joint_points, joint_units, length, link_frames
 
 ROBOT = fp.Robot.preset("two_pandas")
 READY = 2 * [0, -0.6, 0, -2.4, 0, 1.8, 0.785]
@@ -227,9 +227,8 @@ def test_the_points_of_a_tree(urdf: Path, base: str | None) -> None:
     links = np.diff(points[0, 0], axis=0)
     spans = {round(float(span), 9) for span in np.linalg.norm(links, axis=1) if span > 0}
     assert {0.12, 0.18, 0.1, 0.15, 0.03} <= spans  # No line between branches.
-    np.testing.assert_allclose(
-        joint_axes(robot, q)[0, 0, -1], robot.jacobian(q[0, 0], "right_tool")[3:, -1], atol=1e-12
-    )
+    axis, J = joints_of(robot)[-1].axis, robot.jacobian(q[0, 0], "right_tool")
+    np.testing.assert_allclose(frames[0, 0, -1, :3, :3] @ axis, J[3:, -1], atol=1e-12)
     assert joint_units(robot).count("m") == (0 if base is None else 2)
     with pytest.raises(fp.ParameterError, match="frame = 'left_tol': must be one of"):
         frames_of(robot, q, "left_tol")

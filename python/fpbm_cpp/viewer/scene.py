@@ -20,7 +20,7 @@ from .._types import Array
 from ..arms import Arm, PlanarArm
 from ..io.mesh_file import find_mesh
 from ..robots import Robot
-from ..skeleton import joint_axes, joint_points, joints_of, length, link_frames
+from ..skeleton import joint_points, joints_of, length, link_frames
 from .frames import in_space
 from .playback import Playback
 from .shapes import Shapes, along, draw_bounds
@@ -244,6 +244,7 @@ class Links:
             else scene.add_cylinder(f"/arm/joint_{i}", 1.5 * r, 3.4 * r, JOINT)
             for i, joint in enumerate(joints_of(arm))
         ]
+        self._axes = [joint.axis for joint in joints_of(arm)]
         self.pose(q)
 
     def pose(self, q: Array) -> None:
@@ -253,5 +254,5 @@ class Links:
             if link.visible:
                 link.scale = (1.0, 1.0, span)
                 link.position, link.wxyz = (start + end) / 2, along(end - start)
-        for joint, frame, axis in zip(self._joints, link_frames(self._arm, q)[1:], joint_axes(self._arm, q)):
-            joint.position, joint.wxyz = frame[:3, 3], along(axis)
+        for joint, frame, axis in zip(self._joints, link_frames(self._arm, q)[1:], self._axes):
+            joint.position, joint.wxyz = frame[:3, 3], along(frame[:3, :3] @ axis)
