@@ -11,7 +11,7 @@ import pytest
 import fpbm_cpp as fp
 from fpbm_cpp._types import Array
 from fpbm_cpp.motion.task_frames import tracks
-from fpbm_cpp.skeleton import frames_of, joint_points, joint_units, length, link_frames
+from fpbm_cpp.skeleton import frames_of, joint_points, joint_units, joints_of, length, link_frames
 
 ROBOT = fp.Robot.preset("two_pandas")
 READY = 2 * [0, -0.6, 0, -2.4, 0, 1.8, 0.785]
