@@ -66,4 +66,19 @@ struct Arm : Model {
   }
 };
 
+/// Calls visitor(arm, Space) with the task space of that name, and with the AnyArm of an arm, or null of a robot.
+/// Throws std::invalid_argument where there is no such task, or a robot has no stack.
+template <typename Visitor>
+auto visit_space(const Model& model, const std::string& task, bool has_stack, Visitor&& visitor) {
+  if (const auto* arm = dynamic_cast<const Arm*>(&model)) {
+    return arm->visit(task, [&](const auto& any, auto space) {
+      if (!has_stack) require_enough_joints<decltype(space)>(arm->dof());
+      return visitor(&any, space);
+    });
+  }
+  if (!has_stack) validation::reject("stack", ": must be given for a Robot, which has no tip of its own");
+  const AnyArm<Position<3>>* none = nullptr;
+  return task == "pose" ? visitor(none, Pose{}) : visitor(none, Position<3>{});
+}
+
 }  // namespace fpbm::bindings

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "bindings.hpp"
 #include "clearance.hpp"
 #include "motion_arrays.hpp"
@@ -10,14 +12,13 @@ namespace {
 using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 
 /// A whole motion, run without the interpreter's lock; within limits where there are options of them.
-Outcomes rollout(const Arm& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
+Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
                  double dt, double hold, const std::string& task, const py::object& options) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
-  const TimeGrid<double> grid(path.duration(), dt, hold);
   const std::optional<Limited> limited = limited_of(options, arm, path);
-  return arm.visit(task, [&](const auto& any, auto space) -> Outcomes {
+  const TimeGrid<double> grid(duration_of(path, limited), dt, hold);
+  return visit_space(arm, task, limited && limited->stack, [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
-    if (!limited || limited->stack == nullptr) require_enough_joints<Space>(arm.dof());
     const AnyPath<Space> same = path.as<Space>();
     MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited ? &*limited : nullptr);
     const Output<Space> output = arrays.output();
@@ -33,23 +34,34 @@ Outcomes rollout(const Arm& arm, const Path& path, const Scheme& scheme, const A
 
 }  // namespace
 
-std::optional<Limited> limited_of(const py::object& given, const Arm& arm, const Path& path) {
+std::optional<Limited> limited_of(const py::object& given, const Model& model, const Path& path) {
   if (given.is_none()) return std::nullopt;
   const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
   const py::object limits = given.attr("limits");
   const py::object clearance = given.attr("clearance");
-  Limited limited{limits.is_none() ? arm.limits() : joint_limits(limits),
+  Limited limited{limits.is_none() ? model.limits() : joint_limits(limits),
                   {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
                    SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
-                  clearance_of(arm, clearance),
+                  clearance_of(model, clearance),
                   !clearance.is_none()};
-  add_bounds(limited.clearance, arm, given.attr("bounds"));
+  add_bounds(limited.clearance, model, given.attr("bounds"));
   if (const py::object stack = given.attr("stack"); !stack.is_none()) {
-    StackPlan plan = read_stack(stack, arm);
-    const StackTask& task = plan.follower(py::cast<std::string>(given.attr("task")));
-    const auto follows = static_cast<int>(&task - plan.tasks.data());
-    LedPath led = task.kind == TaskKind::kPose ? LedPath(path.as<Pose>()) : LedPath(path.as<Position<3>>());
-    limited.stack = std::make_shared<const StackOptions>(StackOptions{plan, follows, std::move(led)});
+    StackOptions options{read_stack(stack, model), {}, 0.0};
+    const auto lead = [&](const std::string& name, const Path& each) {
+      const StackTask& task = options.plan.follower(name);
+      const auto index = static_cast<std::size_t>(&task - options.plan.tasks.data());
+      if (task.kind == TaskKind::kPose) {
+        options.paths.push_back({index, each.as<Pose>()});
+      } else {
+        options.paths.push_back({index, each.as<Position<3>>()});
+      }
+      options.duration = std::max(options.duration, each.duration());
+    };
+    lead(py::cast<std::string>(given.attr("task")), path);
+    for (const auto& [name, each] : py::cast<py::dict>(given.attr("other_paths"))) {
+      lead(py::cast<std::string>(name), py::cast<const Path&>(each));
+    }
+    limited.stack = std::make_shared<const StackOptions>(std::move(options));
   }
   return limited;
 }

@@ -37,15 +37,14 @@ JointVector row(const Array& rows, py::ssize_t i) {
 }
 
 /// Checks all that a sweep is made of, and returns its starts as rows and the samples of each motion.
-py::typing::Tuple<Array, int> check_sweep(const Arm& arm, const Path& path, const Schemes& schemes,
+py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, const Schemes& schemes,
                                           const ArrayLike& q0s, double dt, double hold, const std::string& task,
                                           const py::object& options) {
   const Array rows = starts(q0s, arm.dof());
-  const TimeGrid<double> grid(path.duration(), dt, hold);
   const std::optional<Limited> limited = limited_of(options, arm, path);
-  arm.visit(task, [&](const auto& any, auto space) {
+  const TimeGrid<double> grid(duration_of(path, limited), dt, hold);
+  visit_space(arm, task, limited && limited->stack, [&](const auto* any, auto space) {
     using Space = decltype(space);
-    if (!limited || limited->stack == nullptr) require_enough_joints<Space>(arm.dof());
     const AnyPath<Space> same = path.as<Space>();
     const JointVector rest = JointVector::Zero(arm.dof());
     for (std::size_t i = 0; i < schemes.size(); ++i) {

@@ -5,8 +5,8 @@ namespace fpbm::bindings {
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::simulate(const Output<Space>& output) const {
   Recorder<Space> record(output, scheme.level);
-  const auto result = std::visit([&](const auto& any) { return rollout(arm, path, any, start, grid, record); },
-                                 scheme.make<Space>(arm));
+  const auto result = std::visit([&](const auto& any) { return rollout(*arm, path, any, start, grid, record); },
+                                 scheme.make<Space>(*arm));
   record.finish();
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include "fpbm/any/any_path.hpp"
 #include "fpbm/clearance/clearance.hpp"
@@ -15,13 +16,16 @@
 namespace fpbm::bindings {
 
 /// The path of a task of a stack.
-using LedPath = std::variant<AnyPath<Position<3>>, AnyPath<Pose>>;
+struct LedPath {
+  std::size_t task;  ///< Of the plan's tasks.
+  std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
+};
 
-/// Several tasks, one of which follows the path.
+/// Several tasks, some of which follow paths.
 struct StackOptions {
   StackPlan plan;
-  int follows;  ///< Of the plan's tasks.
-  LedPath path;
+  std::vector<LedPath> paths;  ///< The first is the motion's, of which samples have tip, reference and error.
+  double duration;             ///< Of the longest path [s].
 };
 
 /// How a motion keeps limits; the length of its tick is the grid's.
@@ -33,10 +37,10 @@ struct Limited {
   std::shared_ptr<const StackOptions> stack{};  ///< Null: the tip's task is the only one.
 };
 
-/// One motion of an arm along a path.
+/// One motion along a path.
 template <typename Space>
 struct Motion {
-  const AnyArmFor<Space>& arm;
+  const AnyArmFor<Space>* arm;  ///< Null of a robot, which has a stack.
   const AnyPath<Space>& path;
   const Scheme& scheme;
   State<kDynamic> start;

@@ -86,7 +86,12 @@ struct MotionArrays {
   }
 };
 
+/// How long a motion moves [s].
+inline double duration_of(const Path& path, const std::optional<Limited>& limited) {
+  return limited && limited->stack ? limited->stack->duration : path.duration();
+}
+
 /// How a motion keeps limits, of a LimitOptions of motion/simulation.py, or none.
-std::optional<Limited> limited_of(const py::object& given, const Arm& arm, const Path& path);
+std::optional<Limited> limited_of(const py::object& given, const Model& model, const Path& path);
 
 }  // namespace fpbm::bindings

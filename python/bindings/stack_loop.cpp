@@ -107,7 +107,7 @@ PyPoints StackLoop::points() const {
   for (const StackTask& task : motion_.plan().tasks) {
     const py::str name(task.name);
     const Transform<> at = motion_.frame_of(task);
-    if (task.kind == TaskKind::kPosition) points[name] = array_of(at.p);
+    if (task.kind == TaskKind::kPosition || task.kind == TaskKind::kCenterOfMass) points[name] = array_of(at.p);
     if (task.kind == TaskKind::kOrientation) points[name] = array_of(at.R);
     if (task.kind == TaskKind::kPose) points[name] = array_of(at);
     if (task.kind == TaskKind::kAxis) points[name] = array_of(column(at.R, 2));

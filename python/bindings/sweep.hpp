@@ -79,7 +79,7 @@ class Runner {
   static constexpr int kDof = ArmInLanes<Space>::kDof;
 
   [[nodiscard]] Motion<Space> motion(const Job<Space>& job) const {
-    return {any_, path_, *job.scheme, {job.q0, JointVector::Zero(job.q0.size())}, grid_};
+    return {&any_, path_, *job.scheme, {job.q0, JointVector::Zero(job.q0.size())}, grid_};
   }
 
   const Arm& arm_;

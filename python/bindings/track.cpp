@@ -21,7 +21,7 @@ TrackerOptions<> options_of(const Motion<Space>& motion, const Limited& limited)
 
 template <typename Space>
 std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const Limited& limited) {
-  return make_tracker<Space>(motion.scheme, {motion.arm, motion.start, options_of(motion, limited), limited.limits,
+  return make_tracker<Space>(motion.scheme, {*motion.arm, motion.start, options_of(motion, limited), limited.limits,
                                              JointVector::Zero(motion.start.q.size()), limited.clearance});
 }
 
@@ -63,26 +63,57 @@ Vector<Space::kRows> rows_of(const JointVector& error) noexcept {
   }
 }
 
-/// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the path, its J
-/// that of the arm's tip.
-template <typename Space, typename Path>
-RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& limited, const Path& path,
-                                    const Output<Space>& output) {
+/// The paths of a stack, laid out from where their tasks are.
+class Followers {
+ public:
+  Followers(const StackMotion& tasks, const std::vector<LedPath>& paths) {
+    for (const LedPath& led : paths) {
+      const Transform<> at = tasks.frame_of(tasks.plan().tasks[led.task]);
+      std::visit(
+          [&](const auto& path) {
+            using Space = typename std::decay_t<decltype(path)>::Space;
+            each_.emplace_back(AnyFollower<Space>(path, point_of<Space>(at)));
+          },
+          led.path);
+    }
+  }
+
+  /// As long as the followers are.
+  [[nodiscard]] StackMotion::Sources sources(const StackPlan& plan, const std::vector<LedPath>& paths) {
+    StackMotion::Sources sources;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      std::visit([&](auto& one) { sources.emplace_back(&plan.tasks[paths[i].task], &one); }, each_[i]);
+    }
+    return sources;
+  }
+  /// Where the first path is.
+  [[nodiscard]] Transform<> first() const noexcept {
+    return std::visit([](const auto& one) { return transform_of(one.ahead(0.0).x); }, each_.front());
+  }
+
+ private:
+  std::vector<std::variant<AnyFollower<Position<3>>, AnyFollower<Pose>>> each_;
+};
+
+/// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the first path,
+/// its J, for summaries, that of the arm's tip.
+template <typename Space>
+RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& limited, const Output<Space>& output) {
   StackMotion tasks = stack_motion_of(motion, limited);
   StackTracker& tracker = tasks.tracker();
   const StackPlan& plan = tasks.plan();
-  const StackTask& led = plan.tasks[static_cast<std::size_t>(limited.stack->follows)];
-  using Led = typename Path::Space;
-  AnyFollower<Led> follower(path, point_of<Led>(tasks.frame_of(led)));
-  const StackMotion::Sources sources{{&led, &follower}};
+  const std::vector<LedPath>& paths = limited.stack->paths;
+  const StackTask& led = plan.tasks[paths.front().task];
+  Followers followers(tasks, paths);
+  const StackMotion::Sources sources = followers.sources(plan, paths);
   Recorder<Space> record(output, Level::kAcceleration);
   RolloutResult<kDynamic> result{Status::kOk, 0.0, tracker.state(), 0};
   Kinematics<Space, kDynamic> kinematics;
   for (int k = 0; k < motion.grid.samples(); ++k) {
     const State<kDynamic> state = tracker.state();
     const auto tip = point_of<Space>(tasks.frame_of(led));
-    const auto reference = Reference<Space>::hold(point_of<Space>(transform_of(follower.ahead(0.0).x)));
-    motion.arm.kinematics(state.q, kinematics);
+    const auto reference = Reference<Space>::hold(point_of<Space>(followers.first()));
+    if (output.summary != nullptr) motion.arm->kinematics(state.q, kinematics);
     if (output.clearance != nullptr) {
       tracker.clearance().place(state.q);
       output.clearance[k] = tracker.clearance().nearest_pair().second;
@@ -109,7 +140,7 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& 
 template <typename Space>
 RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
   if (limited.stack != nullptr) {
-    return std::visit([&](const auto& led) { return track_stack(*this, limited, led, output); }, limited.stack->path);
+    return track_stack(*this, limited, output);
   }
   const auto tracker = tracker_of(*this, limited);
   Recorder<Space> record(output, Level::kAcceleration);
@@ -140,7 +171,7 @@ void Motion<Space>::require(const Limited* limited) const {
   } else if (limited != nullptr) {
     (void)tracker_of(*this, *limited);
   } else {
-    (void)scheme.make<Space>(arm);
+    (void)scheme.make<Space>(*arm);
   }
 }
 

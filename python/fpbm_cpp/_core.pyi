@@ -795,7 +795,7 @@ def advice(status: Status) -> str:
     """
 
 def check_sweep(
-    arm: Arm,
+    arm: Model,
     path: Path,
     schemes: collections.abc.Sequence[Scheme],
     q0s: numpy.typing.ArrayLike,
@@ -851,7 +851,7 @@ def robot_preset(
     numpy.typing.NDArray[numpy.float64],
 ]: ...
 def rollout(
-    arm: Arm,
+    arm: Model,
     path: Path,
     scheme: Scheme,
     q0: numpy.typing.ArrayLike,

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, replace
 from functools import cached_property
 from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
-from ._core import ROBOT_PRESETS, robot_preset
+from ._core import PRESETS, ROBOT_PRESETS, robot_preset
 from ._core import Robot as CoreRobot
 from ._types import ArrayField
-from .arms import IDENTITY, Joint, JointLimits, SerialArm
+from .arms import ARMS, IDENTITY, Arm, Joint, JointLimits, SerialArm
 from .errors import ParameterError, not_one_of, wrong
 from .parameter import NOT_NEGATIVE, Data, Parameter, data, parameter
 
@@ -57,7 +57,7 @@ class Robot(Data, CoreRobot):
     before it, two frames have one name, or a joint's bounds leave it no room.
     """
 
-    kind: ClassVar[str] = "robot"
+    kind: ClassVar[str] = "tree"
     joints: Sequence[TreeJoint] = parameter("Each behind the joint that carries it, 1 to MAX_DOF of them.")
     named_frames: Sequence[NamedFrame] = parameter("Frames that tasks refer to.", default=())
     _: KW_ONLY
@@ -161,3 +161,23 @@ class Robot(Data, CoreRobot):
         from .io.urdf_tree import read_tree
 
         return cls(**read_tree(path, base=base, locked=locked or {}, tips=tips))
+
+
+def _from_urdf(
+    file: str,
+    *,
+    base: str | None = None,
+    locked: Mapping[str, float] | None = None,
+    tips: Sequence[str] | None = None,
+) -> Robot:
+    return Robot.from_urdf(file, base=base, locked=locked, tips=tips)
+
+
+def _preset(name: str) -> Arm | Robot:
+    if name not in (*PRESETS, *ROBOT_PRESETS):
+        raise not_one_of("name", name, (*PRESETS, *ROBOT_PRESETS))
+    return Robot.preset(name) if name in ROBOT_PRESETS else SerialArm.preset(name)
+
+
+# What makes an arm or a robot, by the kind that a table has.
+ROBOTS: dict[str, Callable[..., Arm | Robot]] = {**ARMS, "preset": _preset, "robot": _from_urdf, Robot.kind: Robot}

@@ -1,88 +1,147 @@
-"""What is shown of an arm: positions and axes of base, joints and tip, and what the joints are called."""
+"""What is shown of a robot: positions and axes of base, joints and tips, frames, and what the joints are called."""
 
 import numpy as np
 
-from ._core import rotation
 from ._types import Array
-from .arms import Arm, PlanarArm, SerialArm
+from .arms import Arm, Joint, PlanarArm, SerialArm
+from .errors import not_one_of
+from .robots import Robot
+from .tasks import FrameTask
+
+HINGE = Joint()  # Of planar arms, whose joints turn about z.
 
 
-def joint_labels(arm: Arm) -> list[str]:
+def joints_of(arm: Arm | Robot) -> list[Joint]:
+    """The joints, mimic joints included; of a planar arm, their types and axes alone."""
+    if isinstance(arm, Robot):
+        return [each.joint for each in arm.joints]
+    return list(arm.joints) if isinstance(arm, SerialArm) else [HINGE] * arm.dof
+
+
+def joint_labels(arm: Arm | Robot) -> list[str]:
     """Names of the joints for people to read; in the plane, where they have none, their numbers."""
-    return list(arm.joint_names) if isinstance(arm, SerialArm) else [f"joint {i}" for i in range(1, arm.dof + 1)]
+    return [f"joint {i}" for i in range(1, arm.dof + 1)] if isinstance(arm, PlanarArm) else list(arm.joint_names)
 
 
-def joint_units(arm: Arm) -> list[str]:
+def joint_units(arm: Arm | Robot) -> list[str]:
     """Unit of each joint's position."""
-    if not isinstance(arm, SerialArm):
-        return ["rad"] * arm.dof
-    return ["m" if joint.type == "prismatic" else "rad" for joint in arm.joints if joint.mimic is None]
+    return ["m" if joint.type == "prismatic" else "rad" for joint in joints_of(arm) if joint.mimic is None]
 
 
-def joint_points(arm: Arm, q: Array) -> Array:
-    """Positions of base, joints and tip [m] in postures q, shape (..., n).
+def joint_points(arm: Arm | Robot, q: Array) -> Array:
+    """Positions of base, joints and tip [m] in postures q, shape (..., n): a line along the links.
 
-    Shape (..., n + 1, 2) of planar arms, whose base is a joint, (..., k + 2, 3) of k joints, mimic joints included.
+    Shape (..., n + 1, 2) of planar arms, whose base is a joint, (..., k + 2, 3) of k joints, mimic joints included. Of
+    a Robot, branch after branch: NaN stands before a branch that does not begin where the last one ended. A link that
+    carries no joint ends at its frames.
     """
     if isinstance(arm, PlanarArm):
         heading = np.cumsum(q, axis=-1)
         links = arm.lengths[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         return np.cumsum(np.concatenate([np.zeros_like(links[..., :1, :]), links], axis=-2), axis=-2)
-    assert isinstance(arm, SerialArm)
-    return _forward_pass(arm, q)[0]
+    points, turns = _forward_pass(arm, q)
+    tips = [
+        (points[..., link, :] + turns[..., link, :, :] @ offset[:3, 3])[..., None, :] for link, offset in _ends(arm)
+    ]
+    nowhere = np.full_like(points[..., :1, :], np.nan)
+    return np.concatenate([points, *tips, nowhere], axis=-2)[..., _line(arm), :]
 
 
-def joint_axes(arm: Arm, q: Array) -> Array:
-    """Unit vectors along the joints' axes in postures q, shape (..., n, 3), or (..., k, 3) with mimic joints."""
-    if isinstance(arm, PlanarArm):
-        return np.broadcast_to([0.0, 0.0, 1.0], (*q.shape, 3))
-    assert isinstance(arm, SerialArm)
-    return _forward_pass(arm, q)[1]
+def length(arm: Arm | Robot, q: Array) -> float:
+    """Length of the links from the base to the farthest tip, along the joints, in posture q, shape (n,) [m]."""
+    points, line = joint_points(arm, q), _line(arm)
+    far = {line[0]: 0.0}
+    for a, b, start, end in zip(line, line[1:], points, points[1:]):
+        if -1 not in (a, b):
+            far[b] = far[a] + float(np.linalg.norm(end - start))
+    return max(far.values())
 
 
-def tip_axes(arm: Arm, q: Array) -> Array:
-    """Axes of the tip in posture q, shape (n,), as columns: shape (2, 2) in the plane, (3, 3) in space."""
-    return rotation([0.0, 0.0, q.sum()])[:2, :2] if isinstance(arm, PlanarArm) else arm.forward(q)[:3, :3]
+def link_frames(arm: Arm | Robot, q: Array) -> Array:
+    """Frames of base and links in postures q, shape (..., n): each that of its joint after its motion.
 
-
-def link_frames(arm: Arm, q: Array) -> Array:
-    """Frames of base and links in posture q, shape (n,): each that of its joint after its motion, as a Capsule's link.
-
-    Shape (n + 1, 4, 4), or (k + 1, 4, 4) of k joints, mimic joints included.
+    Shape (..., n + 1, 4, 4), or (..., k + 1, 4, 4) of k joints, mimic joints included; as a Capsule's link.
     """
     if isinstance(arm, PlanarArm):
-        turns = np.array([rotation([0.0, 0.0, angle]) for angle in np.cumsum(q)])
-        points = np.pad(joint_points(arm, q)[:-1], [(0, 0), (0, 1)])
+        points = np.zeros((*q.shape[:-1], arm.dof + 1, 3))
+        points[..., 1:, :2] = joint_points(arm, q)[..., :-1, :]
+        heading = np.concatenate([np.zeros_like(q[..., :1]), np.cumsum(q, axis=-1)], axis=-1)
+        turns = _rotations(np.array([0.0, 0.0, 1.0]), heading)
     else:
-        assert isinstance(arm, SerialArm)
-        points, _, turns = _forward_pass(arm, q)
-        points = points[1:-1]
-    frames = np.tile(np.eye(4), (len(turns) + 1, 1, 1))
-    frames[1:, :3, :3], frames[1:, :3, 3] = turns, points
+        points, turns = _forward_pass(arm, q)
+    frames = np.tile(np.eye(4), (*points.shape[:-1], 1, 1))
+    frames[..., :3, :3], frames[..., :3, 3] = turns, points
     return frames
 
 
-def _forward_pass(arm: SerialArm, q: Array) -> tuple[Array, Array, Array]:
-    """Positions of base, joints and tip; axes of the joints, and rotations after their motion."""
+def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
+    """The frame of a task in postures q, shape (..., n), in the base frame: shape (..., 4, 4)."""
+    frames = frames_of(arm, q, task.frame)
+    return frames if task.offset is None else np.asarray(frames @ task.offset)
+
+
+def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
+    """The frame of that name, as tasks have it, likewise. Raises ParameterError where there is none."""
+    names = arm.joint_names if isinstance(arm, PlanarArm) else [joint.name for joint in joints_of(arm)]
+    places = {"base": (0, np.eye(4))} | {name: (i, np.eye(4)) for i, name in enumerate(names, 1)}
+    if isinstance(arm, Robot):
+        places |= {each.name: (each.link, each.offset) for each in arm.named_frames}
+    else:
+        tip = np.eye(4)
+        if isinstance(arm, PlanarArm):
+            tip[0, 3] = arm.lengths[-1]
+        places["tip"] = len(places) - 1, arm.tip if isinstance(arm, SerialArm) else tip
+    if name not in places:
+        raise not_one_of("frame", name, places)
+    link, offset = places[name]
+    return np.asarray(link_frames(arm, q)[..., link, :, :] @ offset)
+
+
+def _parents(arm: Arm | Robot) -> list[int]:
+    """Numbers of the links that carry the joints."""
+    return [each.parent for each in arm.joints] if isinstance(arm, Robot) else list(range(len(joints_of(arm))))
+
+
+def _ends(arm: Arm | Robot) -> list[tuple[int, Array]]:
+    """What is drawn beyond the last joints: links and the frames on them."""
+    if isinstance(arm, SerialArm):
+        return [(len(arm.joints), arm.tip)]
+    carrying = _parents(arm)
+    frames = arm.named_frames if isinstance(arm, Robot) else ()
+    return [(each.link, each.offset) for each in frames if each.link not in carrying and each.offset[:3, 3].any()]
+
+
+def _line(arm: Arm | Robot) -> list[int]:
+    """Base (0), links and ends by number in the order of a line along them, -1 where the line breaks."""
+    parents, ends, line = _parents(arm), _ends(arm), [0]
+    for link, parent in enumerate(parents, 1):
+        tips = [len(parents) + i for i, (other, _) in enumerate(ends, 1) if other == link]
+        for a, b in [(parent, link), *((link, tip) for tip in tips)]:
+            line += [b] if line[-1] == a else [-1, a, b]
+    return line
+
+
+def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array]:
+    """Positions of base and joints, and rotations of base and links, after the joints' motion."""
     p = np.zeros((*q.shape[:-1], 3))
-    R = np.broadcast_to(np.eye(3), (*p.shape, 3))
-    points, axes, turns = [p], [], []
-    for joint, position in zip(arm.joints, _positions(arm, q)):
+    points, turns = [p], [np.broadcast_to(np.eye(3), (*p.shape, 3))]
+    joints = joints_of(arm)
+    for joint, parent, position in zip(joints, _parents(arm), _positions(joints, q)):
+        p, R = points[parent], turns[parent]
         p, R = p + R @ joint.placement[:3, 3], R @ joint.placement[:3, :3]
         axis = joint.axis / np.linalg.norm(joint.axis)
-        axes.append(R @ axis)
         if joint.type == "prismatic":
-            p = p + position[..., None] * axes[-1]
+            p = p + position[..., None] * (R @ axis)
         else:
             R = R @ _rotations(axis, position)
         points.append(p)
         turns.append(R)
-    return np.stack([*points, p + R @ arm.tip[:3, 3]], axis=-2), np.stack(axes, axis=-2), np.stack(turns, axis=-3)
+    return np.stack(points, axis=-2), np.stack(turns, axis=-3)
 
 
-def _positions(arm: SerialArm, q: Array) -> list[Array]:
-    """Position of each joint of the chain, mimic joints included."""
-    mimics = [joint.mimic for joint in arm.joints]
+def _positions(joints: list[Joint], q: Array) -> list[Array]:
+    """Position of each joint, mimic joints included."""
+    mimics = [joint.mimic for joint in joints]
     driven = (i for i, mimic in enumerate(mimics) if mimic is None)
     own = {i: q[..., column] for column, i in enumerate(driven)}
     return [own[i] if mimic is None else mimic[1] * own[mimic[0]] + mimic[2] for i, mimic in enumerate(mimics)]

@@ -3,8 +3,9 @@
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
 A table has the kind and the parameters of its thing, by their names. A path's also say how it is laid and rotated:
-in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables. A stack is a list of
-tables of tasks, each with its level, counted from 0.
+in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables; paths of several
+tasks a table of them by the names of the tasks. A stack is a list of tables of tasks, each with its level, counted from
+0.
 """
 
 import math
@@ -13,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .arms import ARMS, Joint, JointLimits, SerialArm
+from .arms import Joint, JointLimits, SerialArm
 from .capsule import Capsule
 from .clearance import CLEARANCES, Clearance
 from .errors import ParameterError, not_one_of, suggestion, wrong
@@ -21,6 +22,7 @@ from .obstacle import OBSTACLES
 from .parameter import REQUIRED, Data, Parameter, parameters
 from .paths import PATH_OPTIONS, PATHS, InPlane, WithRotation
 from .paths import Sequence as PathSequence
+from .robots import ROBOTS, NamedFrame, Robot, TreeJoint
 from .schemes import SCHEMES
 from .task_bounds import TaskBounds
 from .tasks import TASKS, AxisTask, PositionTask, Stack, Task
@@ -28,7 +30,7 @@ from .tasks import TASKS, AxisTask, PositionTask, Stack, Task
 Makers = Mapping[str, Callable[..., Any]]
 EVERY_PATH: Makers = {**PATHS, PathSequence.kind: PathSequence}
 KINDS: Makers = {
-    **ARMS,
+    **ROBOTS,
     **EVERY_PATH,
     **SCHEMES,
     **TASKS,
@@ -41,7 +43,10 @@ KINDS: Makers = {
 BOUNDS: Makers = {TaskBounds.kind: TaskBounds}
 
 # What stands within other tables, by its key.
-WITHIN: dict[Any, Makers] = {(TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)}}
+WITHIN: dict[Any, Any] = {
+    (TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)},
+    (TreeJoint, "joint"): Joint,
+}
 LEVEL = Parameter(
     "level",
     int,
@@ -53,6 +58,8 @@ LEVEL = Parameter(
 )
 LISTS: dict[Any, Any] = {
     (SerialArm, "joints"): Joint,
+    (Robot, "joints"): TreeJoint,
+    (Robot, "named_frames"): NamedFrame,
     (PathSequence, "paths"): EVERY_PATH,
     (Clearance, "capsules"): {Capsule.kind: Capsule},
     **{(maker, "obstacles"): OBSTACLES for maker in CLEARANCES.values()},
@@ -75,6 +82,8 @@ def to_table(thing: Any) -> Any:
         kind = {"kind": thing.kind} if hasattr(thing, "kind") else {}
         values = {name: to_table(value) for name, value in thing._values().items()}
         return {**kind, **{name: value for name, value in values.items() if value not in (None, "inf", "-inf")}}
+    if isinstance(thing, Mapping):
+        return {name: to_table(value) for name, value in thing.items()}
     if isinstance(thing, (np.ndarray, np.generic)):
         return to_table(thing.tolist())
     if isinstance(thing, (list, tuple)):
@@ -89,7 +98,7 @@ def to_table(thing: Any) -> Any:
 def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
     """The thing that a table stands for, or a list of those of paths or of tasks; a table may hold things as well.
 
-    kinds: what may stand there, ARMS, PATHS, SCHEMES or TASKS, say. name: what errors call the table.
+    kinds: what may stand there, ROBOTS, PATHS, SCHEMES or TASKS, say. name: what errors call the table.
 
     Raises ParameterError of the first thing that is wrong, OSError where a file that it names cannot be read.
     """
@@ -115,6 +124,14 @@ def keys(maker: Callable[..., Any]) -> dict[str, Parameter]:
     return {**known, **PATH_OPTIONS} if maker in EVERY_PATH.values() else known
 
 
+def is_by_task(table: Any) -> bool:
+    """Whether a table is of paths, each a table or a list of tables, by the names of their tasks."""
+    if not isinstance(table, Mapping) or not table:
+        return False
+    pieces = [piece for path in table.values() for piece in (path if isinstance(path, (list, tuple)) else [path])]
+    return all(isinstance(piece, Mapping) for piece in pieces)
+
+
 class _Reader:
     """Makes things of tables, and notes what is wrong with them: what it makes is None then."""
 
@@ -122,8 +139,8 @@ class _Reader:
         self.usual, self.make = usual, make
         self.problems: list[ParameterError] = []
 
-    def read(self, table: Any, kinds: Makers | type[Joint], name: str) -> Any:
-        """The thing of a table, or of a list of those of paths."""
+    def read(self, table: Any, kinds: Makers | type[Data], name: str) -> Any:
+        """The thing of a table, or of a list of those of paths, or of tables of paths by the names of their tasks."""
         if isinstance(table, Data):
             return table
         if isinstance(table, (list, tuple)) and kinds is TASKS:
@@ -137,6 +154,8 @@ class _Reader:
                 return self._wrong(name, table, " = []: must be one at least")
             paths = self._each(table, kinds, name)
             return None if None in paths else self._checked(lambda: PathSequence(paths), name)
+        if kinds in (PATHS, EVERY_PATH) and is_by_task(table):
+            return {task: self.read(path, kinds, f"{name}.{task}") for task, path in table.items()}
         if not isinstance(table, Mapping):
             return self._wrong(name, table, f" = {table!r:.60}: must be a table")
         if not isinstance(kinds, Mapping):

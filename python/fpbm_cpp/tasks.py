@@ -231,7 +231,7 @@ class Stack:
         sizes = {"pose": 6, "relative_pose": 6, "posture": dof}
         return [len(getattr(task, "joints", None) or ()) or sizes.get(task.kind, 3) for task in self.tasks]
 
-    def follower(self, name: str | None = None) -> Task:
+    def follower(self, name: str | None = None) -> PositionTask | PoseTask:
         """The task that follows a path: that of the name, or the only position or pose. Raises ParameterError."""
         able = [task for task in self.tasks if isinstance(task, (PositionTask, PoseTask))]
         found = [task for task in able if name in (None, task.name)]

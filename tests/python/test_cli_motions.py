@@ -91,7 +91,7 @@ def test_help_of_a_motion(name: str) -> None:
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
     clear = ["Clearance:"] if name in ("track", "compare", "view") else []
     assert headings == ["Options:", "Arm and start:", "Path:", "Scheme:", "Joint limits:", *clear]
-    assert 2 <= len(examples(name)) <= 4
+    assert 2 <= len(examples(name)) <= 5
     for option in command.commands[name].params:
         assert isinstance(option, click.Argument) or option.help, option.name
 
@@ -321,8 +321,8 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
     [
         (
             ["pnada"],
-            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1, a URDF file; "
-            "did you mean 'panda'?",
+            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, planar:1,1,1,1, "
+            "a URDF file; did you mean 'panda'?",
         ),
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
         (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
@@ -375,7 +375,8 @@ def test_an_arm_is_asked_for() -> None:
     result = call("track")
     assert result.exit_code == 2
     assert (
-        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, planar:1,1,1,1 or a URDF file." in result.stderr
+        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, planar:1,1,1,1 or a URDF file."
+        in result.stderr
     )
 
 
@@ -703,7 +704,7 @@ def test_servo_has_no_path_and_always_limits() -> None:
     headings = [line for line in result.output.splitlines() if line and line[0] != " " and line.endswith(":")]
     assert headings == ["Options:", "Arm and start:", "Scheme:", "Joint limits:", "Clearance:"]
     assert result.output.isascii()
-    assert len(examples("servo")) == 4
+    assert len(examples("servo")) == 5
     for option in ("--radius", "--hold", "--qd0", "--limits", "--no-limits"):
         assert call("servo", "panda", option, "1").exit_code == 2
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fpbm_cpp as fp
-from fpbm_cpp.skeleton import joint_axes, joint_points, tip_axes
+from fpbm_cpp.skeleton import frames_of, joint_points, joints_of, link_frames
 
 
 def test_joint_points() -> None:
@@ -61,6 +61,12 @@ def test_joint_points_end_at_the_tip(name: str) -> None:
             np.testing.assert_allclose(points[0, 0, i + 1], here.forward(q[0, 0, : i + 1])[:3, 3], atol=1e-14)
 
 
+def joint_axes(arm: fp.SerialArm | fp.PlanarArm, q: np.ndarray) -> np.ndarray:
+    """Along each joint, by the frame of the link that it moves."""
+    axes = np.array([joint.axis / np.linalg.norm(joint.axis) for joint in joints_of(arm)])
+    return np.einsum("...ij,...j->...i", link_frames(arm, q)[..., 1:, :3, :3], axes)
+
+
 @pytest.mark.parametrize("name", ["panda", "mixed"])
 def test_joint_axes_move_the_tip(name: str) -> None:
     arm = some_arms()[name]
@@ -79,12 +85,12 @@ def test_joint_axes_of_a_planar_arm() -> None:
 def test_tip_axes_are_those_of_the_tip(name: str) -> None:
     arm = some_arms()[name]
     q = np.random.default_rng(7).uniform(-1.5, 1.5, arm.dof)
-    np.testing.assert_array_equal(tip_axes(arm, q), arm.forward(q)[:3, :3])
+    np.testing.assert_allclose(frames_of(arm, q, "tip"), arm.forward(q), atol=1e-14)
 
 
 def test_tip_axes_of_a_planar_arm_go_on_from_its_last_link() -> None:
     arm, q = fp.PlanarArm([1.0, 0.5, 0.25]), np.array([0.1, -2.0, 0.5])
-    R = tip_axes(arm, q)
+    R = frames_of(arm, q, "tip")[:2, :2]
     *_, before, tip = joint_points(arm, q)
     np.testing.assert_allclose(R[:, 0], (tip - before) / 0.25, atol=1e-15)
     np.testing.assert_allclose(R.T @ R, np.eye(2), atol=1e-15)

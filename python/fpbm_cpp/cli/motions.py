@@ -28,6 +28,7 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
     fpbm-cpp track panda
     fpbm-cpp track planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --k1 1 --k2 1 --out circle
     fpbm-cpp track iiwa14 --path lissajous --task pose --scheme man --save-job job.toml
+    fpbm-cpp track two_pandas --task left_tip --task right_tip --radius 0.06
     fpbm-cpp track --job job.toml --scheme fpbm --hold 5""",
     clear=True,
 )
@@ -38,7 +39,8 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     """Move an arm along a path, and say how it went.
 
     ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e, planar: and lengths of links as in planar:1,1,1,1, or a URDF file
-    with --tip. Everything else has a default, and what was taken is printed. Several numbers go between commas.
+    with --tip. Or ARM is a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
+    Everything else has a default, and what was taken is printed. Several numbers go between commas.
 
     With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
     Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.
@@ -148,6 +150,7 @@ def view(request: Request, port: int, browser: bool) -> None:
     fpbm-cpp servo panda --task pose
     fpbm-cpp servo planar:1,1,1,1 --limit-velocity 2 --limit-acceleration 10 --limit-jerk 200
     fpbm-cpp servo my_arm.urdf --tip tool0 --limit-acceleration 10 --port 9000
+    fpbm-cpp servo two_pandas --task left_tip --task right_tip
     fpbm-cpp servo my_arm.urdf --tip tool0 --clearance my_arm.urdf --srdf my_arm.srdf --job walls.toml""",
     path=False,
     clear=True,
@@ -159,8 +162,9 @@ def servo(request: Request, port: int, browser: bool) -> None:
 
     1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
     keeps the arm from the handle. A URDF file is shown with its meshes. What the arm keeps clear of is drawn as well;
-    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Ctrl-C ends it. ARM and
-    the options are those of track; of a job, the path does not matter.
+    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Of a robot, each --task
+    is a frame with a handle: pose tasks, two side by side on a level, and a posture on the level below. Ctrl-C ends it.
+    ARM and the options are those of track; of a job, the path does not matter.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():

@@ -10,11 +10,12 @@ from typing import Any
 import click
 import numpy as np
 
-from .._core import PRESETS
+from .._core import PRESETS, ROBOT_PRESETS
 from ..errors import not_one_of
 from ..job import JobError, Motion, prepare, read_job
 from ..job.sections import FREE, SECTIONS, Table, known
 from ..parameter import REQUIRED, Parameter
+from ..table import is_by_task
 from .plain import PLACE, WIDTH, Plain, file_errors
 
 HEADING = {
@@ -62,6 +63,12 @@ class JobOption(click.Option):
         self.section, self.key, self.heading = section, key, HEADING[section]
 
 
+BASE = "Link of a URDF file that stays; of a robot, fixed, or planar: it moves along x and y and turns about z."
+LOCKED = "Position at which a robot holds a joint of its URDF file; may be said again.  [rad, m]"
+TASK = (
+    "What the tip keeps to, position or pose; of a job with tasks, the name of the one that follows the path; of a "
+    "robot, a frame to move, and may be said again.  [default: position]"
+)
 CLEAR = (
     "Keep clear of the arm itself, by this URDF file's collision geometry, and of the job's obstacles; keeps limits."
 )
@@ -69,7 +76,7 @@ SRDF = "MoveIt's file of link pairs that may meet."
 MARGIN = "Least distance of two shapes."
 PER_LINK = "At most so many capsules for each link."
 
-LIVE = {"task", "q0"}  # Of a run, where there is no path.
+LIVE = {"q0"}  # Of a run, where there is no path.
 
 
 def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
@@ -78,9 +85,13 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
     """
     urdf = known("arm", "urdf")
     yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
-    yield _option("arm", "base", replace(urdf["base"], help="Link of a URDF file that stays."))
+    yield _option("arm", "base", replace(urdf["base"], help=BASE))
+    yield JobOption("arm", "locked", "--locked", multiple=True, metavar="JOINT=NUMBER", help=LOCKED)
     for key, declared in known("run").items():
-        if path or key in LIVE:
+        if key == "task":
+            words = Word(WORDS["task"])
+            yield JobOption("run", key, "--task", multiple=True, type=words, metavar="TASK", help=TASK)
+        elif path or key in LIVE:
             yield _option("run", key, declared)
     for section, usual in FREE.items():
         if section == "path" and not path:
@@ -148,7 +159,8 @@ class Request:
 
     def __init__(self, arm: str | None, file: Path | None, copy: Path | None, values: dict[JobOption, Any]) -> None:
         if arm is None and file is None:
-            raise click.UsageError(f"Missing argument 'ARM': {', '.join(PRESETS)}, planar:1,1,1,1 or a URDF file.")
+            every = ", ".join((*PRESETS, *ROBOT_PRESETS))
+            raise click.UsageError(f"Missing argument 'ARM': {every}, planar:1,1,1,1 or a URDF file.")
         self.file, self.copy = file, copy
         self.sections = {option.section for option in values}
         self.table: Table = {}
@@ -159,11 +171,14 @@ class Request:
         said = {f"{section}.{key}" for section, keys in self.table.items() if isinstance(keys, dict) for key in keys}
         if arm is not None:
             self.table["arm"] = _arm(arm)
-        given = {option: value for option, value in values.items() if value is not None}
-        for option in sorted(given, key=lambda each: each.key != "kind"):  # What something is, then what it has.
+        given = {option: value for option, value in values.items() if value not in (None, ())}
+        # What something is, then what it has; tasks last, which go by the arm.
+        for option in sorted(given, key=lambda each: (each.key != "kind", each.key == "task")):
             self._put(option, given[option])
         names = {f"{option.section}.{option.key}": option for option in values}
         self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
+        if isinstance(self.table.get("task"), list) and names["run.task"] in given:
+            self.flags["run.frame"] = "--task"  # Which made the tasks.
 
     @property
     def scheme(self) -> str:
@@ -220,8 +235,12 @@ class Request:
             else:
                 self.table.pop("limits", None)
             return
+        if key == "task":
+            return self._put_tasks(value)
+        if key == "locked":
+            value = dict(map(_locked, value))
         there = self.table.get(section)
-        if isinstance(there, list) and key != "kind":
+        if there is not None and (isinstance(there, list) or is_by_task(there)) and key != "kind":
             many = f"there are {len(there)} {section}s in the file: change them there, or say --{section}"
             raise click.ClickException(f"{option.opts[0]}: {many}")
         if not isinstance(there, dict):
@@ -230,9 +249,35 @@ class Request:
             there = _of_kind(section, there, value)
         self.table[section] = {**there, key: value}
 
+    def _put_tasks(self, tasks: Sequence[str]) -> None:
+        """The task of the tip, or the one that is led; of a robot without tasks, frames whose poses are moved."""
+        arm = self.table.get("arm", {})
+        is_robot = arm.get("kind") == "robot" or arm.get("name") in ROBOT_PRESETS
+        is_robot |= arm.get("kind") == "urdf" and "tip" not in arm and not set(tasks) & set(WORDS["task"])
+        if not is_robot or "task" in self.table:
+            if len(tasks) > 1:
+                raise click.ClickException("--task: must be given once, unless ARM is a robot and the job has no tasks")
+            self.table["run"] = {**self.table.get("run", {}), "task": tasks[0]}
+            return
+        if arm["kind"] == "urdf":
+            arm["kind"] = "robot"
+        poses = [{"level": i // 2, "kind": "pose", "frame": each, "name": each} for i, each in enumerate(tasks)]
+        self.table["task"] = [*poses, {"level": (len(tasks) + 1) // 2, "kind": "posture", "k1": 4.0, "k2": 4.0}]
+        path = self.table.get("path", {"kind": FREE["path"]})
+        if len(tasks) > 1 and not is_by_task(path):
+            self.table["path"] = {each: path for each in tasks}
+
+
+def _locked(text: str) -> tuple[str, float]:
+    name, _, position = text.partition("=")
+    try:
+        return name, float(position)
+    except ValueError:
+        raise click.ClickException(f"--locked = {text!r}: must be JOINT=NUMBER") from None
+
 
 def _arm(text: str) -> Table:
-    if text in PRESETS:
+    if text in (*PRESETS, *ROBOT_PRESETS):
         return {"kind": "preset", "name": text}
     if text.startswith("planar:"):
         try:
@@ -243,7 +288,9 @@ def _arm(text: str) -> Table:
         return {"kind": "planar", "lengths": lengths}
     if Path(text).suffix or Path(text).exists():
         return {"kind": "urdf", "file": text}
-    raise click.ClickException(str(not_one_of("ARM", text, [*PRESETS, "planar:1,1,1,1", "a URDF file"])))
+    raise click.ClickException(
+        str(not_one_of("ARM", text, [*PRESETS, *ROBOT_PRESETS, "planar:1,1,1,1", "a URDF file"]))
+    )
 
 
 def _of_kind(section: str, table: Any, kind: str) -> Table:

@@ -50,6 +50,8 @@ def sweep(
     those of track.
     """
     motion = request.motion(at_rest=True)
+    with request.plain():
+        arm, path = motion.of_one_arm()
     keys = [text.partition("=")[0].strip().replace("-", "_") for text in vary]
     cases = list(itertools.product(*map(_values, vary)))
     with request.plain():
@@ -67,7 +69,7 @@ def sweep(
 
     try:
         with progress("motions") as report, request.plain():
-            done = run_sweep(motion.arm, motion.path, schemes, q0s, workers=workers, progress=report, **motion.keywords)
+            done = run_sweep(arm, path, schemes, q0s, workers=workers, progress=report, **motion.keywords)
     except SweepInterrupted as interrupted:
         show(interrupted.sweep)
         raise
@@ -138,6 +140,8 @@ def tune(
     far.
     """
     motion = request.motion("fpbm", at_rest=True)
+    with request.plain():
+        arm, path = motion.of_one_arm()
     if out is not None:
         make_folder(out)
     request.say(motion)
@@ -151,7 +155,7 @@ def tune(
     how = {"baseline": cast(FPBM, motion.scheme), "trials": trials, "seed": seed, "workers": workers, **motion.keywords}
     try:
         with progress("trying schemes") as report:
-            found = search(motion.arm, motion.path, motion.q0, objective, progress=report, **how)
+            found = search(arm, path, motion.q0, objective, progress=report, **how)
     except (ValueError, RuntimeError) as error:  # The latter where nothing that was tried keeps to the path.
         raise click.ClickException(str(error)) from None
     except TuneInterrupted as interrupted:

@@ -77,7 +77,7 @@ def _motion(case: str, kind: str) -> Motion:
 
 def _rate(motion: Motion, seconds: float) -> float:
     q0s = motion.q0 + np.random.default_rng(0).normal(0.0, 0.02, (MOTIONS, motion.arm.dof))
-    return MOTIONS / _median(lambda: sweep(motion.arm, motion.path, motion.scheme, q0s, **motion.keywords), seconds)
+    return MOTIONS / _median(lambda: sweep(*motion.of_one_arm(), motion.scheme, q0s, **motion.keywords), seconds)
 
 
 def _median(run: Callable[[], object], seconds: float) -> float:

@@ -13,6 +13,7 @@ from .._types import Array
 from ..arms import PlanarArm
 from ..errors import extra
 from ..motion.run import Run
+from ..skeleton import task_frames
 from .tables import quaternions
 
 
@@ -77,4 +78,4 @@ def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
         return np.column_stack([x[:, :2], none]), np.column_stack([none, none, np.sin(half), np.cos(half)])
     if reference:
         return x, np.tile([0.0, 0.0, 0.0, 1.0], (len(x), 1))
-    return x, quaternions(np.array([run.arm.forward(q)[:3, :3] for q in run.q]))
+    return x, quaternions(task_frames(run.arm, run.q, run.tips[0])[:, :3, :3])

@@ -13,15 +13,17 @@ from typing import Any
 import numpy as np
 
 from .._core import Status, __version__, processor_kinds
-from ..arms import ARMS
+from ..arms import PlanarArm
+from ..errors import not_one_of
 from ..motion.run import ARRAYS, LIMITED, OF_STACKS, Run, RunStatus
+from ..robots import ROBOTS
 from ..schemes import SCHEMES
 from ..table import EVERY_PATH, Makers, from_table, to_table
 from ..tasks import TASKS
 from . import write_whole
 
 FORMAT = "fpbm_cpp run"
-KINDS: dict[str, Makers] = {"arm": ARMS, "path": EVERY_PATH, "scheme": SCHEMES}
+KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
 VERSION = 1  # Of the format: one more for each that older packages cannot read.
 
 
@@ -87,8 +89,8 @@ def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
 
 def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
     """The table; ValueError if another file would be read for it."""
-    if table.get("kind") == "urdf":
-        raise ValueError("kind = 'urdf': a run's file must not name another file")
+    if table.get("kind") in ("urdf", "robot"):
+        raise ValueError(f"kind = {table['kind']!r}: a run's file must not name another file")
     return table
 
 
@@ -127,8 +129,12 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
 def _check_shapes(run: Run) -> None:
     """Raise ValueError unless all arrays of a run have the shapes that its arm and tasks ask for."""
     arm, stack = run.arm, run.stack
-    known = arm.kinematics(np.zeros(arm.dof), np.zeros(arm.dof), task=run.kind)
-    shapes = {name: known.tip.shape for name in ("x", "x_ref")} | {"error": (len(known.J),)}
+    if run.kind not in ("position", "pose"):
+        raise not_one_of("task", run.kind, ("position", "pose"))
+    rows = (2, 3) if isinstance(arm, PlanarArm) else (3, 6)
+    error: tuple[int, ...] = (rows[run.kind == "pose"],)
+    point = (4, 4) if error == (6,) else error
+    shapes = {"x": point, "x_ref": point, "error": error}
     shapes |= {name: () for name in ("t", "scale", "clearance")}
     if stack is not None:
         shapes |= {"scales": (len(stack.levels),), "task_errors": (sum(stack.error_sizes(arm.dof)),)}

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice, product
 from pathlib import Path as FilePath
 from typing import Any
@@ -19,14 +20,15 @@ from ..arms import Arm, JointLimits, PlanarArm
 from ..clearance import Clearance
 from ..errors import not_one_of, wrong
 from ..io import write_whole
-from ..motion.run import Run
-from ..motion.simulation import led_task, simulate, track, without_limits
+from ..motion.run import Paths, Run
+from ..motion.simulation import led_paths, simulate, track, without_limits
 from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Path
+from ..robots import Robot
 from ..schemes import Scheme
-from ..table import to_table
+from ..table import is_by_task, to_table
 from ..task_bounds import TaskBounds
-from ..tasks import Stack
+from ..tasks import FrameTask, Stack
 from .sections import (
     FREE,
     SECTIONS,
@@ -51,6 +53,7 @@ READY = {
     "ur5e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
     "ur10e": [0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0],
 }
+READY["two_pandas"] = 2 * READY["panda"]
 
 # How far joints of an unknown arm are bent, one way, the other or not at all [rad]; at most a quarter of their range.
 BEND = 1.0
@@ -59,14 +62,17 @@ MOST = 3**7  # Postures that are looked at.
 GOOD = 0.8  # Of what the best has, as far as singular postures are.
 
 
+Jacobian = Callable[[Array], Array]
+
+
 @dataclass(frozen=True)
 class Motion:
     """A motion to be run."""
 
     job: Table  # What was asked for, with every blank filled.
     taken: dict[str, list[str]]  # What was filled in, by section, as in 'k1 = 10'.
-    arm: Arm
-    path: Path
+    arm: Arm | Robot
+    path: Paths
     scheme: Scheme
     options: RunOptions
     stack: Stack | None  # None where the tip's task is the only one.
@@ -83,8 +89,9 @@ class Motion:
     @property
     def label(self) -> str:
         """What to call the arm and the path."""
-        path = self.job["path"]
-        return f"{self.name}, {' then '.join(each['kind'] for each in (path if isinstance(path, list) else [path]))}"
+        paths = self.job["path"]
+        each = (" then ".join(piece["kind"] for piece in _pieces(path)) for path in _by_task(paths).values())
+        return f"{self.name}, {' and '.join(each)}"
 
     @property
     def name(self) -> str:
@@ -100,6 +107,12 @@ class Motion:
         keywords |= {"stack": self.stack, "limits": self.limits}
         # A job says the damping of its scheme: 0 is none.
         return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
+
+    def of_one_arm(self) -> tuple[Arm, Path]:
+        """Arm and path, for sweep() and tune(). Raises JobError where there is a robot, or are several paths."""
+        if isinstance(self.arm, Robot) or isinstance(self.path, Mapping):
+            raise JobError(wrong("arm", None, ": must be an arm, along one path: track moves robots along several"))
+        return self.arm, self.path
 
     def with_scheme(self, options: Mapping[str, Any]) -> Motion:
         """The motion with other options of its scheme. Raises JobError."""
@@ -141,19 +154,20 @@ def prepare(job: Table) -> Motion:
     motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance, bounds)
     with job_errors():
         try:
-            name, kind = led_task(options.task, stack)
-            alone = None if stack is None else without_limits(arm, stack, name)
-            check_sweep(arm, path, [scheme], options.q0, options.dt, options.hold, kind, alone)
+            name, kind, led, others = led_paths(path, options.task, stack)
+            alone = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
+            check_sweep(arm, led, [scheme], options.q0, options.dt, options.hold, kind, alone)
         except ValueError:
             motion.run()  # Refuses the same, by the names that a job has for it.
             raise
     return motion
 
 
-def filled(job: Table, arm: Arm) -> Table:
+def filled(job: Table, arm: Arm | Robot) -> Table:
     """The job with what it leaves out."""
     path = job.get("path", {"kind": FREE["path"]})
-    pieces = [_filled_path(piece, arm) for piece in path] if isinstance(path, list) else _filled_path(path, arm)
+    pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
+    pieces = pieces if is_by_task(path) else pieces[""]
     gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Which the tasks have.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
@@ -162,13 +176,15 @@ def filled(job: Table, arm: Arm) -> Table:
         scheme = {"weights": [1.0] * arm.dof, **scheme}
     run = _filled("run", job.get("run", {}))
     stack = make("task", job["task"]) if "task" in job else None
+    if stack is None and isinstance(arm, Robot):
+        raise JobError(wrong("task", None, ": is missing: a robot needs [[task]] tables"))
     if stack is None and run["task"] not in TIP_TASKS:
         raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():
-        run["task"], kind = led_task(job.get("run", {}).get("task"), stack)
-    if "q0" not in run:
-        preset = job["arm"].get("name")
-        run["q0"] = list(READY.get(preset) or ready(arm, kind))
+        run["task"], kind, *_ = led_paths(make("path", pieces, arm), job.get("run", {}).get("task"), stack)
+        if "q0" not in run:
+            preset = job["arm"].get("name")
+            run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "bounds" in job:
         full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.
@@ -183,13 +199,19 @@ def filled(job: Table, arm: Arm) -> Table:
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
     """What the full job has and the job did not say, by section, as in 'k1 = 10', but for what is off."""
-    texts = {section: list(_taken(job.get(section, {}), full[section])) for section in ("path", "scheme", "run")}
+    texts = {
+        section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")
+    }
     return {section: each for section, each in texts.items() if each}
 
 
 def _taken(said: Any, full: Any) -> Iterator[str]:
     """The same of a section."""
-    for before, after in zip(*(each if isinstance(each, list) else [each] for each in (said, full))):
+    if is_by_task(full):
+        for task in full:
+            yield from _taken(said.get(task, {}), full[task])
+        return
+    for before, after in zip(_pieces(said), _pieces(full)):
         for key, value in after.items():
             if key not in before and key != "kind" and value:
                 yield f"{key} = {_text(value)}"
@@ -202,7 +224,21 @@ def _filled(section: str, said: Table) -> Table:
     return {**{key: to_table(value) for key, value in usual.items() if value not in (REQUIRED, None)}, **said}
 
 
-def _filled_path(said: Table, arm: Arm) -> Table:
+def _pieces(path: Any) -> list[Table]:
+    """The tables of a path."""
+    return path if isinstance(path, list) else [path]
+
+
+def _by_task(path: Any) -> dict[str, Any]:
+    """Paths by the names of their tasks; '' of one that has none."""
+    return path if is_by_task(path) else {"": path}
+
+
+def _filled_paths(said: Any, arm: Arm | Robot) -> Any:
+    return [_filled_path(piece, arm) for piece in said] if isinstance(said, list) else _filled_path(said, arm)
+
+
+def _filled_path(said: Table, arm: Arm | Robot) -> Table:
     """A path; a path of the plane is laid before an arm in space."""
     whole = _filled("path", said)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
@@ -219,27 +255,48 @@ def _text(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def ready(arm: Arm, task: str) -> list[float]:
+def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float]:
     """Joint positions that are not singular [rad]; in the plane, even bends that add up to a quarter of a turn."""
-    posture = np.full(arm.dof, np.pi / 2 / (arm.dof - 1)) if isinstance(arm, PlanarArm) else _bent(arm, task)
+    if isinstance(arm, PlanarArm):
+        posture = np.full(arm.dof, np.pi / 2 / (arm.dof - 1))
+    else:
+        lower, upper = arm.limits.lower, arm.limits.upper
+        bounded = np.isfinite(lower) & np.isfinite(upper)
+        posture = np.clip(0.0, lower, upper)
+        posture[bounded] = (lower[bounded] + upper[bounded]) / 2
+        for jacobian, columns in _jacobians(arm, posture, task, stack):
+            posture = _bent(arm.limits, posture, jacobian, columns)
     return [round(float(position), 4) for position in posture]
 
 
-def _bent(arm: Arm, task: str) -> Array:
+def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Any]]:
+    """Those that are not to be singular, of the tip or of each frame that a robot's tasks are of, and their joints.
+
+    The joints of a frame are those that move no other of these frames, if there are six.
+    """
+    if not isinstance(arm, Robot):
+        yield lambda q: arm.jacobian(q, task=task), np.arange(arm.dof)
+    elif stack is not None:
+        frames = dict.fromkeys(each.frame for each in stack.tasks if isinstance(each, FrameTask))
+        moving = {frame: arm.jacobian(q, frame).any(axis=0) for frame in frames}
+        shared = sum(moving.values()) > 1
+        for frame, joints in moving.items():
+            own = joints & ~shared
+            yield partial(arm.jacobian, frame=frame), np.flatnonzero(own if own.sum() >= 6 else joints)
+
+
+def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) -> Array:
     """The middle of the limits with the fewest joints bent that make it about as far from singular as any are."""
-    lower, upper = arm.limits.lower, arm.limits.upper
-    bounded = np.isfinite(lower) & np.isfinite(upper)
-    middle = np.clip(0.0, lower, upper)
-    middle[bounded] = (lower[bounded] + upper[bounded]) / 2
-    room = np.minimum(BEND, (upper - lower) / 4)
+    room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[columns]
     # The last joints change fastest: of long arms, those near the base stay as they are.
-    bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=arm.dof), MOST)))
+    bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=len(columns)), MOST)))
     bends = bends[np.argsort(np.abs(bends).sum(axis=1), kind="stable")]
-    jacobians = np.array([arm.jacobian(middle + bend * room, task=task) for bend in bends])
-    sigma = np.linalg.svd(jacobians, compute_uv=False)
+    postures = np.tile(middle, (len(bends), 1))
+    postures[:, columns] += bends * room
+    sigma = np.linalg.svd(np.array([jacobian(q)[:, columns] for q in postures]), compute_uv=False)
     inverse_condition = sigma[:, -1] / np.maximum(sigma[:, 0], np.finfo(float).tiny)
     good = inverse_condition >= GOOD * inverse_condition.max()
-    return np.asarray(middle + bends[np.argmax(good)] * room)
+    return np.asarray(postures[np.argmax(good)])
 
 
 def read_job(file: str | os.PathLike[str]) -> Table:

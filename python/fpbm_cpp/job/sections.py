@@ -8,13 +8,14 @@ from math import inf
 from typing import Any
 
 from .._types import OptionalArrayField
-from ..arms import ARMS, Arm, JointLimits
+from ..arms import Arm, JointLimits
 from ..clearance import CLEARANCES, Clearance
 from ..errors import ParameterError, suggestion, wrong
 from ..parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 from ..paths import PATHS
+from ..robots import ROBOTS, Robot
 from ..schemes import SCHEMES
-from ..table import BOUNDS, Makers, from_table, keys, problems
+from ..table import BOUNDS, Makers, from_table, is_by_task, keys, problems
 from ..tasks import TASKS
 
 Table = dict[str, Any]
@@ -36,8 +37,8 @@ class RunOptions(Data):
 
 # What each section may be. Of runs and limits there is but one kind, which no file says.
 SECTIONS: dict[str, Makers] = {
-    "arm": ARMS,
-    "path": PATHS,  # Or a list of tables, of paths one after another.
+    "arm": ROBOTS,
+    "path": PATHS,  # Or a list of tables, of paths one after another; or a table of either by the names of tasks.
     "scheme": SCHEMES,
     "task": TASKS,  # A list of tables: the tasks of a stack.
     "run": {"run": RunOptions},
@@ -73,6 +74,8 @@ def in_order(section: str, said: Any) -> Any:
     """A section with its keys in the order of their declarations."""
     if isinstance(said, list):
         return [in_order(section, each) for each in said]
+    if section == "path" and is_by_task(said):
+        return {task: in_order(section, each) for task, each in said.items()}
     return {key: said[key] for key in ("kind", *known(section, said.get("kind"))) if key in said}
 
 
@@ -108,13 +111,13 @@ def require_sound(job: Table) -> None:
         raise JobError(*errors)
 
 
-def make(section: str, said: Any, arm: Arm | None = None) -> Any:
+def make(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
     """What a section stands for, for this arm. Raises JobError."""
     with job_errors():
         return from_table(_whole(section, said, arm), SECTIONS[section], section)
 
 
-def _whole(section: str, said: Any, arm: Arm | None = None) -> Any:
+def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
     """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
     if section in ("task", "bounds") and isinstance(said, dict):
         said = [said]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +14,18 @@ from .._core import Status, advice, failed, message
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..paths import Path
+from ..robots import Robot
 from ..schemes import Scheme
-from ..tasks import Stack
+from ..skeleton import task_frames
+from ..tasks import FrameTask, PoseTask, PositionTask, Stack
+from .task_frames import task_jacobians
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
+Paths: TypeAlias = Path | Mapping[str, Path]  # Of the task that is led, or of several by name.
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
 LIMITED = ("scale", "saturated", "clearance")  # Of runs that kept the joints' limits, and kept clear of shapes.
 OF_STACKS = ("scales", "task_errors")
@@ -73,13 +77,13 @@ class Run:
         Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. qdd of
         track() is the mean over the tick that begins at the sample; at velocity level, simulate()'s is differences.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
-        The tip and its reference in the base frame [m]; of a stack, the frame of the task that follows the path. Poses
-        are (x, y, angle) in the plane, homogeneous matrices in space.
+        The tip and its reference in the base frame [m]; of a stack, the frame of the task that follows the path, as the
+        task has it. Poses are (x, y, angle) in the plane, homogeneous matrices in space.
     error : numpy.ndarray, shape (N, m)
         x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
     status, arm, path, scheme, task, options
         How the motion ended, and what it was made of; options are the other keyword arguments: dt, hold, stack, ...
-        task is 'position' or 'pose'; of a stack, the name of the task that follows the path.
+        task is 'position' or 'pose'; of a stack, the name of the task that follows the path, or the first of several.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it), and
         which joints were on a bound.
@@ -101,8 +105,8 @@ class Run:
     x_ref: Array
     error: Array
     status: RunStatus
-    arm: Arm
-    path: Path
+    arm: Arm | Robot
+    path: Paths
     scheme: Scheme
     task: str = "position"
     options: dict[str, Any] = field(default_factory=dict)
@@ -158,7 +162,33 @@ class Run:
     @property
     def kind(self) -> str:
         """'position' or 'pose': what the task is that follows the path."""
-        return self.task if self.stack is None else self.stack.follower(self.task).kind
+        if self.stack is None:
+            return self.task
+        return "pose" if isinstance(self.led, PoseTask) else "position"
+
+    @property
+    def paths(self) -> dict[str, Path]:
+        """The path of each task that follows one, by name; first that of the task of x, x_ref and error."""
+        given = self.path if isinstance(self.path, Mapping) else {self.task: self.path}
+        return {self.task: given[self.task], **given}
+
+    @property
+    def led(self) -> FrameTask:
+        """The task that x, x_ref and error are of."""
+        return PositionTask() if self.stack is None else self.stack.follower(self.task)
+
+    @property
+    def tips(self) -> list[FrameTask]:
+        """What is drawn as tips: an arm's tip; of a Robot, the tasks that follow paths."""
+        if not isinstance(self.arm, Robot) or self.stack is None:
+            return [PositionTask()]
+        return [self.stack.follower(name) for name in self.paths]
+
+    @property
+    def frames(self) -> dict[str, Array]:
+        """Of a stack: the frame of each task of a frame by name, in the base frame [m], shape (N, 4, 4); else empty."""
+        tasks = self.stack.tasks if self.stack is not None else ()
+        return {task.name: task_frames(self.arm, self.q, task) for task in tasks if isinstance(task, FrameTask)}
 
     @property
     def errors(self) -> dict[str, Array]:
@@ -175,9 +205,19 @@ class Run:
         return self.options.get("limits") or self.arm.limits
 
     def manipulability(self) -> Array:
-        """sqrt(det(J J')) of the tip, shape (N,): 0 where the posture is singular (Yoshikawa, 1985)."""
-        J = np.array([self.arm.jacobian(q, task=self.kind) for q in self.q])
-        return np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)) if len(J) else np.zeros(0)
+        """sqrt(det(J J')) of the tip, shape (N,): 0 where the posture is singular (Yoshikawa, 1985).
+
+        Of a Robot, of all tasks that follow a path.
+        """
+        J = self.jacobians()
+        return np.asarray(np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)))
+
+    def jacobians(self) -> Array:
+        """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of all tasks that follow a path."""
+        arm = self.arm
+        if isinstance(arm, Robot):
+            return np.concatenate([task_jacobians(arm, self.q, task) for task in self.tips], axis=1)
+        return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
 
     def arrays(self) -> dict[str, Any]:
         """All arrays by name; those of limits, of a clearance and of a stack only where there are some."""

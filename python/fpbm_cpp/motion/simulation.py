@@ -1,6 +1,6 @@
 """A whole motion: simulated under the plain law, or tracked within the joints' limits."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,12 +9,13 @@ from numpy.typing import ArrayLike
 from .._core import failed, rollout
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
-from ..errors import ResolutionError, wrong
+from ..errors import ResolutionError, not_one_of, wrong
 from ..paths import Path
+from ..robots import Robot
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
-from ..tasks import Stack
-from .run import Run, RunStatus
+from ..tasks import PoseTask, Stack
+from .run import Paths, Run, RunStatus
 
 
 class LimitOptions(NamedTuple):
@@ -32,11 +33,12 @@ class LimitOptions(NamedTuple):
     bounds: Sequence[TaskBounds] = ()
     stack: Stack | None = None
     task: str = ""  # Of the stack's, the one that follows the path.
+    other_paths: Mapping[str, Path] = {}  # Those of other tasks of the stack, by name.
 
 
 def simulate(
-    arm: Arm,
-    path: Path,
+    arm: Arm | Robot,
+    path: Paths,
     scheme: Scheme,
     q0: ArrayLike,
     *,
@@ -58,7 +60,8 @@ def simulate(
     Parameters
     ----------
     arm, path, scheme
-        What moves, along what, and how.
+        What moves, along what, and how. A Robot needs a stack. Of a stack, path may be a dictionary of the paths of
+        several tasks by their names: the motion is as long as the longest path.
     q0 : array_like, shape (n,)
         Joint positions at the start [rad].
     dt : float
@@ -69,7 +72,8 @@ def simulate(
         Joint velocities at the start [rad/s], zero by default; velocity-level schemes do not read them.
     task : str
         'position', the default, or 'pose' to track the tip's orientation as well; of a stack, the name of the task that
-        follows the path, which may be left out if one task alone is a position or a pose.
+        follows the path, which may be left out if one task alone is a position or a pose; of several paths, the name
+        of the task of the run's x, x_ref and error, the first unless given.
     stack : Stack, optional
         Several tasks in strict priority. The path leads one task from where the task's frame is, the other tasks have
         their targets x or q. Directions that are nearly singular or in conflict with higher levels are damped.
@@ -77,9 +81,9 @@ def simulate(
         If the motion must stop early, return what was done instead of raising.
     """
     options = motion_options(arm, dt, hold, qd0)
-    name, kind = led_task(task, stack)
-    law = None if stack is None else without_limits(arm, stack, name)
-    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, kind, law)
+    name, kind, led, others = led_paths(path, task, stack)
+    law = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
+    outcome = rollout(arm, led, scheme, q0, options["qd0"], dt, hold, kind, law)
     if stack is not None:
         options["stack"] = stack
         for limited in ("scale", "saturated"):
@@ -91,8 +95,8 @@ def simulate(
 
 
 def track(
-    arm: Arm,
-    path: Path,
+    arm: Arm | Robot,
+    path: Paths,
     scheme: Scheme,
     q0: ArrayLike,
     *,
@@ -131,7 +135,7 @@ def track(
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
-    name, kind = led_task(task, stack)
+    name, kind, led, others = led_paths(path, task, stack)
     limited = LimitOptions(
         limits,
         error_bound,
@@ -145,8 +149,9 @@ def track(
         tuple(bounds),
         stack,
         name,
+        others,
     )
-    outcome = rollout(arm, path, scheme, q0, options["qd0"], dt, hold, kind, limited)
+    outcome = rollout(arm, led, scheme, q0, options["qd0"], dt, hold, kind, limited)
     return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_options(limited)})
 
 
@@ -157,15 +162,31 @@ def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     if not isinstance(stack, Stack):
         raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
     led = stack.follower(task)
-    return led.name, led.kind
+    return led.name, "pose" if isinstance(led, PoseTask) else "position"
+
+
+def led_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, dict[str, Path]]:
+    """What led_task() says of the run's task, its path, and the paths of the other tasks. Raises ParameterError."""
+    if not isinstance(path, Mapping):
+        return *led_task(task, stack), path, {}
+    if stack is None or not path:
+        raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by the names of tasks of a stack")
+    for each, led in path.items():
+        led_task(each, stack)
+        if not isinstance(led, Path):
+            raise wrong(f"path[{each!r}]", led, f" = {led!r:.80}: must be a path")
+    name = next(iter(path)) if task is None else task
+    if name not in path:
+        raise not_one_of("task", name, path)
+    return *led_task(name, stack), path[name], {each: led for each, led in path.items() if each != name}
 
 
 def limit_options(limited: LimitOptions) -> dict[str, Any]:
-    """The options as a run keeps them: its task is a field of its own."""
-    return {name: value for name, value in limited._asdict().items() if name != "task"}
+    """The options as a run keeps them: its task and its paths are fields of their own."""
+    return {name: value for name, value in limited._asdict().items() if name not in ("task", "other_paths")}
 
 
-def without_limits(arm: Arm, stack: Stack, task: str) -> LimitOptions:
+def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:
     """The law of a stack alone: no bounds, no rest at unreachable targets, no damping but the scheme's and of levels.
 
     An error of 1000 arm lengths is beyond any target.
@@ -176,14 +197,14 @@ def without_limits(arm: Arm, stack: Stack, task: str) -> LimitOptions:
     return alone._replace(stack=stack, task=task)
 
 
-def motion_options(arm: Arm, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
+def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
     """The keyword arguments that every motion has, as its run keeps them."""
     start = np.zeros(arm.dof) if qd0 is None else np.array(qd0, dtype=float)
     return {"dt": float(dt), "hold": float(hold), "qd0": start.ravel().tolist()}
 
 
 def make_run(
-    outcome: Any, q0: ArrayLike, arm: Arm, path: Path, scheme: Scheme, task: str, options: dict[str, Any]
+    outcome: Any, q0: ArrayLike, arm: Arm | Robot, path: Paths, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
     """A run of what the compiled part gives: status, time, number of samples, and arrays filled as far as these."""
     code, time, samples, given = outcome

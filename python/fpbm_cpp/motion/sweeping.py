@@ -14,6 +14,7 @@ from .._types import Array
 from ..arms import Arm, JointLimits
 from ..errors import SweepInterrupted, extra, wrong
 from ..paths import Path
+from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import LIMITED
@@ -158,6 +159,8 @@ def sweep(
     motions : bool
         Keep the whole motions as well, in the result's motions: 8 bytes for each number of simulate()'s arrays.
     """
+    if isinstance(arm, Robot):
+        raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() take a Robot")
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
         raise wrong("schemes", schemes, ": must be one at least")

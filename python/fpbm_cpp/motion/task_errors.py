@@ -16,7 +16,7 @@ def error_parts(run: Run) -> Iterator[tuple[str, str, Array, list[str]]]:
         if task.kind == "posture":
             joints = list(getattr(task, "joints", None) or run.arm.joint_names)
             yield task.name, ", ".join(sorted({units[joint] for joint in joints}, reverse=True)), error, joints
-        if task.kind in ("position", "pose"):
+        if task.kind in ("position", "pose", "relative_pose", "center_of_mass"):
             yield task.name, "m", error[:, :3], rows
-        if task.kind in ("orientation", "axis", "pose"):
+        if task.kind in ("orientation", "axis", "pose", "relative_pose"):
             yield task.name, "rad", error[:, -3:], rows

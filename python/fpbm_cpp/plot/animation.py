@@ -18,6 +18,7 @@ from PIL import Image
 from .._types import Array
 from ..io import write_whole
 from ..motion.run import Run
+from ..motion.task_frames import tracks
 from ..parameter import Parameter
 from ..skeleton import joint_points
 from .figures import lay_out
@@ -66,7 +67,8 @@ def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme
     canvas: Any = FigureCanvasAgg(figure)
     axes = drawn.pop("arm")
     nowhere = np.full((run.positions.shape[1], 1), np.nan)
-    (trail,) = axes.plot(*nowhere, color=theme.tip, lw=2.4, animated=True)
+    tips = [tip for tip, _ in tracks(run)]
+    trails = [axes.plot(*nowhere, color=theme.tip, lw=2.4, animated=True)[0] for _ in tips]
     (arm,) = axes.plot(*nowhere, color=theme.fade(1.0), mec=theme.paper, animated=True, **{**LINK, "lw": 2.6})
     style = {"textcoords": "offset points", "fontsize": TEXT, "fontweight": "bold", "color": theme.ink}
     clock = axes.annotate("", (0.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), animated=True, **style)
@@ -75,12 +77,13 @@ def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme
     background = canvas.copy_from_bbox(figure.bbox)
     for sample in samples:
         canvas.restore_region(background)
-        _set_points(trail, run.positions[: sample + 1])
+        for trail, tip in zip(trails, tips):
+            _set_points(trail, tip[: sample + 1])
         _set_points(arm, joint_points(run.arm, run.q[sample]))
         clock.set_text(f"t = {run.t[sample]:.2f} s")
         for cursor in cursors:
             cursor.set_xdata([run.t[sample]])
-        for artist in (trail, arm, clock, *cursors):
+        for artist in (*trails, arm, clock, *cursors):
             artist.axes.draw_artist(artist)
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
@@ -98,7 +101,7 @@ def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
     target = draw_target(axes, run, theme)
     frame_arm(axes, theme)
     (trail,) = axes.plot(*run.positions[:0].T, color=theme.tip, lw=2.4, label="tip")
-    head_legend(axes, theme, [trail, *target])
+    head_legend(axes, theme, [trail, target[0]])
 
 
 def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:

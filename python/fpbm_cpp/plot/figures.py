@@ -41,8 +41,10 @@ def _title(run: Run, width: int) -> str:
     def short(part: object) -> str:
         return re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4g}", repr(part))
 
-    whole = f"{short(run.scheme)} along {short(run.path)}"
-    lines = [whole] if len(whole) <= width else [short(run.scheme), f"along {short(run.path)}"]
+    paths = run.paths.items()
+    along = f"along {', '.join(short(path) if len(paths) == 1 else f'{task}: {short(path)}' for task, path in paths)}"
+    whole = f"{short(run.scheme)} {along}"
+    lines = [whole] if len(whole) <= width else [short(run.scheme), along]
     if not run.status:
         lines.append(f"stopped after t = {run.status.time:g} s")
     return "\n".join(row for line in lines for row in textwrap.wrap(line, width, max_lines=2, placeholder=" …"))

@@ -13,7 +13,9 @@ from .._types import Array
 from ..arms import Arm
 from ..motion.run import Run
 from ..motion.task_errors import error_parts
-from ..skeleton import joint_labels, joint_points, joint_units, tip_axes
+from ..motion.task_frames import tracks
+from ..robots import Robot
+from ..skeleton import joint_labels, joint_points, joint_units, task_frames
 from .lines import draw_lines, envelope, from_zero, head_legend, in_decades, inner_legend, over_time, side_legend
 from .theme import LIGHT, LINE, TEXT, Theme, dress
 
@@ -38,7 +40,8 @@ LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Postures at equal intervals of time, the tip's path and its target, and the tip's axes at the end.
 
-    An arm in space needs axes made with projection='3d', a planar arm plain ones.
+    Of a Robot, path, target and axes of each task that follows a path. An arm in space needs axes made with
+    projection='3d', a planar arm plain ones.
     """
     t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
     time = Normalize(0.0, float(t[-1]) or 1.0)
@@ -46,12 +49,13 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     for i, points in zip(shown, joint_points(run.arm, q[shown])):
         axes.plot(*points.T, color=theme.fade(time(t[i])), mec=theme.paper, **LINK)
     draw_base(axes, run.arm, q[-1], theme)
-    tip = axes.plot(*run.positions.T, color=theme.tip, lw=2.4, label="tip")
+    tip = [line for each, _ in tracks(run) for line in axes.plot(*each.T, color=theme.tip, lw=2.4, label="tip")]
     target = draw_target(axes, run, theme)
-    last = joint_points(run.arm, q[-1])
-    length = 0.12 * np.ptp(last, axis=0).max()
-    for axis, colour in zip(tip_axes(run.arm, q[-1]).T, theme.axes):
-        axes.plot(*np.stack([last[-1], last[-1] + length * axis]).T, color=colour, lw=1.6, zorder=3, **ROUND)
+    length, dimensions = 0.12 * _extent(run.arm, q[-1]), run.positions.shape[1]
+    for frame in (task_frames(run.arm, q[-1], each) for each in run.tips):
+        p = frame[:dimensions, 3]
+        for axis, colour in zip(frame[:dimensions, :dimensions].T, theme.axes):
+            axes.plot(*np.stack([p, p + length * axis]).T, color=colour, lw=1.6, zorder=3, **ROUND)
     frame_arm(axes, theme)
     pad = 0.13 if axes.name == "3d" else 0.02
     times = ScalarMappable(time, theme.fade)
@@ -59,22 +63,29 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     bar.set_label("time of the posture [s]", size=TEXT, color=theme.ink, labelpad=2.0)
     bar.ax.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)
     bar.outline.set(edgecolor=theme.ink, linewidth=0.7)
-    head_legend(axes, theme, [*tip, *target])
+    head_legend(axes, theme, [tip[0], target[0]])
 
 
-def draw_base(axes: Any, arm: Arm, q: Array, theme: Theme) -> None:
+def _extent(arm: Arm | Robot, q: Array) -> float:
+    """Size of the largest side of the box about the joints in a posture [m]."""
+    points = joint_points(arm, q)
+    return float((np.nanmax(points, axis=0) - np.nanmin(points, axis=0)).max())
+
+
+def draw_base(axes: Any, arm: Arm | Robot, q: Array, theme: Theme) -> None:
     """Draw the arm's base: a square in the plane, a circle in space."""
     if axes.name != "3d":
         axes.plot(0.0, 0.0, "s", color=theme.soft, ms=8, zorder=4)
         axes.plot(0.0, 0.0, "o", color=theme.paper, ms=3, zorder=4)
         return
-    radius = 0.06 * np.ptp(joint_points(arm, q), axis=0).max()
+    radius = 0.06 * _extent(arm, q)
     angle = np.linspace(0.0, 2 * np.pi, 33)
     axes.plot(radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle, color=theme.soft, lw=1.6)
 
 
 def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
-    return list(axes.plot(*run.reference_positions.T, color=theme.ink, lw=0.9, ls=(0, (2, 2)), label="target"))
+    style = {"color": theme.ink, "lw": 0.9, "ls": (0, (2, 2)), "label": "target"}
+    return [line for _, target in tracks(run) for line in axes.plot(*target.T, **style)]
 
 
 def frame_arm(axes: Any, theme: Theme) -> None:
@@ -151,7 +162,7 @@ def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
 
 
-def joint_names(arm: Arm) -> list[str]:
+def joint_names(arm: Arm | Robot) -> list[str]:
     """The joints' names for a legend; prismatic joints are marked where there are revolute ones too."""
     names, units = joint_labels(arm), joint_units(arm)
     return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
@@ -262,19 +273,14 @@ def null_space_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 def min_singular_values(run: Run) -> Array:
     """Least singular value of the task's Jacobian at each sample, shape (N,)."""
-    return np.asarray(np.linalg.svd(_jacobians(run), compute_uv=False)[:, -1])
+    return np.asarray(np.linalg.svd(run.jacobians(), compute_uv=False)[:, -1])
 
 
 def null_space_velocities(run: Run) -> Array:
     """‖(I − J⁺J) qd‖ at each sample, shape (N,)."""
-    _, s, Vt = np.linalg.svd(_jacobians(run), full_matrices=False)
+    _, s, Vt = np.linalg.svd(run.jacobians(), full_matrices=False)
     row_space = (s > 1e-12 * s[:, :1])[..., None] * Vt  # J's rank is less than m in a singular posture.
     return np.asarray(np.linalg.norm(run.qd - np.einsum("kmi,kmj,kj->ki", row_space, Vt, run.qd), axis=1))
-
-
-def _jacobians(run: Run) -> Array:
-    m = run.error.shape[1]
-    return np.array([run.arm.jacobian(q, task=run.kind) for q in run.q]).reshape(-1, m, run.arm.dof)
 
 
 class Panel(NamedTuple):

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from .._core import TargetFilter
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
+from ..motion.run import Paths
 from ..motion.simulation import simulate
-from ..paths import Path
+from ..robots import Robot
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
 from ..tasks import Stack
@@ -40,8 +41,8 @@ def __getattr__(name: str) -> Any:
 
 
 def view(
-    arm: Arm,
-    path: Path,
+    arm: Arm | Robot,
+    path: Paths,
     scheme: Scheme,
     q0: ArrayLike,
     *,
@@ -74,7 +75,7 @@ def view(
 
 
 def servo(
-    arm: Arm,
+    arm: Arm | Robot,
     scheme: Scheme,
     q0: ArrayLike,
     *,
@@ -102,9 +103,9 @@ def servo(
     is drawn translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings,
     which follow them at 0.3 m/s.
 
-    A stack replaces task. Each of its tasks of a frame has a handle with the task's name: arrows for a position, arcs
-    for an orientation or an axis. The z axis of the handle of an AxisTask is the target direction. targets is then a
-    dictionary of filters for positions and poses.
+    A stack replaces task, and a Robot needs one. Each of its tasks of a frame has a handle with the task's name, unless
+    the task is relative to another frame: arrows for a position, arcs for an orientation or an axis. The z axis of the
+    handle of an AxisTask is the target direction. targets is then a dictionary of filters for positions and poses.
 
     Raises what Tracker and view() raise, and ValueError where a filter is for another task or tick.
     """

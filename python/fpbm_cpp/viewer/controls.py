@@ -11,6 +11,7 @@ from viser import GuiApi, GuiEvent, GuiSliderHandle, Icon
 
 from ..arms import Arm, JointLimits
 from ..parameter import Parameter, parameters
+from ..robots import Robot
 from ..schemes import SCHEMES, Scheme
 from ..skeleton import joint_labels
 
@@ -43,7 +44,7 @@ class Controls:
     def __init__(
         self,
         gui: GuiApi,
-        arm: Arm,
+        arm: Arm | Robot,
         scheme: Scheme,
         on_change: Callable[[], None],
         limits: JointLimits | None = None,

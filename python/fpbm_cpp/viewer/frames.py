@@ -6,19 +6,12 @@ import numpy as np
 
 from .._core import rotation, rotation_vector
 from .._types import Array
-from ..arms import Arm
-from ..skeleton import joint_points, tip_axes
 from ..tasks import POSITION, ROTATION, AxisTask, RowsTask, Task
 
 
 def in_space(points: Array) -> Array:
     """Points with three coordinates; z is 0 for points in the plane."""
     return np.pad(points, [(0, 0)] * (points.ndim - 1) + [(0, 3 - points.shape[-1])])
-
-
-def tip_pose(arm: Arm, q: Array) -> Array:
-    """The tip's frame in a posture, shape (4, 4)."""
-    return _frame(tip_axes(arm, q), joint_points(arm, q)[-1])
 
 
 def frame_of(task: Task, x: Array) -> Array:

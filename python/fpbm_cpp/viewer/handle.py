@@ -8,7 +8,6 @@ from viser import SceneApi
 from viser.transforms import SO3
 
 from .._types import Array
-from ..arms import Arm, PlanarArm
 from ..tasks import POSITION, ROTATION, FrameTask, RowsTask
 from .frames import frame_of, point_of, selected
 
@@ -27,7 +26,7 @@ class Handle:
         self,
         scene: SceneApi,
         index: int,
-        arm: Arm,
+        planar: bool,
         task: FrameTask,
         x: Array,
         size: float,
@@ -46,7 +45,7 @@ class Handle:
             f"/handles/{index}/gizmo",
             scale=size,
             line_width=3.0,
-            active_axes=self._active(isinstance(arm, PlanarArm)),
+            active_axes=self._active(planar),
             disable_axes=bool(self.axes),
             disable_sliders=bool(self.axes),
             disable_rotations=not self.axes and not selected(task, ROTATION).any(),

@@ -16,6 +16,7 @@ from .readout import BAD, GOOD, LINES, sentence, table
 from .strip import SECONDS, Strip
 
 FAIR = "#8A6100"
+WHOLE = 0.999  # Scales of levels that are not slowed, with round-off.
 NEAR = 0.01  # To an end of its range [rad].
 COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR, Status.BLOCKED: FAIR}
 # What to do about it here.
@@ -51,7 +52,13 @@ def _words(loop: ServoLoop) -> tuple[str, str]:
     if loop.stopped:
         moves = loop.tick is not None and loop.tick.qd.any()
         return ("stopping: every joint brakes" if moves else "stopped: the arm is at rest"), FAIR
-    status = loop.status
+    status, scales = loop.status, None if loop.tick is None else loop.tick.scales
+    if status is Status.SLOWED and loop.stack is not None and scales is not None and scales[0] > WHOLE:
+        late = [task.name for level, scale in zip(loop.stack.levels, scales) if scale < WHOLE for task in level]
+        return (
+            f"{', '.join(late) or 'a lower level'}: the levels above and the joint limits leave no more motion.",
+            FAIR,
+        )
     text = f"{message(status)}. {HINTS.get(status, advice(status))}".strip()
     return text, COLOURS.get(status, BAD)
 

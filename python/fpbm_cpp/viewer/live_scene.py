@@ -11,10 +11,12 @@ from viser import TransformControlsHandle, ViserServer
 from viser.transforms import SO3
 
 from .._types import Array
-from ..skeleton import joint_points
+from ..arms import PlanarArm
+from ..robots import Robot
+from ..skeleton import frames_of, joint_points, length
 from ..tasks import FrameTask
 from .controls import RATE
-from .frames import in_space, tip_pose
+from .frames import in_space
 from .handle import Handle
 from .loop import ServoLoop
 from .obstacles import can_be_dragged
@@ -26,13 +28,17 @@ REACH = 0.65  # Of the arm's length, about its base, is in view.
 
 
 class LiveScene:
-    """The arm, a handle for each task of a frame with lines to it, and the path of the tip in the last ten seconds."""
+    """The arm, a handle for each task of a frame with lines to it, and the path of the tip in the last ten seconds.
+
+    Of a Robot, the paths of the tasks' frames. A task that is relative to another frame has no handle.
+    """
 
     def __init__(self, server: ViserServer, loop: ServoLoop, meshes: Meshes | None) -> None:
         points = in_space(joint_points(loop.arm, loop.q))
-        reach = REACH * float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+        reach = REACH * length(loop.arm, loop.q)
         around = points[0] + reach * np.vstack([np.eye(3)[:2], -np.eye(3)[:2], points[-1:] - points[0]])
         self._arm, self._tip, radius = set_up(server, loop.arm, loop.q, meshes, np.vstack([points, around]))
+        self._tip.visible = not isinstance(loop.arm, Robot)
         self.handles = _handles(server, loop, 0.3 * radius)
         nothing = np.zeros((0, 2, 3), dtype=np.float32)
         self._way, self._gap = (
@@ -58,17 +64,19 @@ class LiveScene:
 
     def show(self, loop: ServoLoop) -> None:
         q = loop.q
-        pose = tip_pose(loop.arm, q)
         self._arm.pose(q)
-        self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
-        self._passed.append(pose[:3, 3])
-        self._way.points = segments(np.array(self._passed))
-        gaps = [np.zeros((0, 2, 3))]
-        for handle in self.handles:
-            frame = loop.frame(handle.task.name)
+        nothing = np.zeros((0, 2, 3), dtype=np.float32)
+        gaps: list[Array] = []
+        frames = [loop.frame(handle.task.name) for handle in self.handles]
+        for handle, frame in zip(self.handles, frames):
             handle.follow(frame)
             gaps.append(handle.gap(frame))
-        self._gap.points = np.concatenate(gaps).astype(np.float32)
+        self._gap.points = np.concatenate([nothing, *gaps]).astype(np.float32)
+        if not isinstance(loop.arm, Robot):
+            frames = [frames_of(loop.arm, q, "tip")]
+            self._tip.position, self._tip.wxyz = frames[0][:3, 3], SO3.from_matrix(frames[0][:3, :3]).wxyz
+        self._passed.append(np.array([frame[:3, 3] for frame in frames]))
+        self._way.points = np.concatenate([nothing, *map(segments, np.array(self._passed).swapaxes(0, 1))])
         if self._shapes is not None and loop.clearance is not None:
             nearest = None if loop.tick is None else loop.tick.nearest
             self._shapes.at(loop.clearance, q, None if nearest is None else nearest.pair)
@@ -77,9 +85,12 @@ class LiveScene:
 def _handles(server: ViserServer, loop: ServoLoop, size: float) -> list[Handle]:
     """A handle for each task of a frame, with the task's name where there is a stack."""
     handles = []
-    for i, task in enumerate(task for task in loop.tasks if isinstance(task, FrameTask)):
+    own = [task for task in loop.tasks if isinstance(task, FrameTask) and task.reference_frame is None]
+    for i, task in enumerate(own):
         push = partial(loop.push, task=task.name)
-        handles.append(Handle(server.scene, i, loop.arm, task, loop.target_of(task.name), size, push))
+        handles.append(
+            Handle(server.scene, i, isinstance(loop.arm, PlanarArm), task, loop.target_of(task.name), size, push)
+        )
         if loop.stack is not None:
             handles[-1].label(server.scene)
     return handles

@@ -15,11 +15,11 @@ from .._core import Status, TargetFilter, Tick, Tracker
 from .._types import Array
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
+from ..robots import Robot
 from ..schemes import Scheme
-from ..skeleton import joint_points
+from ..skeleton import frames_of, length
 from ..task_bounds import TaskBounds
 from ..tasks import Stack, Task
-from .frames import tip_pose
 from .obstacles import Obstacles
 from .strip import Strip
 from .targets import Targets
@@ -46,7 +46,7 @@ class ServoLoop:
 
     def __init__(
         self,
-        arm: Arm,
+        arm: Arm | Robot,
         scheme: Scheme,
         q0: ArrayLike,
         *,
@@ -65,8 +65,7 @@ class ServoLoop:
         self._q0 = np.array(q0, dtype=float)
         self._obstacles, self.bounds = Obstacles(clearance, dt), tuple(bounds)
         self._tracker = self._new_tracker(scheme, self._q0)  # Refuses a task or a stack that does not suit.
-        length = float(np.linalg.norm(np.diff(joint_points(arm, self._q0), axis=0), axis=1).sum())
-        self._targets = Targets(task, stack, self._tracker.tip, targets, length, dt)
+        self._targets = Targets(task, stack, self._tracker.tip, targets, length(arm, self._q0), dt)
         self._tracker.tick(self._targets.references)  # Refuses a filter that does not suit.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
         self._tick: Tick | None = None
@@ -168,7 +167,7 @@ class ServoLoop:
 
     def frame(self, task: str) -> Array:
         """The frame of the task of that name, shape (4, 4); of an axis, z is its direction."""
-        return tip_pose(self.arm, self.q) if self.stack is None else self._tracker.frame(task)
+        return frames_of(self.arm, self.q, "tip") if self.stack is None else self._tracker.frame(task)
 
     @property
     def time(self) -> float:

@@ -11,7 +11,10 @@ from .._types import Array
 from ..clearance import Clearance
 from ..motion.run import Run
 from ..motion.task_errors import error_parts
-from .frames import in_space, tip_pose
+from ..motion.task_frames import tracks
+from ..skeleton import task_frames
+from ..tasks import PoseTask, PositionTask
+from .frames import in_space, point_of
 
 FRAMES = 500
 
@@ -19,17 +22,16 @@ FRAMES = 500
 class Playback:
     """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
 
-    Curves are drawn through F frames: some of the samples, or all. The tip and its target, shape (F, 3) [m], and the
-    manipulability, shape (F,), are those at the frames. errors has the norms of errors at all samples, shape (N,), and
-    their units, by name.
+    Curves are drawn through F frames: some of the samples, or all. tracks has tip and target for each path, at all
+    samples, shape (N, 3) [m]; the manipulability, shape (F,), is that at the frames. errors has the norms of errors at
+    all samples, shape (N,), and their units, by name.
     """
 
     def __init__(self, run: Run, clearance: Clearance | None = None) -> None:
         self.clearance = clearance
         self.run = run = run if len(run.t) else _at_start(run)
         self.frames = np.unique(np.linspace(0, len(run.t) - 1, FRAMES).round().astype(int))
-        self.tip = in_space(run.positions[self.frames])
-        self.target = in_space(run.reference_positions[self.frames])
+        self.tracks = [(in_space(tip), in_space(target)) for tip, target in tracks(run)]
         self.manipulability = replace(run, q=run.q[self.frames]).manipulability()
         self.errors = _errors(run)
         found = (self.nearest(sample) for sample in self.frames)
@@ -48,8 +50,8 @@ class Playback:
         return None if self.clearance is None else self.clearance.nearest(self.run.arm, self.run.q[sample])
 
     def pose(self, sample: int) -> Array:
-        """The tip's frame at a sample, shape (4, 4)."""
-        return tip_pose(self.run.arm, self.run.q[sample])
+        """The tip's frame at a sample, shape (4, 4); of a Robot, that of the task that follows the first path."""
+        return task_frames(self.run.arm, self.run.q[sample], self.run.tips[0])
 
 
 def _errors(run: Run) -> dict[str, tuple[Array, str]]:
@@ -71,7 +73,9 @@ def _at_start(run: Run) -> Run:
     """The start of a run without samples as its only sample."""
     q = run.status.q[None]
     zero = np.zeros_like(q)
-    x = np.asarray(run.arm.kinematics(q[0], zero[0], task=run.kind).tip)[None]
-    error = np.zeros((1, len(run.arm.jacobian(q[0], task=run.kind))))
-    start = replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, x=x, x_ref=x, error=error)
+    start = replace(run, t=np.zeros(1), q=q, qd=zero, qdd=zero, error=np.zeros((1, run.error.shape[1])))
+    x = point_of(
+        PoseTask() if run.kind == "pose" else PositionTask(), task_frames(run.arm, q[0], run.tips[0]), run.x.shape[1:]
+    )[None]
+    start = replace(start, x=x, x_ref=x)
     return start if run.task_errors is None else replace(start, task_errors=np.zeros((1, run.task_errors.shape[1])))

@@ -15,10 +15,12 @@ from viser import ClientHandle, FrameHandle, SceneApi, SceneNodeHandle, ViserSer
 from viser.extras import ViserUrdf
 from viser.transforms import SO3
 
+from .._core import rotation_vector
 from .._types import Array
-from ..arms import Arm, PlanarArm, SerialArm
+from ..arms import Arm, PlanarArm
 from ..io.mesh_file import find_mesh
-from ..skeleton import joint_axes, joint_points
+from ..robots import Robot
+from ..skeleton import joint_points, joints_of, length, link_frames
 from .frames import in_space
 from .playback import Playback
 from .shapes import Shapes, along, draw_bounds
@@ -27,46 +29,62 @@ TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
 LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
 RADIUS = 0.019  # Of links, as a share of the arm's length.
 FIELD = 0.7  # Vertical field of view [rad].
+BASE_JOINTS = ("base_x", "base_y", "base_yaw")  # Of Robot.from_urdf(base="planar"), which no file has.
 TOLERANCE = 2e-3  # Between a joint of a URDF file and of the arm [m].
 
 
 class Meshes:
-    """The meshes of an arm's URDF file, as far as they are found; show() puts them into a scene.
+    """The meshes of a robot's URDF file, as far as they are found; show() puts them into a scene.
 
-    Raises ValueError if it is not that arm's file, OSError if it cannot be read. Warns once about missing meshes.
+    Raises ValueError if it is not that robot's file, OSError if it cannot be read. Warns once about missing meshes.
     """
 
-    def __init__(self, urdf: str | os.PathLike[str], arm: Arm, q: Array) -> None:
+    def __init__(self, urdf: str | os.PathLike[str], arm: Arm | Robot, q: Array) -> None:
         self.file = Path(urdf)
-        if not isinstance(arm, SerialArm):
+        if isinstance(arm, PlanarArm):
             raise self._error("must be left out where the arm is planar")
         self._arm = arm
         self.robot = self._read()
         there = self.robot.actuated_joint_names
         for name in arm.joint_names:
-            if name not in there:
+            if name not in (*there, *BASE_JOINTS):
                 raise self._error(f"has no joint {name!r}, which the arm has; its own: {', '.join(there)}")
-        # The file's root, seen from the arm's base, which may be another link.
-        self.placement: Array = arm.joints[0].placement @ np.linalg.inv(self._frames(np.zeros(arm.dof))[0])
-        distances = np.linalg.norm((self.placement @ self._frames(q))[:, :3, 3] - joint_points(arm, q)[1:-1], axis=1)
+        self._held = _held(self.robot, arm) if isinstance(arm, Robot) else {}
+        self._links = {joint.name: i for i, joint in enumerate(joints_of(arm), 1) if joint.name in self.robot.joint_map}
+        self.placement = self._placement(q)
+        own = link_frames(arm, q)[list(self._links.values())]
+        distances = np.linalg.norm((self.placement @ self._frames())[:, :3, 3] - own[:, :3, 3], axis=1)
         worst = int(distances.argmax())
         if distances[worst] > TOLERANCE:
-            joint = f"its joint {arm.joints[worst].name!r} is {distances[worst]:.3g} m from where this arm has it"
+            joint = f"its joint {list(self._links)[worst]!r} is {distances[worst]:.3g} m from where this arm has it"
             raise self._error(f"is another arm's: {joint}")
         self.found = bool(self.robot.scene.geometry)
 
     def show(self, server: ViserServer) -> None:
-        rotation = SO3.from_matrix(self.placement[:3, :3]).wxyz
-        server.scene.add_frame("/arm", show_axes=False, wxyz=rotation, position=self.placement[:3, 3])
+        self._root = server.scene.add_frame("/arm", show_axes=False)
         self._shown = ViserUrdf(server, self.robot, root_node_name="/arm")
+        self._place()
 
     def pose(self, q: Array) -> None:
         self._shown.update_cfg(self.configuration(q))
+        if isinstance(self._arm, Robot):  # Its base may move.
+            self.placement = self._placement(q)
+            self._place()
 
     def configuration(self, q: Array) -> Array:
-        """Positions of the file's own joints: the arm's, and 0 for all others."""
-        own = dict(zip(self._arm.joint_names, q))
+        """Positions of the file's own joints: those of the robot, and of others where it holds them, or 0."""
+        own = self._held | dict(zip(self._arm.joint_names, q))
         return np.array([own.get(name, 0.0) for name in self.robot.actuated_joint_names])
+
+    def _place(self) -> None:
+        self._root.position = self.placement[:3, 3]
+        self._root.wxyz = SO3.from_matrix(self.placement[:3, :3]).wxyz
+
+    def _placement(self, q: Array) -> Array:
+        """The file's root, seen from the robot's base, which may be another link."""
+        self.robot.update_cfg(self.configuration(q))
+        first = next(iter(self._links.values()))
+        return np.asarray(link_frames(self._arm, q)[first] @ np.linalg.inv(self._frames()[0]))
 
     def _read(self) -> Any:
         self.file.read_bytes()  # yourdfpy's own error does not say why it cannot be read.
@@ -94,14 +112,26 @@ class Meshes:
             missing.append(fname)
         return fname if found is None else str(found)
 
-    def _frames(self, q: Array) -> Array:
-        """Frames of the arm's joints in the file, seen from its root."""
-        self.robot.update_cfg(self.configuration(q))
-        links = (self.robot.joint_map[joint.name].child for joint in self._arm.joints)
+    def _frames(self) -> Array:
+        """Frames of the joints in the file, seen from its root, as it is posed."""
+        links = (self.robot.joint_map[name].child for name in self._links)
         return np.array([self.robot.get_transform(link, self.robot.base_link) for link in links])
 
     def _error(self, text: str) -> ValueError:
         return ValueError(f"urdf = {str(self.file)!r}: {text}")
+
+
+def _held(urdf: Any, robot: Robot) -> dict[str, float]:
+    """Positions at which a robot of a URDF file holds joints of the file [rad, m], by the frames of the links."""
+    places, held = {each.name: each.offset for each in robot.named_frames}, {}
+    for name in urdf.actuated_joint_names:
+        joint = urdf.joint_map[name]
+        if name not in robot.joint_names and joint.parent in places and joint.child in places:
+            origin = np.eye(4) if joint.origin is None else joint.origin
+            step = np.linalg.inv(places[joint.parent] @ origin) @ places[joint.child]
+            way = step[:3, 3] if joint.type == "prismatic" else rotation_vector(step[:3, :3])
+            held[name] = float(way @ joint.axis) / float(np.linalg.norm(joint.axis))
+    return held
 
 
 class Scene:
@@ -109,7 +139,8 @@ class Scene:
 
     def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
         run, self._server = playback.run, server
-        points = np.vstack([in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3), playback.target])
+        postures = in_space(joint_points(run.arm, run.q[playback.frames])).reshape(-1, 3)
+        points = np.vstack([postures, *(target for _, target in playback.tracks)])
         self._arm, self._tip, _ = set_up(server, run.arm, run.q[0], meshes, points)
         clearance = playback.clearance
         self._shapes = None if clearance is None else Shapes(server.scene, run.arm, clearance)
@@ -123,9 +154,10 @@ class Scene:
 
     def show(self, playback: Playback) -> None:
         self._playback, run = playback, playback.run
-        self._start.points = segments(in_space(joint_points(run.arm, run.q[0])))
-        target = segments(playback.target)
-        self._target.points = target[::2] if len(target) > 50 else target  # Dashes.
+        self._start.points = rods(run.arm, run.q[0]).astype(np.float32)
+        targets = [segments(target[playback.frames]) for _, target in playback.tracks]
+        dashed = [target[::2] if len(target) > 50 else target for target in targets]
+        self._target.points = np.concatenate(dashed)
 
     def at(self, sample: int) -> None:
         """Move arm and tip to a sample, and draw the path up to it, of a stack that of the task that is led."""
@@ -134,15 +166,15 @@ class Scene:
         with self._server.atomic():
             self._arm.pose(playback.run.q[sample])
             self._tip.position, self._tip.wxyz = pose[:3, 3], SO3.from_matrix(pose[:3, :3]).wxyz
-            passed = playback.tip[: playback.frame(sample) + 1]
-            self._path.points = segments(np.vstack([passed, in_space(playback.run.positions[[sample]])]))
+            passed = [*playback.frames[: playback.frame(sample) + 1], sample]
+            self._path.points = np.concatenate([segments(tip[passed]) for tip, _ in playback.tracks])
             if self._shapes is not None and playback.clearance is not None:
                 nearest = playback.nearest(sample)
                 self._shapes.at(playback.clearance, playback.run.q[sample], None if nearest is None else nearest.pair)
 
 
 def set_up(
-    server: ViserServer, arm: Arm, q: Array, meshes: Meshes | None, points: Array
+    server: ViserServer, arm: Arm | Robot, q: Array, meshes: Meshes | None, points: Array
 ) -> tuple[Links | Meshes, FrameHandle, float]:
     """The arm on the ground, the axes of its tip, and a camera that sees points in space; the radius about these."""
     shown: Links | Meshes
@@ -151,8 +183,8 @@ def set_up(
         shown = meshes
     else:
         shown = Links(server.scene, arm, q)
-    centre = (points.min(axis=0) + points.max(axis=0)) / 2
-    radius = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-3)
+    centre = (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) / 2
+    radius = max(float(np.nanmax(np.linalg.norm(points - centre, axis=1))), 1e-3)
     _add_ground(server.scene, radius, isinstance(arm, PlanarArm))
     _place_camera(server, centre, radius, isinstance(arm, PlanarArm))
     size = 0.16 * radius
@@ -162,6 +194,13 @@ def set_up(
 def segments(points: Array) -> Array:
     """The lines from each point to the next, shape (N - 1, 2, 3)."""
     return np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
+
+
+def rods(arm: Arm | Robot, q: Array) -> Array:
+    """Both ends of each link, shape (links, 2, 3)."""
+    points = in_space(joint_points(arm, q))
+    ends = np.stack([points[:-1], points[1:]], axis=1)
+    return np.asarray(ends[~np.isnan(ends).any(axis=(1, 2))])
 
 
 def _add_ground(scene: SceneApi, radius: float, planar: bool) -> None:
@@ -194,28 +233,26 @@ def _place_camera(server: ViserServer, centre: Array, radius: float, planar: boo
 class Links:
     """A rod for each link, a cylinder along the axis of each revolute joint, and a box along each prismatic joint."""
 
-    def __init__(self, scene: SceneApi, arm: Arm, q: Array) -> None:
+    def __init__(self, scene: SceneApi, arm: Arm | Robot, q: Array) -> None:
         self._arm = arm
-        spans = np.diff(joint_points(arm, q), axis=0)
-        r = RADIUS * max(float(np.linalg.norm(spans, axis=1).sum()), 1e-3)
+        r = RADIUS * max(length(arm, q), 1e-3)
         scene.add_cylinder("/arm/base", 2.6 * r, 0.8 * r, BASE)
-        self._links = [scene.add_cylinder(f"/arm/link_{i}", r, 1.0, LINK) for i in range(len(spans))]
-        types = [joint.type for joint in arm.joints] if isinstance(arm, SerialArm) else ["revolute"] * arm.dof
+        self._links = [scene.add_cylinder(f"/arm/link_{i}", r, 1.0, LINK) for i in range(len(rods(arm, q)))]
         self._joints: list[SceneNodeHandle] = [
             scene.add_box(f"/arm/joint_{i}", JOINT, (3.0 * r, 3.0 * r, 3.4 * r))
-            if kind == "prismatic"
+            if joint.type == "prismatic"
             else scene.add_cylinder(f"/arm/joint_{i}", 1.5 * r, 3.4 * r, JOINT)
-            for i, kind in enumerate(types)
+            for i, joint in enumerate(joints_of(arm))
         ]
+        self._axes = [joint.axis for joint in joints_of(arm)]
         self.pose(q)
 
     def pose(self, q: Array) -> None:
-        points = in_space(joint_points(self._arm, q))
-        for link, start, end in zip(self._links, points, points[1:]):
-            length = float(np.linalg.norm(end - start))
-            link.visible = length > 1e-9
+        for link, (start, end) in zip(self._links, rods(self._arm, q)):
+            span = float(np.linalg.norm(end - start))
+            link.visible = span > 1e-9
             if link.visible:
-                link.scale = (1.0, 1.0, length)
+                link.scale = (1.0, 1.0, span)
                 link.position, link.wxyz = (start + end) / 2, along(end - start)
-        for joint, point, axis in zip(self._joints, points[-len(self._joints) - 1 :], joint_axes(self._arm, q)):
-            joint.position, joint.wxyz = point, along(axis)
+        for joint, frame, axis in zip(self._joints, link_frames(self._arm, q)[1:], self._axes):
+            joint.position, joint.wxyz = frame[:3, 3], along(frame[:3, :3] @ axis)

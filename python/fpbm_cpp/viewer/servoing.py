@@ -16,6 +16,7 @@ from .._types import Array
 from ..arms import Arm, JointLimits
 from ..clearance import Clearance
 from ..errors import wrong
+from ..robots import Robot
 from ..schemes import Scheme
 from ..task_bounds import TaskBounds
 from ..tasks import Stack
@@ -38,7 +39,7 @@ class Servo(Page):
 
     def __init__(
         self,
-        arm: Arm,
+        arm: Arm | Robot,
         scheme: Scheme,
         q0: ArrayLike,
         *,

@@ -12,6 +12,7 @@ from ..arms import Arm
 from ..capsule import Capsule
 from ..clearance import Clearance
 from ..obstacle import Cuboid, HalfSpace, Obstacle
+from ..robots import Robot
 from ..skeleton import link_frames
 from ..task_bounds import TaskBounds
 from ..tasks import PositionTask
@@ -36,7 +37,7 @@ def draw_bounds(scene: SceneApi, bounds: Sequence[TaskBounds]) -> None:
 class Shapes:
     """Capsules and obstacles, translucent, and a line between the two shapes that are nearest to one another."""
 
-    def __init__(self, scene: SceneApi, arm: Arm, clearance: Clearance) -> None:
+    def __init__(self, scene: SceneApi, arm: Arm | Robot, clearance: Clearance) -> None:
         self._arm = arm
         used = {each.link for each in clearance.capsules}
         self._links = {link: scene.add_frame(f"/clear/link_{link}", show_axes=False) for link in sorted(used)}

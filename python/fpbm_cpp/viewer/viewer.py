@@ -39,7 +39,10 @@ class Viewer(Page):
         self._first = run
         self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
         self._lock = threading.RLock()
-        gui, duration = self._server.gui, run.path.duration + run.options.get("hold", 0.0)
+        gui, duration = (
+            self._server.gui,
+            max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0),
+        )
         with self._lock:  # The page's first events wait until all parts are there.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)

@@ -1,0 +1,58 @@
+"""Frames of tasks along a motion: the positions that are drawn, and Jacobians."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._types import Array
+from ..robots import Robot
+from ..skeleton import frames_of, task_frames
+from ..tasks import FrameTask, PoseTask
+
+if TYPE_CHECKING:
+    from .run import Run
+
+
+def tracks(run: Run) -> list[tuple[Array, Array]]:
+    """Of each path of a run: positions of the task's frame and of its reference in the base frame [m], (N, 2 or 3)."""
+    found = [(run.positions, run.reference_positions)]
+    frames = run.frames
+    for name in run.paths:
+        if name != run.task:
+            p = frames[name][:, :3, 3]
+            found.append((p, p + _in_base(run, name, run.errors[name][:, :3])))
+    if run.led.reference_frame is not None:
+        p = frames[run.task][:, :3, 3]
+        found[0] = p, p + _in_base(run, run.task, run.position_error)
+    return found
+
+
+def _in_base(run: Run, name: str, vectors: Array) -> Array:
+    """Vectors along the axes that a task has its points in, shape (N, 3), along the base frame's."""
+    assert run.stack is not None
+    reference = run.stack.follower(name).reference_frame
+    if reference is None:
+        return vectors
+    return np.asarray(np.einsum("kij,kj->ki", frames_of(run.arm, run.q, reference)[:, :3, :3], vectors))
+
+
+def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:
+    """Jacobian of a task, seen from its reference frame, in the base frame's axes, shape (N, m, n).
+
+    m is 6 of a PoseTask, else 3, of the position.
+    """
+    p = task_frames(robot, q, task)[:, :3, 3]
+    J = _jacobians_at(robot, q, task.frame, p)
+    if task.reference_frame is not None:
+        J -= _jacobians_at(robot, q, task.reference_frame, p)
+    return J if isinstance(task, PoseTask) else J[:, :3]
+
+
+def _jacobians_at(robot: Robot, q: Array, frame: str, p: Array) -> Array:
+    """Jacobian of the points p, shape (N, 3) [m], that move with a frame."""
+    J = np.array([robot.jacobian(posture, frame) for posture in q]).reshape(-1, 6, robot.dof)
+    lever = p - frames_of(robot, q, frame)[:, :3, 3]
+    J[:, :3] += np.cross(J[:, 3:], lever[:, :, None], axis=1)
+    return J
