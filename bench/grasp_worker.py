@@ -218,9 +218,7 @@ class Mink:
         tasks = [self.grasp, self.tray, self.posture]
         velocity, found = np.zeros(14), True
         try:
-            velocity = mink.solve_ik(
-                self.configuration, tasks, DT, "daqp", limits=self.limits, primal_tol=TOLERANCE
-            )
+            velocity = mink.solve_ik(self.configuration, tasks, DT, "daqp", limits=self.limits, primal_tol=TOLERANCE)
         except mink.NoSolutionFound:
             found = False
         self.configuration.integrate_inplace(velocity, DT)
