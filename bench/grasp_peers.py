@@ -5,8 +5,8 @@ relative pose are the largest of each motion; excesses are by differences of pos
 as shares of the bounds. Each peer is installed from PyPI into a virtual environment of its own; those that cannot be
 installed are listed.
 
-The peers minimise weighted squares: the relative pose has the cost 100 and the object 1 (Pink, Mink), is an equality
-(PlaCo) or has a higher priority (roboplan). They get the object's pose a tick ahead. With a gain of 1, their default,
+The peers minimise weighted squares: the relative pose has the cost 100 and the object 1 (Pink, Mink, roboplan), or is
+an equality (PlaCo). They get the object's pose a tick ahead. With a gain of 1, their default,
 the object's error is to vanish in one tick; with 0.02, at 20/s. fpbm_cpp bounds accelerations and jerks as well.
 """
 

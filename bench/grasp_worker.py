@@ -269,7 +269,8 @@ class Placo:
 
 
 class Roboplan:
-    """Priorities 1, 2 and 3; the relative pose is that of the left tip with the right one as base frame."""
+    """The relative pose is that of the left tip with the right one as base frame. All tasks have one priority: with
+    the priorities 1, 2 and 3 the relative pose differed by 0.1 m."""
 
     def __init__(self, limits: fp.JointLimits, options: Options) -> None:
         import roboplan.core as core
@@ -284,14 +285,14 @@ class Roboplan:
         core, ik = self.core, self.ik
         self.oink = ik.Oink(self.scene)
 
-        def frame(reference: str, name: str, pose: Array, gain: float, priority: int) -> Any:
-            options = ik.FrameTaskOptions(task_gain=gain, priority=priority)
+        def frame(reference: str, name: str, pose: Array, gain: float, cost: float) -> Any:
+            options = ik.FrameTaskOptions(position_cost=cost, orientation_cost=cost, task_gain=gain)
             target = core.CartesianConfiguration(reference, name, np.asfortranarray(pose))
             return ik.FrameTask(self.oink, self.scene, target, options)
 
-        self.tray = frame("base", "right_tip", np.eye(4), self.options.gain, 2)
-        posture = ik.ConfigurationTask(self.oink, q, np.ones(14), ik.ConfigurationTaskOptions(priority=3))
-        self.tasks = [frame("right_tip", "left_tip", grasp, self.options.grasp_gain, 1), self.tray, posture]
+        self.tray = frame("base", "right_tip", np.eye(4), self.options.gain, COSTS[1])
+        posture = ik.ConfigurationTask(self.oink, q, COSTS[2] * np.ones(14), ik.ConfigurationTaskOptions())
+        self.tasks = [frame("right_tip", "left_tip", grasp, self.options.grasp_gain, COSTS[0]), self.tray, posture]
         self.last = ik.AccelerationLimit(self.oink, DT, np.asarray(self.given.acceleration))
         velocity = ik.VelocityLimit(self.oink, DT, np.asarray(self.given.velocity))
         self.limits = [ik.PositionLimit(self.oink), velocity]

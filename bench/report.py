@@ -353,7 +353,7 @@ def page(results: Results) -> str:
         lines += table(["robot", "fpbm_cpp", "Pinocchio", "ratio"], report_trees.kinematics(results))
     if values.get("ticks"):
         lines += ["Ticks [µs] with active limits, by joints and levels:", ""]
-        lines += table(["joints", *(f"{levels} levels" for levels in report_trees.LEVELS)], report_trees.ticks(results))
+        lines += table(["joints", *(f"levels: {k}" for k in report_trees.LEVELS)], report_trees.ticks(results))
         lines += ["![Ticks by joints and by levels](trees.png)", ""]
     for section, title in (("parts", "Parts of a step, and RK4"), ("loop", "Limits and ticks")):
         if section in values:

@@ -1,4 +1,4 @@
-"""The report's part on robots as trees: their kinematics beside Pinocchio, and how ticks grow with joints and levels."""
+"""The report on robots as trees: kinematics beside Pinocchio, and how ticks grow with joints and levels."""
 
 from __future__ import annotations
 

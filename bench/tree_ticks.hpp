@@ -9,8 +9,8 @@
 #include "g1_upper_body.hpp"
 #include "jobs.hpp"
 
-// Ticks of stacks on robots of several arms: rows ticks/robot/levels/limits. The targets swing; with limits, fast
-// enough that bounds are active in most ticks.
+// Ticks of stacks on robots of several arms: rows ticks/robot/stack/limited or free. A target swings. The counter
+// `limited` is the share of ticks in which bounds are active.
 namespace bench {
 
 /// Arms of 7 joints, all Pandas, side by side or on a torso that turns and leans.
@@ -115,13 +115,14 @@ void run_ticks(benchmark::State& bench, MakeStack make_stack) {
                                      fpbm::Limits<fpbm::Level::kAcceleration, N>(limits, 1e-3));
   auto target = decltype(tracker)::Target::hold(tracker.tip());
   const fpbm::Vector<3> centre = std::get<kMoved>(target.x).p;
-  const double rate = kLimited ? 12.0 : 2.0;
+  const double rate = kLimited ? 6.0 : 2.0;
+  const double size = kLimited ? 0.5 : 0.08;  // [m]
   long ticks = 0;
   double limited = 0;
   for (auto _ : bench) {
     const double t = 1e-3 * static_cast<double>(++ticks);
     std::get<kMoved>(target.x).p =
-        centre + 0.08 * fpbm::Vector<3>(std::sin(rate * t), std::sin(0.7 * rate * t), std::sin(1.3 * rate * t));
+        centre + size * fpbm::Vector<3>(std::sin(rate * t), std::sin(0.7 * rate * t), std::sin(1.3 * rate * t));
     auto tick = tracker.tick(target);
     escape(tick);
     limited += tick.saturated != 0 ? 1.0 : 0.0;

@@ -1,4 +1,4 @@
-"""Programs of docs/coming_from.md: each library's beside this library's. `make peers` installs the libraries and runs them.
+"""Programs of docs/coming_from.md, each library's beside this library's. `make peers` installs and runs them.
 
 Each program runs in a virtual environment of its own in the folder FPBM_PEERS, as the libraries' requirements exclude
 each other; PyKDL is Debian's. Without FPBM_PEERS all are skipped.
