@@ -194,6 +194,12 @@ bool report(const std::vector<Motion>& motions, int first, const char* name) {
   std::printf("  above 1e-6: %td (%.2f %%), above 1e-9: %td (%.2f %%)\n", above(1e-6),
               100.0 * static_cast<double>(above(1e-6)) / count, above(1e-9),
               100.0 * static_cast<double>(above(1e-9)) / count);
+  std::printf("  the first above 1e-6:");
+  int shown = 0;
+  for (std::size_t k = 0; k < motions.size() && shown < 10; ++k) {
+    if (motions[k].grasp > 1e-6 && ++shown > 0) std::printf(" %d", first + static_cast<int>(k));
+  }
+  std::printf("\n");
   std::printf("  excess over the bounds: q %.1e rad; shares: Δq %.1e, Δ²q %.1e, Δ³q %.1e, Δ²q̇ %.1e\n", excess[0],
               excess[1], excess[2], excess[3], excess[4]);
   std::printf("  not at rest: %d; mean tick %.1f µs\n", moving, time / count / (kTicks + 1000) / 1e3);

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -67,7 +68,7 @@ def environment(name: str) -> Path:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
         pip = [python, "-m", "pip", "install", "--quiet", "--no-compile", "--only-binary", ":all:", *PACKAGES[name]]
         if subprocess.run(pip, check=False).returncode != 0:
-            subprocess.run(["rm", "-r", folder], check=True)
+            shutil.rmtree(folder)
             pytest.skip(f"{name} cannot be installed")
     return python
 
