@@ -115,14 +115,18 @@ void run_ticks(benchmark::State& bench, MakeStack make_stack) {
                                      fpbm::Limits<fpbm::Level::kAcceleration, N>(limits, 1e-3));
   auto target = decltype(tracker)::Target::hold(tracker.tip());
   const fpbm::Vector<3> centre = std::get<kMoved>(target.x).p;
-  const double rate = kLimited ? 6.0 : 2.0;
-  const double size = kLimited ? 0.5 : 0.08;  // [m]
+  const fpbm::Vector<3> rates = (kLimited ? 6.0 : 2.0) * fpbm::Vector<3>(1.0, 0.7, 1.3);  // [rad/s]
+  const double size = kLimited ? 0.3 : 0.05;                                              // [m]
   long ticks = 0;
   double limited = 0;
   for (auto _ : bench) {
     const double t = 1e-3 * static_cast<double>(++ticks);
-    std::get<kMoved>(target.x).p =
-        centre + size * fpbm::Vector<3>(std::sin(rate * t), std::sin(0.7 * rate * t), std::sin(1.3 * rate * t));
+    for (int i = 0; i < 3; ++i) {
+      const double sine = size * std::sin(rates(i) * t);
+      std::get<kMoved>(target.x).p(i) = centre(i) + sine;
+      target.xd(6 * kMoved + i) = size * rates(i) * std::cos(rates(i) * t);
+      target.xdd(6 * kMoved + i) = -rates(i) * rates(i) * sine;
+    }
     auto tick = tracker.tick(target);
     escape(tick);
     limited += tick.saturated != 0 ? 1.0 : 0.0;
