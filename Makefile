@@ -17,7 +17,7 @@ BENCHMARK := /usr/include/benchmark/benchmark.h:libbenchmark-dev
 CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch]pp')
 
 .DELETE_ON_ERROR:
-.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions lint \
+.PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp peers lint \
         format stubs docs notebooks bench count stalls sdist wheel clean
 
 help:
@@ -36,6 +36,8 @@ help:
 	@echo 'make nightly          the C++ tests and a day of a control loop'
 	@echo 'make soak             a day of a control loop at 1 kHz'
 	@echo 'make motions          10,000 random motions of stacks of tasks: bounds, and rest'
+	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
+	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
 	@echo 'make lint             formatting, static analysis, imports, types, stubs'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
@@ -141,6 +143,20 @@ soak:
 # Takes two hours of processor time.
 motions: $(VENV)/package
 	$(BIN)/python tests/soak/stack_motions.py
+
+# Takes half an hour of processor time.
+grasp: MOTIONS ?= 10000
+grasp: $(VENV)/package
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN)
+	cmake --preset bench
+	cmake --build --preset bench --target bench_grasp
+	$(BIN)/python bench/grasp_peers.py
+	build/bench/bench/bench_grasp $(MOTIONS)
+
+# Other libraries' programs beside those here; each library is installed into build/stack_peers.
+peers: $(VENV)/package $(VENV)/test
+	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
+	FPBM_PEERS=build/stack_peers $(BIN)/python -m pytest tests/docs/test_coming_from.py -s
 
 # The corpus stays in build/fuzz, so that the next run goes on from it.
 fuzz:

@@ -60,6 +60,17 @@ def rows(results: Results) -> list[list[str]]:
         count, bar = instructions(results, job), 0.75 if job.endswith("tick") else 0.8
         share = count / before if count else None
         add(f"instructions of {job.replace('/', ' ')}: share of those before", share, bar, "{:.2f}")
+    for robot, words in (("two_pandas", "two Pandas"), ("g1_upper_body", "G1's upper body")):
+        for part, meaning in (("J", "J"), ("J_and_Jd", "J and J̇"), ("J_and_Jd_qd", "J and J̇q̇")):
+            share = results.ratio(f"trees/{robot}/{part}", "pinocchio")
+            add(f"{meaning} of two frames of {words}: share of Pinocchio's time", share, 0.30, "{:.2f}")
+    for row, words, bar in (
+        ("14/two_poses/free", "two poses of two Pandas, without limits", 5.0),
+        ("g1_upper_body/grasp/limited", "three levels of G1's 17 joints, limits active", 15.0),
+        ("17/grasp/limited", "three levels of two Pandas on a torso of 3 joints, limits active", 15.0),
+    ):
+        time = results.least(f"ticks/{row}")
+        add(f"tick: {words}", time / 1e3 if time else None, bar, "{:.1f} µs")
     torch, pose = (results.least(f"step/{row}/fpbm_damped/fpbm_cpp") for row in ("ur5e/torch", "panda/pose"))
     of_pose = torch / pose if torch and pose else None
     add("UR5e step of FPBM, position and axis of the tip: share of a Panda pose step", of_pose, 1.1, "{:.2f}")

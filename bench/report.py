@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import promises
+import report_trees
 
 RESULTS = Path(__file__).parent / "results"
 README = Path(__file__).parent.parent / "README.md"
@@ -68,7 +69,7 @@ def nanoseconds(time: float) -> str:
 class Results:
     def __init__(self, values: dict[str, Any]) -> None:
         self.values = values
-        sections = ("step", "limited", "parts", "loop", "growth", "lanes", "python")
+        sections = ("step", "limited", "parts", "loop", "growth", "trees", "ticks", "lanes", "python")
         self.rows: dict[str, Row] = {row["name"]: row for name in sections for row in values.get(name, [])}
         for row in values.get("limited", []):
             part, case = row["name"].split("/", 1)
@@ -347,6 +348,13 @@ def page(results: Results) -> str:
         "",
         *growth(results),
     ]
+    if values.get("trees"):
+        lines += ["## Robots as trees", "", "Kinematics, as ratios to Pinocchio's time in the same run:", ""]
+        lines += table(["robot", "fpbm_cpp", "Pinocchio", "ratio"], report_trees.kinematics(results))
+    if values.get("ticks"):
+        lines += ["Ticks [µs] with active limits, by joints and levels:", ""]
+        lines += table(["joints", *(f"levels: {k}" for k in report_trees.LEVELS)], report_trees.ticks(results))
+        lines += ["![Ticks by joints and by levels](trees.png)", ""]
     for section, title in (("parts", "Parts of a step, and RK4"), ("loop", "Limits and ticks")):
         if section in values:
             lines += [f"## {title}", "", *plain(results, section)]
@@ -420,6 +428,8 @@ def write(folder: Path) -> None:
     (folder / "results.md").write_text(page(results))
     try:
         chart(results, folder / "results.png")
+        if results.values.get("ticks"):
+            report_trees.chart(results, folder / "trees.png")
     except ImportError:
         print("No chart: matplotlib is not installed")
 

@@ -29,7 +29,7 @@ HERE = Path(__file__).parent
 RESULTS = HERE / "results"
 
 # Programs of Google Benchmark, a section of the report each; one of 20 repetitions of a row takes SECONDS.
-PROGRAMS = ("step", "limited", "parts", "loop", "growth")
+PROGRAMS = ("step", "limited", "parts", "loop", "growth", "trees", "ticks")
 SECONDS = 0.02
 # What bench_limited says of 10,000 answers.
 SCORES = ("slowed", "unsolved", "outside", "off_line", "smaller", "larger")
