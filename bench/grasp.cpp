@@ -105,10 +105,12 @@ Motion run(std::uint64_t seed, bool stops) {
   const ObjectPath path(random);
   const int stop = stops ? static_cast<int>(1500 + random.uniform(1200.0)) : -1;
 
-  const fpbm::Stack stack(fpbm::RelativePoseTask<>{{left, {400.0, 40000.0}}, right},
+  const fpbm::Stack stack(fpbm::RelativePoseTask<>{{left, {500.0, 62500.0}}, right},
                           fpbm::PoseTask<>{right, {10.0, 25.0}}, fpbm::PostureTask<14>{fpbm::TaskGains<>(4.0, 4.0)});
   const auto scheme = fpbm::Balanced<14>(0.0, fpbm::UnitWeights{}, fpbm::NullSpace<14>().with_damping(2.0));
-  auto tracker = fpbm::stack_tracker(robot, stack, scheme, q0);
+  fpbm::TrackerOptions<> options;
+  options.keep_first_level = true;
+  auto tracker = fpbm::stack_tracker(robot, stack, scheme, q0, options);
   auto target = decltype(tracker)::Target::hold(tracker.tip());
   const auto start = target.x;
 

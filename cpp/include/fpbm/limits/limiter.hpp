@@ -34,13 +34,25 @@ class Limiter {
   template <typename Tasks>
   using Found = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
-  explicit Limiter(const Limits<kLevel, N, Scalar>& limits) : limits_(limits), unit_(limits.bounds().acceleration) {
+  /// reserve: share of each joint's bound on acceleration that the levels below the first leave to the first, and half
+  /// of that share of the bound on velocity. 0: the first level has no reserve, and all levels share the limits. Throws
+  /// std::invalid_argument where it is not in [0, 1].
+  explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
+      : limits_(limits),
+        lower_limits_(reserved(limits, reserve)),
+        reserves_(reserve > Scalar(0)),
+        unit_(limits.bounds().acceleration) {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
       if (!std::isfinite(unit_(i))) unit_(i) = Scalar(1);
     }
   }
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
+
+  /// Whether an arm may go from one state to another in a tick without being limited.
+  [[nodiscard]] bool admits(const JointState& from, const JointState& to, const JointVector& last) const noexcept {
+    return lower_limits_.admits(from, to, last);
+  }
 
   /// The motion within the limits for a desired qdd, or qd at velocity level, where the state's qd is the last command.
   /// last: acceleration of the last tick, which bounds on jerk start from.
@@ -121,11 +133,52 @@ class Limiter {
   [[nodiscard]] Found<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                      const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
     const Box<N, Scalar> box = limits_.box(state, last);
+    if (reserves_) return with_reserve(tasks, state, desired, last, rows, box);
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
     const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
     return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+  }
+
+  /// bounded() where the lower levels leave a reserve: the first level alone brakes within the limits, the lower levels
+  /// move within those of the reserve, widened by the motion of the first level.
+  template <typename Tasks, int P>
+  [[nodiscard]] Found<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                          const JointVector& last, const Rows<N, P, Scalar>& rows,
+                                          const Box<N, Scalar>& box) const noexcept {
+    const bool jerk = limits_.bounds_jerk();
+    const Box<N, Scalar> whole = jerk ? box_in_time(limits_, state, last, box) : box;
+    Box<N, Scalar> lower = jerk ? lower_limits_.box_in_time(state) : lower_limits_.box(state, last);
+    lower = {whole.nearest(lower.lower), whole.nearest(lower.upper)};
+    auto saturation = saturation_of(tasks, unit_, rows);
+    Found<Tasks> found = with_scale(tasks, desired, Scalar(1));
+    if (!lower.contains(desired)) {
+      const auto first = only_first(tasks);
+      const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
+      const JointVector wanted = desired + null_space_motion(first, JointVector(rest - desired));
+      found = saturation(whole, rest, wanted);
+      if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, whole, rows, wanted, found);
+      if (!is_finite(found.u)) {
+        found.u = rest;
+        set_scale(found, Scalar(0));
+      } else {
+        lower = {lower.lower.cwiseMin(found.u), lower.upper.cwiseMax(found.u)};
+        resolve_lower(saturation, lower, desired, found);
+      }
+    }
+    if (!jerk) return found;
+    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+  }
+
+  [[nodiscard]] static Limits<kLevel, N, Scalar> reserved(const Limits<kLevel, N, Scalar>& limits, Scalar reserve) {
+    validation::require_fraction("reserve", reserve);
+    if (!(reserve > Scalar(0))) return limits;
+    JointLimits<N, Scalar> bounds = limits.bounds();
+    bounds.velocity *= Scalar(1) - reserve / Scalar(2);
+    bounds.acceleration *= Scalar(1) - reserve;
+    bounds.deceleration *= Scalar(1) - reserve;
+    return Limits<kLevel, N, Scalar>(bounds, limits.tick());
   }
 
   /// The motion within bounds that does as much as possible of a desired one.
@@ -178,6 +231,8 @@ class Limiter {
   static constexpr Scalar kUnseen = Scalar(0.01);      ///< Share of the task that may be lost unreported.
 
   Limits<kLevel, N, Scalar> limits_;
+  Limits<kLevel, N, Scalar> lower_limits_;  ///< Of the levels below the first.
+  bool reserves_;
   JointVector unit_;  ///< Unit of each joint's motion in the null space.
 };
 
