@@ -7,8 +7,10 @@
 #include "fpbm/limits/braking.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/one_level.hpp"
+#include "fpbm/limits/reserved_limits.hpp"
 #include "fpbm/limits/row_projection.hpp"
 #include "fpbm/limits/task_given_up.hpp"
+#include "fpbm/limits/tick_motions.hpp"
 #include "fpbm/limits/toward_goal.hpp"
 #include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/product.hpp"
@@ -39,7 +41,7 @@ class Limiter {
   /// std::invalid_argument where it is not in [0, 1].
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
       : limits_(limits),
-        lower_limits_(reserved(limits, reserve)),
+        lower_limits_(reserved_limits(limits, reserve)),
         reserves_(reserve > Scalar(0)),
         unit_(limits.bounds().acceleration) {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
@@ -138,7 +140,8 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
     const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
-    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
+    return toward_goal(saturation, box, rows, box.nearest(motions(limits_, state.qd, last)),
+                       approach(limits_, state.qd, found.u), found);
   }
 
   /// bounded() where the lower levels leave a reserve: the first level alone brakes within the limits, the lower levels
@@ -168,17 +171,8 @@ class Limiter {
       }
     }
     if (!jerk) return found;
-    return toward_goal(saturation, box, rows, box.nearest(motions(state.qd, last)), approach(state.qd, found.u), found);
-  }
-
-  [[nodiscard]] static Limits<kLevel, N, Scalar> reserved(const Limits<kLevel, N, Scalar>& limits, Scalar reserve) {
-    validation::require_fraction("reserve", reserve);
-    if (!(reserve > Scalar(0))) return limits;
-    JointLimits<N, Scalar> bounds = limits.bounds();
-    bounds.velocity *= Scalar(1) - reserve / Scalar(2);
-    bounds.acceleration *= Scalar(1) - reserve;
-    bounds.deceleration *= Scalar(1) - reserve;
-    return Limits<kLevel, N, Scalar>(bounds, limits.tick());
+    return toward_goal(saturation, box, rows, box.nearest(motions(limits_, state.qd, last)),
+                       approach(limits_, state.qd, found.u), found);
   }
 
   /// The motion within bounds that does as much as possible of a desired one.
@@ -197,32 +191,6 @@ class Limiter {
       set_scale(found, Scalar(0));
     }
     return found;
-  }
-
-  /// The motions of a tick of some accelerations.
-  [[nodiscard]] JointVector motions(const JointVector& qd, const JointVector& accelerations) const noexcept {
-    if constexpr (kLevel == Level::kVelocity) {
-      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + limits_.tick() * accelerations(i); });
-    } else {
-      return accelerations;
-    }
-  }
-
-  /// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its
-  /// end: the same for all joints, so that the change keeps its direction.
-  [[nodiscard]] JointVector approach(const JointVector& qd, const JointVector& goal) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) {
-      return goal;
-    } else {
-      Scalar share(1);
-      for (Eigen::Index i = 0; i < goal.size(); ++i) {
-        if (!limits_.bounds_jerk(i)) continue;
-        const Scalar change = std::abs(goal(i) - qd(i));
-        const Scalar most = limits_.tick() * limits_.jerk_limited(i).change(change);
-        if (share * change > most) share = most / change;
-      }
-      return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
-    }
   }
 
   static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.

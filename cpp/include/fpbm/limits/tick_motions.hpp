@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cmath>
+
+#include "fpbm/limits/limits.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+
+namespace fpbm {
+
+/// The motions of a tick of some accelerations: these, or the velocities at its end at velocity level.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> motions(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qd,
+                                        const Vector<N, Scalar>& accelerations) noexcept {
+  if constexpr (kLevel == Level::kVelocity) {
+    return entrywise(qd, [&](Eigen::Index i) { return qd(i) + limits.tick() * accelerations(i); });
+  } else {
+    return accelerations;
+  }
+}
+
+/// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its end:
+/// the same for all joints, so that the change keeps its direction. At acceleration level the goal itself.
+template <Level kLevel, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> approach(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qd,
+                                         const Vector<N, Scalar>& goal) noexcept {
+  if constexpr (kLevel == Level::kAcceleration) {
+    return goal;
+  } else {
+    Scalar share(1);
+    for (Eigen::Index i = 0; i < goal.size(); ++i) {
+      if (!limits.bounds_jerk(i)) continue;
+      const Scalar change = std::abs(goal(i) - qd(i));
+      const Scalar most = limits.tick() * limits.jerk_limited(i).change(change);
+      if (share * change > most) share = most / change;
+    }
+    return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
+  }
+}
+
+}  // namespace fpbm
