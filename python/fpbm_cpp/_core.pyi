@@ -638,6 +638,10 @@ class Tracker:
         rest; 0 switches it off.
     recovery : bool
         Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
+    keep_first_level : bool
+        Whether the first level, the grasp of two arms say, comes before speed: the lower levels leave it a reserve of the
+        limits, 0.4 of each bound on acceleration and 0.2 of each bound on velocity, and stop keeps it: its references are
+        held at rest, and the joints come to rest in its null space.
     measured_delay : int
         Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
         tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
@@ -672,6 +676,7 @@ class Tracker:
         singular_brake: typing.SupportsFloat | typing.SupportsIndex = 10.0,
         null_damping: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         recovery: bool = True,
+        keep_first_level: bool = False,
         measured_delay: typing.SupportsInt | typing.SupportsIndex = 3,
         clearance: typing.Any = None,
         bounds: typing.Any = (),
@@ -734,7 +739,8 @@ class Tracker:
         """
     def stop(self) -> None:
         """
-        Brings every joint to rest as fast as the limits allow, until resume.
+        Brings every joint to rest as fast as the limits allow, until resume; with keep_first_level, in the null
+        space of the first level.
         """
     @typing.overload
     def tick(self, follower: PathFollower) -> Tick:
