@@ -321,7 +321,8 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
     [
         (
             ["pnada"],
-            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, planar:1,1,1,1, "
+            "ARM = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body, "
+            "planar:1,1,1,1, "
             "a URDF file; did you mean 'panda'?",
         ),
         (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
@@ -375,8 +376,8 @@ def test_an_arm_is_asked_for() -> None:
     result = call("track")
     assert result.exit_code == 2
     assert (
-        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, planar:1,1,1,1 or a URDF file."
-        in result.stderr
+        "Missing argument 'ARM': panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body, "
+        "planar:1,1,1,1 or a URDF file." in result.stderr
     )
 
 

@@ -403,7 +403,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'preset'", "arm.name: is missing"),
         (
             "[arm]\nkind = 'preset'\nname = 'pnada'",
-            "arm.name = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas; "
+            "arm.name = 'pnada': must be one of panda, fr3, iiwa14, gen3, ur5e, ur10e, two_pandas, g1_upper_body; "
             "did you mean 'panda'?",
         ),
         ("[arm]\nkind = 'planar'\nlengths = [1, -1]", "arm.lengths[1] = -1: must be positive and finite"),

@@ -254,16 +254,19 @@ def test_a_tracker_of_a_robot_needs_a_stack(write) -> None:
 
 @pytest.mark.parametrize("level", ["acceleration", "velocity"])
 def test_a_grasp_holds_within_limits(level: str) -> None:
-    """The tray jumps beyond what the limits allow; positions, velocities and accelerations by differences of q."""
+    """The tray jumps beyond what the limits allow; positions, velocities and accelerations by differences of q.
+
+    A tick by velocity moves the grasp by h²/2 of its acceleration, which no gain undoes within that tick.
+    """
     robot = fp.Robot.preset("two_pandas")
     q = np.tile([0, -0.6, 0, -2.4, 0, 1.8, 0.785], 2)
     stack = fp.Stack(
-        fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=400, k2=40_000, k=400),
+        fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=500, k2=62_500, k=600),
         fp.PoseTask("right_tip", name="tray"),
         fp.PostureTask(q, k1=4, k2=4, k=2),
     )
     scheme = fp.MVN() if level == "velocity" else fp.Balanced(0, np.ones(14), null_damping=2)
-    tracker = fp.Tracker(robot, scheme, q, stack=stack)
+    tracker = fp.Tracker(robot, scheme, q, stack=stack, keep_first_level=True)
     start = tracker.tip["tray"]
     rng, limits, slowed, path = np.random.default_rng(4), robot.limits, 0, [q, q]
     for k in range(4000):
@@ -272,7 +275,7 @@ def test_a_grasp_holds_within_limits(level: str) -> None:
             goal[:3, 3] += rng.uniform(-0.4, 0.4, 3)
             goal[:3, :3] = fp.rotation(rng.uniform(-0.6, 0.6, 3)) @ start[:3, :3]
         tick = tracker.tick({"tray": goal})
-        assert np.abs(tick.errors["grasp"]).max() < 1e-6
+        assert np.abs(tick.errors["grasp"]).max() < (1e-6 if level == "acceleration" else 1e-5)
         slowed += tick.scales[1] < 1
         path.append(tick.q)
     assert slowed > 0

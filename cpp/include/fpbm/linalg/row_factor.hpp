@@ -142,7 +142,7 @@ class RowFactor {
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
   /// Whether the columns of Q are long enough for loops over pairs of entries.
-  static constexpr bool kLong = std::is_same_v<Value, double> && (N == Eigen::Dynamic || N > kUnrolled);
+  static constexpr bool kLong = std::is_same_v<Value, double> && N > kUnrolled;
 
   /// Number of rows of A.
   [[nodiscard]] auto rows() const noexcept { return extent<M>(Q_.cols()); }
