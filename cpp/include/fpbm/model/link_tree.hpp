@@ -68,20 +68,26 @@ class LinkTree {
   [[gnu::always_inline]] void each_column(const State& state, int link, typename Axes::Point& point,
                                           const JointVector& qd, const F& f) const noexcept {
     const bool slides = pass_.slides();
-    each_pair(state, link, [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
-      const auto columns = Axes::columns(i, joints, point, pass_.turns(), slides);
-      f(i, columns, state.moves ? Axes::rates(i, joints, columns, point, qd) : Columns::zero());
-    });
+    each_pair(
+        state, link,
+        [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
+          const auto columns = Axes::columns(i, joints, point, pass_.turns(), slides);
+          f(i, columns, state.moves ? Axes::rates(i, joints, columns, point, qd) : Columns::zero());
+        },
+        [&](Eigen::Index i) noexcept { f(i, Columns::zero(), Columns::zero()); });
   }
 
   /// The same of the angular rows alone.
   template <typename State, typename F>
   [[gnu::always_inline]] void each_angular_column(const State& state, int link, const F& f) const noexcept {
     const bool slides = pass_.slides();
-    each_pair(state, link, [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
-      const auto columns = Axes::angular_columns(i, joints, pass_.turns(), slides);
-      f(i, columns, Axes::angular_rates(joints, columns));
-    });
+    each_pair(
+        state, link,
+        [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
+          const auto columns = Axes::angular_columns(i, joints, pass_.turns(), slides);
+          f(i, columns, Axes::angular_rates(joints, columns));
+        },
+        [&](Eigen::Index i) noexcept { f(i, Columns::zero(), Columns::zero()); });
   }
 
  private:
@@ -121,9 +127,10 @@ class LinkTree {
     (void)pass_.template operator()<true, kSlides>(starts_[0], q, qd, state.screws, Along(*this, state));
   }
 
-  /// Calls f(i, joints) with joints i and i + 1, the last first; those that do not move the link have no axis.
-  template <typename State, typename F>
-  [[gnu::always_inline]] void each_pair(const State& state, int link, const F& f) const noexcept {
+  /// Calls f(i, joints) with joints i and i + 1, the last first; a joint that does not move the link has no axis. Calls
+  /// still(i) where neither of both does.
+  template <typename State, typename F, typename Still>
+  [[gnu::always_inline]] void each_pair(const State& state, int link, const F& f, const Still& still) const noexcept {
     const auto pairs = pairs_of(extent<Joints>(pass_.dof()));
     const JointBits moving = moved_by(link);
     if (moving == all_) {
@@ -133,7 +140,9 @@ class LinkTree {
       });
       return;
     }
-    for (Eigen::Index i = 2 * (pairs - 1); i >= 0; i -= 2) f(i, state.screws.joints(i).only(moving >> i));
+    for (Eigen::Index i = 2 * (pairs - 1); i >= 0; i -= 2) {
+      (moving >> i & 3U) != 0 ? f(i, state.screws.joints(i).only(moving >> i)) : still(i);
+    }
   }
 
   template <typename Source>
