@@ -12,8 +12,7 @@
 #include <robot.hpp>
 
 #include "check.hpp"
-#include "every_arm.hpp"
-#include "faults.hpp"
+#include "tests.hpp"
 
 namespace {
 
@@ -59,7 +58,7 @@ void poses(Robot& robot) {
 void twists(Robot& robot) {
   const Transform<> start = robot.tip();
   TwistStamped message;
-  message.header.frame_id = "panda_link0";  // Without a stamp: of now.
+  message.header.frame_id = "base";  // Without a stamp: of now.
   message.twist.linear.z = -0.05;
   for (int i = 0; i < 1000; ++i) {
     if (i % 50 == 0) robot.hear("~/target_twist", message);
@@ -90,7 +89,7 @@ void refused(Robot& robot) {
   robot.hear("~/target_pose", message);
   robot.tick(200);
   TwistStamped twist;
-  twist.header.frame_id = "panda_link0";
+  twist.header.frame_id = "base";
   twist.twist.angular.x = std::numeric_limits<double>::infinity();
   robot.hear("~/target_twist", twist);
   robot.tick(200);
@@ -112,7 +111,7 @@ void messages(Robot& robot) {
   const auto& tip = robot.said<PoseStamped>("~/tip_pose");
   const auto target = fpbm_controllers::target_of(tip.last);
   const double error = target ? distance(target->pose, robot.tip()) : 1.0;
-  check(error < 1e-4 && tip.last.header.frame_id == "panda_link0", "tip_pose: distance from the tip [m, rad]", error);
+  check(error < 1e-4 && tip.last.header.frame_id == "base", "tip_pose: distance from the tip [m, rad]", error);
   const auto& status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(status.level == DiagnosticStatus::OK && status.values.at(0).value == "1.000000", "diagnostics: level",
         status.level);
@@ -122,14 +121,9 @@ void messages(Robot& robot) {
 
 int main() {
   try {
-    auto& parameters = stand_in::parameters;
-    for (int i = 1; i <= 7; ++i) parameters.joints.push_back("panda_joint" + std::to_string(i));
-    parameters.arm = "panda";
-    parameters.base_frame = "panda_link0";
-    parameters.command_interfaces = {"position", "velocity"};
-    parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
     Robot robot;
-    robot.load();
+    stand_in::parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
+    check(robot.load(), "configured", 1);
     check(robot.activate(), "activated", 1);
     poses(robot);
     twists(robot);
@@ -141,8 +135,13 @@ int main() {
     check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
           robot.acceleration_excess);
     check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
-    every_arm();
-    std::printf("%lld ticks\n", static_cast<long long>(robot.ticks));
+    std::printf("%lld ticks\n", static_cast<long long>(robot.calls));
+    locks();
+    rates();
+    activation();
+    descriptions();
+    topics();
+    parameters();
   } catch (const std::exception& error) {
     std::printf("FAIL %s\n", error.what());
     return 1;
