@@ -165,9 +165,9 @@ class Robot {
   bool watched = true;
   std::int64_t calls = 0;
   long allocated = 0;
-  double excess = 0.0;               ///< Of a bound on position or velocity [rad, rad/s].
-  double acceleration_excess = 0.0;  ///< As a share of the bound.
-  double jerk_excess = 0.0;          ///< As a share of the bound.
+  double excess = -1e9;               ///< Of a bound on position or velocity [rad, rad/s].
+  double acceleration_excess = -1.0;  ///< As a share of the bound.
+  double jerk_excess = -1.0;          ///< As a share of the bound.
 
  private:
   static constexpr double kRightAngle = 1.5707963267948966;

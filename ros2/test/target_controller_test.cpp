@@ -1,8 +1,10 @@
-// Sends the controller of a simulated Panda targets that come unevenly, none, and wrong ones. Prints what it measures,
-// and fails where that is not as promised.
+// Runs the controller on simulated arms, all tests or those that are named. Prints what it measures, and fails where
+// that is not as promised.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <exception>
 #include <fpbm_controllers/target.hpp>
@@ -119,32 +121,38 @@ void messages(Robot& robot) {
 
 }  // namespace
 
-int main() {
-  try {
-    Robot robot;
-    stand_in::parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
-    check(robot.load(), "configured", 1);
-    check(robot.activate(), "activated", 1);
-    poses(robot);
-    twists(robot);
-    refused(robot);
-    messages(robot);
-    faults(robot);
-    check(robot.allocated == 0, "every activation and tick: allocations", static_cast<double>(robot.allocated));
-    check(robot.excess < 1e-9, "every tick: position, velocity beyond a limit [rad, rad/s]", robot.excess);
-    check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
-          robot.acceleration_excess);
-    check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
-    std::printf("%lld ticks\n", static_cast<long long>(robot.calls));
-    locks();
-    rates();
-    activation();
-    descriptions();
-    topics();
-    parameters();
-  } catch (const std::exception& error) {
-    std::printf("FAIL %s\n", error.what());
-    return 1;
+void targets() {
+  Robot robot;
+  stand_in::parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
+  check(robot.load(), "configured", 1);
+  check(robot.activate(), "activated", 1);
+  poses(robot);
+  twists(robot);
+  refused(robot);
+  messages(robot);
+  faults(robot);
+  check(robot.allocated == 0, "every activation and tick: allocations", static_cast<double>(robot.allocated));
+  check(robot.excess < 1e-9, "every tick: position, velocity beyond a limit [rad, rad/s]", robot.excess);
+  check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
+        robot.acceleration_excess);
+  check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
+  std::printf("%lld ticks\n", static_cast<long long>(robot.calls));
+}
+
+int main(int count, char** names) {
+  const std::pair<const char*, void (*)()> tests[] = {
+      {"targets", targets},           {"locks", locks},   {"rates", rates},          {"activation", activation},
+      {"descriptions", descriptions}, {"topics", topics}, {"parameters", parameters}};
+  for (const auto& [name, test] : tests) {
+    const bool named =
+        std::any_of(names + 1, names + count, [own = name](const char* given) { return std::strcmp(own, given) == 0; });
+    if (count > 1 && !named) continue;
+    try {
+      test();
+    } catch (const std::exception& error) {
+      std::printf("FAIL %s: %s\n", name, error.what());
+      ++failures;
+    }
   }
   return failures == 0 ? 0 : 1;
 }

@@ -2,7 +2,8 @@
 
 #include <robot.hpp>
 
-/// Locks all interfaces, holds the arm, deactivates and activates the controller.
+/// Targets that come unevenly, none, and wrong ones; then locks of all interfaces, a held arm, activations.
+void targets();
 void faults(stand_in::Robot& robot);
 /// Locks interfaces one by one, in motion and at deactivation.
 void locks();
