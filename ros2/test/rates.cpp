@@ -59,9 +59,9 @@ void calls_too_soon() {
   std::deque<std::pair<double, Robot::Joints>> past;
   double t = 0.0;
   double fastest = 0.0;
-  for (int i = 0; i < 3000; ++i) {
-    const bool burst = i >= 1000 && i % 20 == 0;
-    const double period = i < 1000 ? 0.5e-3 : burst ? 10e-3 : i % 20 < 10 ? 1e-5 : 1e-3;
+  for (int i = 0; i < 5000; ++i) {
+    const bool burst = i >= 3000 && i % 20 == 0;
+    const double period = i < 3000 ? 0.5e-3 : burst ? 10e-3 : i % 20 < 10 ? 1e-5 : 1e-3;
     turn(robot, start, t);
     robot.tick(period);
     t += period;
