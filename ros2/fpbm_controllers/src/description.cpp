@@ -85,8 +85,8 @@ fpbm::Chain<> chain_of(const std::string& robot_description, const std::string& 
   fpbm::Transform<> base_in_fork;  // The last link that is before both.
   for (; down != to_base.end(); ++down) {
     if ((*down)->type != urdf::Joint::FIXED) {
-      throw std::invalid_argument("base_frame: link '" + base + "' moves with joint '" + (*down)->name +
-                                  "', which is not before link '" + tip + "': give a link that does not move");
+      throw std::invalid_argument("base_frame: moves with joint '" + (*down)->name +
+                                  "', which is not before tip_frame: give a link that does not move");
     }
     base_in_fork = base_in_fork * origin_of(**down);
   }

@@ -17,8 +17,9 @@ using Parameters = rclcpp::node_interfaces::NodeParametersInterface;
 
 /// An integer, or several, as numbers.
 [[nodiscard]] std::optional<ParameterValue> as_double(const ParameterValue& value) {
-  if (value.get_type() == rclcpp::PARAMETER_INTEGER)
+  if (value.get_type() == rclcpp::PARAMETER_INTEGER) {
     return ParameterValue(static_cast<double>(value.get<std::int64_t>()));
+  }
   if (value.get_type() != rclcpp::PARAMETER_INTEGER_ARRAY) return std::nullopt;
   const auto& integers = value.get<std::vector<std::int64_t>>();
   return ParameterValue(std::vector<double>(integers.begin(), integers.end()));
@@ -59,7 +60,7 @@ std::shared_ptr<target_controller::ParamListener> listen_to_parameters(
   const auto parameters = node->get_node_parameters_interface();
   for (;;) {
     try {
-      const auto listener = std::make_shared<target_controller::ParamListener>(node);
+      auto listener = std::make_shared<target_controller::ParamListener>(node);
       require_known(*parameters);
       return listener;
     } catch (const rclcpp::exceptions::InvalidParameterTypeException& error) {

@@ -35,12 +35,12 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
     RCLCPP_ERROR(logger, "%s", message_of(report, exchange.joints).c_str());
   }
   if (report.refused > before.refused) {
-    RCLCPP_WARN(logger, "%llu targets refused: their stamps are not newer than those before. Check the sender's clock.",
-                static_cast<unsigned long long>(report.refused - before.refused));
+    RCLCPP_WARN(logger, "%s targets refused: their stamps are not newer than those before. Check the sender's clock.",
+                std::to_string(report.refused - before.refused).c_str());
   }
   if (report.missed > before.missed) {
-    RCLCPP_WARN(logger, "%llu ticks with an interface that another thread had locked",
-                static_cast<unsigned long long>(report.missed - before.missed));
+    RCLCPP_WARN(logger, "%s ticks with an interface that another thread had locked",
+                std::to_string(report.missed - before.missed).c_str());
   }
   exchange.logged = report;
 }
