@@ -30,7 +30,8 @@ void parameters() {
   given("limits.acceleration of integers", {{"limits.acceleration", ParameterValue(twos)}}, true, "");
   given("tip_rate: .nan", {{"tip_rate", ParameterValue(nan)}}, false, "tip_rate");
   given("diagnostics_rate: .nan", {{"diagnostics_rate", ParameterValue(nan)}}, false, "diagnostics_rate");
-  given("target.timeout: .inf", {{"target.timeout", ParameterValue(1.0 / 0.0)}}, false, "timeout");
+  given("target.timeout: .inf", {{"target.timeout", ParameterValue(std::numeric_limits<double>::infinity())}}, false,
+        "timeout");
   given("target.velocty: 0.1", {{"target.velocty", ParameterValue(0.1)}}, false, "target.velocty");
   given("target.velocty: 1", {{"target.velocty", ParameterValue(1)}}, false, "target.velocty");
   given("tip_rate: fast", {{"tip_rate", ParameterValue(std::string("fast"))}}, false, "tip_rate");
