@@ -2,7 +2,8 @@
 
 #include <cstdio>
 #include <fpbm_controllers/target.hpp>
-#include <rclcpp/time.hpp>
+#include <rclcpp/rclcpp.hpp>
+#include <string>
 
 inline int failures = 0;
 
@@ -11,11 +12,25 @@ inline void check(bool good, const char* what, double value) {
   if (!good) ++failures;
 }
 
+/// Whether a line that was logged since the last call has a text.
+inline bool logged(const std::string& text) {
+  const bool found = stand_in::log.find(text) != std::string::npos;
+  stand_in::log.clear();
+  return found;
+}
+
 /// At a time of a clock that is not the robot's.
 inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pose, double stamp) {
   geometry_msgs::msg::PoseStamped message;
-  message.header = {rclcpp::Time(static_cast<std::int64_t>(1e9 * (1000.0 + stamp))), "panda_link0"};
+  message.header = {rclcpp::Time(static_cast<std::int64_t>(1e9 * (1000.0 + stamp))), "base"};
   message.pose = fpbm_controllers::message_of(pose);
+  return message;
+}
+
+/// The same without a stamp: of now.
+inline geometry_msgs::msg::PoseStamped pose_message(const fpbm::Transform<>& pose) {
+  geometry_msgs::msg::PoseStamped message = pose_message(pose, 0.0);
+  message.header.stamp = {};
   return message;
 }
 

@@ -1,9 +1,8 @@
-#include "faults.hpp"
-
 #include <cmath>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 
 #include "check.hpp"
+#include "tests.hpp"
 
 namespace {
 
@@ -18,7 +17,7 @@ void locked(Robot& robot) {
   const Transform<> start = robot.tip();
   Transform<> elsewhere = start;
   elsewhere.p(2) += 0.1;
-  robot.watched = false;  // Where ticks are missed, the commands jump.
+  robot.watched = false;  // Where the arm is stopped by locks, it stops at once.
   robot.hear("~/target_pose", pose_message(elsewhere, 12.0));
   robot.tick(200);
   stand_in::locked = true;
@@ -59,6 +58,15 @@ void following_error(Robot& robot) {
   check(robot.speed() == 0.0, "held arm: speed of the command [rad/s]", robot.speed());
   const auto& status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(status.level == DiagnosticStatus::ERROR, "held arm: level of the diagnostics", status.level);
+  check(logged("panda_joint"), "held arm: the stop is logged, with its joint", 1);
+  (void)robot.said<DiagnosticArray>("/diagnostics");
+  check(!logged("panda_joint"), "held arm: the stop is logged once", 1);
+  robot.held = false;  // The hand lets the arm go to its command.
+  robot.tick(100);
+  const auto& later = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
+  const double at_stop = std::stod(later.values.at(3).value);
+  check(at_stop > 0.05, "held arm: following error at the stop, still shown [rad]", at_stop);
+  robot.held = true;
 }
 
 void states(Robot& robot) {
@@ -99,7 +107,7 @@ void states(Robot& robot) {
   check(moving > 0.01 && command == 0.0, "deactivated in motion: velocity command [rad/s]", command);
 
   robot.q[3] = 0.5;  // Beyond its range.
-  check(!robot.activate(), "not activated beyond a limit", 1);
+  check(!robot.activate() && logged("panda_joint4"), "not activated beyond a limit, joint named", 1);
 }
 
 }  // namespace

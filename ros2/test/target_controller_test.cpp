@@ -1,8 +1,10 @@
-// Sends the controller of a simulated Panda targets that come unevenly, none, and wrong ones. Prints what it measures,
-// and fails where that is not as promised.
+// Runs the controller on simulated arms, all tests or those that are named. Prints what it measures, and fails where
+// that is not as promised.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <exception>
 #include <fpbm_controllers/target.hpp>
@@ -12,8 +14,7 @@
 #include <robot.hpp>
 
 #include "check.hpp"
-#include "every_arm.hpp"
-#include "faults.hpp"
+#include "tests.hpp"
 
 namespace {
 
@@ -59,7 +60,7 @@ void poses(Robot& robot) {
 void twists(Robot& robot) {
   const Transform<> start = robot.tip();
   TwistStamped message;
-  message.header.frame_id = "panda_link0";  // Without a stamp: of now.
+  message.header.frame_id = "base";  // Without a stamp: of now.
   message.twist.linear.z = -0.05;
   for (int i = 0; i < 1000; ++i) {
     if (i % 50 == 0) robot.hear("~/target_twist", message);
@@ -90,7 +91,7 @@ void refused(Robot& robot) {
   robot.hear("~/target_pose", message);
   robot.tick(200);
   TwistStamped twist;
-  twist.header.frame_id = "panda_link0";
+  twist.header.frame_id = "base";
   twist.twist.angular.x = std::numeric_limits<double>::infinity();
   robot.hear("~/target_twist", twist);
   robot.tick(200);
@@ -112,7 +113,7 @@ void messages(Robot& robot) {
   const auto& tip = robot.said<PoseStamped>("~/tip_pose");
   const auto target = fpbm_controllers::target_of(tip.last);
   const double error = target ? distance(target->pose, robot.tip()) : 1.0;
-  check(error < 1e-4 && tip.last.header.frame_id == "panda_link0", "tip_pose: distance from the tip [m, rad]", error);
+  check(error < 1e-4 && tip.last.header.frame_id == "base", "tip_pose: distance from the tip [m, rad]", error);
   const auto& status = robot.said<DiagnosticArray>("/diagnostics").last.status.at(0);
   check(status.level == DiagnosticStatus::OK && status.values.at(0).value == "1.000000", "diagnostics: level",
         status.level);
@@ -120,32 +121,38 @@ void messages(Robot& robot) {
 
 }  // namespace
 
-int main() {
-  try {
-    auto& parameters = stand_in::parameters;
-    for (int i = 1; i <= 7; ++i) parameters.joints.push_back("panda_joint" + std::to_string(i));
-    parameters.arm = "panda";
-    parameters.base_frame = "panda_link0";
-    parameters.command_interfaces = {"position", "velocity"};
-    parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
-    Robot robot;
-    robot.load();
-    check(robot.activate(), "activated", 1);
-    poses(robot);
-    twists(robot);
-    refused(robot);
-    messages(robot);
-    faults(robot);
-    check(robot.allocated == 0, "every activation and tick: allocations", static_cast<double>(robot.allocated));
-    check(robot.excess < 1e-9, "every tick: position, velocity beyond a limit [rad, rad/s]", robot.excess);
-    check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
-          robot.acceleration_excess);
-    check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
-    every_arm();
-    std::printf("%lld ticks\n", static_cast<long long>(robot.ticks));
-  } catch (const std::exception& error) {
-    std::printf("FAIL %s\n", error.what());
-    return 1;
+void targets() {
+  Robot robot;
+  stand_in::parameters.scheme.weights = {8, 8, 4, 4, 2, 1, 1};
+  check(robot.load(), "configured", 1);
+  check(robot.activate(), "activated", 1);
+  poses(robot);
+  twists(robot);
+  refused(robot);
+  messages(robot);
+  faults(robot);
+  check(robot.allocated == 0, "every activation and tick: allocations", static_cast<double>(robot.allocated));
+  check(robot.excess < 1e-9, "every tick: position, velocity beyond a limit [rad, rad/s]", robot.excess);
+  check(robot.acceleration_excess < 1e-6, "every tick: acceleration beyond its limit, of this",
+        robot.acceleration_excess);
+  check(robot.jerk_excess < 1e-3, "every tick: jerk beyond its limit, of this", robot.jerk_excess);
+  std::printf("%lld ticks\n", static_cast<long long>(robot.calls));
+}
+
+int main(int count, char** names) {
+  const std::pair<const char*, void (*)()> tests[] = {
+      {"targets", targets},           {"locks", locks},   {"rates", rates},          {"activation", activation},
+      {"descriptions", descriptions}, {"topics", topics}, {"parameters", parameters}};
+  for (const auto& [name, test] : tests) {
+    const bool named =
+        std::any_of(names + 1, names + count, [own = name](const char* given) { return std::strcmp(own, given) == 0; });
+    if (count > 1 && !named) continue;
+    try {
+      test();
+    } catch (const std::exception& error) {
+      std::printf("FAIL %s: %s\n", name, error.what());
+      ++failures;
+    }
   }
   return failures == 0 ? 0 : 1;
 }

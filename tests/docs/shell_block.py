@@ -93,8 +93,9 @@ def check_fpbm(arguments: list[str]) -> None:
 
 
 def check_colcon(arguments: list[str]) -> None:
-    folder = arguments[arguments.index("--base-paths") + 1].removeprefix("src/fpbm_cpp/")
-    assert (ROOT / folder / "package.xml").is_file(), f"{folder}: no ROS package"
+    for argument in arguments[arguments.index("--base-paths") + 1 :]:
+        folder = argument.removeprefix("src/fpbm_cpp/")
+        assert (ROOT / folder / "package.xml").is_file(), f"{folder}: no ROS package"
 
 
 def check_ros2(arguments: list[str]) -> None:

@@ -1,10 +1,11 @@
 #include "fpbm_controllers/target_controller.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <pluginlib/class_list_macros.hpp>
+#include <stdexcept>
+
+#include "fpbm_controllers/parameter_listener.hpp"
 
 namespace fpbm_controllers {
 
@@ -27,10 +28,11 @@ namespace {
 }  // namespace
 
 CallbackReturn TargetController::on_init() {
+  manager_rate_ = get_update_rate();  // Until the controller is configured.
   try {
-    listener_ = std::make_shared<target_controller::ParamListener>(get_node());
+    listener_ = listen_to_parameters(get_node());
     params_ = listener_->get_params();
-  } catch (const std::exception& error) {  // A parameter that is missing, or out of range.
+  } catch (const std::exception& error) {  // A parameter that is missing, out of range, or unknown.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::ERROR;
   }
@@ -42,124 +44,204 @@ InterfaceConfiguration TargetController::command_interface_configuration() const
 }
 
 InterfaceConfiguration TargetController::state_interface_configuration() const {
-  return interfaces(params_.joints, {"position"});
+  return interfaces(params_.joints, params_.state_interfaces);
 }
 
 /// Makes all that allocates, and checks all that may throw but for where the arm stands.
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
-  const auto node = get_node();
   try {
     read_parameters();
+    topics_.emplace(*get_node(), TargetTopics::Settings{params_.base_frame, params_.arm, params_.joints,
+                                                        params_.tip_rate, params_.diagnostics_rate});
   } catch (const std::exception& error) {
-    RCLCPP_ERROR(node->get_logger(), "%s", error.what());
+    RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
+    close();
     return CallbackReturn::FAILURE;
   }
-  open_topics();
   return CallbackReturn::SUCCESS;
 }
 
-/// Begins at rest where the arm stands. All that is made here has a fixed size and lies within the controller: the
-/// controller manager may call this in its loop.
+void TargetController::close() {
+  topics_.reset();
+  tracker_.reset();
+}
+
+CallbackReturn TargetController::on_cleanup(const rclcpp_lifecycle::State&) {
+  close();
+  return CallbackReturn::SUCCESS;
+}
+
+CallbackReturn TargetController::on_shutdown(const rclcpp_lifecycle::State&) {
+  close();
+  return CallbackReturn::SUCCESS;
+}
+
+/// After an error the controller can be configured again.
+CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
+  close();
+  return CallbackReturn::SUCCESS;
+}
+
+/// All that is made here has a fixed size and is within the controller: the controller manager may call this in its
+/// loop.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
-  measured_ = Joints::Zero(arm_->dof());
-  if (!measure()) {
-    RCLCPP_ERROR(get_node()->get_logger(), "the joint positions cannot be read");
-    return CallbackReturn::FAILURE;
-  }
   try {
-    const fpbm::State<kDof> state{measured_, Joints::Zero(measured_.size())};
-    tracker_.emplace(*arm_, fpbm::Pose{}, scheme(measured_), state, options_, *limits_);
+    begin(start());
   } catch (const std::exception& error) {  // A joint outside its limits, say.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::FAILURE;
   }
-  (void)filter_->reset(tracker_->tip());
-  seen_ = target_.get().count;
-  refused_ = missed_ = 0;
-  lost_ = false;
+  pace_ = Pace(options_.dt);
+  seen_ = topics_->exchange().target.get().count;
+  locked_for_ = 0;
+  report_ = Report{};
   return CallbackReturn::SUCCESS;
 }
 
-/// The arm stays where the last command put it.
+void TargetController::begin(const Joints& q) {
+  tracker_.emplace(*arm_, fpbm::Pose{}, scheme(q), fpbm::State<kDof>{q, Joints::Zero(q.size())}, options_, *limits_);
+  (void)filter_->reset(tracker_->tip());
+}
+
+/// The last command of all joints, unless there is none or the arm does not follow it; else the measured positions. The
+/// command would jump to the measured positions by what the arm lags or hangs behind.
+TargetController::Joints TargetController::start() {
+  const auto require = [&](bool good, std::size_t joint, const char* what) {
+    if (!good) throw std::runtime_error("joint '" + params_.joints[joint] + "': " + what);
+  };
+  const std::size_t dof = params_.joints.size();
+  measured_ = Joints::Zero(arm_->dof());
+  if (const auto joint = measure()) require(false, *joint, "its position is locked by another thread: activate again");
+  Joints q = measured_;
+  bool follows = true;
+  for (std::size_t k = 0; k < dof; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    require(std::isfinite(measured_(i)), k, "its position is not a number: check the hardware, then activate again");
+    const std::optional<double> last = command_interfaces_[k].get_optional();
+    require(last.has_value(), k, "its command is locked by another thread: activate again");
+    follows = follows && std::isfinite(*last) && std::abs(difference(i, *last, q(i))) < params_.following_error;
+    if (follows) q(i) = *last;
+    if (state_interfaces_.size() == dof) continue;
+    const double velocity = state_interfaces_[dof + k].get_optional().value_or(0.0);
+    require(std::abs(velocity) <= limits_->bounds().acceleration(i) * options_.dt, k,
+            "it moves faster than it can stop in a tick: activate once the arm is at rest");
+  }
+  if (!follows) q = measured_;
+  const JointLimits& bounds = limits_->bounds();
+  for (std::size_t k = 0; k < dof; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    constexpr double kRoundOff = 1e-9;
+    require(bounds.lower(i) - kRoundOff <= q(i) && q(i) <= bounds.upper(i) + kRoundOff, k,
+            "it is beyond its range: move it back, then activate again");
+  }
+  return q;
+}
+
+/// The arm stays where the last command put it. A joint that does not take its command keeps its last.
 CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
-  report_.set(Report{});
-  if (!tracker_) return CallbackReturn::SUCCESS;
+  topics_->exchange().report.set(Report{});
   const Joints& q = tracker_->state().q;
-  return command(q, Joints::Zero(q.size())) ? CallbackReturn::SUCCESS : CallbackReturn::ERROR;
+  if (const auto joint = command(q, Joints::Zero(q.size()))) {
+    RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays as it was",
+                params_.joints[*joint].c_str());
+  }
+  return CallbackReturn::SUCCESS;
 }
 
 /// One tick a call, always of the length that the limits were made for: a late call makes the arm late, never fast.
 ///
 /// An interface that another thread has locked is no error, for which the controller manager would deactivate the
-/// controller in motion. Where it stays locked, the last reading falls behind the command, and the arm stops.
-return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration&) {
-  take_target();
-  const bool read = measure();
-  const double behind = following_error();
-  if (!(behind < params_.following_error)) {
-    tracker_->stop();
-    lost_ = true;
+/// controller in motion. The arm waits until all joints have taken a command; if that takes too long, it starts anew at
+/// rest from there, and stays. Where readings stay locked, the last falls behind the command, and the arm stops.
+return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
+  if (!pace_.due(period.seconds())) {
+    ++report_.early;
+    return return_type::OK;
   }
-  const auto tick = tracker_->tick(*filter_);
-  if (!command(tick.q, tick.qd) || !read) ++missed_;
-  Report report;
-  report.active = true;
-  report.lost = lost_;
-  report.status = tick.status;
-  report.scale = tick.scale;
-  report.position_error = tick.error.head<3>().norm();
-  report.orientation_error = tick.error.tail<3>().norm();
-  report.following_error = behind;
-  report.refused = refused_;
-  report.missed = missed_;
-  report.time = time;
-  report.tip = tracker_->tip();
-  (void)report_.try_set(report);
+  take_target();
+  const bool read = !measure();
+  compare();
+  if (locked_for_ == 0) {
+    const auto tick = tracker_->tick(*filter_);
+    report_.status = tick.status;
+    report_.scale = tick.scale;
+    report_.position_error = tick.error.head<3>().norm();
+    report_.orientation_error = tick.error.tail<3>().norm();
+  }
+  const auto locked = command(tracker_->state().q, tracker_->state().qd);
+  locked_for_ = locked ? locked_for_ + 1 : 0;
+  if (locked_for_ == kLongestLock) {
+    begin(Joints(tracker_->state().q));
+    stop(Fault::kLocked, *locked);
+  }
+  if (locked || !read) ++report_.missed;
+  report_.active = true;
+  report_.time = time;
+  report_.tip = tracker_->tip();
+  (void)topics_->exchange().report.try_set(report_);
   return return_type::OK;
 }
 
 void TargetController::take_target() noexcept {
-  const std::optional<Target> target = target_.try_get();
+  const std::optional<Target> target = topics_->exchange().target.try_get();
   if (!target || target->count == seen_) return;
   seen_ = target->count;
   const auto push = [&](auto... stamp) noexcept {
     return target->moves ? filter_->push_twist(target->twist, stamp...) : filter_->push(target->pose, stamp...);
   };
   const bool taken = target->stamp == 0.0 ? push() : push(target->stamp);
-  if (!taken) ++refused_;
+  if (!taken) ++report_.refused;
 }
 
-bool TargetController::measure() {
-  bool all = true;
-  for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    const std::optional<double> value = state_interfaces_[static_cast<std::size_t>(i)].get_optional();
-    if (value) measured_(i) = *value;
-    all = all && value;
+std::optional<std::size_t> TargetController::measure() {
+  std::optional<std::size_t> unread;
+  for (std::size_t k = params_.joints.size(); k-- > 0;) {
+    const std::optional<double> value = state_interfaces_[k].get_optional();
+    if (value) {
+      measured_(static_cast<Eigen::Index>(k)) = *value;
+    } else {
+      unread = k;
+    }
   }
-  return all;
+  return unread;
 }
 
-double TargetController::following_error() const {
-  if (!measured_.allFinite()) return std::numeric_limits<double>::infinity();
-  double worst = 0.0;
+double TargetController::difference(Eigen::Index i, double a, double b) const noexcept {
+  return std::isfinite(arm_->limits().upper(i)) ? a - b : std::remainder(a - b, 6.283185307179586);
+}
+
+void TargetController::compare() {
+  double largest = 0.0;
+  std::size_t joint = 0;
   for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    double error = measured_(i) - tracker_->state().q(i);
-    // Drivers wrap the angle of a joint that turns without end.
-    if (!std::isfinite(arm_->limits().upper(i))) error = std::remainder(error, 6.283185307179586);
-    worst = std::max(worst, std::abs(error));
+    const double error = std::abs(difference(i, measured_(i), tracker_->state().q(i)));
+    if (!(error <= largest)) {
+      largest = error;
+      joint = static_cast<std::size_t>(i);
+      if (std::isnan(error)) break;
+    }
   }
-  return worst;
+  if (report_.fault == Fault::kNone) report_.following_error = largest;
+  if (!(largest < params_.following_error))
+    stop(std::isfinite(largest) ? Fault::kFollowing : Fault::kUnreadable, joint);
 }
 
-bool TargetController::command(const Joints& q, const Joints& qd) {
+void TargetController::stop(Fault fault, std::size_t joint) noexcept {
+  tracker_->stop();
+  if (report_.fault != Fault::kNone) return;
+  report_.fault = fault;
+  report_.fault_joint = joint;
+}
+
+std::optional<std::size_t> TargetController::command(const Joints& q, const Joints& qd) {
   const auto dof = static_cast<std::size_t>(q.size());
-  bool taken = true;
+  std::optional<std::size_t> locked;
   for (std::size_t k = 0; k < command_interfaces_.size(); ++k) {
-    const auto joint = static_cast<Eigen::Index>(k % dof);
-    const bool velocity = k >= dof;  // Positions come first: read_parameters().
-    taken = command_interfaces_[k].set_value(velocity ? qd(joint) : q(joint)) && taken;
+    const std::size_t joint = k % dof;
+    const Joints& values = k < dof ? q : qd;  // Positions come first: read_parameters().
+    if (!command_interfaces_[k].set_value(values(static_cast<Eigen::Index>(joint)))) locked = joint;
   }
-  return taken;
+  return locked;
 }
 
 }  // namespace fpbm_controllers

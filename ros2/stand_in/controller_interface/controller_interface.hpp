@@ -2,12 +2,15 @@
 
 #include <any>
 #include <chrono>
+#include <cmath>
+#include <controller_interface/controller_interface_params.hpp>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <rclcpp/rclcpp.hpp>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -32,29 +35,42 @@ class LifecycleNode {
   [[nodiscard]] std::shared_ptr<rclcpp::Clock> get_clock() { return clock_; }
 
   template <typename Message, typename Callback>
-  std::shared_ptr<rclcpp::Subscription<Message>> create_subscription(const std::string& topic, const rclcpp::QoS&,
+  std::shared_ptr<rclcpp::Subscription<Message>> create_subscription(const std::string& topic, const rclcpp::QoS& qos,
                                                                      Callback&& callback) {
-    const auto made = std::make_shared<rclcpp::Subscription<Message>>(std::forward<Callback>(callback));
-    topics[topic] = made;
+    const auto made = std::make_shared<rclcpp::Subscription<Message>>(qos, std::forward<Callback>(callback));
+    topics[topic] = std::weak_ptr<rclcpp::Subscription<Message>>(made);
     return made;
   }
   template <typename Message>
   std::shared_ptr<rclcpp::Publisher<Message>> create_publisher(const std::string& topic, const rclcpp::QoS&) {
     const auto made = std::make_shared<rclcpp::Publisher<Message>>();
-    topics[topic] = made;
+    topics[topic] = std::weak_ptr<rclcpp::Publisher<Message>>(made);
     return made;
   }
+  /// Throws where the period is not a number, or less than a nanosecond.
   template <typename Rep, typename Period, typename Callback>
-  std::shared_ptr<rclcpp::TimerBase> create_wall_timer(std::chrono::duration<Rep, Period>, Callback callback) {
-    timers.push_back(std::make_shared<rclcpp::TimerBase>(callback));
-    return timers.back();
+  std::shared_ptr<rclcpp::TimerBase> create_wall_timer(std::chrono::duration<Rep, Period> period, Callback callback) {
+    if (!(period.count() >= Rep(1e-9))) throw std::invalid_argument("timer period must be positive");
+    const auto made = std::make_shared<rclcpp::TimerBase>(callback);
+    timers.push_back(made);
+    return made;
   }
 
-  std::map<std::string, std::any> topics;
-  std::vector<std::shared_ptr<rclcpp::TimerBase>> timers;
+  [[nodiscard]] std::shared_ptr<rclcpp::node_interfaces::NodeParametersInterface> get_node_parameters_interface() {
+    return parameters_;
+  }
+  [[nodiscard]] bool has_parameter(const std::string& name) const { return parameters_->has_parameter(name); }
+  [[nodiscard]] rclcpp::Parameter get_parameter(const std::string& name) const {
+    return parameters_->get_parameter(name);
+  }
+
+  std::map<std::string, std::any> topics;  ///< Weak, as what the node knows of them.
+  std::vector<std::weak_ptr<rclcpp::TimerBase>> timers;
 
  private:
   std::shared_ptr<rclcpp::Clock> clock_ = std::make_shared<rclcpp::Clock>();
+  std::shared_ptr<rclcpp::node_interfaces::NodeParametersInterface> parameters_ =
+      std::make_shared<rclcpp::node_interfaces::NodeParametersInterface>();
 };
 
 }  // namespace rclcpp_lifecycle
@@ -62,6 +78,13 @@ class LifecycleNode {
 namespace stand_in {
 
 inline bool locked = false;  ///< Whether another thread has locked every interface.
+inline int refusals = 0;     ///< How many commands were not taken.
+
+/// One interface: how many more calls find it locked by another thread.
+struct Lock {
+  int calls = 0;
+  [[nodiscard]] bool refuses() { return locked || (calls > 0 && calls-- > 0); }
+};
 
 }  // namespace stand_in
 
@@ -69,14 +92,15 @@ namespace hardware_interface {
 
 class LoanedStateInterface {
  public:
-  explicit LoanedStateInterface(double& value) : value_(&value) {}
+  LoanedStateInterface(double& value, stand_in::Lock& lock) : value_(&value), lock_(&lock) {}
   template <typename T = double>
   [[nodiscard]] std::optional<T> get_optional(unsigned int = 10) const {
-    return stand_in::locked ? std::nullopt : std::optional<T>(*value_);
+    return lock_->refuses() ? std::nullopt : std::optional<T>(*value_);
   }
 
  protected:
   double* value_;
+  stand_in::Lock* lock_;
 };
 
 class LoanedCommandInterface : public LoanedStateInterface {
@@ -84,8 +108,13 @@ class LoanedCommandInterface : public LoanedStateInterface {
   using LoanedStateInterface::LoanedStateInterface;
   template <typename T>
   [[nodiscard]] bool set_value(const T& value, unsigned int = 10) {
-    if (!stand_in::locked) *value_ = value;
-    return !stand_in::locked;
+    const bool refused = lock_->refuses();
+    if (refused) {
+      ++stand_in::refusals;
+    } else {
+      *value_ = value;
+    }
+    return !refused;
   }
 };
 
@@ -102,6 +131,7 @@ struct InterfaceConfiguration {
   std::vector<std::string> names = {};
 };
 
+/// With the defaults of rclcpp_lifecycle.
 class ControllerInterface {
  public:
   virtual ~ControllerInterface() = default;
@@ -109,16 +139,51 @@ class ControllerInterface {
   [[nodiscard]] virtual InterfaceConfiguration command_interface_configuration() const = 0;
   [[nodiscard]] virtual InterfaceConfiguration state_interface_configuration() const = 0;
   virtual CallbackReturn on_configure(const rclcpp_lifecycle::State&) { return CallbackReturn::SUCCESS; }
+  virtual CallbackReturn on_cleanup(const rclcpp_lifecycle::State&) { return CallbackReturn::SUCCESS; }
   virtual CallbackReturn on_activate(const rclcpp_lifecycle::State&) { return CallbackReturn::SUCCESS; }
   virtual CallbackReturn on_deactivate(const rclcpp_lifecycle::State&) { return CallbackReturn::SUCCESS; }
+  virtual CallbackReturn on_shutdown(const rclcpp_lifecycle::State&) { return CallbackReturn::SUCCESS; }
+  virtual CallbackReturn on_error(const rclcpp_lifecycle::State&) { return CallbackReturn::FAILURE; }
   virtual return_type update(const rclcpp::Time& time, const rclcpp::Duration& period) = 0;
 
+  /// Declares the parameters of every controller, then calls on_init().
+  return_type init(const ControllerInterfaceParams& given,
+                   const std::map<std::string, rclcpp::ParameterValue>& overrides) {
+    params_ = given;
+    const auto parameters = node_->get_node_parameters_interface();
+    parameters->overrides = overrides;
+    const auto rate = static_cast<std::int64_t>(given.controller_manager_update_rate);
+    parameters->declare_parameter("update_rate", rclcpp::ParameterValue(rate));
+    parameters->declare_parameter("is_async", rclcpp::ParameterValue(false));
+    parameters->declare_parameter("use_sim_time", rclcpp::ParameterValue(false));
+    return on_init() == CallbackReturn::SUCCESS ? return_type::OK : return_type::ERROR;
+  }
+  /// A rate that does not divide the manager's becomes a whole number of hertz near a rate that does.
+  CallbackReturn configure() {
+    const std::int64_t own = node_->get_parameter("update_rate").as_int();
+    const std::int64_t manager = params_.controller_manager_update_rate;
+    if (own > 0 && own <= manager) {
+      const auto ticks = std::llround(static_cast<double>(manager) / static_cast<double>(own));
+      params_.update_rate = static_cast<unsigned int>(manager % own == 0 ? own : manager / ticks);
+    }
+    async_ = node_->get_parameter("is_async").as_bool();
+    return on_configure({});
+  }
   void assign_interfaces(std::vector<hardware_interface::LoanedCommandInterface>&& command_interfaces,
                          std::vector<hardware_interface::LoanedStateInterface>&& state_interfaces) {
     command_interfaces_ = std::move(command_interfaces);
     state_interfaces_ = std::move(state_interfaces);
   }
-  [[nodiscard]] unsigned int get_update_rate() const { return 1000; }
+  void release_interfaces() {
+    command_interfaces_.clear();
+    state_interfaces_.clear();
+  }
+  [[nodiscard]] unsigned int get_update_rate() const { return params_.update_rate; }
+  [[nodiscard]] bool is_async() const { return async_; }
+  [[nodiscard]] const std::string& get_robot_description() const { return params_.robot_description; }
+  [[nodiscard]] const std::unordered_map<std::string, joint_limits::JointLimits>& get_hard_joint_limits() const {
+    return params_.hard_joint_limits;
+  }
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> get_node() { return node_; }
   [[nodiscard]] std::shared_ptr<const rclcpp_lifecycle::LifecycleNode> get_node() const { return node_; }
 
@@ -127,6 +192,8 @@ class ControllerInterface {
   std::vector<hardware_interface::LoanedStateInterface> state_interfaces_;
 
  private:
+  ControllerInterfaceParams params_;
+  bool async_ = false;
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_ = std::make_shared<rclcpp_lifecycle::LifecycleNode>();
 };
 

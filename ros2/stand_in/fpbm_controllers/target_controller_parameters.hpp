@@ -2,17 +2,20 @@
 
 #include <controller_interface/controller_interface.hpp>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 // Stands in for the header that generate_parameter_library makes of target_controller_parameters.yaml. The test sets
-// what the listener reads.
+// the values of a parameter file, or overrides some with values of other types.
 namespace target_controller {
 
 struct Params {
   std::vector<std::string> joints;
   std::string arm;
   std::string base_frame;
+  std::string tip_frame;
   struct Tool {
     std::vector<double> xyz = {0.0, 0.0, 0.0};
     std::vector<double> rpy = {0.0, 0.0, 0.0};
@@ -25,6 +28,7 @@ struct Params {
     std::vector<double> jerk = {};
   } limits;
   std::vector<std::string> command_interfaces = {"position"};
+  std::vector<std::string> state_interfaces = {"position"};
   double following_error = 0.05;
   double tip_rate = 50.0;
   double diagnostics_rate = 1.0;
@@ -54,15 +58,75 @@ namespace stand_in {
 
 inline target_controller::Params parameters;
 
+/// Calls visit(name, value, whether a value is valid) for every parameter. As in generate_parameter_library, a number
+/// that is NaN passes all but gt and gt_eq.
+template <typename Visit>
+void for_each_parameter(target_controller::Params& p, Visit&& visit) {
+  using Numbers = std::vector<double>;
+  const auto any = [](const auto&) { return true; };
+  const auto not_empty = [](const auto& value) { return !value.empty(); };
+  const auto three = [](const Numbers& value) { return value.size() == 3; };
+  const auto above_zero = [](double value) { return value > 0.0; };
+  const auto not_negative = [](double value) { return value >= 0.0; };
+  const auto within = [](double low, double high) { return [=](double v) { return !(v < low || v > high); }; };
+  const auto no_small = [](const Numbers& values) {
+    for (const double value : values) {
+      if (value < 1e-6) return false;
+    }
+    return true;
+  };
+  visit("joints", p.joints, not_empty);
+  visit("arm", p.arm, any);
+  visit("base_frame", p.base_frame, not_empty);
+  visit("tip_frame", p.tip_frame, not_empty);
+  visit("tool.xyz", p.tool.xyz, three);
+  visit("tool.rpy", p.tool.rpy, three);
+  visit("limits.lower", p.limits.lower, any);
+  visit("limits.upper", p.limits.upper, any);
+  visit("limits.velocity", p.limits.velocity, no_small);
+  visit("limits.acceleration", p.limits.acceleration, no_small);
+  visit("limits.jerk", p.limits.jerk, no_small);
+  visit("command_interfaces", p.command_interfaces, not_empty);
+  visit("state_interfaces", p.state_interfaces, not_empty);
+  visit("following_error", p.following_error, above_zero);
+  visit("tip_rate", p.tip_rate, within(0.1, 1000.0));
+  visit("diagnostics_rate", p.diagnostics_rate, within(0.1, 100.0));
+  visit("scheme.alpha", p.scheme.alpha, within(0.0, 1.0));
+  visit("scheme.weights", p.scheme.weights, no_small);
+  visit("scheme.k1", p.scheme.k1, not_negative);
+  visit("scheme.k2", p.scheme.k2, not_negative);
+  visit("scheme.null_damping", p.scheme.null_damping, not_negative);
+  visit("scheme.rest_stiffness", p.scheme.rest_stiffness, not_negative);
+  visit("scheme.rest_posture", p.scheme.rest_posture, any);
+  visit("target.velocity", p.target.velocity, above_zero);
+  visit("target.acceleration", p.target.acceleration, above_zero);
+  visit("target.jerk", p.target.jerk, above_zero);
+  visit("target.angular_velocity", p.target.angular_velocity, above_zero);
+  visit("target.angular_acceleration", p.target.angular_acceleration, above_zero);
+  visit("target.angular_jerk", p.target.angular_jerk, above_zero);
+  visit("target.timeout", p.target.timeout, above_zero);
+}
+
 }  // namespace stand_in
 
 namespace target_controller {
 
 class ParamListener {
  public:
-  template <typename NodeT>
-  explicit ParamListener(NodeT, const std::string& = "") {}
-  [[nodiscard]] Params get_params() const { return stand_in::parameters; }
+  template <typename Node>
+  explicit ParamListener(const std::shared_ptr<Node>& node, const std::string& = "") : params_(stand_in::parameters) {
+    const auto declared = node->get_node_parameters_interface();
+    stand_in::for_each_parameter(params_, [&](const std::string& name, auto& value, auto&& valid) {
+      if (!declared->has_parameter(name)) (void)declared->declare_parameter(name, rclcpp::ParameterValue(value));
+      value = declared->declared.at(name).template get<std::decay_t<decltype(value)>>();
+      if (!valid(value))
+        throw rclcpp::exceptions::InvalidParameterValueException("parameter '" + name + "' is invalid");
+    });
+  }
+  [[nodiscard]] Params get_params() const { return params_; }
+
+ private:
+  Params params_;
 };
 
 }  // namespace target_controller

@@ -1,33 +1,66 @@
 #pragma once
 
 #include <chrono>
+#include <cstdarg>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <rclcpp/parameter.hpp>
 #include <rclcpp/time.hpp>
+#include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 // Stands in for rclcpp's header of this name: only what the controller uses. Messages go nowhere but to the test.
 namespace rclcpp {
 
-class Duration {
- public:
-  Duration(std::int32_t, std::uint32_t) {}
-};
 class Logger {};
 class Clock {};
-class QoS {};
-class SystemDefaultsQoS : public QoS {};
+
+enum class ReliabilityPolicy { BestEffort, Reliable };
+
+/// Reliable unless best_effort() is called, as with Cyclone DDS.
+class QoS {
+ public:
+  explicit QoS(std::size_t depth) : depth_(depth) {}
+  QoS& best_effort() {
+    reliability_ = ReliabilityPolicy::BestEffort;
+    return *this;
+  }
+  [[nodiscard]] std::size_t depth() const { return depth_; }
+  [[nodiscard]] ReliabilityPolicy reliability() const { return reliability_; }
+
+ private:
+  std::size_t depth_;
+  ReliabilityPolicy reliability_ = ReliabilityPolicy::Reliable;
+};
+class SystemDefaultsQoS : public QoS {
+ public:
+  SystemDefaultsQoS() : QoS(10) {}
+};
+class SensorDataQoS : public QoS {
+ public:
+  SensorDataQoS() : QoS(5) { best_effort(); }
+};
 
 template <typename Message>
 class Subscription {
  public:
-  explicit Subscription(std::function<void(const Message&)> callback) : callback_(std::move(callback)) {}
-  void hear(const Message& message) const { callback_(message); }
+  Subscription(const QoS& qos, std::function<void(const Message&)> callback)
+      : qos_(qos), callback_(std::move(callback)) {}
+  /// A message of a publisher: none arrives where the subscription asks for more than the publisher offers.
+  void hear(const Message& message, const QoS& offered = SystemDefaultsQoS()) const {
+    const bool wants_more =
+        qos_.reliability() == ReliabilityPolicy::Reliable && offered.reliability() == ReliabilityPolicy::BestEffort;
+    if (!wants_more) callback_(message);
+  }
+  [[nodiscard]] const QoS& qos() const { return qos_; }
 
  private:
+  QoS qos_;
   std::function<void(const Message&)> callback_;
 };
 
@@ -57,9 +90,24 @@ class TimerBase {
 namespace stand_in {
 
 inline int warnings = 0;
+inline std::string log;  ///< All that was logged, a line each.
+
+[[gnu::format(printf, 2, 3)]] inline void write(const char* level, const char* format, ...) {
+  std::va_list values;
+  va_start(values, format);
+  char line[500];
+  (void)std::vsnprintf(line, sizeof line, format, values);
+  va_end(values);
+  std::printf("     [%s] %s\n", level, line);
+  log += line;
+  log += '\n';
+}
 
 }  // namespace stand_in
 
-#define RCLCPP_ERROR(logger, ...) (static_cast<void>(logger), std::printf(__VA_ARGS__), std::printf("\n"))
+#define RCLCPP_INFO(logger, ...) (static_cast<void>(logger), stand_in::write("info", __VA_ARGS__))
+#define RCLCPP_WARN(logger, ...) \
+  (static_cast<void>(logger), ++stand_in::warnings, stand_in::write("warning", __VA_ARGS__))
+#define RCLCPP_ERROR(logger, ...) (static_cast<void>(logger), stand_in::write("error", __VA_ARGS__))
 #define RCLCPP_WARN_THROTTLE(logger, clock, milliseconds, ...) \
-  (static_cast<void>(clock), static_cast<void>(milliseconds), ++stand_in::warnings, RCLCPP_ERROR(logger, __VA_ARGS__))
+  (static_cast<void>(clock), static_cast<void>(milliseconds), RCLCPP_WARN(logger, __VA_ARGS__))

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-// Stands in for rclcpp's header of this name, and for builtin_interfaces/Time.
+// Stands in for rclcpp's headers time.hpp and duration.hpp, and for builtin_interfaces/Time.
 namespace builtin_interfaces::msg {
 
 struct Time {
@@ -24,6 +24,20 @@ class Time {
 
  private:
   std::int64_t nanoseconds_;
+};
+
+class Duration {
+ public:
+  Duration(std::int32_t seconds, std::uint32_t nanoseconds) : seconds_(seconds + 1e-9 * nanoseconds) {}
+  [[nodiscard]] static Duration from_seconds(double seconds) {
+    Duration result(0, 0);
+    result.seconds_ = seconds;
+    return result;
+  }
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  double seconds_;
 };
 
 }  // namespace rclcpp

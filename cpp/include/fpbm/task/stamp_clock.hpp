@@ -17,7 +17,8 @@ namespace fpbm {
 /// made smoothly. A clock whose time at the first tick is known is not learnt.
 ///
 /// A stamp is rejected if it is not newer than the newest, or too far ahead (follows()). If stamps are rejected for a
-/// whole timeout, three at least, and follow each other, then the sender's clock was set: it is learnt anew.
+/// whole timeout, three at least, and follow each other, then the sender's clock was set: it is learnt anew. After a
+/// silence of 10 s, any stamp is of a clock that was set.
 template <typename Scalar>
 class StampClock {
  public:
@@ -102,7 +103,8 @@ class StampClock {
     return elapsed;
   }
 
-  /// Counts a stamp that does not fit; true if the run of them shows that the clock was set, which is then forgotten.
+  /// Counts a stamp that does not fit; true if the run of them, or a silence before it, shows that the clock was set,
+  /// which is then forgotten.
   [[nodiscard]] bool set_anew(double stamp) noexcept {
     if (rejected_ > 0 && stamp > last_rejected_ && follows(stamp - first_rejected_, rejected_for_)) {
       last_rejected_ = stamp;
@@ -112,7 +114,7 @@ class StampClock {
       rejected_for_ = Scalar(0);
       rejected_ = 1;
     }
-    if (rejected_ < kRun || rejected_for_ < timeout_) return false;
+    if (age_ < Scalar(2) * kHalf && (rejected_ < kRun || rejected_for_ < timeout_)) return false;
     const Scalar since = age_;
     forget();
     age_ = since;

@@ -1,40 +1,69 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
 #include <fpbm/core/rotation.hpp>
 #include <fpbm/core/status.hpp>
 #include <rclcpp/time.hpp>
 #include <string>
+#include <vector>
 
 namespace fpbm_controllers {
+
+/// Why an arm was stopped until it is activated again.
+enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 
 /// How a tick went: numbers only, so that the loop allocates nothing for it.
 struct Report {
   bool active = false;  ///< Whether there was a tick since the controller was activated.
-  bool lost = false;    ///< Whether the following error was too large, and the arm stops for it.
+  Fault fault = Fault::kNone;
+  std::size_t fault_joint = 0;
   fpbm::Status status = fpbm::Status::kOk;
   double scale = 1.0;              ///< Share of the task that the limits left.
   double position_error = 0.0;     ///< Of the tip, on the filter's reference [m],
   double orientation_error = 0.0;  ///< and [rad].
-  double following_error = 0.0;    ///< The largest joint's [rad].
+  double following_error = 0.0;    ///< The largest joint's, or after a fault that at the fault [rad].
   std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
   std::uint64_t missed = 0;        ///< Ticks in which another thread had locked an interface.
+  std::uint64_t early = 0;         ///< Calls that came too soon to be ticks.
   rclcpp::Time time = rclcpp::Time();
   fpbm::Transform<> tip;
 };
 
-/// The same as a message.
-[[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report) {
+/// What a fault was, and what to do.
+[[nodiscard]] inline std::string message_of(const Report& report, const std::vector<std::string>& joints) {
+  const std::string joint = "joint '" + joints.at(report.fault_joint) + "': ";
+  const std::string advice = ": the arm stops. Deactivate the controller, then activate it.";
+  switch (report.fault) {
+    case Fault::kNone: break;
+    case Fault::kFollowing:
+      return joint + std::to_string(report.following_error) + " rad from its command, beyond following_error" + advice;
+    case Fault::kUnreadable: return joint + "its position is not a number" + advice;
+    case Fault::kLocked: return joint + "its command interface stays locked by another thread" + advice;
+  }
+  return "";
+}
+
+/// A report as a message; before: the report of the message before.
+[[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report, const Report& before,
+                                                                          const std::vector<std::string>& joints) {
   using Message = diagnostic_msgs::msg::DiagnosticStatus;
   Message message;
-  if (report.lost) {
+  if (report.fault != Fault::kNone) {
     message.level = Message::ERROR;
-    message.message = "the arm does not follow its commands: it stops. Deactivate the controller, then activate it.";
+    message.message = message_of(report, joints);
   } else {
     const bool well = report.status == fpbm::Status::kOk;
     message.level = well ? Message::OK : fpbm::failed(report.status) ? Message::ERROR : Message::WARN;
     message.message = std::string(fpbm::message(report.status)) + (well ? "" : ". ") + fpbm::advice(report.status);
+    if (well && report.refused > before.refused) {
+      message.level = Message::WARN;
+      message.message = "targets are refused: their stamps are not newer than those before";
+    } else if (well && report.missed > before.missed) {
+      message.level = Message::WARN;
+      message.message = "interfaces are locked by another thread: the arm waits";
+    }
   }
   const auto add = [&message](const char* key, const std::string& value) {
     message.values.emplace_back();
@@ -47,6 +76,7 @@ struct Report {
   add("following error [rad]", std::to_string(report.following_error));
   add("targets refused", std::to_string(report.refused));
   add("ticks with a locked interface", std::to_string(report.missed));
+  add("calls that came too soon", std::to_string(report.early));
   return message;
 }
 

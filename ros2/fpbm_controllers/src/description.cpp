@@ -1,0 +1,109 @@
+#include "fpbm_controllers/description.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+#if __has_include(<urdf/model.hpp>)
+#include <urdf/model.hpp>
+#else
+#include <urdf/model.h>
+#endif
+
+namespace fpbm_controllers {
+
+namespace {
+
+/// The joints from the root to a link.
+[[nodiscard]] std::vector<std::shared_ptr<const urdf::Joint>> joints_to(const urdf::Model& model, const char* parameter,
+                                                                        const std::string& name) {
+  const auto link = model.getLink(name);
+  if (!link) {
+    throw std::invalid_argument(std::string(parameter) + ": robot_description has no link '" + name +
+                                "': give one of its links");
+  }
+  std::vector<std::shared_ptr<const urdf::Joint>> joints;
+  for (std::shared_ptr<const urdf::Joint> joint = link->parent_joint; joint;
+       joint = model.getLink(joint->parent_link_name)->parent_joint) {
+    joints.push_back(joint);
+  }
+  std::reverse(joints.begin(), joints.end());
+  return joints;
+}
+
+[[nodiscard]] fpbm::Transform<> origin_of(const urdf::Joint& joint) {
+  const auto& [p, q] = joint.parent_to_joint_origin_transform;
+  return {{p.x, p.y, p.z}, fpbm::rotation(fpbm::Vector<4>(q.w, q.x, q.y, q.z))};
+}
+
+[[nodiscard]] fpbm::JointType type_of(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::REVOLUTE: return fpbm::JointType::kRevolute;
+    case urdf::Joint::CONTINUOUS: return fpbm::JointType::kContinuous;
+    case urdf::Joint::PRISMATIC: return fpbm::JointType::kPrismatic;
+    default: break;
+  }
+  throw std::invalid_argument(
+      "joint '" + joint.name +
+      "': must be revolute, continuous, prismatic or fixed to be between base_frame and tip_frame");
+}
+
+[[nodiscard]] fpbm::Joint<> joint_of(const urdf::Joint& described, const fpbm::Transform<>& placement) {
+  fpbm::Joint<> joint{type_of(described), placement, {described.axis.x, described.axis.y, described.axis.z}};
+  joint.name = described.name;
+  if (described.limits) {
+    joint.bounds.velocity = described.limits->velocity;
+    if (joint.type != fpbm::JointType::kContinuous) {
+      joint.bounds.lower = described.limits->lower;
+      joint.bounds.upper = described.limits->upper;
+    }
+  }
+  return joint;
+}
+
+[[nodiscard]] fpbm::Mimic<> mimic_of(const urdf::Joint& joint, const fpbm::Chain<>& chain) {
+  const auto leader = std::find_if(chain.joints.begin(), chain.joints.end(),
+                                   [&](const auto& other) { return other.name == joint.mimic->joint_name; });
+  if (leader == chain.joints.end()) {
+    throw std::invalid_argument("joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
+                                "', which must be between base_frame and tip_frame as well");
+  }
+  return {static_cast<int>(leader - chain.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
+}
+
+}  // namespace
+
+fpbm::Chain<> chain_of(const std::string& robot_description, const std::string& base, const std::string& tip) {
+  urdf::Model model;
+  if (robot_description.empty() || !model.initString(robot_description)) {
+    throw std::invalid_argument(
+        "robot_description: the controller manager has none, or it is not a URDF: publish the robot's URDF");
+  }
+  const auto to_base = joints_to(model, "base_frame", base);
+  const auto to_tip = joints_to(model, "tip_frame", tip);
+  auto [down, up] = std::mismatch(to_base.begin(), to_base.end(), to_tip.begin(), to_tip.end());
+  fpbm::Transform<> base_in_fork;  // The last link that is before both.
+  for (; down != to_base.end(); ++down) {
+    if ((*down)->type != urdf::Joint::FIXED) {
+      throw std::invalid_argument("base_frame: moves with joint '" + (*down)->name +
+                                  "', which is not before tip_frame: give a link that does not move");
+    }
+    base_in_fork = base_in_fork * origin_of(**down);
+  }
+  fpbm::Chain<> chain;
+  chain.tip = inverse(base_in_fork);
+  std::vector<std::shared_ptr<const urdf::Joint>> moving;
+  for (; up != to_tip.end(); ++up) {
+    chain.tip = chain.tip * origin_of(**up);
+    if ((*up)->type == urdf::Joint::FIXED) continue;
+    moving.push_back(*up);
+    chain.joints.push_back(joint_of(**up, chain.tip));
+    chain.tip = {};
+  }
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    if (moving[i]->mimic) chain.joints[i].mimic = mimic_of(*moving[i], chain);
+  }
+  return chain;
+}
+
+}  // namespace fpbm_controllers

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <urdf/model.h>
+#include <fpbm/core/rotation.hpp>
+#include <fpbm/model/chain.hpp>
+#include <memory>
+#include <string>
+
+namespace stand_in {
+
+[[nodiscard]] inline urdf::Pose pose_of(const fpbm::Transform<>& transform) {
+  const fpbm::Vector<4> q = fpbm::quaternion(transform.R);
+  return {{transform.p(0), transform.p(1), transform.p(2)}, {q(1), q(2), q(3), q(0)}};
+}
+
+/// Adds a link and the joint that carries it.
+inline urdf::Joint& add(urdf::Model& model, const std::string& joint, const std::string& parent,
+                        const std::string& child, const fpbm::Transform<>& place) {
+  auto made = std::make_shared<urdf::Joint>();
+  made->type = urdf::Joint::FIXED;
+  made->name = joint;
+  made->parent_link_name = parent;
+  made->child_link_name = child;
+  made->parent_to_joint_origin_transform = pose_of(place);
+  model.links_[child] = std::make_shared<urdf::Link>(urdf::Link{child, made});
+  return *made;
+}
+
+/// The robot_description of a chain from link "base" to link "flange", with the chain's names and bounds of joints.
+/// Link "base" is turned in "base_link", the root, as a UR's.
+[[nodiscard]] inline urdf::Model description_of(const fpbm::Chain<>& chain) {
+  urdf::Model model;
+  model.links_["base_link"] = std::make_shared<urdf::Link>(urdf::Link{"base_link", nullptr});
+  fpbm::Transform<> turned;
+  turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 3.0));
+  add(model, "to_base", "base_link", "base", turned);
+  std::string parent = "base_link";
+  fpbm::Transform<> before = turned;
+  for (const auto& joint : chain.joints) {
+    urdf::Joint& made = add(model, joint.name, parent, "link_of_" + joint.name, before * joint.placement);
+    made.type = joint.type == fpbm::JointType::kPrismatic    ? urdf::Joint::PRISMATIC
+                : joint.type == fpbm::JointType::kContinuous ? urdf::Joint::CONTINUOUS
+                                                             : urdf::Joint::REVOLUTE;
+    made.axis = {joint.axis(0), joint.axis(1), joint.axis(2)};
+    made.limits = std::make_shared<urdf::JointLimits>(
+        urdf::JointLimits{joint.bounds.lower, joint.bounds.upper, 100.0, joint.bounds.velocity});
+    if (joint.mimic.joint >= 0) {
+      made.mimic = std::make_shared<urdf::JointMimic>(urdf::JointMimic{
+          joint.mimic.offset, joint.mimic.ratio, chain.joints[static_cast<std::size_t>(joint.mimic.joint)].name});
+    }
+    parent = made.child_link_name;
+    before = {};
+  }
+  add(model, "to_flange", parent, "flange", chain.tip);
+  return model;
+}
+
+}  // namespace stand_in

@@ -1,0 +1,20 @@
+#pragma once
+
+// Stands in for ros2_control's header of this name.
+namespace joint_limits {
+
+struct JointLimits {
+  double min_position = 0.0;
+  double max_position = 0.0;
+  double max_velocity = 0.0;
+  double max_acceleration = 0.0;
+  double max_deceleration = 0.0;
+  double max_jerk = 0.0;
+  bool has_position_limits = false;
+  bool has_velocity_limits = false;
+  bool has_acceleration_limits = false;
+  bool has_deceleration_limits = false;
+  bool has_jerk_limits = false;
+};
+
+}  // namespace joint_limits

@@ -1,0 +1,211 @@
+#include <cmath>
+#include <fpbm/model/coupled_arm.hpp>
+#include <string>
+#include <vector>
+
+#include "check.hpp"
+#include "tests.hpp"
+
+namespace {
+
+using controller_interface::CallbackReturn;
+using fpbm::presets::kAll;
+
+struct Given {
+  std::string arm;  ///< Preset.
+  fpbm::Chain<> chain;
+  std::vector<std::string> joints;  ///< With a drive.
+};
+
+Given given(const std::string& arm) {
+  for (const auto& preset : kAll) {
+    if (arm != preset.name) continue;
+    Given result{arm, preset.chain(), {}};
+    for (const auto& joint : result.chain.joints) result.joints.push_back(joint.name);
+    return result;
+  }
+  return {};
+}
+
+class Controller {
+ public:
+  /// With the parameters of a test, and the robot_description of a chain.
+  explicit Controller(const Given& from) {
+    auto& parameters = stand_in::parameters = {};
+    parameters.arm = from.arm;
+    parameters.base_frame = "base";
+    parameters.tip_frame = "flange";
+    parameters.joints = from.joints;
+    stand_in::descriptions()["robot"] = stand_in::description_of(from.chain);
+    description.robot_description = "robot";
+    description.update_rate = description.controller_manager_update_rate = 1000;
+  }
+
+  [[nodiscard]] bool configure() {
+    (void)logged("");
+    return controller_->init(description, {}) == controller_interface::return_type::OK &&
+           controller_->configure() == CallbackReturn::SUCCESS;
+  }
+  /// Whether it is refused with a text.
+  [[nodiscard]] bool refuses(const std::string& text) { return !configure() && logged(text); }
+
+  /// The sum of the ways of the joints in 0.3 s at a twist [rad]; -1 where it cannot be activated.
+  double way() {
+    q.resize(stand_in::parameters.joints.size());
+    const std::vector<double> start = q;
+    std::vector<stand_in::Lock> locks(2 * q.size());
+    std::vector<hardware_interface::LoanedCommandInterface> commands;
+    std::vector<hardware_interface::LoanedStateInterface> states;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      commands.emplace_back(q[i], locks[i]);
+      states.emplace_back(q[i], locks[q.size() + i]);
+    }
+    controller_->assign_interfaces(std::move(commands), std::move(states));
+    if (controller_->on_activate({}) != CallbackReturn::SUCCESS) return -1.0;
+    using Twist = geometry_msgs::msg::TwistStamped;
+    Twist twist;
+    twist.header.frame_id = stand_in::parameters.base_frame;
+    twist.twist.linear.z = 0.05;
+    std::any_cast<std::weak_ptr<rclcpp::Subscription<Twist>>>(controller_->get_node()->topics.at("~/target_twist"))
+        .lock()
+        ->hear(twist);
+    for (int i = 0; i < 300; ++i) (void)controller_->update(rclcpp::Time(), rclcpp::Duration(0, 1000000));
+    double way = 0.0;
+    for (std::size_t i = 0; i < q.size(); ++i) way += std::abs(q[i] - start[i]);
+    return way;
+  }
+  /// The tip that it publishes.
+  fpbm::Transform<> tip() {
+    using Pose = geometry_msgs::msg::PoseStamped;
+    for (const auto& timer : controller_->get_node()->timers) {
+      if (const auto alive = timer.lock()) alive->fire();
+    }
+    const auto publisher =
+        std::any_cast<std::weak_ptr<rclcpp::Publisher<Pose>>>(controller_->get_node()->topics.at("~/tip_pose")).lock();
+    return fpbm_controllers::target_of(publisher->last)->pose;
+  }
+
+  controller_interface::ControllerInterfaceParams description;
+  std::vector<double> q{0.1, -0.9, 0.2, -1.5, 0.3, 1.2, 0.4};
+
+ private:
+  std::unique_ptr<controller_interface::ControllerInterface> controller_ = stand_in::exported_controller();
+};
+
+/// Every preset on its own description, with a joint too few, and on the description of every other arm.
+void every_preset() {
+  for (const auto& preset : kAll) {
+    const Given own = given(preset.name);
+    Controller controller(own);
+    const double way = controller.configure() ? controller.way() : -1.0;
+    check(way > 0.001 && way < 1.0, (own.arm + ": way of all joints in 0.3 s [rad]").c_str(), way);
+    Controller short_of_one(own);
+    stand_in::parameters.joints.pop_back();
+    check(short_of_one.refuses(own.joints.back()), (own.arm + ": refused with a joint too few, which is named").c_str(),
+          1);
+    for (const auto& other : kAll) {
+      if (own.arm == other.name) continue;
+      Controller mistaken(own);
+      stand_in::parameters.arm = other.name;
+      check(mistaken.refuses("joint"), (own.arm + ": refused with the preset " + other.name).c_str(), 1);
+    }
+  }
+}
+
+void frames() {
+  const Given panda = given("panda");
+  Controller root(panda);
+  stand_in::parameters.base_frame = "base_link";
+  check(root.configure() && root.way() > 0.001, "base_link, the parent of base: configured", 1);
+  fpbm::SerialArm<7> arm(panda.chain);
+  fpbm::Kinematics<fpbm::Pose, 7> kinematics;
+  arm.kinematics(fpbm::Vector<7>(root.q.data()), kinematics);
+  fpbm::Transform<> turned;
+  turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 3.0));
+  check(distance(root.tip(), turned * kinematics.tip) < 1e-9, "base_link: distance of the tip from the arm's [m, rad]",
+        distance(root.tip(), turned * kinematics.tip));
+
+  Controller no_tip(panda);
+  stand_in::parameters.tip_frame = "hand";
+  check(no_tip.refuses("hand"), "a tip that robot_description lacks: named", 1);
+  Controller moving_base(panda);
+  stand_in::parameters.base_frame = "link_of_panda_joint3";
+  check(moving_base.refuses("panda_joint1"), "a base that leaves out joints: refused, the first is named", 1);
+  Controller upside_down(panda);
+  stand_in::parameters.base_frame = "flange";
+  stand_in::parameters.tip_frame = "base";
+  check(upside_down.refuses("panda_joint"), "a base that moves with joints of the arm: refused", 1);
+  Controller swapped(panda);
+  std::swap(stand_in::parameters.joints[2], stand_in::parameters.joints[3]);
+  check(swapped.refuses("panda_joint3"), "joints in another order: refused, the first is named", 1);
+  Controller nothing(panda);
+  nothing.description.robot_description = "";
+  check(nothing.refuses("robot_description"), "no robot_description: refused", 1);
+}
+
+void differences() {
+  Given bent = given("panda");
+  bent.chain.joints[4].placement.p(1) += 0.05;
+  Controller shifted(bent);
+  check(shifted.refuses("panda_joint6"), "a link 5 cm longer than the preset's: refused, a joint is named", 1);
+  bent = given("panda");
+  bent.chain.joints[3].bounds.velocity *= 1.5;
+  Controller faster(bent);
+  check(faster.refuses("panda_joint4"), "a velocity above the preset's: refused, the joint is named", 1);
+}
+
+void limits() {
+  Given panda = given("panda");
+  panda.chain.joints[3].bounds.velocity = 0.5;
+  Controller slow(panda);
+  check(slow.configure() && logged("velocity 0.5 (robot_description)"), "a velocity of robot_description: in the log",
+        1);
+  Controller controlled(panda);
+  joint_limits::JointLimits limit;
+  limit.has_velocity_limits = limit.has_acceleration_limits = true;
+  limit.max_velocity = 0.25;
+  limit.max_acceleration = 1.5;
+  controlled.description.hard_joint_limits["panda_joint4"] = limit;
+  check(controlled.configure(), "limits of ros2_control: configured", 1);
+  const std::string log = stand_in::log;
+  check(logged("velocity 0.25 (ros2_control), acceleration 1.5 (ros2_control)"), "limits of ros2_control: in the log",
+        1);
+  Controller wider(panda);
+  stand_in::parameters.limits.velocity.assign(7, 2.0);
+  check(wider.configure() && logged("velocity 0.5 (robot_description)"), "limits.velocity never widen", 1);
+
+  Given no_preset = given("panda");
+  no_preset.arm = "";
+  Controller unbounded(no_preset);
+  check(unbounded.refuses("limits.acceleration"), "no bound on acceleration: refused", 1);
+  Controller bounded(no_preset);
+  stand_in::parameters.limits.acceleration.assign(7, 5.0);
+  check(bounded.configure() && bounded.way() > 0.001, "no preset, limits.acceleration: configured", 1);
+}
+
+/// A Panda whose last joint follows the one before.
+void mimic() {
+  Given geared = given("panda");
+  geared.arm = "";
+  geared.chain.joints[6].mimic = {5, -0.5, 0.3};
+  geared.joints.pop_back();
+  Controller controller(geared);
+  stand_in::parameters.limits.acceleration.assign(6, 5.0);
+  check(controller.configure(), "a mimic joint: configured", 1);
+  check(controller.way() > 0.001, "a mimic joint: activated", 1);
+  fpbm::CoupledArm<6> arm(geared.chain);
+  fpbm::Kinematics<fpbm::Pose, 6> kinematics;
+  arm.kinematics(fpbm::Vector<6>(controller.q.data()), kinematics);
+  check(distance(controller.tip(), kinematics.tip) < 1e-9, "a mimic joint: distance of the tip from the arm's [m, rad]",
+        distance(controller.tip(), kinematics.tip));
+}
+
+}  // namespace
+
+void descriptions() {
+  every_preset();
+  frames();
+  differences();
+  limits();
+  mimic();
+}

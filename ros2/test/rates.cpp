@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <string>
+
+#include "check.hpp"
+#include "tests.hpp"
+
+namespace {
+
+using fpbm::Transform;
+using stand_in::Robot;
+
+/// A Panda whose target may be as fast as its joints.
+void fast() {
+  auto& own = stand_in::parameters;
+  own.scheme.k1 = 10.0;
+  own.scheme.k2 = 25.0;
+  own.target.velocity = own.target.angular_velocity = 20.0;
+  own.target.acceleration = own.target.angular_acceleration = 200.0;
+  own.target.jerk = own.target.angular_jerk = 1e5;
+}
+
+/// A target that turns about the base, at first faster than joint 1 may.
+void turn(Robot& robot, const Transform<>& start, double t) {
+  Transform<> turned;
+  turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 2.0 * std::sin(1.5 * t)));
+  robot.hear("~/target_pose", pose_message(turned * start));
+}
+
+void rate(unsigned int manager, int own, bool valid, const std::string& nearest) {
+  Robot robot;
+  robot.rate = manager;
+  fast();
+  (void)logged("");
+  const std::string what = std::to_string(own) + " Hz of " + std::to_string(manager) + " Hz: ";
+  const bool loaded = robot.load({{"update_rate", rclcpp::ParameterValue(own)}});
+  check(loaded == valid, (what + (valid ? "configured" : "refused")).c_str(), loaded);
+  if (!valid) check(logged(nearest), (what + "named " + nearest).c_str(), 1);
+  if (!loaded) return;
+  (void)robot.activate();
+  const Transform<> start = robot.tip();
+  for (unsigned int i = 0; i < 4 * manager; ++i) {
+    turn(robot, start, static_cast<double>(i) / manager);
+    robot.tick();
+  }
+  check(robot.excess < 1e-9, (what + "velocity beyond a limit [rad/s]").c_str(), robot.excess);
+  check(robot.excess > -0.01, (what + "velocity at a limit [rad/s]").c_str(), robot.excess);
+}
+
+/// Calls twice as often as the rate says, and a burst after a late call: the mean velocity of a joint in any 50 ms.
+void calls_too_soon() {
+  Robot robot;
+  fast();
+  robot.watched = false;
+  check(robot.load() && robot.activate(), "calls too soon: activated", 1);
+  const auto bounds = stand_in::parameters.limits.velocity;
+  const Transform<> start = robot.tip();
+  std::deque<std::pair<double, Robot::Joints>> past;
+  double t = 0.0;
+  double fastest = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    const bool burst = i >= 3000 && i % 20 == 0;
+    const double period = i < 3000 ? 0.5e-3 : burst ? 10e-3 : i % 20 < 10 ? 1e-5 : 1e-3;
+    turn(robot, start, t);
+    robot.tick(period);
+    t += period;
+    past.emplace_back(t, robot.command);
+    while (t - past.front().first > 0.05) past.pop_front();
+    for (std::size_t j = 0; j < Robot::kDof && t > 0.06; ++j) {
+      const double way = std::abs(robot.command[j] - past.front().second[j]);
+      fastest = std::max(fastest, way / (t - past.front().first + 2e-3) / bounds[j]);
+    }
+  }
+  check(fastest > 0.9 && fastest < 1.0, "calls too soon: mean velocity in 50 ms, of its bound", fastest);
+}
+
+}  // namespace
+
+void rates() {
+  rate(1000, 1000, true, "");
+  rate(1000, 500, true, "");
+  rate(500, 100, true, "");
+  rate(50, 20, false, "10 or 25");
+  rate(100, 40, false, "25 or 50");
+  rate(1000, 300, false, "250 or 500");
+  calls_too_soon();
+
+  Robot robot;
+  const bool loaded = robot.load({{"is_async", rclcpp::ParameterValue(true)}});
+  check(!loaded && logged("is_async"), "is_async: refused", loaded);
+}
