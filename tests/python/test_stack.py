@@ -170,9 +170,9 @@ def test_a_slow_approach_does_not_keep_lower_tasks_moving():
 
 
 def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
-    first = fp.AxisTask(name="axis", k1=20, k2=100)
+    first = fp.AxisTask(name="axis", k1=40, k2=400)
     alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
-    both = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()))
+    both = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()), keep_first_level=True)
     axis = np.add(alone.tip["axis"], [0.05, 0.03, 0.0])
     slowed = 0
     for _ in range(3000):

@@ -81,13 +81,11 @@ class LinkTree {
   template <typename State, typename F>
   [[gnu::always_inline]] void each_angular_column(const State& state, int link, const F& f) const noexcept {
     const bool slides = pass_.slides();
-    each_pair(
-        state, link,
-        [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
-          const auto columns = Axes::angular_columns(i, joints, pass_.turns(), slides);
-          f(i, columns, Axes::angular_rates(joints, columns));
-        },
-        [&](Eigen::Index i) noexcept { f(i, Columns::zero(), Columns::zero()); });
+    const auto angular = [&](Eigen::Index i, const typename Axes::JointPair& joints) noexcept {
+      const auto columns = Axes::angular_columns(i, joints, pass_.turns(), slides);
+      f(i, columns, Axes::angular_rates(joints, columns));
+    };
+    each_pair(state, link, angular, [&](Eigen::Index i) noexcept { angular(i, state.screws.joints(i).only(0)); });
   }
 
  private:
