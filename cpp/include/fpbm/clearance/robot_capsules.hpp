@@ -12,10 +12,11 @@ namespace fpbm {
 template <typename Scalar>
 void add_capsules(std::vector<LinkCapsule<Scalar>>& capsules, const std::vector<LinkCapsule<Scalar>>& arm,
                   const std::string& name, int first, int link = 0, const Transform<Scalar>& placement = {}) {
+  const std::string prefix = name + "_";
   for (const auto& [own_link, capsule, own_name] : arm) {
     const bool is_base = own_link == 0;
     capsules.push_back(
-        {is_base ? link : first + own_link, is_base ? placed(capsule, placement) : capsule, name + "_" + own_name});
+        {is_base ? link : first + own_link, is_base ? placed(capsule, placement) : capsule, prefix + own_name});
   }
 }
 
