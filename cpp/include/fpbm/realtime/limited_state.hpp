@@ -196,8 +196,8 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
-  /// Of the limits, for the first level. Of 600 motions of `bench_grasp 300 1000`, in which two Pandas saturate, the
-  /// grasp is lost in 2 with 0.1, and in none with 0.2; without a reserve, in 25 of 400.
+  /// Reserve of the first level (Limiter). Of the 600 motions of `bench_grasp 300 1000`, the grasp is lost in 2 with a
+  /// reserve of 0.1, and in none with 0.2. Of the 400 motions of `bench_grasp 200`, 25 lose it without a reserve.
   static constexpr Scalar kReserve = Scalar(0.4);
 
   /// Whether each joint brakes by itself: a stop that keeps the first level moves the joints together.

@@ -8,7 +8,7 @@
 namespace fpbm {
 
 /// Radius ε of the damping of lower levels, whose rows are those of ScaledLevel. A circle of 0.1 m at 0.1 m/s on the
-/// second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by more than 67 µm.
+/// second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by 0.73 mm.
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 

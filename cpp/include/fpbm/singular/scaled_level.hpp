@@ -50,8 +50,8 @@ struct ScaledLevel {
   }
 
   /// ρ: with the radius 0.1 of lower levels (kLevelRadius), a posture loses a direction at σ = 0.03 ‖J‖_F. Of 120
-  /// positions below the axis of a Panda's tip that leave the workspace and come back, 112 are reached again; with 0.1,
-  /// 93; with the radius 0.1 ‖J‖_F in place of scaled rows, 111.
+  /// positions below the axis of a Panda's tip that leave the workspace and come back, 112 are reached again, and 97
+  /// with ρ = 0.1; without scaled rows and with the radius 0.1 ‖J‖_F, 111.
   static constexpr Scalar kPosture = Scalar(0.3);
 };
 
