@@ -77,15 +77,13 @@ class Limiter {
     return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
-  /// The motion of the first level as `desired` has it, that brings the arm to rest in the null space of that level.
+  /// The motion that resolves the first level as `desired` does, and brings the joints to rest in its null space.
   template <typename Tasks, int P = 0>
   [[nodiscard]] Found<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
                                                  const JointVector& desired, const JointVector& last,
                                                  const Rows<N, P, Scalar>& rows = {}) const noexcept {
-    const auto first = only_first(tasks);
     const JointVector rest = brake_in_proportion(limits_, state, limits_.box(state, last));
-    const JointVector wanted = desired + null_space_motion(first, JointVector(rest - desired));
-    return motion(first, state, wanted, last, rows);
+    return motion(only_first(tasks), state, braking_beside(tasks, desired, rest), last, rows);
   }
 
   /// The motion that brings the arm to rest, or one near to it that rows admit.
@@ -144,6 +142,13 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
+  /// u + N₁(r − u): the first level as in u, and the braking motion r in its null space.
+  template <typename Tasks>
+  [[nodiscard]] static JointVector braking_beside(const Tasks& tasks, const JointVector& u,
+                                                  const JointVector& r) noexcept {
+    return u + null_space_motion(only_first(tasks), JointVector(r - u));
+  }
+
   /// bounded() where the lower levels leave a reserve: the first level alone brakes within the limits, the lower levels
   /// move within those of the reserve, widened by the motion of the first level.
   template <typename Tasks, int P>
@@ -157,9 +162,8 @@ class Limiter {
     auto saturation = saturation_of(tasks, unit_, rows);
     Found<Tasks> found = with_scale(tasks, desired, Scalar(1));
     if (!lower.contains(desired)) {
-      const auto first = only_first(tasks);
       const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
-      const JointVector wanted = desired + null_space_motion(first, JointVector(rest - desired));
+      const JointVector wanted = braking_beside(tasks, desired, rest);
       found = saturation(whole, rest, wanted);
       if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, whole, rows, wanted, found);
       if (!is_finite(found.u)) {
