@@ -133,7 +133,9 @@ class Limiter {
   [[nodiscard]] Found<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                      const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
     const Box<N, Scalar> box = limits_.box(state, last);
-    if (reserves_) return with_reserve(tasks, state, desired, last, rows, box);
+    if constexpr (kHasLower<Tasks>) {
+      if (reserves_) return with_reserve(tasks, state, desired, last, rows, box);
+    }
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);

@@ -10,11 +10,9 @@ template <int M, int N, typename Scalar>
   return J;
 }
 
-/// The levels without those below the first.
-template <int M, int N, typename Scalar>
-[[nodiscard]] const Matrix<M, N, Scalar>& only_first(const Matrix<M, N, Scalar>& J) noexcept {
-  return J;
-}
+/// Whether tasks have levels below the first.
+template <typename Tasks>
+inline constexpr bool kHasLower = false;
 
 /// A motion u in which every level has the same scale.
 template <int M, int N, typename Scalar>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/limits/one_level.hpp"
 #include "fpbm/limits/saturated.hpp"
 
 namespace fpbm {
@@ -51,7 +52,10 @@ template <int N, typename Scalar, int... M>
   return levels.first();
 }
 
-/// As for one level (one_level.hpp).
+template <int N, typename Scalar, int... M>
+inline constexpr bool kHasLower<TaskLevels<N, Scalar, M...>> = sizeof...(M) > 1;
+
+/// The levels without those below the first.
 template <int N, typename Scalar, int... M>
 [[nodiscard]] auto only_first(TaskLevels<N, Scalar, M...> levels) noexcept {
   levels.disable_lower();

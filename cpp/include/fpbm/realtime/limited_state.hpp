@@ -35,9 +35,9 @@ class LimitedState {
                const JointVector& qdd0, const Guard_& guard)
       : motion_{options.dt},
         correction_(options),
-        limiter_(limits, options.keep_first_level ? kReserve : Scalar(0)),
+        limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0)),
         guard_(guard),
-        keeps_first_level_(options.keep_first_level),
+        keeps_first_level_(kHasLevels && options.keep_first_level),
         state_(start),
         last_(qdd0),
         progress_(options, start.q) {}
@@ -181,10 +181,13 @@ class LimitedState {
     auto found = with_scale(tasks, state.qd, Scalar(0));
     if (braking) {
       found.u = limiter_.brake(state, last, gives_way ? rows : Rows<N, P, Scalar>{}).u;
-    } else if (stopping_) {
-      found = limiter_.stop_on_first_level(tasks, state, desired, last, rows);
     } else {
-      found = limiter_.motion(tasks, state, desired, last, rows);
+      if constexpr (kHasLevels) {
+        found = stopping_ ? limiter_.stop_on_first_level(tasks, state, desired, last, rows)
+                          : limiter_.motion(tasks, state, desired, last, rows);
+      } else {
+        found = limiter_.motion(tasks, state, desired, last, rows);
+      }
     }
     take_scale(result, found);
     result.saturated = found.joints;
@@ -196,6 +199,7 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
+  static constexpr bool kHasLevels = kLevelsOf<Space> > 1;
   /// Reserve of the first level (Limiter). Of the 600 motions of `bench_grasp 300 1000`, the grasp is lost in 2 with a
   /// reserve of 0.1, and in none with 0.2. Of the 400 motions of `bench_grasp 200`, 25 lose it without a reserve.
   static constexpr Scalar kReserve = Scalar(0.4);

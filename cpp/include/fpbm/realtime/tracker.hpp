@@ -104,7 +104,9 @@ class Tracker {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
-    if (kept_.stopping() && kept_.keeps_first_level()) held_level_.hold(references);
+    if constexpr (kLevelsOf < Space >> 1) {
+      if (kept_.stopping() && kept_.keeps_first_level()) held_level_.hold(references);
+    }
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
