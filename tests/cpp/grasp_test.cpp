@@ -131,7 +131,7 @@ TEST(Grasp, a_stop_keeps_the_pose_of_one_arm) {
   const Vector<7> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};
   auto tracker = stack_tracker(robot, stack, Balanced<7>(0.0, UnitWeights{}), q0, options);
   auto target = decltype(tracker)::Target::hold(tracker.tip());
-  std::get<1>(target.x)(0) += 0.5;
+  std::get<1>(target.x)(0) += 1.0;
   for (int k = 0; k < 300; ++k) (void)tracker.tick(target);
   const double before = tracker.state().qd.norm();
   tracker.stop();
