@@ -127,7 +127,7 @@ TEST(Grasp, a_stop_keeps_the_pose_of_one_arm) {
   const Robot<7> robot(presets::panda());
   TrackerOptions<> options;
   options.keep_first_level = true;
-  const Stack stack(PoseTask<>{{Robot<7>::kTip}, {40.0, 400.0}}, PostureTask<7>{TaskGains<>(4.0, 4.0)});
+  const Stack stack(PoseTask<>{{Robot<7>::kTip}, {40.0, 400.0}}, PostureTask<7>{TaskGains<>(10.0, 25.0)});
   const Vector<7> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};
   auto tracker = stack_tracker(robot, stack, Balanced<7>(0.0, UnitWeights{}), q0, options);
   auto target = decltype(tracker)::Target::hold(tracker.tip());
