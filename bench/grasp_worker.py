@@ -1,4 +1,4 @@
-"""Two Pandas hold a tray, by a peer or by fpbm_cpp, in a process of its own: see bench/grasp_peers.py.
+"""Motions of a tray in two Pandas by one library, for bench/grasp_peers.py, which starts a process for each library.
 
 The motions are those of bench/grasp.cpp, by the same random numbers. Prints JSON.
 """
@@ -137,11 +137,12 @@ class Ours:
 
     def reset(self, q: Array, grasp: Array) -> None:
         stack = fp.Stack(
-            fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=400, k2=40_000),
+            fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=500, k2=62_500),
             fp.PoseTask("right_tip", name="object", k1=10, k2=25),
             fp.PostureTask(q, k1=4, k2=4),
         )
-        self.tracker = fp.Tracker(self.robot, fp.Balanced(0, np.ones(14), null_damping=2), q, stack=stack)
+        scheme = fp.Balanced(0, np.ones(14), null_damping=2)
+        self.tracker = fp.Tracker(self.robot, scheme, q, stack=stack, keep_first_level=True)
 
     def step(self, path: Callable[[int], tuple[Array, Array, Array]], tick: int) -> tuple[Array, bool]:
         return np.array(self.tracker.tick({"object": path(tick)}).q), True

@@ -29,7 +29,7 @@ class Robot {
   using CallbackReturn = controller_interface::CallbackReturn;
   using Overrides = std::map<std::string, rclcpp::ParameterValue>;
 
-  /// The parameters of the Panda, in place of those of the test before.
+  /// Replaces the parameters of the last test by those of the Panda.
   Robot() : controller_(exported_controller()) {
     limits_.velocity *= 0.8;
     limits_.acceleration *= 0.5;

@@ -59,7 +59,7 @@ void life() {
   robot.deactivate();
   check(robot.cleanup(), "cleanup", 1);
   stand_in::parameters.base_frame = "base_link";
-  late->hear(pose_message(robot.tip()));  // A callback that was under way.
+  late->hear(pose_message(robot.tip()));  // A callback that ran while the topics closed.
   const long held = robot.alive<PoseStamped>("~/target_pose") ? late.use_count() : 1;
   check(held == 1, "cleanup: holders of a subscription that is in use", static_cast<double>(held));
   check(robot.configure() && robot.activate(), "configured and activated again", 1);

@@ -129,8 +129,8 @@ def _held(urdf: Any, robot: Robot) -> dict[str, float]:
         if name not in robot.joint_names and joint.parent in places and joint.child in places:
             origin = np.eye(4) if joint.origin is None else joint.origin
             step = np.linalg.inv(places[joint.parent] @ origin) @ places[joint.child]
-            way = step[:3, 3] if joint.type == "prismatic" else rotation_vector(step[:3, :3])
-            held[name] = float(way @ joint.axis) / float(np.linalg.norm(joint.axis))
+            motion = step[:3, 3] if joint.type == "prismatic" else rotation_vector(step[:3, :3])
+            held[name] = float(motion @ joint.axis) / float(np.linalg.norm(joint.axis))
     return held
 
 

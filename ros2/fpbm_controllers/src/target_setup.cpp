@@ -89,7 +89,7 @@ void TargetController::read_parameters() {
   fpbm::require_stable(scheme(Joints::Zero(arm_->dof())), fpbm::TickOfGains<>{options_.dt, options_.integral_gain});
 }
 
-/// The controller manager calls a controller in whole numbers of its own ticks.
+/// The controller manager calls a controller in every n-th of the manager's ticks.
 void TargetController::require_rate() const {
   if (is_async()) throw std::invalid_argument("is_async: must be false, since a write could see two ticks");
   const unsigned int own = get_update_rate();
