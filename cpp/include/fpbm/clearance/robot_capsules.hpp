@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fpbm/clearance/preset_capsules.hpp"
+#include "fpbm/model/robot_presets.hpp"
 
 namespace fpbm {
 
@@ -28,9 +29,9 @@ namespace capsules {
 [[nodiscard]] inline std::vector<LinkCapsule<>> two_pandas() {
   std::vector<LinkCapsule<>> both;
   Transform<> place;
-  place.p(1) = -0.4;
+  place.p(1) = -kPandaOffset;
   add_capsules(both, panda(), "right", 0, 0, place);
-  place.p(1) = 0.4;
+  place.p(1) = kPandaOffset;
   add_capsules(both, panda(), "left", 7, 0, place);
   return both;
 }

@@ -8,13 +8,16 @@
 
 namespace fpbm::presets {
 
+/// Distance of each of the two Pandas from the middle between them, along y [m].
+inline constexpr double kPandaOffset = 0.4;
+
 /// Two Pandas at a table, side by side, 0.8 m apart along y: "right" and "left", with the frames right_tip and
 /// left_tip.
 [[nodiscard]] inline Tree<> two_pandas() {
   Tree<> tree;
   Transform<> place;
   for (const char* name : {"right", "left"}) {
-    place.p(1) = tree.joints.empty() ? -0.4 : 0.4;
+    place.p(1) = tree.joints.empty() ? -kPandaOffset : kPandaOffset;
     add_arm(tree, panda(), name, 0, place);
   }
   return tree;

@@ -15,8 +15,8 @@
 
 namespace fpbm_controllers {
 
-/// Between the loop, which never waits for it, and the node's callbacks. A callback holds it, since a callback may be
-/// under way when the topics close.
+/// What the loop and the node's callbacks exchange. The loop never waits for it. Each callback shares its ownership,
+/// since the topics may close while a callback runs.
 struct Exchange {
   realtime_tools::RealtimeThreadSafeBox<Target> target;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
