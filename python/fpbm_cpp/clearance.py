@@ -254,9 +254,11 @@ def _require(name: str, shapes: Iterable[Any], kinds: tuple[Any, ...], demand: s
 
 def _from_urdf(
     file: str,
-    tip: str,
+    tip: str | None = None,
     base: str | None = None,
     *,
+    locked: Mapping[str, float] | None = None,
+    tips: Sequence[str] | None = None,
     srdf: str | None = None,
     obstacles: Sequence[Obstacle] = (),
     margin: float = MARGIN,
@@ -264,7 +266,16 @@ def _from_urdf(
     postures: ArrayLike | None = None,
 ) -> Clearance:
     return Clearance.from_urdf(
-        file, tip, base, srdf=srdf, obstacles=obstacles, margin=margin, per_link=per_link, postures=postures
+        file,
+        tip,
+        base,
+        locked=locked,
+        tips=tips,
+        srdf=srdf,
+        obstacles=obstacles,
+        margin=margin,
+        per_link=per_link,
+        postures=postures,
     )
 
 

@@ -358,3 +358,23 @@ def test_what_is_wrong_is_said(make: Callable[[Path], Any], message: str, tmp_pa
     with pytest.raises(fp.ParameterError) as caught:
         make(robot_file(tmp_path))
     assert str(caught.value).startswith(message)
+
+
+def test_a_job_has_the_clearance_of_its_robot(tmp_path: Path) -> None:
+    pytest.importorskip("tomlkit")
+    from fpbm_cpp.job import prepare
+
+    file = str(robot_file(tmp_path))
+    job = {
+        "arm": {"kind": "robot", "file": file, "locked": {"waist": 0.2}},
+        "path": {"left": {"kind": "line", "displacement": [0.02, 0.0, 0.0]}},
+        "clearance": {"file": file, "per_link": 1},
+        "task": [
+            {"kind": "position", "frame": "left_lower", "name": "left"},
+            {"kind": "posture", "level": 1},
+        ],
+    }
+    motion = prepare(job)
+    assert motion.clearance == fp.Clearance.from_urdf(file, locked={"waist": 0.2}, per_link=1)
+    assert isinstance(motion.arm, fp.Robot)
+    assert motion.clearance.pairs(motion.arm)

@@ -191,9 +191,9 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     if "clearance" in job:
         full["limits"] = job.get("limits", {})
         full["clearance"] = with_kind(job["clearance"])
-        if full["clearance"]["kind"] == job["arm"]["kind"] == "urdf":
-            ends = {key: job["arm"][key] for key in ("tip", "base") if key in job["arm"]}
-            full["clearance"] = {**ends, **full["clearance"]}
+        if full["clearance"]["kind"] == "urdf" and job["arm"]["kind"] in ("urdf", "robot"):
+            parts = {key: job["arm"][key] for key in ("tip", "base", "locked", "tips") if key in job["arm"]}
+            full["clearance"] = {**parts, **full["clearance"]}
     return full
 
 

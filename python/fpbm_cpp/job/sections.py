@@ -127,7 +127,7 @@ def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
         return said
     if section == "clearance":
         said = with_kind(said)
-    if said.get("kind") == "urdf":
+    if section == "arm" and said.get("kind") == "urdf":
         return {"tip": "", **said}  # Which is refused with what links there are.
     if section == "limits":
         own = {name: getattr(arm.limits, name).tolist() if arm else [inf] for name in known(section)}
