@@ -327,7 +327,8 @@ recovery : bool
 keep_first_level : bool
     Whether the first level of a stack, such as a grasp of two arms, comes before speed: the lower levels leave it a
     reserve of the limits, 0.4 of each bound on acceleration and 0.2 of each bound on velocity, and stop keeps it: its
-    references are held at rest, and the joints come to rest in its null space.
+    references are held at rest, and the joints come to rest in its null space. A task that is farther than 0.001
+    characteristic lengths, or 0.001 rad, from its reference stays where it is.
 measured_delay : int
     Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
     tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/robot_presets.hpp"
@@ -142,6 +143,27 @@ TEST(Grasp, a_stop_keeps_the_pose_of_one_arm) {
   EXPECT_LT(worst, 1e-6);
   tracker.resume();
   EXPECT_FALSE(failed(tracker.tick(target).status));
+}
+
+/// A stop does not move a task of the first level to a target that it has not reached, nor to one that is not finite.
+TEST(Grasp, a_stop_leaves_a_far_target) {
+  const Robot<7> robot(presets::panda());
+  TrackerOptions<> options;
+  options.keep_first_level = true;
+  const Stack stack(PoseTask<>{{Robot<7>::kTip}, {40.0, 400.0}}, PostureTask<7>{TaskGains<>(4.0, 4.0)});
+  const Vector<7> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};
+  for (const double shift : {0.4, std::numeric_limits<double>::quiet_NaN()}) {
+    auto tracker = stack_tracker(robot, stack, Balanced<7>(0.0, UnitWeights{}), q0, options);
+    auto target = decltype(tracker)::Target::hold(tracker.tip());
+    std::get<0>(target.x).p(1) += 0.4;
+    for (int k = 0; k < 300; ++k) (void)tracker.tick(target);
+    const Vector<3> before = std::get<0>(tracker.tip()).p;
+    std::get<0>(target.x).p(1) += shift - 0.4;
+    tracker.stop();
+    for (int k = 0; k < 1500; ++k) (void)tracker.tick(target);
+    EXPECT_LT((std::get<0>(tracker.tip()).p - before).norm(), 1e-3) << shift;
+    EXPECT_LT(tracker.state().qd.norm(), 1e-3) << shift;
+  }
 }
 
 }  // namespace

@@ -413,6 +413,24 @@ def test_levels_are_reordered(panda, level):
     assert (np.abs(jerk) - panda.limits.jerk).max() < 1e-3 * panda.limits.jerk.max()
 
 
+def test_a_kept_stop_does_not_move_a_reordered_arm(panda, balanced):
+    """The level that becomes the first during a stop is far from its target, and stays where it is."""
+    stack = fp.Stack(fp.PositionTask(name="near"), fp.PositionTask("panda_joint4", name="far"))
+    tracker = fp.Tracker(panda, balanced, READY, stack=stack, keep_first_level=True)
+    goals = {"near": tracker.tip["near"], "far": tracker.tip["far"] + np.array([0, 0.3, 0.1])}
+    for _ in range(200):
+        tracker.tick(goals)
+    tracker.stop()
+    tracker.tick({})
+    tracker.reorder([1, 0])
+    before = tracker.tip["far"]
+    for _ in range(6000):
+        tick = tracker.tick({})
+    assert np.abs(tick.qd).max() < 1e-6
+    assert np.linalg.norm(tracker.tip["far"] - before) < 1e-2
+    assert np.linalg.norm(tracker.tip["far"] - goals["far"]) > 0.2
+
+
 def test_wrong_orders_change_nothing(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     tracker.enable(2, False)

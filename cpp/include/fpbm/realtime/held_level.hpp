@@ -4,42 +4,63 @@
 #include <tuple>
 
 #include "fpbm/core/product_space.hpp"
+#include "fpbm/realtime/task_distance.hpp"
 #include "fpbm/realtime/tick_references.hpp"
 
 namespace fpbm {
 
-/// Holds the references of the first level while a stop keeps that level (TrackerOptions::keep_first_level).
+/// Holds the references of the first level of a stack while a stop keeps that level (TrackerOptions::keep_first_level).
 template <typename Space, typename Scalar = double>
 class HeldLevel {
  public:
-  /// In all ticks after the first, the first level's targets are those of the first. They are at rest in all ticks.
-  void hold(TickReferences<Space, Scalar>& references) noexcept {
-    if (!holds_) target_ = references.stages[0].x;
-    holds_ = true;
+  using Point = typename Space::template Point<Scalar>;
+
+  /// Replaces the targets of the first level by those that the first tick of the stop had, at rest. A task that is
+  /// farther from its target than kNear stays where it was in that tick: a stop does not move it to the target. tip:
+  /// the current points. length: the robot's characteristic length [m].
+  void hold(TickReferences<Space, Scalar>& references, const Point& tip, Scalar length) noexcept {
+    if (!holds_) begin(references.stages[0].x, tip, length);
     for (Reference<Space, Scalar>& stage : references.stages) {
-      if constexpr (kIsProduct<Space>) {
-        Space::each([&](auto space, auto i, int row) noexcept {
-          constexpr std::size_t kIndex = decltype(i)::value;
-          if constexpr (kIndex < Space::kFirst) {
-            std::get<kIndex>(stage.x) = std::get<kIndex>(target_);
-            rest(stage, row, decltype(space)::kRows);
-          }
-        });
-      } else {
-        stage.x = target_;
-        rest(stage, 0, Space::kRows);
-      }
+      each_first([&](auto space, auto i, int row) noexcept {
+        std::get<decltype(i)::value>(stage.x) = std::get<decltype(i)::value>(target_);
+        for (int j = row; j < row + decltype(space)::kRows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+      });
     }
   }
+  /// The next call of hold() begins another stop.
   void release() noexcept { holds_ = false; }
 
  private:
-  static void rest(Reference<Space, Scalar>& stage, int row, int rows) noexcept {
-    for (int j = row; j < row + rows; ++j) stage.xd(j) = stage.xdd(j) = Scalar(0);
+  void begin(const Point& target, const Point& tip, Scalar length) noexcept {
+    holds_ = true;
+    target_ = target;
+    each_first([&](auto space, auto i, int) noexcept {
+      constexpr std::size_t kIndex = decltype(i)::value;
+      using Distance = TaskDistance<decltype(space), Scalar>;
+      const Scalar distance = Distance::between(std::get<kIndex>(target), std::get<kIndex>(tip), length);
+      if (!(distance <= kNear)) std::get<kIndex>(target_) = std::get<kIndex>(tip);
+    });
   }
 
+  /// Calls f for each task of the first level, as Space::each().
+  template <typename F>
+  static void each_first(const F& f) noexcept {
+    Space::each([&](auto space, auto i, int row) noexcept {
+      if constexpr (decltype(i)::value < static_cast<std::size_t>(Space::kFirst)) f(space, i, row);
+    });
+  }
+
+  /// TaskDistance from which a task is not at its target: 1 mm for a robot of 1 m, a thousand times the error of a
+  /// grasp (`bench_grasp`).
+  static constexpr Scalar kNear = Scalar(1e-3);
+
   bool holds_ = false;
-  typename Space::template Point<Scalar> target_ = Space::template origin<Scalar>();
+  Point target_ = Space::template origin<Scalar>();
+};
+
+/// The place of HeldLevel in a tracker of a single level.
+struct NoHeldLevel {
+  static void release() noexcept {}
 };
 
 }  // namespace fpbm

@@ -58,8 +58,8 @@ class LimitedState {
   [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
 
   [[nodiscard]] bool stopping() const noexcept { return stopping_; }
-  /// Whether a stop keeps the first level.
-  [[nodiscard]] bool keeps_first_level() const noexcept { return keeps_first_level_; }
+  /// Whether it stops and keeps the first level.
+  [[nodiscard]] bool keeps_stopping() const noexcept { return stopping_ && keeps_first_level_; }
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept {
     stopping_ = false;
@@ -125,7 +125,7 @@ class LimitedState {
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       const bool several = has_lower_levels(loop.kinematics);
-      if constexpr (kLevelsOf<Space> != 1) {
+      if constexpr (kHasLevels) {
         if (several && !failed(result.status)) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));
           if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
@@ -199,7 +199,7 @@ class LimitedState {
 
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
-  static constexpr bool kHasLevels = kLevelsOf<Space> > 1;
+  static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   /// Reserve of the first level (Limiter). Of the 600 motions of `bench_grasp 300 1000`, the grasp is lost in 2 with a
   /// reserve of 0.1, and in none with 0.2. Of the 400 motions of `bench_grasp 200`, 25 lose it without a reserve.
   static constexpr Scalar kReserve = Scalar(0.4);

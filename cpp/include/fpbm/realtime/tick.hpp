@@ -67,10 +67,11 @@ struct TrackerOptions {
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
   bool recovery = true;
-  /// Whether the first level comes before speed: the lower levels leave it a reserve of the limits, 0.4 of each bound
-  /// on acceleration and 0.2 of each bound on velocity, and stop() keeps it: its references are held at rest, and the
-  /// joints come to rest in its null space, which takes longer than the stop of each joint by itself. Without effect on
-  /// resolve_measured(), and on a tracker of a single level.
+  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.4 of
+  /// each bound on acceleration and 0.2 of each bound on velocity. stop() keeps the first level: its references are
+  /// held at rest, and the joints come to rest in its null space, which takes longer than the stop of each joint by
+  /// itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it
+  /// is. Without effect on resolve_measured(), and on a tracker of a single level.
   bool keep_first_level = false;
   /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
   /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.

@@ -36,6 +36,7 @@ class Tracker {
   static constexpr int N = Arm::kDof;
   static constexpr Level kLevel = Scheme::kLevel;
   static constexpr bool kGuarded = !std::is_same_v<Guard_, Unguarded>;
+  static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
   using Target = Reference<Space, Scalar>;
   using References = TickReferences<Space, Scalar>;
   using JointVector = Vector<N, Scalar>;
@@ -104,13 +105,13 @@ class Tracker {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
     Result result = kept_.idle(state);
-    if constexpr (kLevelsOf < Space >> 1) {
-      if (kept_.stopping() && kept_.keeps_first_level()) held_level_.hold(references);
-    }
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
     loop.update(x);
+    if constexpr (kHasLevels) {
+      if (kept_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
+    }
     watch(loop.kinematics, references.stages[0], result);
     lower_levels_.hold(references, loop.kinematics, result.error, kept_.correction());
     const Target now = references.stages[0];
@@ -201,6 +202,7 @@ class Tracker {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
     if (!arm_.reorder(order)) return false;
     kept_.correction().forget(0, Space::kRows);
+    held_level_.release();
     lower_levels_.release();
     return true;
   }
@@ -238,7 +240,7 @@ class Tracker {
   Scheme scheme_;
   LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
-  HeldLevel<Space, Scalar> held_level_;
+  std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level_;
   Measured measured_;
   JointVector answer_;  ///< The last one for a measured state.
 };
