@@ -90,6 +90,7 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/reflections.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/linalg/self_motion.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"

@@ -8,14 +8,15 @@
 #include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/reflections.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"
 
 namespace fpbm {
 
 /// Null space of task levels, each a matrix of rows, added in the order of their priority.
 ///
-/// Stores Aᵀ = QR of the rows A of all levels so far as Householder reflections, one block for each level. The columns
-/// of Q from rank() on are an orthonormal basis Z of the null space of A.
+/// Aᵀ = QR of the rows A of all levels so far, where Q is a product of reflections, one block for each level. The
+/// columns of Q from rank() on are an orthonormal basis Z of the null space of A.
 template <int N, typename Scalar = double>
 class LevelSpace {
  public:
@@ -24,14 +25,10 @@ class LevelSpace {
       Eigen::Matrix<Scalar, N, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<N>>;
 
   /// No levels: the null space is ℝⁿ.
-  explicit LevelSpace(Eigen::Index n) noexcept {
-    V_.resize(n, n);
-    for (Eigen::Index i = 0; i < V_.size(); ++i) V_.coeffRef(i) = Scalar(0);
-    beta_.resize(n);
-  }
+  explicit LevelSpace(Eigen::Index n) noexcept : Q_(n) {}
 
-  [[nodiscard]] Eigen::Index size() const noexcept { return V_.rows(); }
-  [[nodiscard]] Eigen::Index rank() const noexcept { return rank_; }
+  [[nodiscard]] Eigen::Index size() const noexcept { return Q_.size(); }
+  [[nodiscard]] Eigen::Index rank() const noexcept { return Q_.count(); }
 
   /// Adds the level A. Returns y = Z (A Z)⁺ r with the basis Z of the higher levels: the y of least norm that changes
   /// no higher level and minimises |A y − r|.
@@ -69,11 +66,18 @@ class LevelSpace {
                     });
   }
 
+  /// Adds the level I. Returns y = Z Zᵀ r.
+  [[nodiscard]] Column add_unit(const Column& r) noexcept {
+    const Column y = project(r);
+    Q_.fill();
+    return y;
+  }
+
   /// Adds the level A, without a solution.
   template <int M>
   void add(const Matrix<M, N, Scalar>& A) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
-      if (is_diagonal(A)) return set_full();
+      if (is_diagonal(A)) return Q_.fill();
     }
     auto r = filled<Vector<M, Scalar>>(A.rows());
     (void)triangular(A, r);
@@ -82,20 +86,20 @@ class LevelSpace {
   /// Z Zᵀ v, the part of v in the null space.
   [[nodiscard]] Column project(const Column& v) const noexcept {
     Column x = v;
-    for (Eigen::Index k = 0; k < rank_; ++k) reflect(k, x.data());
-    for (Eigen::Index i = 0; i < rank_; ++i) x.coeffRef(i) = Scalar(0);
-    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, x.data());
+    Q_.apply_transposed(x.data());
+    for (Eigen::Index i = 0; i < rank(); ++i) x.coeffRef(i) = Scalar(0);
+    Q_.apply(x.data());
     return x;
   }
 
   /// Z, n × (n − rank).
   [[nodiscard]] Basis basis() const noexcept {
     Basis Z;
-    Z.resize(size(), size() - rank_);
+    Z.resize(size(), size() - rank());
     for (Eigen::Index j = 0; j < Z.cols(); ++j) {
       Scalar* const z = Z.data() + j * size();
-      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank_ + j ? 1 : 0);
-      for (Eigen::Index k = rank_; k-- > 0;) reflect(k, z);
+      for (Eigen::Index i = 0; i < size(); ++i) z[i] = Scalar(i == rank() + j ? 1 : 0);
+      Q_.apply(z);
     }
     return Z;
   }
@@ -119,23 +123,19 @@ class LevelSpace {
     } else {
       y = solve_diagonal<N, Scalar>(basis(), A, r);
     }
-    set_full();
+    Q_.fill();
     return y;
   }
-  void set_full() noexcept {
-    for (; rank_ < size(); ++rank_) beta_.coeffRef(rank_) = Scalar(0);  // No reflection.
-  }
-
   /// Adds the level A and returns y = Q w, where solved(T, first, count, r) replaces the first entries of r by w.
   template <int M, typename Solved>
   [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, Vector<M, Scalar> r, const Solved& solved) noexcept {
-    const Eigen::Index first = rank_;
+    const Eigen::Index first = rank();
     const Matrix<N, M, Scalar> T = triangular(A, r);
-    const Eigen::Index count = rank_ - first;
+    const Eigen::Index count = rank() - first;
     solved(T, first, count, r);
     Column y = filled<Column>(size());
     for (Eigen::Index i = 0; i < count; ++i) y.coeffRef(first + i) = r.coeff(i);
-    for (Eigen::Index k = rank_; k-- > 0;) reflect(k, y.data());
+    Q_.apply(y.data());
     return y;
   }
 
@@ -145,64 +145,66 @@ class LevelSpace {
     using std::swap;
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
-    const Eigen::Index first = rank_;
+    const Eigen::Index first = rank();
     Matrix<N, M, Scalar> T = transpose_of(A);
     const auto row = [&](Eigen::Index j) noexcept { return T.data() + j * n; };
-    Vector<M, Scalar> least;
-    least.resize(m);
+    Vector<M, Scalar> enough;    // Inverse of the squared length from which a remainder counts.
+    Vector<M, Scalar> square;    // Squared length of the remainder of each row.
+    Vector<M, Scalar> computed;  // That square when it was last computed from the entries.
+    enough.resize(m);
+    square.resize(m);
+    computed.resize(m);
+    const auto measure = [&](Eigen::Index j) noexcept {
+      square.coeffRef(j) = computed.coeffRef(j) = squared_length(row(j) + rank(), n - rank());
+    };
     for (Eigen::Index j = 0; j < m; ++j) {
-      least.coeffRef(j) = kDependent * length_of(row(j), n);
-      for (Eigen::Index k = 0; k < first; ++k) reflect(k, row(j));
+      const Scalar whole = squared_length(row(j), n);
+      enough.coeffRef(j) = Scalar(1) / (kDependent * kDependent * whole);
+      Q_.apply_transposed(row(j));
+      if (first == 0) {
+        square.coeffRef(j) = computed.coeffRef(j) = whole;
+      } else {
+        measure(j);
+      }
     }
-    while (rank_ < n && rank_ - first < m) {
-      const Eigen::Index k = rank_ - first;
+    while (rank() < n && rank() - first < m) {
+      const Eigen::Index k = rank() - first;
       Eigen::Index next = -1;
-      Scalar most(1);  // Largest length of a row's remainder, in units of the least that counts.
+      Scalar most(1);  // Largest squared remainder, in units of the least that counts.
       for (Eigen::Index j = k; j < m; ++j) {
-        const Scalar part = length_of(row(j) + rank_, n - rank_);
-        if (part > most * least.coeff(j)) {
-          most = part / least.coeff(j);
+        const Scalar part = square.coeff(j) * enough.coeff(j);
+        if (part > most) {
+          most = part;
           next = j;
         }
       }
       if (next < 0) break;
-      for (Eigen::Index i = 0; next != k && i < n; ++i) swap(row(k)[i], row(next)[i]);
-      swap(least.coeffRef(k), least.coeffRef(next));
-      swap(r.coeffRef(k), r.coeffRef(next));
-      add_reflection(row(k) + rank_);
-      for (Eigen::Index j = k; j < m; ++j) reflect(rank_, row(j));
-      ++rank_;
+      if (next != k) {
+        for (Eigen::Index i = 0; i < n; ++i) swap(row(k)[i], row(next)[i]);
+        swap(enough.coeffRef(k), enough.coeffRef(next));
+        swap(square.coeffRef(k), square.coeffRef(next));
+        swap(computed.coeffRef(k), computed.coeffRef(next));
+        swap(r.coeffRef(k), r.coeffRef(next));
+      }
+      Q_.add(row(k));
+      for (Eigen::Index j = k + 1; j < m; ++j) {
+        Q_.reflect(first + k, row(j));
+        const Scalar entry = row(j)[first + k];
+        square.coeffRef(j) -= entry * entry;
+        if (square.coeff(j) < kCancelled * computed.coeff(j)) measure(j);
+      }
     }
     return T;
-  }
-
-  /// Adds the reflection that makes all but the first of some entries zero: those of a column from row rank() on.
-  void add_reflection(const Scalar* entries) noexcept {
-    const Eigen::Index remaining = size() - rank_;
-    Scalar* const v = V_.data() + rank_ * size() + rank_;
-    const Scalar length = length_of(entries, remaining);
-    for (Eigen::Index i = 0; i < remaining; ++i) v[i] = entries[i] / length;
-    beta_.coeffRef(rank_) = Scalar(1) / (Scalar(1) + std::abs(v[0]));
-    v[0] += v[0] < Scalar(0) ? Scalar(-1) : Scalar(1);
-  }
-
-  /// Applies reflection k to n entries.
-  void reflect(Eigen::Index k, Scalar* x) const noexcept {
-    const Scalar* const v = V_.data() + k * size();
-    // Of a fixed size, all entries: the zeros above row k cost less than a loop of run-time length.
-    const Eigen::Index begin = N == Eigen::Dynamic ? k : 0;
-    const Eigen::Index end = N == Eigen::Dynamic ? size() : N;
-    const Scalar along = beta_.coeff(k) * paired_dot(v + begin, x + begin, end - begin);
-    subtract_multiple(x + begin, along, v + begin, end - begin);
   }
 
   /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of
   /// the higher levels; a motion along a remainder of 1e-9 already amplifies that error to 1e-7.
   static constexpr Scalar kDependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-4);
 
-  Matrix<N, N, Scalar> V_;  ///< Column k is the vector of reflection k, below row k − 1.
-  Column beta_;
-  Eigen::Index rank_ = 0;
+  /// Share of a squared length that is left where its differences lose too many digits: 3 of 16 of a double.
+  static constexpr Scalar kCancelled = Scalar(1e-3);
+
+  Reflections<N, Scalar> Q_;
 };
 
 }  // namespace fpbm

@@ -16,6 +16,9 @@ template <typename Scalar>
     using Two = Pair<Scalar>;
     Two even(Scalar(0));
     Two odd(Scalar(0));
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 8
+#endif
     for (; i + 4 <= n; i += 4) {
       even += Two::load(a + i) * Two::load(b + i);
       odd += Two::load(a + i + 2) * Two::load(b + i + 2);
@@ -31,6 +34,12 @@ template <typename Scalar>
   return sum;
 }
 
+/// Σ a_i² over n entries.
+template <typename Scalar>
+[[nodiscard, gnu::always_inline]] inline Scalar squared_length(const Scalar* a, Eigen::Index n) noexcept {
+  return paired_dot(a, a, n);
+}
+
 /// a −= s b over n entries.
 template <typename Scalar>
 [[gnu::always_inline]] inline void subtract_multiple(Scalar* a, Scalar s, const Scalar* b, Eigen::Index n) noexcept {
@@ -38,6 +47,9 @@ template <typename Scalar>
   if constexpr (kRowsInPairs<Scalar>) {
     using Two = Pair<Scalar>;
     const Two share(s);
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 8
+#endif
     for (; i + 2 <= n; i += 2) (Two::load(a + i) - share * Two::load(b + i)).store(a + i);
   }
   for (; i < n; ++i) a[i] -= s * b[i];

@@ -34,22 +34,17 @@ class RowFactor {
     Value whole(Scalar(0));  // Σ|a_j|², by Pythagoras.
     Value squares[kCapacity<M>];
     each(kFirst, m, [&](auto j) {
-      const Value square = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, j) * Q_.coeff(k, j); });
+      Value* const column = Q_.data() + j * n;
+      const Value square = dot(n, column, column);
       squares[j] = square;
       reciprocal_[j] = Value(Scalar(1)) / square;
       whole += square;
       each(kFirst, j, [&](Eigen::Index k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
       each(next(j), m, [&](auto i) {
-        if constexpr (kLong) {
-          Value* const row = Q_.data() + i * n;
-          const Value* const column = Q_.data() + j * n;
-          L_[i][j] = paired_dot(row, column, n) * reciprocal_[j];
-          subtract_multiple(row, L_[i][j], column, n);
-          return;
-        }
-        const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * Q_.coeff(k, j); }) * reciprocal_[j];
+        Value* const row = Q_.data() + i * n;
+        const Value share = dot(n, row, column) * reciprocal_[j];
         L_[i][j] = share;
-        each(kFirst, n, [&](Eigen::Index k) { Q_.coeffRef(k, i) -= share * Q_.coeff(k, j); });
+        subtract(n, row, share, column);
       });
     });
     const Value smallest = Value(Scalar(kPivotTolerance / static_cast<Number<Scalar>>(Eigen::Index(m)))) * whole;
@@ -84,8 +79,8 @@ class RowFactor {
     const auto n = extent<N>(Q_.rows());
     Vector<N, Value> left = a;
     each(kFirst, rows(), [&](Eigen::Index i) {
-      const Value share = dot(n, [&](Eigen::Index k) { return Q_.coeff(k, i) * left.coeff(k); }) * reciprocal_[i];
-      each(kFirst, n, [&](Eigen::Index k) { left.coeffRef(k) -= share * Q_.coeff(k, i); });
+      const Value* const column = Q_.data() + i * n;
+      subtract(n, left.data(), dot(n, column, left.data()) * reciprocal_[i], column);
     });
     return left;
   }
@@ -94,6 +89,11 @@ class RowFactor {
   [[nodiscard]] Vector<N, Value> sum(const Vector<M, Value>& s) const noexcept {
     Vector<N, Value> y;
     y.resize(Q_.rows());
+    if constexpr (kLong) {
+      y = filled<Vector<N, Value>>(N);
+      each(kFirst, rows(), [&](Eigen::Index i) { subtract_multiple(y.data(), -s.coeff(i), Q_.data() + i * N, N); });
+      return y;
+    }
     each(kFirst, extent<N>(Q_.rows()), [&](Eigen::Index k) {
       Value at = s.coeff(0) * Q_.coeff(k, 0);
       each(next(kFirst), rows(), [&](Eigen::Index i) { at += s.coeff(i) * Q_.coeff(k, i); });
@@ -116,15 +116,27 @@ class RowFactor {
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, rows()); }
 
  private:
-  /// f(k) summed over the columns of A.
-  template <typename Count, typename F>
-  [[nodiscard, gnu::always_inline]] static Value dot([[maybe_unused]] Count n, const F& f) noexcept {
-    if constexpr (std::is_same_v<Count, Constant<N>>) {
-      return total<0, N>(f);
+  /// Σ a_k b_k over the columns of A.
+  template <typename Count>
+  [[nodiscard, gnu::always_inline]] static Value dot([[maybe_unused]] Count n, const Value* a,
+                                                     const Value* b) noexcept {
+    if constexpr (kLong) {
+      return paired_dot(a, b, N);
+    } else if constexpr (std::is_same_v<Count, Constant<N>>) {
+      return total<0, N>([&](Eigen::Index k) { return a[k] * b[k]; });
     } else {
       Value sum(Scalar(0));
-      for (Eigen::Index k = 0; k < n; ++k) sum += f(k);
+      for (Eigen::Index k = 0; k < n; ++k) sum += a[k] * b[k];
       return sum;
+    }
+  }
+  /// a −= s b, over the columns of A.
+  template <typename Count>
+  [[gnu::always_inline]] static void subtract(Count n, Value* a, const Value& s, const Value* b) noexcept {
+    if constexpr (kLong) {
+      if (s != Value(Scalar(0))) subtract_multiple(a, s, b, N);  // Rows of different arms have no joints in common.
+    } else {
+      each(kFirst, n, [&](Eigen::Index k) { a[k] -= s * b[k]; });
     }
   }
 

@@ -40,6 +40,10 @@ class Screws {
     Two3 angular;
 
     [[nodiscard]] static ColumnPair zero() noexcept { return {both({}, {}), both({}, {})}; }
+    friend ColumnPair operator-(const ColumnPair& a, const ColumnPair& b) noexcept {
+      return {entrywise(a.linear, [&](Eigen::Index k) { return a.linear.coeff(k) - b.linear.coeff(k); }),
+              entrywise(a.linear, [&](Eigen::Index k) { return a.angular.coeff(k) - b.angular.coeff(k); })};
+    }
 
     /// As columns i and, where there is one, i + 1 of a matrix of six rows, or of the three linear ones.
     template <typename To>

@@ -62,7 +62,9 @@ template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
     const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   return std::apply(
-      [&](const auto&... rows) { return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.J...); },
+      [&](const auto&... rows) {
+        return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.matrix()...);
+      },
       kinematics.levels);
 }
 

@@ -53,26 +53,21 @@ struct ByLevels {
     Status status = Status::kOk;
     each_level([&](auto k) noexcept {
       constexpr int kIndex = decltype(k)::value;
-      const auto& [J, Jd] = std::get<kIndex>(kinematics.levels);
+      const auto& level = std::get<kIndex>(kinematics.levels);
       constexpr int M = Stack_::kRows[kIndex];
-      if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || J.rows() == 0)) return;
+      if (kIndex > 0 && (failed(status) || !kinematics.enabled[kIndex] || level.rows() == 0)) return;
       Vector<M, Scalar> xd;
       Vector<M, Scalar> r;
-      xd.resize(J.rows());
-      r.resize(J.rows());
+      xd.resize(level.rows());
+      r.resize(level.rows());
       command_level<kIndex>(kinematics, reference, xd, r);
-      if constexpr (kLevel == Level::kAcceleration) r -= product(Jd, state.qd);
       if constexpr (kIndex == 0) {
+        if constexpr (kLevel == Level::kAcceleration) r -= product(level.Jd, state.qd);
         result = filled<JointVector>(state.q.size());
-        status = scheme.resolve_rows(r, xd, J, Jd, state, result, sigma);
-        if constexpr (Stack_::kLevels > 1) space.add(J);
+        status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
+        if constexpr (Stack_::kLevels > 1) space.add(level.J);
       } else {
-        if (space.rank() == space.size()) return;
-        r -= product(J, result);
-        if (!r.allFinite()) return;
-        const ScaledLevel<M, kDof, Scalar> level(J, r);
-        DampedLevel<M, Scalar> damped(radius * radius);
-        result += space.add(level.J, level.r, damped);
+        if (space.rank() < space.size()) result += added(level, r, state.qd, result, space);
       }
     });
     if (failed(status)) return status;
@@ -89,6 +84,30 @@ struct ByLevels {
   template <typename F, std::size_t... k>
   static void each_level(F& f, std::index_sequence<k...>) noexcept {
     (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
+  }
+
+  /// u_k − u_{k−1} of a lower level, which the space takes in; zero where its rows are not finite. r: b_k without J̇ qd.
+  template <int M>
+  [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r,
+                                  [[maybe_unused]] const JointVector& qd, const JointVector& u,
+                                  LevelSpace<kDof, Scalar>& space) const noexcept {
+    if constexpr (kLevel == Level::kAcceleration) r -= product(level.Jd, qd);
+    r -= product(level.J, u);
+    if (!r.allFinite()) return filled<JointVector>(u.size());
+    const ScaledLevel<M, kDof, Scalar> scaled(level.J, r);
+    DampedLevel<M, Scalar> damped(radius * radius);
+    return space.add(scaled.J, scaled.r, damped);
+  }
+  /// Of a posture of all joints: J Z has orthonormal columns.
+  [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector&,
+                                  const JointVector& u, LevelSpace<kDof, Scalar>& space) const noexcept {
+    if (!r.allFinite()) return filled<JointVector>(u.size());
+    JointVector y = u;
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      const int joint = level.joints[static_cast<std::size_t>(i)];
+      y.coeffRef(joint) = r.coeff(i) - u.coeff(joint);
+    }
+    return space.add_unit(y);
   }
 
   /// Commands of a level's tasks: xd, and b_k without J̇ qd.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fpbm/linalg/cholesky.hpp"
+#include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/singular/lost_directions.hpp"
@@ -33,11 +34,10 @@ class DampedLevel {
     const Eigen::Index m = L.rows();
     const bool dependent = columns < m;
     lost_ = static_cast<Scalar>(m - columns);
-    const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : gram_of(L);
+    // σ_min ≥ 1/‖L⁻¹‖_F settles most levels.
+    if (!dependent && epsilon_squared_ * squared_norm_of_inverse(L) <= Scalar(1)) return false;
+    const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : lower_gram(L);
     Cholesky<M, Scalar> cholesky;
-    // σ_min² ≥ 1/tr((L Lᵀ)⁻¹) settles most levels without a decomposition into eigenvectors.
-    const bool regular = cholesky.factor(gram) == Status::kOk;
-    if (regular && epsilon_squared_ * cholesky.inverse_trace() <= Scalar(1)) return false;
     const LostDirections<M, Scalar> directions(gram, epsilon_squared_);
     if (!(directions.count > Scalar(0))) return false;
     if (cholesky.factor(sum_of(gram, directions.delta)) != Status::kOk) return false;
@@ -53,6 +53,25 @@ class DampedLevel {
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
  private:
+  /// ‖L⁻¹‖²_F.
+  [[nodiscard]] static Scalar squared_norm_of_inverse(const Matrix<M, M, Scalar>& L) noexcept {
+    const auto m = extent<M>(L.rows());
+    Scalar inverse[kCapacity<M>][kCapacity<M>];
+    Scalar sum(0);
+    each(Constant<0>{}, m, [&](auto i) {
+      const Scalar reciprocal = Scalar(1) / L.coeff(i, i);
+      each(Constant<0>{}, i, [&](auto j) {
+        Scalar entry(0);
+        each(j, i, [&](Eigen::Index k) { entry -= L.coeff(i, k) * inverse[k][j]; });
+        inverse[i][j] = entry * reciprocal;
+        sum += inverse[i][j] * inverse[i][j];
+      });
+      inverse[i][i] = reciprocal;
+      sum += reciprocal * reciprocal;
+    });
+    return sum;
+  }
+
   /// LᵀL. Each column of L that is zero gets an eigenvalue that is large, so that it does not count as lost.
   [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
                                                      Eigen::Index columns) const noexcept {

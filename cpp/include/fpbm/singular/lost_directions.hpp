@@ -18,10 +18,15 @@ struct LostDirections {
   Scalar count{0};             ///< tr Δ/ε²: about the number of lost directions.
   Matrix<M, M, Scalar> delta;  ///< Δ
 
+  /// gram: G, of which only the lower triangle is read.
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept
       : delta(filled<Matrix<M, M, Scalar>>(gram.rows())) {
     if (none_is_lost(gram, epsilon_squared)) return;
-    const SymmetricEigen<M, Scalar> spectrum(gram);
+    Matrix<M, M, Scalar> whole = gram;
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) whole.coeffRef(j, i) = gram.coeff(i, j);
+    }
+    const SymmetricEigen<M, Scalar> spectrum(whole);
     for (Eigen::Index i = 0; i < gram.rows(); ++i) {
       const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;

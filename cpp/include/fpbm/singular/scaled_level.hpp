@@ -6,7 +6,6 @@
 #include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/product.hpp"
-#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -26,22 +25,26 @@ struct ScaledLevel {
 
   /// The rows stay as they are where J is zero or not finite.
   ScaledLevel(const Matrix<M, N, Scalar>& rows, const Vector<M, Scalar>& right) noexcept : J(rows), r(right) {
-    const Scalar least = kPosture * kPosture * squared_norm(J);
     if constexpr (M == N || M == Eigen::Dynamic || N == Eigen::Dynamic) {
       if (is_diagonal(J)) {
-        scale_diagonal(least);
+        scale_diagonal();
         return;
       }
     }
     Matrix<M, M, Scalar> gram = lower_gram(J);
-    for (Eigen::Index i = 0; i < gram.rows(); ++i) gram.coeffRef(i, i) += least;
+    Scalar squares(0);  // ‖J‖²_F
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) squares += gram.coeff(i, i);
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) gram.coeffRef(i, i) += kPosture * kPosture * squares;
     Cholesky<M, Scalar> cholesky;
     if (cholesky.factor(gram) != Status::kOk) return;
     cholesky.orthonormalize(J, r);
   }
 
  private:
-  void scale_diagonal(Scalar least) noexcept {
+  void scale_diagonal() noexcept {
+    Scalar squares(0);
+    for (Eigen::Index i = 0; i < J.rows(); ++i) squares += J.coeff(i, i) * J.coeff(i, i);
+    const Scalar least = kPosture * kPosture * squares;
     for (Eigen::Index i = 0; i < J.rows(); ++i) {
       const Scalar share = Scalar(1) / std::sqrt(J.coeff(i, i) * J.coeff(i, i) + least);
       J.coeffRef(i, i) *= share;

@@ -43,29 +43,39 @@ class SeenFrom {
   ///   J̇_reference of p as a point of the reference's link, and a × ṗ since p moves in it,    −Rᵀ w × (…) of the axes.
   template <typename F>
   Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
-    constexpr int N = Robot_::kDof;
-    Matrix<6, N, Scalar> J;
-    Matrix<6, N, Scalar> Jd;
-    Matrix<6, N, Scalar> own;
-    Matrix<6, N, Scalar> own_rates;
+    using Columns = typename Robot_::Columns;
+    using Two = Pair<Scalar>;
+    struct Difference {
+      Columns J;
+      Columns Jd;
+      Columns own;
+    };
+    Difference differences[(kCapacity<Robot_::kDof> + 1) / 2];
     const Vector3 turned = times(at_.R, p);
     const Vector3 place = entrywise(p, [&](Eigen::Index i) { return at_.p.coeff(i) + turned.coeff(i); });
-    const Vector3 v =
-        subtract(robot_.jacobian(state, link, place, J, Jd), robot_.jacobian(state, link_, place, own, own_rates));
-    for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      const Vector3 along = cross(part(own, 3, j), v);
-      for (int row = 0; row < 6; ++row) {
-        J.coeffRef(row, j) -= own.coeff(row, j);
-        Jd.coeffRef(row, j) -= own_rates.coeff(row, j) + (row < 3 ? along.coeff(row) : Scalar(0));
-      }
-      for (int first = 0; first < 6; first += 3) {
-        const Vector3 column = part(J, first, j);
-        set(J, first, j, times(back_, column));
-        set(Jd, first, j, times(back_, subtract(part(Jd, first, j), cross(w_, column))));
-      }
+    const Vector3 carried =
+        robot_.columns(state, link_, place, [&](Eigen::Index j, const Columns& own, const Columns& rates) noexcept {
+          differences[j / 2].own = own;
+          differences[j / 2].Jd = rates;
+        });
+    const Vector3 moved =
+        robot_.columns(state, link, place, [&](Eigen::Index j, const Columns& columns, const Columns& rates) noexcept {
+          Difference& at = differences[j / 2];
+          at.J = columns - at.own;
+          at.Jd = rates - at.Jd;
+        });
+    const Vector3 v = subtract(moved, carried);
+    const auto twice = [](const Vector3& x) noexcept {
+      return Vector<3, Two>{Two(x.coeff(0)), Two(x.coeff(1)), Two(x.coeff(2))};
+    };
+    const auto w = twice(w_);
+    const auto pd = twice(v);
+    for (Eigen::Index j = 0; j < dof(); j += 2) {
+      const Difference& at = differences[j / 2];
+      const Columns drift{sum_of(cross<Two>(at.own.angular, pd), cross<Two>(w, at.J.linear)),
+                          cross<Two>(w, at.J.angular)};
+      f(j, seen(at.J), seen(at.Jd - drift));
     }
-    using Columns = typename Robot_::Columns;
-    for (Eigen::Index j = 0; j < J.cols(); j += 2) f(j, Columns::load(J, j), Columns::load(Jd, j));
     return times(back_, v);
   }
 
@@ -77,16 +87,16 @@ class SeenFrom {
   }
 
  private:
-  using Six = Matrix<6, Robot_::kDof, Scalar>;
-
+  /// Rᵀ times two columns.
+  template <typename Columns>
+  [[nodiscard]] Columns seen(const Columns& columns) const noexcept {
+    const auto turned = [&](const auto& of) noexcept {
+      return entrywise(of, [&](Eigen::Index i) { return along(column(at_.R, i), of); });
+    };
+    return {turned(columns.linear), turned(columns.angular)};
+  }
   [[nodiscard]] static Vector3 subtract(const Vector3& a, const Vector3& b) noexcept {
     return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - b.coeff(i); });
-  }
-  [[nodiscard]] static Vector3 part(const Six& of, int first, Eigen::Index j) noexcept {
-    return {of.coeff(first, j), of.coeff(first + 1, j), of.coeff(first + 2, j)};
-  }
-  static void set(Six& to, int first, Eigen::Index j, const Vector3& column) noexcept {
-    for (int row = 0; row < 3; ++row) to.coeffRef(first + row, j) = column.coeff(row);
   }
 
   const Robot_& robot_;

@@ -8,6 +8,7 @@
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
 #include "fpbm/model/robot.hpp"
+#include "fpbm/task/posture_task.hpp"
 #include "fpbm/task/stack.hpp"
 #include "fpbm/task/task_rows.hpp"
 
@@ -27,12 +28,22 @@ struct TaskState {
 
 namespace stack_detail {
 
+/// Rows of a lower level.
+template <int N, typename Scalar, typename Level>
+struct LowerRowsOf {
+  using type = LevelRows<Level::kRows, N, Scalar>;
+};
+template <int N, typename Scalar>
+struct LowerRowsOf<N, Scalar, TaskLevel<PostureTask<N, Scalar>>> {
+  using type = PostureRows<N, Scalar>;
+};
+
 template <int N, typename Stack>
 struct RowsOf;
-template <int N, typename... Levels>
-struct RowsOf<N, Stack<Levels...>> {
-  using Scalar = typename Stack<Levels...>::Scalar;
-  using type = std::tuple<LevelRows<Levels::kRows, N, Scalar>...>;
+template <int N, typename First, typename... Lower>
+struct RowsOf<N, Stack<First, Lower...>> {
+  using Scalar = typename Stack<First, Lower...>::Scalar;
+  using type = std::tuple<LevelRows<First::kRows, N, Scalar>, typename LowerRowsOf<N, Scalar, Lower>::type...>;
 };
 
 template <typename Tuple>
@@ -75,7 +86,7 @@ template <typename... Levels, int N, typename Scalar>
 
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] bool has_lower_levels(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  return std::apply([](const auto&, const auto&... lower) { return ((lower.J.rows() > 0) || ...); }, kinematics.levels);
+  return std::apply([](const auto&, const auto&... lower) { return ((lower.rows() > 0) || ...); }, kinematics.levels);
 }
 
 /// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
@@ -151,7 +162,7 @@ class RobotTasks {
       k1 = task.gains.k1;
       k2 = task.gains.k2;
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      task.evaluate(robot_, state, std::get<kIndex>(out.tip), xd, S, TaskRows(level, row));
+      task.evaluate(robot_, state, std::get<kIndex>(out.tip), xd, S, rows_from(level, row));
       row += rows_of(task);
     });
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/pair.hpp"
 
@@ -17,6 +20,24 @@ struct LevelRows {
   void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
     J.resize(rows, dof);
     Jd.resize(rows, dof);
+  }
+  [[nodiscard]] Eigen::Index rows() const noexcept { return J.rows(); }
+  [[nodiscard]] const Matrix<M, N, Scalar>& matrix() const noexcept { return J; }
+};
+
+/// Rows of a level that is a posture of all N joints: row i of J is 1 for joints[i] and 0 for the others, and J̇ is 0.
+template <int N, typename Scalar>
+struct PostureRows {
+  std::array<int, static_cast<std::size_t>(kCapacity<N>)> joints;
+
+  PostureRows() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
+
+  void resize(Eigen::Index, Eigen::Index) noexcept {}
+  [[nodiscard]] static constexpr Eigen::Index rows() noexcept { return N; }
+  [[nodiscard]] Matrix<N, N, Scalar> matrix() const noexcept {
+    auto J = filled<Matrix<N, N, Scalar>>(N);
+    for (int i = 0; i < N; ++i) J.coeffRef(i, joints[static_cast<std::size_t>(i)]) = Scalar(1);
+    return J;
   }
 };
 
@@ -61,6 +82,27 @@ class TaskRows {
   LevelRows<M, N, Scalar>& level_;
   int first_;
 };
+
+/// The rows of a posture of all joints, as TaskRows.
+template <int N, typename Scalar>
+class TaskRowsOfPosture {
+ public:
+  explicit TaskRowsOfPosture(PostureRows<N, Scalar>& level) noexcept : level_(level) {}
+  void set_unit(Eigen::Index i, int joint) noexcept { level_.joints[static_cast<std::size_t>(i)] = joint; }
+
+ private:
+  PostureRows<N, Scalar>& level_;
+};
+
+/// The rows of a task from row `first` of its level on.
+template <int M, int N, typename Scalar>
+[[nodiscard]] TaskRows<M, N, Scalar> rows_from(LevelRows<M, N, Scalar>& level, int first) noexcept {
+  return {level, first};
+}
+template <int N, typename Scalar>
+[[nodiscard]] TaskRowsOfPosture<N, Scalar> rows_from(PostureRows<N, Scalar>& level, int) noexcept {
+  return TaskRowsOfPosture<N, Scalar>(level);
+}
 
 /// Entries j and, where there is one, j + 1 of a row of a matrix.
 template <typename Whole, typename Scalar = typename Whole::Scalar>
