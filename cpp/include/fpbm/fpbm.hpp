@@ -91,6 +91,7 @@
 #include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/reflections.hpp"
+#include "fpbm/linalg/remainders.hpp"
 #include "fpbm/linalg/row_factor.hpp"
 #include "fpbm/linalg/self_motion.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"

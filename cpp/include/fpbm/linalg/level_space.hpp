@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/reflections.hpp"
+#include "fpbm/linalg/remainders.hpp"
 #include "fpbm/linalg/solve_trapezoidal.hpp"
 
 namespace fpbm {
@@ -33,7 +35,7 @@ class LevelSpace {
   /// Adds the level A. Returns y = Z (A Z)⁺ r with the basis Z of the higher levels: the y of least norm that changes
   /// no higher level and minimises |A y − r|.
   ///
-  /// A row whose projection on that null space is shorter than kDependent times the row counts as dependent.
+  /// A row whose projection on that null space is nearly zero counts as dependent (Remainders).
   template <int M>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
     return add_with(A, r,
@@ -142,67 +144,34 @@ class LevelSpace {
   /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots, as r afterwards.
   template <int M>
   [[nodiscard]] Matrix<N, M, Scalar> triangular(const Matrix<M, N, Scalar>& A, Vector<M, Scalar>& r) noexcept {
-    using std::swap;
     const Eigen::Index n = size();
     const Eigen::Index m = A.rows();
     const Eigen::Index first = rank();
     Matrix<N, M, Scalar> T = transpose_of(A);
     const auto row = [&](Eigen::Index j) noexcept { return T.data() + j * n; };
-    Vector<M, Scalar> enough;    // Inverse of the squared length from which a remainder counts.
-    Vector<M, Scalar> square;    // Squared length of the remainder of each row.
-    Vector<M, Scalar> computed;  // That square when it was last computed from the entries.
-    enough.resize(m);
-    square.resize(m);
-    computed.resize(m);
-    const auto measure = [&](Eigen::Index j) noexcept {
-      square.coeffRef(j) = computed.coeffRef(j) = squared_length(row(j) + rank(), n - rank());
-    };
+    const auto left = [&](Eigen::Index j) noexcept { return squared_length(row(j) + rank(), n - rank()); };
+    Remainders<M, Scalar> remainders(m);
     for (Eigen::Index j = 0; j < m; ++j) {
       const Scalar whole = squared_length(row(j), n);
-      enough.coeffRef(j) = Scalar(1) / (kDependent * kDependent * whole);
       Q_.apply_transposed(row(j));
-      if (first == 0) {
-        square.coeffRef(j) = computed.coeffRef(j) = whole;
-      } else {
-        measure(j);
-      }
+      remainders.set(j, whole, first > 0 ? left(j) : whole);
     }
-    while (rank() < n && rank() - first < m) {
-      const Eigen::Index k = rank() - first;
-      Eigen::Index next = -1;
-      Scalar most(1);  // Largest squared remainder, in units of the least that counts.
-      for (Eigen::Index j = k; j < m; ++j) {
-        const Scalar part = square.coeff(j) * enough.coeff(j);
-        if (part > most) {
-          most = part;
-          next = j;
-        }
-      }
-      if (next < 0) break;
-      if (next != k) {
-        for (Eigen::Index i = 0; i < n; ++i) swap(row(k)[i], row(next)[i]);
-        swap(enough.coeffRef(k), enough.coeffRef(next));
-        swap(square.coeffRef(k), square.coeffRef(next));
-        swap(computed.coeffRef(k), computed.coeffRef(next));
-        swap(r.coeffRef(k), r.coeffRef(next));
+    for (Eigen::Index k = 0; k < m && rank() < n; ++k) {
+      const Eigen::Index pivot = remainders.largest(k);
+      if (pivot < 0) break;
+      if (pivot != k) {
+        for (Eigen::Index i = 0; i < n; ++i) std::swap(row(k)[i], row(pivot)[i]);
+        std::swap(r.coeffRef(k), r.coeffRef(pivot));
+        remainders.swap(k, pivot);
       }
       Q_.add(row(k));
       for (Eigen::Index j = k + 1; j < m; ++j) {
         Q_.reflect(first + k, row(j));
-        const Scalar entry = row(j)[first + k];
-        square.coeffRef(j) -= entry * entry;
-        if (square.coeff(j) < kCancelled * computed.coeff(j)) measure(j);
+        remainders.remove(j, row(j)[first + k], [&] { return left(j); });
       }
     }
     return T;
   }
-
-  /// Threshold of dependence. The remainder of a dependent row is round-off error, 1e-16 times the condition number of
-  /// the higher levels; a motion along a remainder of 1e-9 already amplifies that error to 1e-7.
-  static constexpr Scalar kDependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-4);
-
-  /// Share of a squared length that is left where its differences lose too many digits: 3 of 16 of a double.
-  static constexpr Scalar kCancelled = Scalar(1e-3);
 
   Reflections<N, Scalar> Q_;
 };
