@@ -106,6 +106,8 @@ def test_every_key_of_a_job_is_an_option() -> None:
     assert {f"clearance__{key}" for key in known("clearance", "urdf")} - options == {
         "clearance__tip",  # The arm's own.
         "clearance__base",
+        "clearance__locked",
+        "clearance__tips",
         "clearance__obstacles",
         "clearance__postures",  # A list for each posture.
     }

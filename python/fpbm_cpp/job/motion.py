@@ -191,8 +191,11 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     if "clearance" in job:
         full["limits"] = job.get("limits", {})
         full["clearance"] = with_kind(job["clearance"])
-        if full["clearance"]["kind"] == "urdf" and job["arm"]["kind"] in ("urdf", "robot"):
-            parts = {key: job["arm"][key] for key in ("tip", "base", "locked", "tips") if key in job["arm"]}
+        if full["clearance"]["kind"] == "urdf":
+            keys = {"urdf": ("tip", "base"), "robot": ("base", "locked", "tips")}.get(job["arm"]["kind"], ())
+            parts = {key: job["arm"][key] for key in keys if key in job["arm"]}
+            if not isinstance(arm, Robot):
+                parts = {"tip": "", **parts}  # Without a tip, the error message lists the links.
             full["clearance"] = {**parts, **full["clearance"]}
     return full
 
