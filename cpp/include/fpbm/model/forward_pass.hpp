@@ -79,23 +79,22 @@ class ForwardPass {
 
     Frame<Scalar> frame(first);
     SplitVector<Scalar> w;  // Angular velocity of the frame.
-    const auto next_joint = [&](Eigen::Index j) noexcept -> Joint {
-      along.enter(j, frame, w);
-      if (kSlides && slides(j)) {
-        frame.p += Two(q.coeff(j)) * frame.z;
-      } else if constexpr (kWithRate) {
-        w += Two(qd.coeff(j)) * frame.z;
-      }
-      const Joint at_joint{frame.z, frame.p, w};
-      frame.turn(Two(cosines.coeff(j)), Two(sines.coeff(j)));
-      along.leave(j, frame);
-      frame.pass(links_[static_cast<std::size_t>(j)]);
-      return at_joint;
-    };
     each(Constant<0>{}, pairs, [&](auto k) {
+      Joint joints[2];
       const Eigen::Index i = 2 * Eigen::Index(k);
-      const Joint joint = next_joint(i);
-      axes.set(i, joint, i + 1 < n ? next_joint(i + 1) : Joint{});
+      for (Eigen::Index j = i; j < i + 2 && j < n; ++j) {
+        along.enter(j, frame, w);
+        if (kSlides && slides(j)) {
+          frame.p += Two(q.coeff(j)) * frame.z;
+        } else if constexpr (kWithRate) {
+          w += Two(qd.coeff(j)) * frame.z;
+        }
+        joints[j - i] = {frame.z, frame.p, w};
+        frame.turn(Two(cosines.coeff(j)), Two(sines.coeff(j)));
+        along.leave(j, frame);
+        frame.pass(links_[static_cast<std::size_t>(j)]);
+      }
+      axes.set(i, joints[0], joints[1]);
     });
     return frame;
   }
