@@ -1,11 +1,15 @@
 #include "fpbm_controllers/motion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fpbm/any/any_stack.hpp>
 #include <fpbm/model/robot.hpp>
 #include <fpbm/realtime/stack_tracker.hpp>
 #include <fpbm/scheme/schemes.hpp>
 #include <fpbm/task/target_filter.hpp>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
 
 namespace fpbm_controllers {
 
@@ -37,16 +41,30 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   const std::vector<int> places = places_of(tasks);
   std::array<fpbm::AnyFrameTask, Stack::kTasks> all;
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const auto& [level, gains, frame, reference] = tasks[k];
+    const MotionTask& task = tasks[k];
     all[static_cast<std::size_t>(places[k])] =
-        fpbm::AnyFrameTask(fpbm::FrameCoordinates::kPose, frame, gains, {true, true, true, true, true, true}, false,
-                           {0.0, 0.0, 1.0}, reference);
+        fpbm::AnyFrameTask(fpbm::FrameCoordinates::kPose, task.frame, task.gains, {true, true, true, true, true, true},
+                           false, {0.0, 0.0, 1.0}, task.reference);
   }
   const auto level = [&all](std::size_t k) {
     const std::size_t first = k * static_cast<std::size_t>(kPerLevel);
     return fpbm::AnyLevel(all[first], all[first + 1], fpbm::AnyPostureTask());
   };
   return Stack(level(0), level(1), level(2), level(3));
+}
+
+/// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
+void require_stable_tasks(const std::vector<MotionTask>& tasks, double dt) {
+  constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
+  const bool several = std::any_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.level > 0; });
+  for (const MotionTask& task : tasks) {
+    try {
+      fpbm::require_stable_gains<kLevel, double>({"k1", task.gains.k1, "k2", task.gains.k2}, {dt, 0.0});
+      if (several) fpbm::require_stable_in_levels<kLevel>(task.gains, dt);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(task.gains_of + error.what());
+    }
+  }
 }
 
 /// Calls f(i, row) for the place of a task: its index as a type, and the first row of its errors.
@@ -69,10 +87,8 @@ struct Motion::Loop {
         places(places_of(settings.tasks)),
         tasks(Robot(settings.tree), stack_of(settings.tasks)),
         filters(places.size(), Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
-    const Scheme law = scheme_from(Joints::Zero(tasks.dof()));
-    const fpbm::TickOfGains<> tick{options.dt, options.integral_gain};
-    fpbm::require_stack_gains(law.scheme, tasks.stack(), tick);
-    fpbm::require_stable(law, tick);
+    require_stable_tasks(settings.tasks, options.dt);
+    fpbm::require_stable(scheme_from(Joints::Zero(tasks.dof())), fpbm::TickOfGains<>{options.dt, 0.0});
   }
 
   [[nodiscard]] Scheme scheme_from(const Joints& start) const {
@@ -133,8 +149,8 @@ bool Motion::push(std::size_t task, const Target& target) noexcept {
 }
 
 void Motion::tick(Report& report) noexcept {
-  const auto references = fpbm::TickReferences<Space>::of([this](double t) noexcept { return loop_->ahead(t); },
-                                                          loop_->options.dt);
+  const auto references =
+      fpbm::TickReferences<Space>::of([this](double t) noexcept { return loop_->ahead(t); }, loop_->options.dt);
   const auto tick = loop_->tracker->advance(references);
   for (auto& filter : loop_->filters) filter.advance();
   report.status = tick.status;
@@ -159,8 +175,7 @@ const fpbm::State<kDof>& Motion::state() const noexcept {
 void Motion::locate(Report& report) const noexcept {
   const Stack::Point at = loop_->tracker->tip();
   for (std::size_t k = 0; k < loop_->places.size(); ++k) {
-    at_place(loop_->places[k],
-             [&](auto i, int) noexcept { report.tasks[k].at = std::get<decltype(i)::value>(at).at; });
+    at_place(loop_->places[k], [&](auto i, int) noexcept { report.tasks[k].at = std::get<decltype(i)::value>(at).at; });
   }
 }
 

@@ -57,8 +57,8 @@ void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& t
 
 /// Whether no joint of a tree is carried by a link: an arm ends there.
 [[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link) {
-  return link > 0 && std::none_of(tree.joints.begin(), tree.joints.end(),
-                                  [link](const auto& each) { return each.parent == link; });
+  return link > 0 &&
+         std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
 }
 
 }  // namespace
@@ -124,7 +124,8 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
       const auto& [name, link, offset] = *frame++;
       return fpbm::LinkFrame<>(link, offset);
     };
-    MotionTask made{task.level, {task.k1, task.k2}, take(), std::nullopt};
+    MotionTask made{
+        task.name.empty() ? "scheme." : task.parameter(""), task.level, {task.k1, task.k2}, take(), std::nullopt};
     if (!task.reference.empty()) made.reference = take();
     const int other = made.reference ? made.reference->link() : 0;
     if (made.frame.link() == other) {
@@ -135,9 +136,9 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
     int& count = rows[static_cast<std::size_t>(task.level)];
     count += fpbm::Pose::kRows;
     if (count > robot_->dof()) {
-      throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) + ": the poses of level " +
-                                  std::to_string(task.level + 1) + " have " + std::to_string(count) +
-                                  " rows, and the robot has " + std::to_string(robot_->dof()) +
+      throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) +
+                                  ": the poses of level " + std::to_string(task.level + 1) + " have " +
+                                  std::to_string(count) + " rows, and the robot has " + std::to_string(robot_->dof()) +
                                   " joints: put the task on another level");
     }
     tasks.push_back(made);

@@ -11,13 +11,15 @@
 #include <fpbm_controllers/target.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace fpbm_controllers {
 
 /// The pose of a frame, in the base frame or relative to another frame.
 struct MotionTask {
-  int level;  ///< From 0.
+  std::string gains_of;  ///< What messages put before the names of the gains.
+  int level;             ///< From 0.
   fpbm::TaskGains<> gains;
   fpbm::LinkFrame<> frame;
   std::optional<fpbm::LinkFrame<>> reference;
@@ -40,7 +42,7 @@ struct MotionSettings {
   MotionScheme scheme;
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
-  fpbm::TargetBounds<> bounds;      ///< Of each task's reference.
+  fpbm::TargetBounds<> bounds;  ///< Of each task's reference.
   fpbm::TargetFilterOptions<> filter;
 };
 
