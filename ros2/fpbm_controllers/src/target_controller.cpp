@@ -20,7 +20,7 @@ namespace {
                                                 const std::vector<std::string>& types) {
   InterfaceConfiguration configuration{controller_interface::interface_configuration_type::INDIVIDUAL, {}};
   for (const auto& type : types) {
-    for (const auto& joint : joints) configuration.names.push_back(joint + "/" + type);
+    for (const auto& joint : joints) configuration.names.emplace_back(joint).append("/").append(type);
   }
   return configuration;
 }
@@ -208,8 +208,9 @@ void TargetController::compare() {
     }
   }
   if (report_.fault == Fault::kNone) report_.following_error = largest;
-  if (!(largest < params_.following_error))
+  if (!(largest < params_.following_error)) {
     stop(std::isfinite(largest) ? Fault::kFollowing : Fault::kUnreadable, joint);
+  }
 }
 
 void TargetController::stop(Fault fault, std::size_t joint) noexcept {

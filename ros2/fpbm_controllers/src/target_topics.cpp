@@ -65,8 +65,8 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_c
     exchange_->tasks[k].frame_id = task.reference.empty() ? params.base_frame : task.reference;
     poses_.push_back(listen<geometry_msgs::msg::PoseStamped>(node, task.topic("target_pose"), k));
     twists_.push_back(listen<geometry_msgs::msg::TwistStamped>(node, task.topic("target_twist"), k));
-    tips.push_back(node.create_publisher<geometry_msgs::msg::PoseStamped>(task.topic("tip_pose"),
-                                                                          rclcpp::SystemDefaultsQoS()));
+    tips.push_back(
+        node.create_publisher<geometry_msgs::msg::PoseStamped>(task.topic("tip_pose"), rclcpp::SystemDefaultsQoS()));
   }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
   const std::shared_ptr<Diagnostics> diagnostics =

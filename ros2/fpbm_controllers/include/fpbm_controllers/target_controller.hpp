@@ -18,8 +18,8 @@
 
 namespace fpbm_controllers {
 
-/// Brings the tip, or the frames of several tasks, to poses, or moves them at twists, that come as messages at any rate,
-/// and keeps the joint limits at every tick.
+/// Brings the tip, or the frames of several tasks, to poses, or moves them at twists, that come as messages at any
+/// rate, and keeps the joint limits at every tick.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
 class TargetController : public controller_interface::ControllerInterface {

@@ -21,8 +21,8 @@ struct TaskSettings {
   [[nodiscard]] std::string topic(const char* own) const { return (name.empty() ? "~/" : "~/" + name + "/") + own; }
 };
 
-/// Throws std::invalid_argument, which names the parameter, unless there is either tip_frame or tasks, and each task has
-/// a frame, a name for topics and a level with a place left.
+/// Throws std::invalid_argument, which names the parameter, unless there is either tip_frame or tasks, and each task
+/// has a frame, a name for topics and a level with a place left.
 [[nodiscard]] std::vector<TaskSettings> task_settings(const target_controller::Params& params);
 
 }  // namespace fpbm_controllers
