@@ -136,10 +136,12 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
     int& count = rows[static_cast<std::size_t>(task.level)];
     count += fpbm::Pose::kRows;
     if (count > robot_->dof()) {
-      throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) +
-                                  ": the poses of level " + std::to_string(task.level + 1) + " have " +
-                                  std::to_string(count) + " rows, and the robot has " + std::to_string(robot_->dof()) +
-                                  " joints: put the task on another level");
+      const bool alone = count == fpbm::Pose::kRows;
+      throw std::invalid_argument(
+          (task.name.empty() ? "tip_frame" : task.parameter("level")) + ": the poses of level " +
+          std::to_string(task.level + 1) + " have " + std::to_string(count) + " rows, and the robot has " +
+          std::to_string(robot_->dof()) +
+          (alone ? " joints: use a robot with at least 6 joints" : " joints: put the task on another level"));
     }
     tasks.push_back(made);
   }
