@@ -183,7 +183,7 @@ void limits() {
   check(bounded.configure() && bounded.way() > 0.001, "no preset, limits.acceleration: configured", 1);
 }
 
-/// A pose has more rows than a Panda without its wrist has joints.
+/// A pose has more rows than a Panda without its wrist has joints: the motion is damped at all times.
 void too_few_joints() {
   Given shorter = given("panda");
   shorter.arm = "";
@@ -191,8 +191,7 @@ void too_few_joints() {
   shorter.joints.resize(5);
   Controller controller(shorter);
   stand_in::parameters.limits.acceleration.assign(5, 5.0);
-  check(controller.refuses("tip_frame: the poses of level 1 have 6 rows, and the robot has 5 joints"),
-        "an arm of 5 joints: refused", 1);
+  check(controller.configure() && controller.way() > 0.001, "an arm of 5 joints: moves", 1);
 }
 
 /// A Panda whose last joint follows the one before.

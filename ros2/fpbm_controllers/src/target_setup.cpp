@@ -98,7 +98,8 @@ void TargetController::read_parameters() {
   filter.timeout = target.timeout;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
-  motion_.emplace(MotionSettings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter});
+  const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
+  motion_ = is_tip() ? make_tip_motion(settings) : make_stack_motion(settings);
 }
 
 fpbm::Tree<> TargetController::described() const {
@@ -135,13 +136,11 @@ std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree)
     }
     int& count = rows[static_cast<std::size_t>(task.level)];
     count += fpbm::Pose::kRows;
-    if (count > robot_->dof()) {
-      const bool alone = count == fpbm::Pose::kRows;
-      throw std::invalid_argument(
-          (task.name.empty() ? "tip_frame" : task.parameter("level")) + ": the poses of level " +
-          std::to_string(task.level + 1) + " have " + std::to_string(count) + " rows, and the robot has " +
-          std::to_string(robot_->dof()) +
-          (alone ? " joints: use a robot with at least 6 joints" : " joints: put the task on another level"));
+    if (count > robot_->dof() && !is_tip()) {
+      throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) +
+                                  ": the poses of level " + std::to_string(task.level + 1) + " have " +
+                                  std::to_string(count) + " rows, and the robot has " + std::to_string(robot_->dof()) +
+                                  " joints: put the task on another level");
     }
     tasks.push_back(made);
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <fpbm/limits/limits.hpp>
 #include <fpbm/model/tree.hpp>
+#include <fpbm/objective/null_space.hpp>
 #include <fpbm/realtime/tick.hpp>
 #include <fpbm/task/link_frame.hpp>
 #include <fpbm/task/target_bounds.hpp>
@@ -36,6 +37,16 @@ struct MotionScheme {
   std::optional<Joints> rest_posture;  ///< None: the posture of begin() [rad].
 };
 
+/// The null-space motion from the posture of begin().
+[[nodiscard]] inline fpbm::NullSpace<Eigen::Dynamic> null_space_of(const MotionScheme& scheme,
+                                                                   const MotionScheme::Joints& start) {
+  auto null_space = fpbm::NullSpace<Eigen::Dynamic>().with_damping(scheme.null_damping);
+  if (scheme.rest_stiffness > 0.0) {
+    null_space = null_space.with_rest_posture(scheme.rest_posture.value_or(start), scheme.rest_stiffness);
+  }
+  return null_space;
+}
+
 struct MotionSettings {
   fpbm::Tree<> tree;
   std::vector<MotionTask> tasks;
@@ -46,36 +57,49 @@ struct MotionSettings {
   fpbm::TargetFilterOptions<> filter;
 };
 
-/// The motion of a robot toward the targets of its tasks: a tracker of a stack, and a filter of each task's targets.
+/// The motion of a robot toward the targets of its tasks, each through a filter.
 ///
-/// Only the constructor allocates.
+/// Only make_motion() allocates.
 class Motion {
  public:
   using Joints = MotionScheme::Joints;
 
-  /// Throws std::invalid_argument where a gain is too high for the tick, or a task does not suit the robot.
-  explicit Motion(const MotionSettings& settings);
+  Motion() = default;
   Motion(const Motion&) = delete;
   Motion& operator=(const Motion&) = delete;
-  ~Motion();
+  virtual ~Motion() = default;
 
   /// Starts at rest from a posture. Throws std::invalid_argument where the posture is beyond a limit.
-  void begin(const Joints& q);
+  virtual void begin(const Joints& q) = 0;
   /// A new target of a task. False where its stamp rejects it.
-  bool push(std::size_t task, const Target& target) noexcept;
+  virtual bool push(std::size_t task, const Target& target) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
-  void tick(Report& report) noexcept;
+  virtual void tick(Report& report) noexcept = 0;
   /// Brings the robot to rest until begin().
-  void stop() noexcept;
+  virtual void stop() noexcept = 0;
 
   /// The commands.
-  [[nodiscard]] const fpbm::State<Eigen::Dynamic>& state() const noexcept;
+  [[nodiscard]] virtual const fpbm::State<Eigen::Dynamic>& state() const noexcept = 0;
   /// Sets where each task is in the commanded posture.
-  void locate(Report& report) const noexcept;
-
- private:
-  struct Loop;
-  std::unique_ptr<Loop> loop_;
+  virtual void locate(Report& report) const noexcept = 0;
 };
+
+/// Of one tip, by a tracker of a pose: less than half of the time of a stack, and of robots of fewer than six joints
+/// too. settings: with one task, without a reference frame. Throws std::invalid_argument where a gain is too high for
+/// the tick.
+[[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
+
+/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument where a gain is too high for the tick, or a task
+/// does not suit the robot.
+[[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
+
+/// Hands a target to the filter of a task. False where its stamp rejects the target.
+template <typename Filter>
+bool push_to(Filter& filter, const Target& target) noexcept {
+  const auto push = [&](auto... stamp) noexcept {
+    return target.moves ? filter.push_twist(target.twist, stamp...) : filter.push(target.pose, stamp...);
+  };
+  return target.stamp == 0.0 ? push() : push(target.stamp);
+}
 
 }  // namespace fpbm_controllers

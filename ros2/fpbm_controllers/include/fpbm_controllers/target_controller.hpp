@@ -46,6 +46,8 @@ class TargetController : public controller_interface::ControllerInterface {
   void require_rate() const;
   /// The described joints, with a frame for each task's frame and then one for each reference frame, and the tool.
   [[nodiscard]] fpbm::Tree<> described() const;
+  /// Whether there is one task, in the base frame.
+  [[nodiscard]] bool is_tip() const noexcept { return tasks_.size() == 1 && tasks_[0].reference.empty(); }
   /// The tasks with the frames of that tree.
   [[nodiscard]] std::vector<MotionTask> motion_tasks(const fpbm::Tree<>& tree) const;
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
@@ -82,7 +84,7 @@ class TargetController : public controller_interface::ControllerInterface {
   std::optional<TargetTopics> topics_;
 
   // Of an active controller, and of the loop alone.
-  std::optional<Motion> motion_;
+  std::unique_ptr<Motion> motion_;
   Pace pace_;
   std::array<std::uint64_t, Report::kTasks> seen_{};  ///< The count of each task's newest target.
   int locked_for_ = 0;                                ///< Ticks since the last that all joints took.
