@@ -26,18 +26,13 @@ inline urdf::Joint& add(urdf::Model& model, const std::string& joint, const std:
   return *made;
 }
 
-/// The robot_description of a chain from link "base" to link "flange", with the chain's names and bounds of joints.
-/// Link "base" is turned in "base_link", the root, as a UR's.
-[[nodiscard]] inline urdf::Model description_of(const fpbm::Chain<>& chain) {
-  urdf::Model model;
-  model.links_["base_link"] = std::make_shared<urdf::Link>(urdf::Link{"base_link", nullptr});
-  fpbm::Transform<> turned;
-  turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 3.0));
-  add(model, "to_base", "base_link", "base", turned);
-  std::string parent = "base_link";
-  fpbm::Transform<> before = turned;
+/// Adds a chain from link parent to a link "flange", with the chain's names and bounds of joints, all behind a prefix.
+/// at: the chain's base in the parent's frame.
+inline void add_chain(urdf::Model& model, const fpbm::Chain<>& chain, std::string parent,
+                      const std::string& prefix = "", fpbm::Transform<> at = {}) {
   for (const auto& joint : chain.joints) {
-    urdf::Joint& made = add(model, joint.name, parent, "link_of_" + joint.name, before * joint.placement);
+    const std::string name = prefix + joint.name;
+    urdf::Joint& made = add(model, name, parent, "link_of_" + name, at * joint.placement);
     made.type = joint.type == fpbm::JointType::kPrismatic    ? urdf::Joint::PRISMATIC
                 : joint.type == fpbm::JointType::kContinuous ? urdf::Joint::CONTINUOUS
                                                              : urdf::Joint::REVOLUTE;
@@ -45,13 +40,25 @@ inline urdf::Joint& add(urdf::Model& model, const std::string& joint, const std:
     made.limits = std::make_shared<urdf::JointLimits>(
         urdf::JointLimits{joint.bounds.lower, joint.bounds.upper, 100.0, joint.bounds.velocity});
     if (joint.mimic.joint >= 0) {
-      made.mimic = std::make_shared<urdf::JointMimic>(urdf::JointMimic{
-          joint.mimic.offset, joint.mimic.ratio, chain.joints[static_cast<std::size_t>(joint.mimic.joint)].name});
+      made.mimic = std::make_shared<urdf::JointMimic>(
+          urdf::JointMimic{joint.mimic.offset, joint.mimic.ratio,
+                           prefix + chain.joints[static_cast<std::size_t>(joint.mimic.joint)].name});
     }
     parent = made.child_link_name;
-    before = {};
+    at = {};
   }
-  add(model, "to_flange", parent, "flange", chain.tip);
+  add(model, "to_" + prefix + "flange", parent, prefix + "flange", chain.tip);
+}
+
+/// The robot_description of a chain from link "base" to link "flange". Link "base" is turned in "base_link", the root,
+/// as a UR's.
+[[nodiscard]] inline urdf::Model description_of(const fpbm::Chain<>& chain) {
+  urdf::Model model;
+  model.links_["base_link"] = std::make_shared<urdf::Link>(urdf::Link{"base_link", nullptr});
+  fpbm::Transform<> turned;
+  turned.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.0, 3.0));
+  add(model, "to_base", "base_link", "base", turned);
+  add_chain(model, chain, "base_link", "", turned);
   return model;
 }
 

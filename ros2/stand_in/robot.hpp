@@ -1,179 +1,43 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <controller_interface/controller_interface.hpp>
-#include <counted_new.hpp>
-#include <cstddef>
-#include <deque>
 #include <description.hpp>
+#include <driven.hpp>
 #include <fpbm/model/presets.hpp>
 #include <fpbm/model/serial_arm.hpp>
-#include <fpbm_controllers/target_controller_parameters.hpp>
-#include <limits>
-#include <stdexcept>
+#include <vector>
 
 namespace stand_in {
 
-enum class Lifecycle { kUnconfigured, kInactive, kActive, kFinalized };
-
-/// A Panda with a tool and limits of its own that follows its commands with a lag and an offset, and a controller
-/// manager that loads the controller and calls it. Watches every call: what is allocated, and by how much a limit is
-/// exceeded.
-class Robot {
+/// A Panda with a tool and limits of its own.
+class Robot : public Driven<7> {
  public:
-  static constexpr std::size_t kDof = 7;
-  using Joints = std::array<double, kDof>;
-  using Pose = fpbm::Transform<>;
-  using CallbackReturn = controller_interface::CallbackReturn;
-  using Overrides = std::map<std::string, rclcpp::ParameterValue>;
-
-  /// Replaces the parameters of the last test by those of the Panda.
-  Robot() : controller_(exported_controller()) {
-    limits_.velocity *= 0.8;
-    limits_.acceleration *= 0.5;
-    limits_.jerk *= 0.25;
+  Robot() : Driven("panda", limits(), {0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}) {
     descriptions()["panda"] = description_of(fpbm::presets::panda());
-    auto& own = parameters = {};
+    auto& own = parameters;
     for (const auto& joint : fpbm::presets::panda().joints) own.joints.push_back(joint.name);
     own.arm = "panda";
     own.base_frame = "base";
     own.tip_frame = "flange";
     own.command_interfaces = {"position", "velocity"};
-    own.limits.velocity = given(limits_.velocity);
-    own.limits.acceleration = given(limits_.acceleration);
-    own.limits.jerk = given(limits_.jerk);
+    own.limits.velocity = given(limits().velocity);
+    own.limits.acceleration = given(limits().acceleration);
+    own.limits.jerk = given(limits().jerk);
     own.tool.xyz = {0.02, 0.01, 0.1034};
     own.tool.rpy = {kRightAngle, 0.0, kRightAngle};
-    command.fill(std::numeric_limits<double>::quiet_NaN());  // As hardware that was never commanded.
-  }
-  [[nodiscard]] static std::vector<double> given(const fpbm::Vector<7>& bound) { return {bound.begin(), bound.end()}; }
-
-  /// Loads and configures. False where the controller refuses.
-  [[nodiscard]] bool load(const Overrides& overrides = {}) {
-    description.controller_manager_update_rate = description.update_rate = rate;
-    if (controller_->init(description, overrides) != controller_interface::return_type::OK) return false;
-    return configure();
-  }
-  [[nodiscard]] bool configure() { return change(controller_->configure(), Lifecycle::kInactive); }
-  bool cleanup() { return change(controller_->on_cleanup({}), Lifecycle::kUnconfigured); }
-  [[nodiscard]] bool activate() {
-    good(state == Lifecycle::kInactive, "activated from another state than inactive");
-    std::vector<hardware_interface::LoanedCommandInterface> commands;
-    for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(command[i], command_locks[i]);
-    if (parameters.command_interfaces.size() == 2) {
-      for (std::size_t i = 0; i < kDof; ++i) commands.emplace_back(velocity[i], command_locks[kDof + i]);
-    }
-    std::vector<hardware_interface::LoanedStateInterface> states;
-    for (std::size_t i = 0; i < kDof; ++i) states.emplace_back(q[i], state_locks[i]);
-    if (parameters.state_interfaces.size() == 2) {
-      for (std::size_t i = 0; i < kDof; ++i) states.emplace_back(measured_velocity[i], state_locks[kDof + i]);
-    }
-    controller_->assign_interfaces(std::move(commands), std::move(states));
-    last_velocity_ = last_acceleration_ = {};
-    // An arm that does not follow its command starts where it stands.
-    for (std::size_t i = 0; i < kDof; ++i) last_[i] = std::abs(command[i] - q[i]) < 0.05 ? command[i] : q[i];
-    first_ = true;
-    seconds_since_call_ = 0.0;
-    const long before = allocations;
-    const bool active = change(controller_->on_activate({}), Lifecycle::kActive);
-    if (active) allocated += allocations - before;
-    return active;
-  }
-  void deactivate() {
-    (void)change(controller_->on_deactivate({}), Lifecycle::kInactive);
-    controller_->release_interfaces();
   }
 
-  /// A tick of the manager and of the hardware: the joints that are not held follow the command of lag ticks ago.
-  void tick() { tick(1.0 / rate); }
-  /// The same, some seconds after the last.
-  void tick(double period) {
-    const double own = controller_->get_update_rate();
-    seconds_since_call_ += period;
-    // The manager calls a slower controller in the tick that is nearest to the controller's period.
-    const double error = std::abs(seconds_since_call_ * own - 1.0);
-    const double later = std::abs((seconds_since_call_ + 1.0 / rate) * own - 1.0);
-    time_ += static_cast<std::int64_t>(1e9 * period);
-    if (state == Lifecycle::kActive) {
-      if (first_ && own < rate) seconds_since_call_ = 1.0 / own;
-      if (own >= rate || first_ || error <= later) call(seconds_since_call_);
-    }
-    past_.push_back(command);
-    if (past_.size() > lag + 1) past_.pop_front();
-    for (std::size_t i = 0; i < kDof && !held; ++i) {
-      if (std::isnan(past_.front()[i])) continue;
-      const double next = past_.front()[i] + offset;
-      measured_velocity[i] = (next - q[i]) / period;
-      q[i] = next;
-    }
-  }
-  void tick(int count) {
-    for (int i = 0; i < count; ++i) tick();
-  }
-
-  [[nodiscard]] Pose tip() const {
+  [[nodiscard]] fpbm::Transform<> tip() const {
     fpbm::Kinematics<fpbm::Pose, 7> kinematics;
     arm_.kinematics(fpbm::Vector<7>(q.data()), kinematics);
     return kinematics.tip;
   }
-  /// The fastest joint's velocity in the last tick [rad/s].
-  [[nodiscard]] double speed() const {
-    double fastest = 0.0;
-    for (const double v : last_velocity_) fastest = std::max(fastest, std::abs(v));
-    return fastest;
-  }
-
-  template <typename Message>
-  [[nodiscard]] std::shared_ptr<rclcpp::Subscription<Message>> subscription(const std::string& topic) {
-    return std::any_cast<std::weak_ptr<rclcpp::Subscription<Message>>>(topics().at(topic)).lock();
-  }
-  template <typename Message>
-  void hear(const std::string& topic, const Message& message,
-            const rclcpp::QoS& offered = rclcpp::SystemDefaultsQoS()) {
-    subscription<Message>(topic)->hear(message, offered);
-  }
-  /// Fires the node's timers.
-  template <typename Message>
-  [[nodiscard]] const rclcpp::Publisher<Message>& said(const std::string& topic) {
-    for (const auto& timer : controller_->get_node()->timers) {
-      if (const auto alive = timer.lock()) alive->fire();
-    }
-    return *std::any_cast<std::weak_ptr<rclcpp::Publisher<Message>>>(topics().at(topic)).lock();
-  }
-  /// How many subscriptions, publishers and timers of the controller are alive: those of poses, and the timers.
-  template <typename Message>
-  [[nodiscard]] std::size_t alive(const std::string& topic) {
-    std::size_t count = subscription<Message>(topic) ? 1 : 0;
-    for (const auto& timer : controller_->get_node()->timers) count += timer.expired() ? 0 : 1;
-    return count;
-  }
-
-  unsigned int rate = 1000;  ///< Of the manager [Hz].
-  controller_interface::ControllerInterfaceParams description{"targets", "panda", 0, 0, {}};
-  Lifecycle state = Lifecycle::kUnconfigured;
-  Joints q{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
-  Joints command{};
-  Joints velocity{};
-  Joints measured_velocity{};
-  std::array<Lock, 2 * kDof> command_locks{};
-  std::array<Lock, 2 * kDof> state_locks{};
-  double offset = 0.0;  ///< Of each joint from its command [rad].
-  std::size_t lag = 0;  ///< [ticks]
-  bool held = false;    ///< By somebody's hand.
-  bool watched = true;
-  std::int64_t calls = 0;
-  long allocated = 0;
-  double excess = -1e9;               ///< Of a bound on position or velocity [rad, rad/s].
-  double acceleration_excess = -1.0;  ///< As a share of the bound.
-  double jerk_excess = -1.0;          ///< As a share of the bound.
 
  private:
   static constexpr double kRightAngle = 1.5707963267948966;
 
+  [[nodiscard]] static std::vector<double> given(const fpbm::Vector<7>& bound) { return {bound.begin(), bound.end()}; }
   /// The tool's x axis is the flange's y, its y the flange's z, its z the flange's x.
-  static fpbm::Chain<> chain() {
+  [[nodiscard]] static fpbm::Chain<> chain() {
     fpbm::Chain<> panda = fpbm::presets::panda();
     fpbm::Transform<> tool;
     tool.p = {0.02, 0.01, 0.1034};
@@ -181,63 +45,15 @@ class Robot {
     panda.tip = panda.tip * tool;
     return panda;
   }
-  static void good(bool is_good, const char* what) {
-    if (!is_good) throw std::runtime_error(what);
-  }
-  std::map<std::string, std::any>& topics() { return controller_->get_node()->topics; }
-
-  /// The state that a transition leads to: an error that on_error() does not mend is final.
-  bool change(CallbackReturn result, Lifecycle goal) {
-    if (result == CallbackReturn::SUCCESS) state = goal;
-    if (result == CallbackReturn::ERROR) {
-      const bool mended = controller_->on_error({}) == CallbackReturn::SUCCESS;
-      state = mended ? Lifecycle::kUnconfigured : Lifecycle::kFinalized;
-      controller_->release_interfaces();
-    }
-    return result == CallbackReturn::SUCCESS;
+  [[nodiscard]] static JointLimits limits() {
+    JointLimits limits = fpbm::SerialArm<7>(chain()).limits();
+    limits.velocity *= 0.8;
+    limits.acceleration *= 0.5;
+    limits.jerk *= 0.25;
+    return limits;
   }
 
-  /// Calls the controller some seconds after its last call. A joint whose command stays because an interface was locked
-  /// has no tick: its commands before and after are neighbours.
-  void call(double seconds) {
-    ++calls;
-    const int refusals_before = refusals;
-    const long before = allocations;
-    const auto result = controller_->update(rclcpp::Time(time_), rclcpp::Duration::from_seconds(seconds));
-    allocated += allocations - before;
-    good(result == controller_interface::return_type::OK, "update");
-    const bool refused = refusals != refusals_before;
-    for (std::size_t i = 0; i < kDof; ++i) {
-      if ((refused || refused_before_) && command[i] == last_[i]) continue;
-      const auto joint = limits_.joint(static_cast<Eigen::Index>(i));
-      const double v = (command[i] - last_[i]) / seconds;
-      const double a = (v - last_velocity_[i]) / seconds;
-      const double j = (a - last_acceleration_[i]) / seconds;
-      last_[i] = command[i];
-      last_velocity_[i] = v;
-      last_acceleration_[i] = a;
-      if (!watched) continue;
-      excess = std::max({excess, joint.lower - command[i], command[i] - joint.upper, std::abs(v) - joint.velocity,
-                         std::abs(velocity[i]) - joint.velocity});
-      acceleration_excess = std::max(acceleration_excess, std::abs(a) / joint.acceleration - 1.0);
-      jerk_excess = std::max(jerk_excess, std::abs(j) / joint.jerk - 1.0);
-    }
-    refused_before_ = refused;
-    first_ = false;
-    seconds_since_call_ = 0.0;
-  }
-
-  std::unique_ptr<controller_interface::ControllerInterface> controller_;
   fpbm::SerialArm<7> arm_{chain()};
-  fpbm::JointLimits<7> limits_ = arm_.limits();
-  std::deque<Joints> past_;
-  Joints last_{};
-  Joints last_velocity_{};
-  Joints last_acceleration_{};
-  bool refused_before_ = false;
-  std::int64_t time_ = 0;  ///< [ns]
-  double seconds_since_call_ = 0.0;
-  bool first_ = true;
 };
 
 }  // namespace stand_in

@@ -183,6 +183,17 @@ void limits() {
   check(bounded.configure() && bounded.way() > 0.001, "no preset, limits.acceleration: configured", 1);
 }
 
+/// A pose has more rows than a Panda without its wrist has joints: the motion is damped at all times.
+void too_few_joints() {
+  Given shorter = given("panda");
+  shorter.arm = "";
+  shorter.chain.joints.resize(5);
+  shorter.joints.resize(5);
+  Controller controller(shorter);
+  stand_in::parameters.limits.acceleration.assign(5, 5.0);
+  check(controller.configure() && controller.way() > 0.001, "an arm of 5 joints: moves", 1);
+}
+
 /// A Panda whose last joint follows the one before.
 void mimic() {
   Given geared = given("panda");
@@ -207,5 +218,6 @@ void descriptions() {
   frames();
   differences();
   limits();
+  too_few_joints();
   mimic();
 }

@@ -17,3 +17,9 @@ void descriptions();
 void topics();
 /// Values of other types, misspelt names, numbers that are not finite.
 void parameters();
+/// Two arms side by side, each with a task: poses, twists, wrong messages, activations, a fault.
+void two_arms();
+/// Two arms with config/two_pandas.yaml: a grasp that a tray's motion and stop leave alone.
+void grasp();
+/// Tasks that are refused.
+void tasks();

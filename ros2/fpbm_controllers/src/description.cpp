@@ -15,11 +15,11 @@ namespace fpbm_controllers {
 namespace {
 
 /// The joints from the root to a link.
-[[nodiscard]] std::vector<std::shared_ptr<const urdf::Joint>> joints_to(const urdf::Model& model, const char* parameter,
-                                                                        const std::string& name) {
-  const auto link = model.getLink(name);
+[[nodiscard]] std::vector<std::shared_ptr<const urdf::Joint>> joints_to(const urdf::Model& model,
+                                                                        const NamedLink& named) {
+  const auto link = model.getLink(named.link);
   if (!link) {
-    throw std::invalid_argument(std::string(parameter) + ": robot_description has no link '" + name +
+    throw std::invalid_argument(named.parameter + ": robot_description has no link '" + named.link +
                                 "': give one of its links");
   }
   std::vector<std::shared_ptr<const urdf::Joint>> joints;
@@ -45,7 +45,7 @@ namespace {
   }
   throw std::invalid_argument(
       "joint '" + joint.name +
-      "': must be revolute, continuous, prismatic or fixed to be between base_frame and tip_frame");
+      "': must be revolute, continuous, prismatic or fixed to be between base_frame and a frame");
 }
 
 [[nodiscard]] fpbm::Joint<> joint_of(const urdf::Joint& described, const fpbm::Transform<>& placement) {
@@ -61,48 +61,71 @@ namespace {
   return joint;
 }
 
-[[nodiscard]] fpbm::Mimic<> mimic_of(const urdf::Joint& joint, const fpbm::Chain<>& chain) {
-  const auto leader = std::find_if(chain.joints.begin(), chain.joints.end(),
-                                   [&](const auto& other) { return other.name == joint.mimic->joint_name; });
-  if (leader == chain.joints.end()) {
+[[nodiscard]] fpbm::Mimic<> mimic_of(const urdf::Joint& joint, const fpbm::Tree<>& tree) {
+  const auto leader = std::find_if(tree.joints.begin(), tree.joints.end(),
+                                   [&](const auto& other) { return other.joint.name == joint.mimic->joint_name; });
+  if (leader == tree.joints.end()) {
     throw std::invalid_argument("joint '" + joint.name + "': it follows joint '" + joint.mimic->joint_name +
-                                "', which must be between base_frame and tip_frame as well");
+                                "', which must be between base_frame and a frame as well");
   }
-  return {static_cast<int>(leader - chain.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
+  return {static_cast<int>(leader - tree.joints.begin()), joint.mimic->multiplier, joint.mimic->offset};
 }
 
 }  // namespace
 
-fpbm::Chain<> chain_of(const std::string& robot_description, const std::string& base, const std::string& tip) {
+fpbm::Tree<> tree_of(const std::string& robot_description, const std::string& base,
+                     const std::vector<NamedLink>& links) {
   urdf::Model model;
   if (robot_description.empty() || !model.initString(robot_description)) {
     throw std::invalid_argument(
         "robot_description: the controller manager has none, or it is not a URDF: publish the robot's URDF");
   }
-  const auto to_base = joints_to(model, "base_frame", base);
-  const auto to_tip = joints_to(model, "tip_frame", tip);
-  auto [down, up] = std::mismatch(to_base.begin(), to_base.end(), to_tip.begin(), to_tip.end());
-  fpbm::Transform<> base_in_fork;  // The last link that is before both.
-  for (; down != to_base.end(); ++down) {
-    if ((*down)->type != urdf::Joint::FIXED) {
-      throw std::invalid_argument("base_frame: moves with joint '" + (*down)->name +
-                                  "', which is not before tip_frame: give a link that does not move");
+  const auto to_base = joints_to(model, {"base_frame", base});
+  fpbm::Tree<> tree;
+  std::vector<std::shared_ptr<const urdf::Joint>> moving;  // The tree's.
+  for (const NamedLink& named : links) {
+    const auto to_link = joints_to(model, named);
+    auto [down, up] = std::mismatch(to_base.begin(), to_base.end(), to_link.begin(), to_link.end());
+    fpbm::Transform<> base_in_fork;  // The last link that is before both.
+    for (; down != to_base.end(); ++down) {
+      if ((*down)->type != urdf::Joint::FIXED) {
+        throw std::invalid_argument("base_frame: moves with joint '" + (*down)->name + "', which is not before " +
+                                    named.parameter + ": give a link that does not move");
+      }
+      base_in_fork = base_in_fork * origin_of(**down);
     }
-    base_in_fork = base_in_fork * origin_of(**down);
-  }
-  fpbm::Chain<> chain;
-  chain.tip = inverse(base_in_fork);
-  std::vector<std::shared_ptr<const urdf::Joint>> moving;
-  for (; up != to_tip.end(); ++up) {
-    chain.tip = chain.tip * origin_of(**up);
-    if ((*up)->type == urdf::Joint::FIXED) continue;
-    moving.push_back(*up);
-    chain.joints.push_back(joint_of(**up, chain.tip));
-    chain.tip = {};
+    fpbm::Transform<> place = inverse(base_in_fork);  // In the frame of the tree's link that carries what follows.
+    int carrier = 0;
+    for (; up != to_link.end(); ++up) {
+      place = place * origin_of(**up);
+      if ((*up)->type == urdf::Joint::FIXED) continue;
+      const auto known = std::find(moving.begin(), moving.end(), *up);
+      const auto number = static_cast<int>(known - moving.begin());
+      if (known == moving.end()) {
+        moving.push_back(*up);
+        tree.joints.push_back({joint_of(**up, place), carrier, {}});
+      }
+      carrier = number + 1;
+      place = {};
+    }
+    tree.frames.push_back({named.link, carrier, place});
   }
   for (std::size_t i = 0; i < moving.size(); ++i) {
-    if (moving[i]->mimic) chain.joints[i].mimic = mimic_of(*moving[i], chain);
+    if (moving[i]->mimic) tree.joints[i].joint.mimic = mimic_of(*moving[i], tree);
   }
+  return tree;
+}
+
+std::vector<std::size_t> joints_to(const fpbm::Tree<>& tree, int link) {
+  std::vector<std::size_t> joints;
+  for (; link > 0; link = tree.joints[joints.back()].parent) joints.push_back(static_cast<std::size_t>(link - 1));
+  std::reverse(joints.begin(), joints.end());
+  return joints;
+}
+
+fpbm::Chain<> chain_to(const fpbm::Tree<>& tree, int link) {
+  fpbm::Chain<> chain;
+  for (const std::size_t i : joints_to(tree, link)) chain.joints.push_back(tree.joints[i].joint);
   return chain;
 }
 

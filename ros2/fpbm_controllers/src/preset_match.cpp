@@ -49,12 +49,14 @@ struct Axis {
 
 }  // namespace
 
-void require_match(const fpbm::Chain<>& described, const std::string& name, const fpbm::Chain<>& preset) {
+void require_match(const fpbm::Chain<>& described, const std::string& tip, const std::string& name,
+                   const fpbm::Chain<>& preset) {
   const std::size_t count = described.joints.size();
   if (preset.joints.size() != count) {
     throw std::invalid_argument("arm: " + name + " has " + std::to_string(preset.joints.size()) +
                                 " joints, and robot_description " + std::to_string(count) +
-                                " between base_frame and tip_frame: give the preset of the robot");
+                                " between base_frame and link '" + tip +
+                                "': give the preset of the robot, or none and limits.acceleration");
   }
   const std::vector<Axis> ours = axes_of(described);
   const std::vector<Axis> theirs = axes_of(preset);

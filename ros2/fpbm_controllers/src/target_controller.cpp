@@ -20,7 +20,7 @@ namespace {
                                                 const std::vector<std::string>& types) {
   InterfaceConfiguration configuration{controller_interface::interface_configuration_type::INDIVIDUAL, {}};
   for (const auto& type : types) {
-    for (const auto& joint : joints) configuration.names.push_back(joint + "/" + type);
+    for (const auto& joint : joints) configuration.names.emplace_back(joint).append("/").append(type);
   }
   return configuration;
 }
@@ -51,8 +51,7 @@ InterfaceConfiguration TargetController::state_interface_configuration() const {
 CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
   try {
     read_parameters();
-    topics_.emplace(*get_node(), TargetTopics::Settings{params_.base_frame, params_.arm, params_.joints,
-                                                        params_.tip_rate, params_.diagnostics_rate});
+    topics_.emplace(*get_node(), params_, tasks_);
   } catch (const std::exception& error) {
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     close();
@@ -63,7 +62,7 @@ CallbackReturn TargetController::on_configure(const rclcpp_lifecycle::State&) {
 
 void TargetController::close() {
   topics_.reset();
-  tracker_.reset();
+  motion_.reset();
 }
 
 CallbackReturn TargetController::on_cleanup(const rclcpp_lifecycle::State&) {
@@ -86,21 +85,16 @@ CallbackReturn TargetController::on_error(const rclcpp_lifecycle::State&) {
 /// loop.
 CallbackReturn TargetController::on_activate(const rclcpp_lifecycle::State&) {
   try {
-    begin(start());
+    motion_->begin(start());
   } catch (const std::exception& error) {  // A joint outside its limits, say.
     RCLCPP_ERROR(get_node()->get_logger(), "%s", error.what());
     return CallbackReturn::FAILURE;
   }
-  pace_ = Pace(options_.dt);
-  seen_ = topics_->exchange().target.get().count;
+  pace_ = Pace(dt_);
+  for (std::size_t k = 0; k < tasks_.size(); ++k) seen_[k] = topics_->exchange().tasks[k].target.get().count;
   locked_for_ = 0;
   report_ = Report{};
   return CallbackReturn::SUCCESS;
-}
-
-void TargetController::begin(const Joints& q) {
-  tracker_.emplace(*arm_, fpbm::Pose{}, scheme(q), fpbm::State<kDof>{q, Joints::Zero(q.size())}, options_, *limits_);
-  (void)filter_->reset(tracker_->tip());
 }
 
 /// The last command of all joints, unless there is none or the arm does not follow it; else the measured positions. The
@@ -110,7 +104,7 @@ TargetController::Joints TargetController::start() {
     if (!good) throw std::runtime_error("joint '" + params_.joints[joint] + "': " + what);
   };
   const std::size_t dof = params_.joints.size();
-  measured_ = Joints::Zero(arm_->dof());
+  measured_ = Joints::Zero(robot_->dof());
   if (const auto joint = measure()) require(false, *joint, "its position is locked by another thread: activate again");
   Joints q = measured_;
   bool follows = true;
@@ -123,7 +117,7 @@ TargetController::Joints TargetController::start() {
     if (follows) q(i) = *last;
     if (state_interfaces_.size() == dof) continue;
     const double velocity = state_interfaces_[dof + k].get_optional().value_or(0.0);
-    require(std::abs(velocity) <= limits_->bounds().acceleration(i) * options_.dt, k,
+    require(std::abs(velocity) <= limits_->bounds().acceleration(i) * dt_, k,
             "it moves faster than it can stop in a tick: activate once the arm is at rest");
   }
   if (!follows) q = measured_;
@@ -140,7 +134,7 @@ TargetController::Joints TargetController::start() {
 /// The arm stays where the last command put it. A joint that does not take its command keeps its last.
 CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
-  const Joints& q = tracker_->state().q;
+  const Joints& q = motion_->state().q;
   if (const auto joint = command(q, Joints::Zero(q.size()))) {
     RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays as it was",
                 params_.joints[*joint].c_str());
@@ -158,39 +152,31 @@ return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Dur
     ++report_.early;
     return return_type::OK;
   }
-  take_target();
+  take_targets();
   const bool read = !measure();
   compare();
-  if (locked_for_ == 0) {
-    const auto tick = tracker_->tick(*filter_);
-    report_.status = tick.status;
-    report_.scale = tick.scale;
-    report_.position_error = tick.error.head<3>().norm();
-    report_.orientation_error = tick.error.tail<3>().norm();
-  }
-  const auto locked = command(tracker_->state().q, tracker_->state().qd);
+  if (locked_for_ == 0) motion_->tick(report_);
+  const auto locked = command(motion_->state().q, motion_->state().qd);
   locked_for_ = locked ? locked_for_ + 1 : 0;
   if (locked_for_ == kLongestLock) {
-    begin(Joints(tracker_->state().q));
+    motion_->begin(Joints(motion_->state().q));
     stop(Fault::kLocked, *locked);
   }
   if (locked || !read) ++report_.missed;
   report_.active = true;
   report_.time = time;
-  report_.tip = tracker_->tip();
+  motion_->locate(report_);
   (void)topics_->exchange().report.try_set(report_);
   return return_type::OK;
 }
 
-void TargetController::take_target() noexcept {
-  const std::optional<Target> target = topics_->exchange().target.try_get();
-  if (!target || target->count == seen_) return;
-  seen_ = target->count;
-  const auto push = [&](auto... stamp) noexcept {
-    return target->moves ? filter_->push_twist(target->twist, stamp...) : filter_->push(target->pose, stamp...);
-  };
-  const bool taken = target->stamp == 0.0 ? push() : push(target->stamp);
-  if (!taken) ++report_.refused;
+void TargetController::take_targets() noexcept {
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    const std::optional<Target> target = topics_->exchange().tasks[k].target.try_get();
+    if (!target || target->count == seen_[k]) continue;
+    seen_[k] = target->count;
+    if (!motion_->push(k, *target)) ++report_.tasks[k].refused;
+  }
 }
 
 std::optional<std::size_t> TargetController::measure() {
@@ -207,14 +193,14 @@ std::optional<std::size_t> TargetController::measure() {
 }
 
 double TargetController::difference(Eigen::Index i, double a, double b) const noexcept {
-  return std::isfinite(arm_->limits().upper(i)) ? a - b : std::remainder(a - b, 6.283185307179586);
+  return std::isfinite(robot_->limits().upper(i)) ? a - b : std::remainder(a - b, 6.283185307179586);
 }
 
 void TargetController::compare() {
   double largest = 0.0;
   std::size_t joint = 0;
   for (Eigen::Index i = 0; i < measured_.size(); ++i) {
-    const double error = std::abs(difference(i, measured_(i), tracker_->state().q(i)));
+    const double error = std::abs(difference(i, measured_(i), motion_->state().q(i)));
     if (!(error <= largest)) {
       largest = error;
       joint = static_cast<std::size_t>(i);
@@ -222,12 +208,13 @@ void TargetController::compare() {
     }
   }
   if (report_.fault == Fault::kNone) report_.following_error = largest;
-  if (!(largest < params_.following_error))
+  if (!(largest < params_.following_error)) {
     stop(std::isfinite(largest) ? Fault::kFollowing : Fault::kUnreadable, joint);
+  }
 }
 
 void TargetController::stop(Fault fault, std::size_t joint) noexcept {
-  tracker_->stop();
+  motion_->stop();
   if (report_.fault != Fault::kNone) return;
   report_.fault = fault;
   report_.fault_joint = joint;

@@ -38,18 +38,27 @@ namespace {
   return vector;
 }
 
-/// Throws where the joints of the parameters are not those of the chain that have a drive.
-void require_joints(const std::vector<std::string>& given, const fpbm::Chain<>& chain) {
+/// Throws where the joints of the parameters are not those of the tree that have a drive.
+void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
-  for (const auto& joint : chain.joints) {
-    if (joint.mimic.joint < 0) driven.push_back(joint.name);
+  std::string list;
+  for (const auto& each : tree.joints) {
+    if (each.joint.mimic.joint >= 0) continue;
+    driven.push_back(each.joint.name);
+    list += (list.empty() ? "" : ", ") + each.joint.name;
   }
   const auto [ours, theirs] = std::mismatch(given.begin(), given.end(), driven.begin(), driven.end());
   if (ours == given.end() && theirs == driven.end()) return;
   const auto text = [](auto joint, auto end) { return joint == end ? std::string("none") : "'" + *joint + "'"; };
   throw std::invalid_argument("joints: joint " + std::to_string(ours - given.begin() + 1) + " is " +
                               text(ours, given.end()) + ", and " + text(theirs, driven.end()) +
-                              " in robot_description between base_frame and tip_frame: give the joints from there");
+                              " in robot_description between base_frame and the frames: give [" + list + "]");
+}
+
+/// Whether no joint of a tree is carried by a link: an arm ends there.
+[[nodiscard]] bool is_end(const fpbm::Tree<>& tree, int link) {
+  return link > 0 &&
+         std::none_of(tree.joints.begin(), tree.joints.end(), [link](const auto& each) { return each.parent == link; });
 }
 
 }  // namespace
@@ -70,23 +79,80 @@ void TargetController::read_parameters() {
   }
   require_rate();
 
-  fpbm::Chain<> chain = chain_of(get_robot_description(), params_.base_frame, params_.tip_frame);
-  require_joints(params_.joints, chain);
-  if (!params_.arm.empty()) require_match(chain, params_.arm, preset(params_.arm));
-  chain.tip = chain.tip * transform(params_.tool.xyz, params_.tool.rpy);
-  arm_.emplace(chain);
+  tasks_ = task_settings(params_);
+  const fpbm::Tree<> tree = described();
+  require_joints(params_.joints, tree);
+  robot_.emplace(tree);
+  dt_ = 1.0 / static_cast<double>(get_update_rate());
+  limits_.emplace(limits(tree), dt_);
 
-  options_.dt = 1.0 / static_cast<double>(get_update_rate());
-  options_.null_damping = 0.0;  // scheme.null_damping alone decides.
-  limits_.emplace(limits(*arm_), options_.dt);
-
+  fpbm::TrackerOptions<> options;
+  options.dt = dt_;
+  options.null_damping = 0.0;  // scheme.null_damping alone decides.
+  // A recovery moves all joints, also those of tasks that are at their targets, and breaks a grasp.
+  options.recovery = tasks_.size() == 1;
+  const bool several = std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.level > 0; });
+  options.keep_first_level = params_.keep_first_level && several;
   fpbm::TargetFilterOptions<> filter;
-  filter.dt = options_.dt;
+  filter.dt = dt_;
   filter.timeout = target.timeout;
   const fpbm::TargetBounds<> bounds{target.velocity,         target.acceleration,         target.jerk,
                                     target.angular_velocity, target.angular_acceleration, target.angular_jerk};
-  filter_.emplace(fpbm::Transform<>{}, bounds, filter);
-  fpbm::require_stable(scheme(Joints::Zero(arm_->dof())), fpbm::TickOfGains<>{options_.dt, options_.integral_gain});
+  const MotionSettings settings{tree, motion_tasks(tree), scheme(robot_->dof()), options, *limits_, bounds, filter};
+  motion_ = is_tip() ? make_tip_motion(settings) : make_stack_motion(settings);
+}
+
+fpbm::Tree<> TargetController::described() const {
+  std::vector<NamedLink> links;
+  for (const auto& task : tasks_) {
+    links.push_back({task.frame_parameter(), task.frame});
+    if (!task.reference.empty()) links.push_back({task.parameter("reference_frame"), task.reference});
+  }
+  fpbm::Tree<> tree = tree_of(get_robot_description(), params_.base_frame, links);
+  if (params_.tasks.empty()) {
+    fpbm::Transform<>& tip = tree.frames[0].offset;
+    tip = tip * transform(params_.tool.xyz, params_.tool.rpy);
+  }
+  return tree;
+}
+
+std::vector<MotionTask> TargetController::motion_tasks(const fpbm::Tree<>& tree) const {
+  std::vector<MotionTask> tasks;
+  std::array<int, Report::kTasks> rows{};  // Of each level.
+  auto frame = tree.frames.begin();
+  for (const auto& task : tasks_) {
+    const auto take = [&frame] {
+      const auto& [name, link, offset] = *frame++;
+      return fpbm::LinkFrame<>(link, offset);
+    };
+    MotionTask made{
+        task.name.empty() ? "scheme." : task.parameter(""), task.level, {task.k1, task.k2}, take(), std::nullopt};
+    if (!task.reference.empty()) made.reference = take();
+    const int other = made.reference ? made.reference->link() : 0;
+    if (made.frame.link() == other) {
+      const std::string to = task.reference.empty() ? params_.base_frame : task.reference;
+      throw std::invalid_argument(task.frame_parameter() + ": no joint moves link '" + task.frame + "' in link '" + to +
+                                  "': give links that a joint moves relative to each other");
+    }
+    int& count = rows[static_cast<std::size_t>(task.level)];
+    count += fpbm::Pose::kRows;
+    if (count > robot_->dof() && !is_tip()) {
+      throw std::invalid_argument((task.name.empty() ? "tip_frame" : task.parameter("level")) +
+                                  ": the poses of level " + std::to_string(task.level + 1) + " have " +
+                                  std::to_string(count) + " rows, and the robot has " + std::to_string(robot_->dof()) +
+                                  " joints: put the task on another level");
+    }
+    tasks.push_back(made);
+  }
+  return tasks;
+}
+
+MotionScheme TargetController::scheme(Eigen::Index dof) const {
+  const auto& given = params_.scheme;
+  MotionScheme scheme{given.alpha, Joints::Ones(dof), given.null_damping, given.rest_stiffness, std::nullopt};
+  if (!given.weights.empty()) scheme.weights = vector_of("scheme.weights", given.weights, dof);
+  if (!given.rest_posture.empty()) scheme.rest_posture = vector_of("scheme.rest_posture", given.rest_posture, dof);
+  return scheme;
 }
 
 /// The controller manager calls a controller in every n-th of the manager's ticks.
@@ -104,10 +170,26 @@ void TargetController::require_rate() const {
                               " Hz: give " + std::to_string(below) + " or " + std::to_string(above));
 }
 
-TargetController::JointLimits TargetController::limits(const Arm& arm) const {
-  const Eigen::Index dof = arm.dof();
+TargetController::JointLimits TargetController::preset_limits(const fpbm::Tree<>& tree) const {
+  const fpbm::Chain<> known = preset(params_.arm);
+  JointLimits limits = JointLimits::none(robot_->dof());
+  for (const auto& [name, link, offset] : tree.frames) {
+    if (!is_end(tree, link)) continue;
+    require_match(chain_to(tree, link), name, params_.arm, known);
+    const std::vector<std::size_t> joints = joints_to(tree, link);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      limits.set(static_cast<Eigen::Index>(joints[k]), known.joints[k].bounds);  // Each joint of the arm has a drive.
+    }
+  }
+  if (!params_.limits.acceleration.empty()) limits.acceleration = JointLimits::unbounded(robot_->dof());
+  if (!params_.limits.jerk.empty()) limits.jerk = JointLimits::unbounded(robot_->dof());
+  return limits;
+}
+
+TargetController::JointLimits TargetController::limits(const fpbm::Tree<>& tree) const {
+  const Eigen::Index dof = robot_->dof();
   const auto& given = params_.limits;
-  SourcedLimits result(arm.limits(), "robot_description");
+  SourcedLimits result(robot_->limits(), "robot_description");
 
 #if __has_include(<controller_interface/controller_interface_params.hpp>)  // From ros2_control 4.38.
   JointLimits controlled = JointLimits::none(dof);
@@ -127,12 +209,7 @@ TargetController::JointLimits TargetController::limits(const Arm& arm) const {
   result.narrow(controlled, "ros2_control");
 #endif
 
-  if (!params_.arm.empty()) {
-    JointLimits of_preset = Arm(preset(params_.arm)).limits();
-    if (!given.acceleration.empty()) of_preset.acceleration = JointLimits::unbounded(dof);
-    if (!given.jerk.empty()) of_preset.jerk = JointLimits::unbounded(dof);
-    result.narrow(of_preset, "preset");
-  }
+  if (!params_.arm.empty()) result.narrow(preset_limits(tree), "preset");
 
   JointLimits own = JointLimits::none(dof);
   const auto take = [&](const char* name, const std::vector<double>& values, Joints& bound) {
@@ -154,19 +231,6 @@ TargetController::JointLimits TargetController::limits(const Arm& arm) const {
     RCLCPP_INFO(get_node()->get_logger(), "%s: %s", joint.c_str(), result.text(i).c_str());
   }
   return result.limits();
-}
-
-TargetController::Scheme TargetController::scheme(const Joints& start) const {
-  const auto& given = params_.scheme;
-  auto null_space = fpbm::NullSpace<kDof>().with_damping(given.null_damping);
-  if (given.rest_stiffness > 0.0) {
-    const Joints rest =
-        given.rest_posture.empty() ? start : vector_of("scheme.rest_posture", given.rest_posture, arm_->dof());
-    null_space = null_space.with_rest_posture(rest, given.rest_stiffness);
-  }
-  const Joints weights = given.weights.empty() ? Joints(Joints::Ones(start.size()))
-                                               : vector_of("scheme.weights", given.weights, arm_->dof());
-  return fpbm::FPBM<kDof>(given.alpha, weights, given.k1, given.k2, null_space);
 }
 
 }  // namespace fpbm_controllers

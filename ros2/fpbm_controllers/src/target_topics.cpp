@@ -6,13 +6,17 @@ namespace fpbm_controllers {
 
 namespace {
 
-void publish_tip(const Report& report, const Exchange& exchange,
-                 rclcpp::Publisher<geometry_msgs::msg::PoseStamped>& publisher) {
-  geometry_msgs::msg::PoseStamped message;
-  message.header.stamp = report.time;
-  message.header.frame_id = exchange.base_frame;
-  message.pose = message_of(report.tip);
-  publisher.publish(message);
+using TipPublisher = rclcpp::Publisher<geometry_msgs::msg::PoseStamped>;
+
+void publish_tips(const Report& report, const Exchange& exchange,
+                  const std::vector<std::shared_ptr<TipPublisher>>& publishers) {
+  for (std::size_t k = 0; k < publishers.size(); ++k) {
+    geometry_msgs::msg::PoseStamped message;
+    message.header.stamp = report.time;
+    message.header.frame_id = exchange.tasks[k].frame_id;
+    message.pose = message_of(report.tasks[k].at);
+    publishers[k]->publish(message);
+  }
 }
 
 void publish_diagnostics(const std::string& node, Exchange& exchange,
@@ -21,7 +25,7 @@ void publish_diagnostics(const std::string& node, Exchange& exchange,
   if (!report.active) return;
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = report.time;
-  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints));
+  message.status.push_back(diagnostic_of(report, exchange.diagnosed, exchange.joints, exchange.names));
   message.status.back().name = node + ": motion";
   message.status.back().hardware_id = exchange.arm;
   exchange.diagnosed = report;
@@ -34,9 +38,11 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
   if (report.fault != Fault::kNone && before.fault == Fault::kNone) {
     RCLCPP_ERROR(logger, "%s", message_of(report, exchange.joints).c_str());
   }
-  if (report.refused > before.refused) {
-    RCLCPP_WARN(logger, "%s targets refused: their stamps are not newer than those before. Check the sender's clock.",
-                std::to_string(report.refused - before.refused).c_str());
+  for (std::size_t k = 0; k < exchange.names.size(); ++k) {
+    const std::uint64_t refused = report.tasks[k].refused;
+    if (refused <= before.tasks[k].refused) continue;
+    RCLCPP_WARN(logger, "%s targets%s refused: their stamps are not newer than those before. Check the sender's clock.",
+                std::to_string(refused - before.tasks[k].refused).c_str(), of_task(exchange.names[k]).c_str());
   }
   if (report.missed > before.missed) {
     RCLCPP_WARN(logger, "%s ticks with an interface that another thread had locked",
@@ -47,27 +53,32 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
 
 }  // namespace
 
-TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const Settings& settings) {
-  exchange_->base_frame = settings.base_frame;
-  exchange_->arm = settings.arm;
-  exchange_->joints = settings.joints;
-  poses_ = listen<geometry_msgs::msg::PoseStamped>(node, "~/target_pose");
-  twists_ = listen<geometry_msgs::msg::TwistStamped>(node, "~/target_twist");
-
-  using Tip = rclcpp::Publisher<geometry_msgs::msg::PoseStamped>;
-  const std::shared_ptr<Tip> tip =
-      node.create_publisher<geometry_msgs::msg::PoseStamped>("~/tip_pose", rclcpp::SystemDefaultsQoS());
+TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
+                           const std::vector<TaskSettings>& tasks)
+    : exchange_(std::make_shared<Exchange>(tasks.size())) {
+  exchange_->arm = params.arm;
+  exchange_->joints = params.joints;
+  std::vector<std::shared_ptr<TipPublisher>> tips;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    const TaskSettings& task = tasks[k];
+    exchange_->names.push_back(task.name);
+    exchange_->tasks[k].frame_id = task.reference.empty() ? params.base_frame : task.reference;
+    poses_.push_back(listen<geometry_msgs::msg::PoseStamped>(node, task.topic("target_pose"), k));
+    twists_.push_back(listen<geometry_msgs::msg::TwistStamped>(node, task.topic("target_twist"), k));
+    tips.push_back(
+        node.create_publisher<geometry_msgs::msg::PoseStamped>(task.topic("tip_pose"), rclcpp::SystemDefaultsQoS()));
+  }
   using Diagnostics = rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>;
   const std::shared_ptr<Diagnostics> diagnostics =
       node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", rclcpp::SystemDefaultsQoS());
   const auto period = [](double rate) { return std::chrono::duration<double>(1.0 / rate); };
   tip_timer_ =
-      node.create_wall_timer(period(settings.tip_rate), [exchange = exchange_, tip, logger = node.get_logger()] {
+      node.create_wall_timer(period(params.tip_rate), [exchange = exchange_, tips, logger = node.get_logger()] {
         const Report report = exchange->report.get();
         log_events(report, *exchange, logger);
-        if (report.active) publish_tip(report, *exchange, *tip);
+        if (report.active) publish_tips(report, *exchange, tips);
       });
-  diagnostics_timer_ = node.create_wall_timer(period(settings.diagnostics_rate),
+  diagnostics_timer_ = node.create_wall_timer(period(params.diagnostics_rate),
                                               [exchange = exchange_, diagnostics, name = std::string(node.get_name())] {
                                                 publish_diagnostics(name, *exchange, *diagnostics);
                                               });
@@ -76,23 +87,26 @@ TargetTopics::TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const Settings
 /// Best effort, since a subscription that asks for reliable messages gets none of a sensor's; and the newest alone.
 template <typename Message>
 std::shared_ptr<rclcpp::Subscription<Message>> TargetTopics::listen(rclcpp_lifecycle::LifecycleNode& node,
-                                                                    const std::string& topic) const {
+                                                                    const std::string& topic, std::size_t task) const {
   return node.create_subscription<Message>(
       topic, rclcpp::QoS(1).best_effort(),
-      [exchange = exchange_, logger = node.get_logger(), clock = node.get_clock()](const Message& message) {
-        if (message.header.frame_id != exchange->base_frame) {
-          RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "target dropped: its frame is '%s', not '%s'",
-                               message.header.frame_id.c_str(), exchange->base_frame.c_str());
+      [exchange = exchange_, task, logger = node.get_logger(), clock = node.get_clock()](const Message& message) {
+        TargetExchange& own = exchange->tasks[task];
+        const std::string of = of_task(exchange->names[task]);
+        if (message.header.frame_id != own.frame_id) {
+          RCLCPP_WARN_THROTTLE(logger, *clock, 1000, "target%s dropped: its frame is '%s', not '%s'", of.c_str(),
+                               message.header.frame_id.c_str(), own.frame_id.c_str());
           return;
         }
         std::optional<Target> target = target_of(message);
         if (!target) {
           RCLCPP_WARN_THROTTLE(logger, *clock, 1000,
-                               "target dropped: a number is not finite, or the quaternion's length is not 1");
+                               "target%s dropped: a number is not finite, or the quaternion's length is not 1",
+                               of.c_str());
           return;
         }
-        target->count = ++exchange->received;
-        exchange->target.set(*target);
+        target->count = ++own.received;
+        own.target.set(*target);
       });
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <controller_interface/controller_interface.hpp>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -16,6 +19,18 @@ struct Params {
   std::string arm;
   std::string base_frame;
   std::string tip_frame;
+  std::vector<std::string> tasks = {};
+  struct Task {
+    struct MapTasks {
+      std::string frame;
+      std::string reference_frame;
+      std::int64_t level = 1;
+      double k1 = 0.0;
+      double k2 = 0.0;
+    };
+    std::map<std::string, MapTasks> tasks_map;
+  } task;
+  bool keep_first_level = true;
   struct Tool {
     std::vector<double> xyz = {0.0, 0.0, 0.0};
     std::vector<double> rpy = {0.0, 0.0, 0.0};
@@ -65,6 +80,9 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   using Numbers = std::vector<double>;
   const auto any = [](const auto&) { return true; };
   const auto not_empty = [](const auto& value) { return !value.empty(); };
+  const auto unique = [](const auto& values) {
+    return std::set<std::string>(values.begin(), values.end()).size() == values.size();
+  };
   const auto three = [](const Numbers& value) { return value.size() == 3; };
   const auto above_zero = [](double value) { return value > 0.0; };
   const auto not_negative = [](double value) { return value >= 0.0; };
@@ -78,7 +96,17 @@ void for_each_parameter(target_controller::Params& p, Visit&& visit) {
   visit("joints", p.joints, not_empty);
   visit("arm", p.arm, any);
   visit("base_frame", p.base_frame, not_empty);
-  visit("tip_frame", p.tip_frame, not_empty);
+  visit("tip_frame", p.tip_frame, any);
+  visit("tasks", p.tasks, unique);
+  for (const std::string& name : p.tasks) {
+    auto& task = p.task.tasks_map[name];
+    visit("task." + name + ".frame", task.frame, any);
+    visit("task." + name + ".reference_frame", task.reference_frame, any);
+    visit("task." + name + ".level", task.level, any);
+    visit("task." + name + ".k1", task.k1, not_negative);
+    visit("task." + name + ".k2", task.k2, not_negative);
+  }
+  visit("keep_first_level", p.keep_first_level, any);
   visit("tool.xyz", p.tool.xyz, three);
   visit("tool.rpy", p.tool.rpy, three);
   visit("limits.lower", p.limits.lower, any);

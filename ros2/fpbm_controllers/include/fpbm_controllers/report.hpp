@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
@@ -14,21 +15,28 @@ namespace fpbm_controllers {
 /// Why an arm was stopped until it is activated again.
 enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 
+/// How a tick went for a task.
+struct TaskReport {
+  double scale = 1.0;              ///< Share of the task that the limits left.
+  double position_error = 0.0;     ///< Of its frame, on the filter's reference [m],
+  double orientation_error = 0.0;  ///< and [rad].
+  std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
+  fpbm::Transform<> at;            ///< Its frame, in the base frame or the reference frame.
+};
+
 /// How a tick went: numbers only, so that the loop allocates nothing for it.
 struct Report {
+  static constexpr std::size_t kTasks = 8;  ///< At most.
+
   bool active = false;  ///< Whether there was a tick since the controller was activated.
   Fault fault = Fault::kNone;
   std::size_t fault_joint = 0;
   fpbm::Status status = fpbm::Status::kOk;
-  double scale = 1.0;              ///< Share of the task that the limits left.
-  double position_error = 0.0;     ///< Of the tip, on the filter's reference [m],
-  double orientation_error = 0.0;  ///< and [rad].
-  double following_error = 0.0;    ///< The largest joint's, or after a fault that at the fault [rad].
-  std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
-  std::uint64_t missed = 0;        ///< Ticks in which another thread had locked an interface.
-  std::uint64_t early = 0;         ///< Calls that came too soon to be ticks.
+  double following_error = 0.0;  ///< The largest joint's, or after a fault that at the fault [rad].
+  std::uint64_t missed = 0;      ///< Ticks in which another thread had locked an interface.
+  std::uint64_t early = 0;       ///< Calls that came too soon to be ticks.
   rclcpp::Time time = rclcpp::Time();
-  fpbm::Transform<> tip;
+  std::array<TaskReport, kTasks> tasks;
 };
 
 /// What a fault was, and what to do.
@@ -45,9 +53,15 @@ struct Report {
   return "";
 }
 
-/// A report as a message; before: the report of the message before.
+/// How messages name a task; the only one has no name.
+[[nodiscard]] inline std::string of_task(const std::string& name) {
+  return name.empty() ? "" : " of task '" + name + "'";
+}
+
+/// A report as a message; before: the report of the message before. tasks: their names.
 [[nodiscard]] inline diagnostic_msgs::msg::DiagnosticStatus diagnostic_of(const Report& report, const Report& before,
-                                                                          const std::vector<std::string>& joints) {
+                                                                          const std::vector<std::string>& joints,
+                                                                          const std::vector<std::string>& tasks) {
   using Message = diagnostic_msgs::msg::DiagnosticStatus;
   Message message;
   if (report.fault != Fault::kNone) {
@@ -57,24 +71,35 @@ struct Report {
     const bool well = report.status == fpbm::Status::kOk;
     message.level = well ? Message::OK : fpbm::failed(report.status) ? Message::ERROR : Message::WARN;
     message.message = std::string(fpbm::message(report.status)) + (well ? "" : ". ") + fpbm::advice(report.status);
-    if (well && report.refused > before.refused) {
-      message.level = Message::WARN;
-      message.message = "targets are refused: their stamps are not newer than those before";
-    } else if (well && report.missed > before.missed) {
+    if (well && report.missed > before.missed) {
       message.level = Message::WARN;
       message.message = "interfaces are locked by another thread: the arm waits";
     }
+    for (std::size_t k = tasks.size(); well && k-- > 0;) {
+      if (report.tasks[k].refused <= before.tasks[k].refused) continue;
+      message.level = Message::WARN;
+      message.message = "targets" + of_task(tasks[k]) + " are refused: their stamps are not newer than those before";
+    }
   }
-  const auto add = [&message](const char* key, const std::string& value) {
+  const auto add = [&message](const std::string& key, const std::string& value) {
     message.values.emplace_back();
     message.values.back().key = key;
     message.values.back().value = value;
   };
-  add("scale", std::to_string(report.scale));
-  add("tip position error [m]", std::to_string(report.position_error));
-  add("tip orientation error [rad]", std::to_string(report.orientation_error));
+  const auto for_each_task = [&](auto&& add_values) {
+    for (std::size_t k = 0; k < tasks.size(); ++k) {
+      add_values(tasks[k].empty() ? "" : tasks[k] + ": ", report.tasks[k]);
+    }
+  };
+  for_each_task([&](const std::string& task, const TaskReport& values) {
+    add(task + "scale", std::to_string(values.scale));
+    add(task + "tip position error [m]", std::to_string(values.position_error));
+    add(task + "tip orientation error [rad]", std::to_string(values.orientation_error));
+  });
   add("following error [rad]", std::to_string(report.following_error));
-  add("targets refused", std::to_string(report.refused));
+  for_each_task([&](const std::string& task, const TaskReport& values) {
+    add(task + "targets refused", std::to_string(values.refused));
+  });
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
   return message;

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <array>
 #include <controller_interface/controller_interface.hpp>
 #include <cstdint>
-#include <fpbm/model/coupled_arm.hpp>
-#include <fpbm/realtime/tracker.hpp>
-#include <fpbm/scheme/schemes.hpp>
-#include <fpbm/task/target_filter.hpp>
+#include <fpbm/limits/limits.hpp>
+#include <fpbm/model/robot.hpp>
+#include <fpbm_controllers/motion.hpp>
 #include <fpbm_controllers/pace.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target_controller_parameters.hpp>
 #include <fpbm_controllers/target_topics.hpp>
+#include <fpbm_controllers/task_settings.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,8 +18,8 @@
 
 namespace fpbm_controllers {
 
-/// Brings the tip to poses, or moves it at twists, that come as messages at any rate, and keeps the joint limits at
-/// every tick.
+/// Brings the tip, or the frames of several tasks, to poses, or moves them at twists, that come as messages at any
+/// rate, and keeps the joint limits at every tick.
 ///
 /// A tick continues from the last command, never from the measured posture, which is only compared with the command.
 class TargetController : public controller_interface::ControllerInterface {
@@ -35,28 +36,31 @@ class TargetController : public controller_interface::ControllerInterface {
   controller_interface::return_type update(const rclcpp::Time& time, const rclcpp::Duration& period) override;
 
  private:
-  static constexpr int kDof = Eigen::Dynamic;  // One instantiation serves arms of any length.
+  static constexpr int kDof = Eigen::Dynamic;  // One instantiation serves robots of any number of joints.
   using Joints = fpbm::Vector<kDof>;
   using JointLimits = fpbm::JointLimits<kDof>;
-  using Arm = fpbm::CoupledArm<kDof>;
-  using Scheme = fpbm::AccelerationScheme<kDof>;
-  using Tracker = fpbm::Tracker<Arm, fpbm::Pose, Scheme>;
 
   /// Throws std::invalid_argument where a parameter does not fit.
   void read_parameters();
   /// Throws std::invalid_argument where the controller is not called once in a tick of its update rate.
   void require_rate() const;
-  /// The narrowest of those of the arm, ros2_control, the preset and the parameters, which are logged.
-  [[nodiscard]] JointLimits limits(const Arm& arm) const;
-  [[nodiscard]] Scheme scheme(const Joints& start) const;
+  /// The described joints, with a frame for each task's frame and then one for each reference frame, and the tool.
+  [[nodiscard]] fpbm::Tree<> described() const;
+  /// Whether there is one task, in the base frame.
+  [[nodiscard]] bool is_tip() const noexcept { return tasks_.size() == 1 && tasks_[0].reference.empty(); }
+  /// The tasks with the frames of that tree.
+  [[nodiscard]] std::vector<MotionTask> motion_tasks(const fpbm::Tree<>& tree) const;
+  [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
+  /// The narrowest of those of the robot, ros2_control, the preset and the parameters, which are logged.
+  [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
+  /// Those of the preset, for each arm of a tree. Throws std::invalid_argument where an arm is not the preset.
+  [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   void close();
 
-  /// Starts at rest from a posture. Throws std::invalid_argument where the posture is beyond a limit.
-  void begin(const Joints& q);
   /// Throws std::runtime_error, which names the joint, where an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
-  void take_target() noexcept;
+  void take_targets() noexcept;
   /// Reads the joints' positions: the first joint that cannot be read keeps its last reading, and its number is
   /// returned.
   [[nodiscard]] std::optional<std::size_t> measure();
@@ -73,17 +77,17 @@ class TargetController : public controller_interface::ControllerInterface {
   unsigned int manager_rate_ = 0;  ///< [Hz]
   std::shared_ptr<target_controller::ParamListener> listener_;
   target_controller::Params params_;
-  std::optional<Arm> arm_;
-  fpbm::TrackerOptions<> options_;
-  std::optional<fpbm::Limits<Scheme::kLevel, kDof>> limits_;
+  std::vector<TaskSettings> tasks_;
+  std::optional<fpbm::Robot<kDof>> robot_;
+  double dt_ = 0.0;  ///< Length of a tick [s].
+  std::optional<fpbm::Limits<fpbm::Level::kAcceleration, kDof>> limits_;
   std::optional<TargetTopics> topics_;
 
   // Of an active controller, and of the loop alone.
-  std::optional<Tracker> tracker_;
-  std::optional<fpbm::TargetFilter<fpbm::Pose>> filter_;
+  std::unique_ptr<Motion> motion_;
   Pace pace_;
-  std::uint64_t seen_ = 0;  ///< The newest target's count.
-  int locked_for_ = 0;      ///< Ticks since the last that all joints took.
+  std::array<std::uint64_t, Report::kTasks> seen_{};  ///< The count of each task's newest target.
+  int locked_for_ = 0;                                ///< Ticks since the last that all joints took.
   Joints measured_;
   Report report_;
 };

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <fpbm_controllers/report.hpp>
 #include <fpbm_controllers/target.hpp>
+#include <fpbm_controllers/task_settings.hpp>
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <geometry_msgs/msg/twist_stamped.hpp>
 #include <memory>
@@ -15,44 +17,47 @@
 
 namespace fpbm_controllers {
 
+/// The targets of a task, on their way from the callbacks to the loop.
+struct TargetExchange {
+  realtime_tools::RealtimeThreadSafeBox<Target> target;
+
+  // Of the callbacks alone.
+  std::string frame_id;  ///< Of targets: the base frame or the reference frame.
+  std::uint64_t received = 0;
+};
+
 /// What the loop and the node's callbacks exchange. The loop never waits for it. Each callback shares its ownership,
 /// since the topics may close while a callback runs.
 struct Exchange {
-  realtime_tools::RealtimeThreadSafeBox<Target> target;
+  explicit Exchange(std::size_t count) : tasks(count) {}
+
+  std::vector<TargetExchange> tasks;
   realtime_tools::RealtimeThreadSafeBox<Report> report;
 
   // Of the callbacks alone.
-  std::string base_frame;
   std::string arm;
   std::vector<std::string> joints;
-  std::uint64_t received = 0;
-  Report logged;     ///< The last report whose events were logged,
-  Report diagnosed;  ///< and the last that was published.
+  std::vector<std::string> names;  ///< Of the tasks.
+  Report logged;                   ///< The last report whose events were logged,
+  Report diagnosed;                ///< and the last that was published.
 };
 
-/// The controller's topics. They close when it is destroyed.
+/// The controller's topics: three of each task, and the diagnostics. They close when it is destroyed.
 class TargetTopics {
  public:
-  struct Settings {
-    std::string base_frame;
-    std::string arm;
-    std::vector<std::string> joints;
-    double tip_rate;          ///< [Hz]
-    double diagnostics_rate;  ///< [Hz]
-  };
-
-  TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const Settings& settings);
+  TargetTopics(rclcpp_lifecycle::LifecycleNode& node, const target_controller::Params& params,
+               const std::vector<TaskSettings>& tasks);
 
   [[nodiscard]] Exchange& exchange() noexcept { return *exchange_; }
 
  private:
   template <typename Message>
   [[nodiscard]] std::shared_ptr<rclcpp::Subscription<Message>> listen(rclcpp_lifecycle::LifecycleNode& node,
-                                                                      const std::string& topic) const;
+                                                                      const std::string& topic, std::size_t task) const;
 
-  std::shared_ptr<Exchange> exchange_ = std::make_shared<Exchange>();
-  std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::PoseStamped>> poses_;
-  std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::TwistStamped>> twists_;
+  std::shared_ptr<Exchange> exchange_;
+  std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::PoseStamped>>> poses_;
+  std::vector<std::shared_ptr<rclcpp::Subscription<geometry_msgs::msg::TwistStamped>>> twists_;
   std::shared_ptr<rclcpp::TimerBase> tip_timer_;
   std::shared_ptr<rclcpp::TimerBase> diagnostics_timer_;
 };

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <fpbm/limits/limits.hpp>
+#include <fpbm/model/tree.hpp>
+#include <fpbm/objective/null_space.hpp>
+#include <fpbm/realtime/tick.hpp>
+#include <fpbm/task/link_frame.hpp>
+#include <fpbm/task/target_bounds.hpp>
+#include <fpbm/task/task_gains.hpp>
+#include <fpbm_controllers/report.hpp>
+#include <fpbm_controllers/target.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fpbm_controllers {
+
+/// The pose of a frame, in the base frame or relative to another frame.
+struct MotionTask {
+  std::string gains_of;  ///< What messages put before the names of the gains.
+  int level;             ///< From 0.
+  fpbm::TaskGains<> gains;
+  fpbm::LinkFrame<> frame;
+  std::optional<fpbm::LinkFrame<>> reference;
+};
+
+/// The null-space motion of a robot, and the balance of the scheme.
+struct MotionScheme {
+  using Joints = fpbm::Vector<Eigen::Dynamic>;
+
+  double alpha;
+  Joints weights;
+  double null_damping;                 ///< [1/s]
+  double rest_stiffness;               ///< [1/s²]
+  std::optional<Joints> rest_posture;  ///< None: the posture of begin() [rad].
+};
+
+/// The null-space motion from the posture of begin().
+[[nodiscard]] inline fpbm::NullSpace<Eigen::Dynamic> null_space_of(const MotionScheme& scheme,
+                                                                   const MotionScheme::Joints& start) {
+  auto null_space = fpbm::NullSpace<Eigen::Dynamic>().with_damping(scheme.null_damping);
+  if (scheme.rest_stiffness > 0.0) {
+    null_space = null_space.with_rest_posture(scheme.rest_posture.value_or(start), scheme.rest_stiffness);
+  }
+  return null_space;
+}
+
+struct MotionSettings {
+  fpbm::Tree<> tree;
+  std::vector<MotionTask> tasks;
+  MotionScheme scheme;
+  fpbm::TrackerOptions<> options;
+  fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
+  fpbm::TargetBounds<> bounds;  ///< Of each task's reference.
+  fpbm::TargetFilterOptions<> filter;
+};
+
+/// The motion of a robot toward the targets of its tasks, each through a filter.
+///
+/// Only make_motion() allocates.
+class Motion {
+ public:
+  using Joints = MotionScheme::Joints;
+
+  Motion() = default;
+  Motion(const Motion&) = delete;
+  Motion& operator=(const Motion&) = delete;
+  virtual ~Motion() = default;
+
+  /// Starts at rest from a posture. Throws std::invalid_argument where the posture is beyond a limit.
+  virtual void begin(const Joints& q) = 0;
+  /// A new target of a task. False where its stamp rejects it.
+  virtual bool push(std::size_t task, const Target& target) noexcept = 0;
+  /// One tick: sets the status, and the scale and the errors of each task.
+  virtual void tick(Report& report) noexcept = 0;
+  /// Brings the robot to rest until begin().
+  virtual void stop() noexcept = 0;
+
+  /// The commands.
+  [[nodiscard]] virtual const fpbm::State<Eigen::Dynamic>& state() const noexcept = 0;
+  /// Sets where each task is in the commanded posture.
+  virtual void locate(Report& report) const noexcept = 0;
+};
+
+/// Of one tip, by a tracker of a pose: less than half of the time of a stack, and of robots of fewer than six joints
+/// too. settings: with one task, without a reference frame. Throws std::invalid_argument where a gain is too high for
+/// the tick.
+[[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
+
+/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument where a gain is too high for the tick, or a task
+/// does not suit the robot.
+[[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
+
+/// Hands a target to the filter of a task. False where its stamp rejects the target.
+template <typename Filter>
+bool push_to(Filter& filter, const Target& target) noexcept {
+  const auto push = [&](auto... stamp) noexcept {
+    return target.moves ? filter.push_twist(target.twist, stamp...) : filter.push(target.pose, stamp...);
+  };
+  return target.stamp == 0.0 ? push() : push(target.stamp);
+}
+
+}  // namespace fpbm_controllers

@@ -1,0 +1,169 @@
+#include "fpbm_controllers/motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fpbm/any/any_stack.hpp>
+#include <fpbm/model/robot.hpp>
+#include <fpbm/realtime/stack_tracker.hpp>
+#include <fpbm/scheme/schemes.hpp>
+#include <fpbm/task/target_filter.hpp>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace fpbm_controllers {
+
+namespace {
+
+constexpr int kDof = Eigen::Dynamic;  // One instantiation serves robots of any number of joints.
+using Joints = fpbm::Vector<kDof>;
+using Robot = fpbm::Robot<kDof>;
+using Stack = fpbm::AnyStack;
+using Space = Stack::Space;
+using Tasks = fpbm::RobotTasks<Robot, Stack>;
+using Scheme = fpbm::ByLevels<fpbm::AccelerationScheme<kDof>, Stack>;
+using Tracker = fpbm::Tracker<Tasks, Space, Scheme>;
+using Reference = fpbm::Reference<Space>;
+constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
+
+/// The places of tasks in a stack, whose first places of each level are those of frames.
+[[nodiscard]] std::vector<int> places_of(const std::vector<MotionTask>& tasks) {
+  std::array<int, Stack::kLevels> counts{};
+  std::vector<int> places;
+  for (const MotionTask& task : tasks) {
+    const int before = counts[static_cast<std::size_t>(task.level)]++;
+    places.push_back(task.level * kPerLevel + before);
+  }
+  return places;
+}
+
+[[nodiscard]] Stack stack_of(const std::vector<MotionTask>& tasks) {
+  const std::vector<int> places = places_of(tasks);
+  std::array<fpbm::AnyFrameTask, Stack::kTasks> all;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    const MotionTask& task = tasks[k];
+    all[static_cast<std::size_t>(places[k])] =
+        fpbm::AnyFrameTask(fpbm::FrameCoordinates::kPose, task.frame, task.gains, {true, true, true, true, true, true},
+                           false, {0.0, 0.0, 1.0}, task.reference);
+  }
+  const auto level = [&all](std::size_t k) {
+    const std::size_t first = k * static_cast<std::size_t>(kPerLevel);
+    return fpbm::AnyLevel(all[first], all[first + 1], fpbm::AnyPostureTask());
+  };
+  return Stack(level(0), level(1), level(2), level(3));
+}
+
+/// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
+void require_stable_tasks(const std::vector<MotionTask>& tasks, double dt) {
+  constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
+  const bool several = std::any_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.level > 0; });
+  for (const MotionTask& task : tasks) {
+    try {
+      fpbm::require_stable_gains<kLevel, double>({"k1", task.gains.k1, "k2", task.gains.k2}, {dt, 0.0});
+      if (several) fpbm::require_stable_in_levels<kLevel>(task.gains, dt);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(task.gains_of + error.what());
+    }
+  }
+}
+
+/// Calls f(i, row) for the place of a task: its index as a type, and the first row of its errors.
+template <typename F>
+void at_place(int place, F&& f) noexcept {
+  Space::each([&](auto space, auto i, int row) noexcept {
+    if constexpr (std::is_same_v<decltype(space), fpbm::FrameSpace>) {
+      if (static_cast<int>(decltype(i)::value) == place) f(i, row);
+    }
+  });
+}
+
+class StackMotion final : public Motion {
+ public:
+  explicit StackMotion(const MotionSettings& settings)
+      : scheme_(settings.scheme),
+        options_(settings.options),
+        limits_(settings.limits),
+        places_(places_of(settings.tasks)),
+        tasks_(Robot(settings.tree), stack_of(settings.tasks)),
+        filters_(places_.size(), Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
+    require_stable_tasks(settings.tasks, options_.dt);
+    fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), fpbm::TickOfGains<>{options_.dt, 0.0});
+  }
+
+  void begin(const Joints& q) override {
+    const fpbm::State<kDof> start{q, Joints::Zero(q.size())};
+    tracker_.emplace(tasks_, Space{}, scheme_from(q), start, options_, limits_);
+    held_ = Reference::hold(tracker_->tip());
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      at_place(places_[k],
+               [&](auto i, int) noexcept { (void)filters_[k].reset(std::get<decltype(i)::value>(held_.x).at); });
+    }
+  }
+
+  bool push(std::size_t task, const Target& target) noexcept override { return push_to(filters_[task], target); }
+
+  void tick(Report& report) noexcept override {
+    const auto references =
+        fpbm::TickReferences<Space>::of([this](double t) noexcept { return ahead(t); }, options_.dt);
+    const auto tick = tracker_->advance(references);
+    for (auto& filter : filters_) filter.advance();
+    report.status = tick.status;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      at_place(places_[k], [&](auto i, int row) noexcept {
+        constexpr auto kLevel = static_cast<std::size_t>(Stack::level(static_cast<int>(decltype(i)::value)));
+        report.tasks[k].scale = tick.scales[kLevel];
+        report.tasks[k].position_error = tick.error.segment<3>(row).norm();
+        report.tasks[k].orientation_error = tick.error.segment<3>(row + 3).norm();
+      });
+    }
+  }
+
+  void stop() noexcept override { tracker_->stop(); }
+
+  [[nodiscard]] const fpbm::State<kDof>& state() const noexcept override { return tracker_->state(); }
+
+  void locate(Report& report) const noexcept override {
+    const Stack::Point at = tracker_->tip();
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      at_place(places_[k], [&](auto i, int) noexcept { report.tasks[k].at = std::get<decltype(i)::value>(at).at; });
+    }
+  }
+
+ private:
+  using Filter = fpbm::TargetFilter<fpbm::Pose>;
+
+  [[nodiscard]] Scheme scheme_from(const Joints& start) const {
+    return Scheme(fpbm::Balanced<kDof>(scheme_.alpha, scheme_.weights, null_space_of(scheme_, start)));
+  }
+
+  /// The references of all tasks some seconds into the coming tick; those of empty places are held.
+  [[nodiscard]] Reference ahead(double seconds) const noexcept {
+    Reference all = held_;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const auto own = filters_[k].ahead(seconds);
+      at_place(places_[k], [&](auto i, int row) noexcept {
+        std::get<decltype(i)::value>(all.x).at = own.x;
+        all.xd.segment<6>(row) = own.xd;
+        all.xdd.segment<6>(row) = own.xdd;
+      });
+    }
+    return all;
+  }
+
+  MotionScheme scheme_;
+  fpbm::TrackerOptions<> options_;
+  fpbm::Limits<fpbm::Level::kAcceleration, kDof> limits_;
+  std::vector<int> places_;  ///< Of each task in the stack.
+  Tasks tasks_;
+  std::vector<Filter> filters_;
+  std::optional<Tracker> tracker_;
+  Reference held_ = Reference::hold(Space::origin<double>());
+};
+
+}  // namespace
+
+std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings) {
+  return std::make_unique<StackMotion>(settings);
+}
+
+}  // namespace fpbm_controllers
