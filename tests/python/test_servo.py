@@ -92,7 +92,7 @@ def test_a_handle_stands_for_a_target(which, task):
 def test_it_says_how_the_arm_fares(servo):
     until(lambda: "all is well" in says(servo))
     servo.target = [8.0, 3.0]
-    until(lambda: "it is slowed. It follows as fast as its joints may." in says(servo))
+    until(lambda: "a lower level has stopped. It follows as fast as its joints may." in says(servo))
     until(lambda: "it rests. Drag the handle into reach" in says(servo))
     assert servo.status is fp.Status.STALLED
     assert "100 %" in says(servo)

@@ -8,7 +8,7 @@ enum class Status : unsigned char {
   kOk = 0,
   kCoarse,      ///< The steps are too long: they, and not the scheme, made a tip error that counts.
   kDamped,      ///< Near a singular posture: motion in the directions that the tip loses there is damped.
-  kSlowed,      ///< The joint limits leave no room for the whole task: it is scaled down.
+  kSlowed,      ///< Joint limits scale the task down, or a lower level has stopped (Tick::scales).
   kBlocked,     ///< Shapes that the arm keeps clear of, or bounds of tasks, admit a share of the task only.
   kRecovering,  ///< The arm came no nearer to its target: it moves to a posture from which it can reach the target.
   kStalled,     ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
@@ -33,7 +33,7 @@ enum class Status : unsigned char {
     case Status::kOk: return "all is well";
     case Status::kCoarse: return "the steps are too long: they give the tip an error that the scheme does not";
     case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
-    case Status::kSlowed: return "the joint limits leave no room for the whole task: it is slowed";
+    case Status::kSlowed: return "joint limits slow the task, or a lower level has stopped";
     case Status::kBlocked: return "shapes that the arm keeps clear of, or bounds of tasks, slow the task";
     case Status::kRecovering:
       return "the arm came no nearer to its target: it moves to a posture from which it can reach the target";
@@ -52,7 +52,9 @@ enum class Status : unsigned char {
     case Status::kOk: return "";
     case Status::kCoarse: return "Shorten dt.";
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
-    case Status::kSlowed: return "Expect a tip error until the joints are off their limits, or slow the path.";
+    case Status::kSlowed:
+      return "Expect a tip error until the joints are off their limits, or slow the path. The scales of a stack tell "
+             "which level is slow.";
     case Status::kBlocked:
       return "Lead the target around the nearest shape, or expect a tip error while a shape or a bound is in the way.";
     case Status::kRecovering: return "Expect a tip error until the arm has reached that posture.";
