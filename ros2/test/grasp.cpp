@@ -50,8 +50,9 @@ double largest_error(TwoArms& robot, int jumps, unsigned int seed) {
     tray.p += three(0.3);
     tray.R = fpbm::rotation(three(0.5)) * tray.R;
     robot.hear("~/tray/target_pose", message_in("table", tray));
-    tick(k + 1 < jumps ? 1500 : 500);  // The last one is on its way.
+    if (k + 1 < jumps) tick(1500);
   }
+  for (int i = 0; i < 1500 && robot.speed() <= 0.2; ++i) tick(1);  // Toward the last target.
   const double before = robot.speed();
   robot.q[9] = std::numeric_limits<double>::quiet_NaN();
   tick(1500);
