@@ -17,6 +17,7 @@ class Reflections {
   /// None: Q = I.
   explicit Reflections(Eigen::Index n) noexcept {
     V_.resize(n, n);
+    for (Eigen::Index i = 0; i < V_.size(); ++i) V_.coeffRef(i) = Scalar(0);
     beta_.resize(n);
   }
 
@@ -27,7 +28,7 @@ class Reflections {
   /// column. These entries and entry k must not all be zero.
   void add(Scalar* column) noexcept {
     Scalar* const x = column + count_;
-    Scalar* const v = zeros(count_) + count_;
+    Scalar* const v = V_.data() + count_ * size() + count_;
     const Eigen::Index below = size() - count_;
     const Scalar length = std::sqrt(squared_length(x, below));
     const Scalar inverse = Scalar(1) / length;
@@ -44,10 +45,7 @@ class Reflections {
 
   /// Adds identities until there are N.
   void fill() noexcept {
-    for (; count_ < size(); ++count_) {
-      (void)zeros(size());
-      beta_.coeffRef(count_) = Scalar(0);
-    }
+    for (; count_ < size(); ++count_) beta_.coeffRef(count_) = Scalar(0);
   }
 
   /// x becomes H_k x.
@@ -70,13 +68,6 @@ class Reflections {
   }
 
  private:
-  /// The next column of V, its first entries zero.
-  [[nodiscard]] Scalar* zeros(Eigen::Index entries) noexcept {
-    Scalar* const v = V_.data() + count_ * size();
-    for (Eigen::Index i = 0; i < entries; ++i) v[i] = Scalar(0);
-    return v;
-  }
-
   Matrix<N, N, Scalar> V_;  ///< Column k is v of H_k.
   Vector<N, Scalar> beta_;
   Eigen::Index count_ = 0;
