@@ -2,7 +2,7 @@
 
 The same random object paths as in bench/grasp.cpp, faster than the arms; bounds are those of the preset. Errors of the
 relative pose are the largest of each motion; excesses are by differences of positions, of velocities and accelerations
-as shares of the bounds. Each peer is installed from PyPI into a virtual environment of its own; those that cannot be
+as shares of the bounds. Each peer is installed from PyPI into its own virtual environment; those that cannot be
 installed are listed.
 
 The peers minimise weighted squares: the relative pose has the cost 100 and the object 1 (Pink, Mink, roboplan), or is

@@ -8,7 +8,7 @@
 
 namespace stand_in {
 
-/// A Panda with a tool and limits of its own.
+/// A Panda with a tool, and limits narrower than the preset's.
 class Robot : public Driven<7> {
  public:
   Robot() : Driven("panda", limits(), {0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}) {

@@ -71,9 +71,9 @@ void one_hand(TwoArms& robot) {
 /// Where hand k is led: 20 times a second.
 Transform<> led(const Transform<>& start, double side, double t) {
   Transform<> pose = start;
-  const double way = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
-  pose.p += fpbm::Vector<3>(0.05, 0.1 * side, 0.08 - 0.04 * side) * way;
-  pose.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.2 * way, 0.3 * side * way)) * pose.R;
+  const double share = std::pow(std::sin(1.5 * std::min(t, 2.0)), 2);
+  pose.p += fpbm::Vector<3>(0.05, 0.1 * side, 0.08 - 0.04 * side) * share;
+  pose.R = fpbm::rotation(fpbm::Vector<3>(0.0, 0.2 * share, 0.3 * side * share)) * pose.R;
   return pose;
 }
 
@@ -103,8 +103,8 @@ void both_hands(TwoArms& robot) {
     robot.tick();
   }
   robot.tick(2000);
-  const double way = robot.tip("right").p(2) - before.p(2);
-  check(std::abs(way + 0.05 * 1.15) < 0.004, "right hand: way down at a twist [m]", way);
+  const double rise = robot.tip("right").p(2) - before.p(2);  // [m]
+  check(std::abs(rise + 0.05 * 1.15) < 0.004, "right hand: displacement at a twist down [m]", rise);
 }
 
 /// Each task has its own frame, stamps and counts.

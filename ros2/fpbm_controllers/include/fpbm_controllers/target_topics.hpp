@@ -17,7 +17,7 @@
 
 namespace fpbm_controllers {
 
-/// The targets of a task, on their way from the callbacks to the loop.
+/// The targets of a task, which the callbacks hand to the loop.
 struct TargetExchange {
   realtime_tools::RealtimeThreadSafeBox<Target> target;
 
