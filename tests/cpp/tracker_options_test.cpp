@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -317,6 +318,53 @@ TEST(TickGains, are_stable_if_and_only_if_errors_decay) {
   }
   EXPECT_TRUE(is_stable_acceleration(0.0, 0.0));
   EXPECT_TRUE(is_stable_velocity(0.0));
+}
+
+/// is_stable_…_of_middle() says the same of ticks that continue the last tick's motion to their middle.
+TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> size(-2.0, 0.3);
+  std::array<int, 2> stable{};
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double x1 = std::pow(10.0, size(random));
+    const double x2 = std::pow(10.0, 2.0 * size(random) - 0.5);
+    const double x3 = trial % 2 == 0 ? 0.0 : std::pow(10.0, 3.0 * size(random) - 1.0);
+    const int integral = x3 == 0.0 ? 0 : 1;
+    const auto decays = [&](Matrix<kOpen, kOpen> power) {
+      for (int i = 0; i < 30 && power.norm() < 1e9; ++i) power = (power * power).eval();
+      return power.norm();
+    };
+    const auto expect = [&](std::size_t level, bool claimed, const Matrix<kOpen, kOpen>& tick) {
+      const double end = decays(tick);
+      if (end > 1e-2 && end < 1e3) return;  // On the boundary.
+      EXPECT_EQ(claimed, end <= 1e-2) << "level " << level << ": " << x1 << " " << x2 << " " << x3;
+      stable[level] += end <= 1e-2 ? 1 : 0;
+    };
+    // Of e, ė and the acceleration (e and the velocity) of the last tick, and the integral.
+    Matrix<4, 4> second = Matrix<4, 4>::Zero();
+    Matrix<3, 3> first = Matrix<3, 3>::Zero();
+    for (int column = 0; column < 4; ++column) {
+      const Vector<4> at = Vector<4>::Unit(column);
+      const double a = -x1 * (at(1) + at(2) / 2.0) - x2 * (at(0) + at(1) / 2.0 + at(2) / 8.0) - x3 * at(3);
+      second.col(column) << at(0) + at(1) + a / 2.0, at(1) + a, a, at(3) + at(0);
+      if (column == 3) continue;
+      const double v = -x1 * (at(0) + at(1) / 2.0) - x3 * at(2);
+      first.col(column) << at(0) + v, v, at(2) + at(0);
+    }
+    expect(0, is_stable_velocity_of_middle(x1, x3), first.topLeftCorner(2 + integral, 2 + integral));
+    expect(1, is_stable_acceleration_of_middle(x1, x2, x3), second.topLeftCorner(3 + integral, 3 + integral));
+  }
+  for (const int count : stable) {
+    EXPECT_GT(count, kTrials / 8);
+    EXPECT_LT(count, kTrials * 7 / 8);
+  }
+  for (const float x : {1e-6F, 1e-3F, 0.1F}) {
+    EXPECT_TRUE(is_stable_acceleration_of_middle(2.0F * x, x * x));
+    EXPECT_TRUE(is_stable_acceleration_of_middle(2.0F * x, x * x, 0.2F * x * x * x));
+    EXPECT_FALSE(is_stable_acceleration_of_middle(2.0F * x, x * x, 2.2F * x * x * x));
+    EXPECT_TRUE(is_stable_velocity_of_middle(x));
+  }
 }
 
 /// With critical damping the tip stays, and the arm comes to rest.

@@ -53,14 +53,16 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   return Stack(level(0), level(1), level(2), level(3));
 }
 
+bool has_lower_levels(const std::vector<MotionTask>& tasks) {
+  return std::any_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.level > 0; });
+}
+
 /// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
-void require_stable_tasks(const std::vector<MotionTask>& tasks, double dt) {
+void require_stable_tasks(const std::vector<MotionTask>& tasks, const fpbm::TickOfGains<>& tick) {
   constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
-  const bool several = std::any_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.level > 0; });
   for (const MotionTask& task : tasks) {
     try {
-      fpbm::require_stable_gains<kLevel, double>({"k1", task.gains.k1, "k2", task.gains.k2}, {dt, 0.0});
-      if (several) fpbm::require_stable_in_levels<kLevel>(task.gains, dt);
+      fpbm::require_stable_gains<kLevel, double>({"k1", task.gains.k1, "k2", task.gains.k2}, tick);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(task.gains_of + error.what());
     }
@@ -86,8 +88,9 @@ class StackMotion final : public Motion {
         places_(places_of(settings.tasks)),
         tasks_(Robot(settings.tree), stack_of(settings.tasks)),
         filters_(places_.size(), Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
-    require_stable_tasks(settings.tasks, options_.dt);
-    fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), fpbm::TickOfGains<>{options_.dt, 0.0});
+    const fpbm::TickOfGains<> tick{options_.dt, 0.0, has_lower_levels(settings.tasks)};
+    require_stable_tasks(settings.tasks, tick);
+    fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
   }
 
   void begin(const Joints& q) override {

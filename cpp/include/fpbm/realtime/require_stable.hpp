@@ -13,6 +13,7 @@ template <typename Scalar = double>
 struct TickOfGains {
   Scalar dt;             ///< [s]
   Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
+  bool levels = false;   ///< Whether it resolves several levels, whose motion is that of its middle (LimitedState).
 };
 
 /// The gains of one error, by name: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
@@ -32,8 +33,16 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   const Scalar integral = tick.integral_gain;
   // With time scaled by the share: an error that decays as much more slowly.
   const auto stable = [&, k1 = k1, k2 = k2](Scalar share, Scalar ki) {
-    if constexpr (kLevel == Level::kVelocity) return is_stable_velocity(share * k2 * h, ki * h * h);
-    return is_stable_acceleration(share * k1 * h, share * share * k2 * h * h, ki * h * h * h);
+    if constexpr (kLevel == Level::kVelocity) {
+      const Scalar x1 = share * k2 * h;
+      const Scalar x3 = ki * h * h;
+      return is_stable_velocity(x1, x3) && (!tick.levels || is_stable_velocity_of_middle(x1, x3));
+    } else {
+      const Scalar x1 = share * k1 * h;
+      const Scalar x2 = share * share * k2 * h * h;
+      const Scalar x3 = ki * h * h * h;
+      return is_stable_acceleration(x1, x2, x3) && (!tick.levels || is_stable_acceleration_of_middle(x1, x2, x3));
+    }
   };
   if (!stable(Scalar(1), Scalar(0))) {
     const Scalar share = largest_share<Scalar>([&](Scalar s) { return stable(s, Scalar(0)); });
@@ -84,7 +93,7 @@ inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_spac
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;
-  const TickOfGains<Scalar> plain{tick.dt, Scalar(0)};
+  const TickOfGains<Scalar> plain{tick.dt, Scalar(0), tick.levels};
   const Scalar none(0);
   if constexpr (kWraps<Scheme>) {
     require_stable(scheme.scheme, tick);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "fpbm/limits/saturation_by_level.hpp"
 #include "fpbm/realtime/lower_levels.hpp"
 #include "fpbm/realtime/require_stable.hpp"
@@ -12,23 +10,6 @@
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {
-
-/// Throws std::invalid_argument where the tick of a limited stack does not damp an error with these gains.
-///
-/// LimitedState::expect() resolves the levels in the middle of the tick, from the last acceleration a' (or velocity):
-///
-///   a = −k₁(ė + a'h/2) − k₂(e + ėh/2 + a'h²/8)      v = −k(e + v'h/2)
-///
-/// By Jury's criterion, e decays if and only if k₁h + ⅜k₂h² < 1, or kh < 1.
-template <Level kLevel, typename Scalar>
-void require_stable_in_levels(const TaskGains<Scalar>& gains, Scalar h) {
-  const bool velocity = kLevel == Level::kVelocity;
-  const Scalar stiff = velocity ? Scalar(0) : Scalar(0.375) * gains.k2 * h * h;
-  const Scalar damping = velocity ? gains.k2 : gains.k1;
-  if (damping * h + stiff <= Scalar(1)) return;
-  validation::fail(velocity ? "k" : "k1", damping, "at most ", std::max(Scalar(1) - stiff, Scalar(0)) / h,
-                   " in a stack of several levels at a tick of ", h, " s: lower the gains, or shorten the tick");
-}
 
 /// Throws std::invalid_argument where a scheme has feedback gains, which the tasks of a stack have, or where a tick
 /// does not damp the error of a task with its gains.
@@ -45,12 +26,11 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
   if constexpr (kHasGain<Scheme>) require_none("k", scheme.k);
   int levels = 0;
   for (int k = 0; k < Stack<Levels...>::kLevels; ++k) levels += stack.rows(k) > 0 ? 1 : 0;
-  const bool several = levels > 1;
+  const TickOfGains<Scalar> of_levels{tick.dt, tick.integral_gain, levels > 1};
   const auto require = [&](const auto& task) {
     if (rows_of(task) == 0) return;
     const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
-    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, tick);
-    if (several) require_stable_in_levels<kLevel, Scalar>(task.gains, tick.dt);
+    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, of_levels);
   };
   std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
 }
@@ -58,7 +38,7 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
 /// require_stable() for the scheme of a stack. The tracker's integral acts with the gains of the tasks.
 template <typename Scheme, typename Stack_, typename Scalar>
 void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
-  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0)});
+  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0), tick.levels});
 }
 
 /// A Tracker of a stack of tasks. more: the further arguments of Tracker's constructors, limits, qdd0 and what the

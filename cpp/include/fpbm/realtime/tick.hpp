@@ -18,7 +18,8 @@ struct TickOfRows {
   Status status;               ///< Where it failed, why the arm brakes.
   Scalar scale;                ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
   JointBits saturated;         ///< Bit i is set where joint i is on a bound.
-  Scalar sigma;                ///< Lower bound on σ_min(J) at the tick's start, tight within a factor √M.
+  Scalar sigma;                ///< Lower bound on σ_min(J), tight within a factor √M: at the tick's start, or in its
+                               ///< middle where several levels have bounds on acceleration.
   Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
 };
 
@@ -67,8 +68,8 @@ struct TrackerOptions {
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
   bool recovery = true;
-  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.4 of
-  /// each bound on acceleration and 0.2 of each bound on velocity. stop() keeps the first level: its references are
+  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.6 of
+  /// each bound on acceleration and 0.3 of each bound on velocity. stop() keeps the first level: its references are
   /// held at rest, and the joints come to rest in its null space, which takes longer than the stop of each joint by
   /// itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it
   /// is. Without effect on resolve_measured(), and on a tracker of a single level.

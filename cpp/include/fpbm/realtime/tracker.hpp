@@ -26,7 +26,8 @@ namespace fpbm {
 /// them closely. resolve_measured() answers for a measured state: the acceleration for a torque controller to realise.
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
-/// A step of RK4 that keeps every bound is taken as it is; otherwise the tick's mean motion is limited (Limiter).
+/// A step of RK4 that keeps every bound is taken as it is; otherwise the tick's mean motion is limited (Limiter). A
+/// tick of several levels within bounds on acceleration has the acceleration of its middle in place of RK4's four.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -74,7 +75,7 @@ class Tracker {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
     give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
-    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain});
+    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, has_lower_levels(kinematics)});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     kept_.begin_at(kinematics.tip, kinematics.length);
   }
@@ -121,13 +122,21 @@ class Tracker {
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
     };
-    resolve(loop, references.stages[0], dx, result);
-    const JointVector field = column(dx, 0);
-    if (!failed(result.status)) {
-      result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+    JointState next = state;
+    JointVector field = state.qd;
+    if (kept_.has_one_acceleration(loop.kinematics)) {
+      loop.update(Loop::packed(kept_.middle()));
+      resolve(loop, references.stages[1], dx, result);
+      if (!failed(result.status)) next = kept_.after(loop.qdd);
+    } else {
+      resolve(loop, references.stages[0], dx, result);
+      field = column(dx, 0);
+      if (!failed(result.status)) {
+        result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+      }
+      next.q = column(x, 0);
+      if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     }
-    JointState next{column(x, 0), state.qd};
-    if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
     kept_.take(loop, now, next, field, result);
     lower_levels_.report(result);
     report_lower_levels(result);

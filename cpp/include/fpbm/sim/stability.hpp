@@ -20,6 +20,20 @@ template <typename Scalar>
   return holds(w3) && holds(w2) && holds(w1) && holds(c) && (w2 + round_off) * w1 >= w3 * c;
 }
 
+/// The same for (z−1)⁴ + a(z−1)³ + b(z−1)² + c(z−1) + d.
+template <typename Scalar>
+[[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c, Scalar d) noexcept {
+  const Scalar w4 = Scalar(16) - Scalar(8) * a + Scalar(4) * b - Scalar(2) * c + d;
+  const Scalar w3 = Scalar(8) * (a - b) + Scalar(6) * c - Scalar(4) * d;
+  const Scalar w2 = Scalar(4) * b - Scalar(6) * (c - d);
+  const Scalar w1 = Scalar(2) * c - Scalar(4) * d;
+  const Scalar round_off =
+      Scalar(64) * std::numeric_limits<Scalar>::epsilon() * (std::abs(b) + std::abs(c) + std::abs(d));
+  const auto holds = [&](Scalar value) { return value >= -round_off; };
+  return holds(w4) && holds(w3) && holds(w2) && holds(w1) && holds(d) &&
+         (w3 * w2 - w4 * w1 + round_off) * w1 >= w3 * w3 * d;
+}
+
 /// Whether a tick damps ë = −x₁ė − x₂e − x₃I, where I gains the e of a tick's start at its end. Asks it of both ends of
 /// a tick: RK4's own, and the one of RK4's mean acceleration, which bounds on jerk and other limits make of it.
 template <typename Scalar>
@@ -56,6 +70,20 @@ template <typename Scalar>
     return change;
   };
   return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
+}
+
+/// Whether a tick damps such errors if it has the acceleration of its middle, to which it continues the acceleration
+/// a' of the tick before (LimitedState::middle()): a = −x₁(ė + a'/2) − x₂(e + ė/2 + a'/8) − x₃I.
+template <typename Scalar>
+[[nodiscard]] bool is_stable_acceleration_of_middle(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
+  return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1 + Scalar(1.125) * x2, x1 + Scalar(2) * x2 + Scalar(0.5) * x3,
+                           x2 + Scalar(1.5) * x3, x3);
+}
+
+/// The same at velocity level, v' being the velocity of the tick before: v = −x₁(e + v'/2) − x₃I.
+template <typename Scalar>
+[[nodiscard]] bool is_stable_velocity_of_middle(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
+  return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1, x1 + x3, x3);
 }
 
 /// The largest share in [0, 1] for which holds(share) is true, rounded down to four digits, where smaller ones are.
