@@ -98,7 +98,7 @@
 #include "fpbm/linalg/spatial_self_motion.hpp"
 #include "fpbm/linalg/split_vector.hpp"
 #include "fpbm/linalg/sums.hpp"
-#include "fpbm/linalg/symmetric_eigen.hpp"
+#include "fpbm/linalg/eigenpairs_below.hpp"
 #include "fpbm/linalg/three.hpp"
 #include "fpbm/linalg/three_by_four.hpp"
 #include "fpbm/linalg/total.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fpbm/linalg/cholesky.hpp"
-#include "fpbm/linalg/symmetric_eigen.hpp"
+#include "fpbm/linalg/eigenpairs_below.hpp"
 
 namespace fpbm {
 
@@ -22,19 +22,14 @@ struct LostDirections {
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept
       : delta(filled<Matrix<M, M, Scalar>>(gram.rows())) {
     if (none_is_lost(gram, epsilon_squared)) return;
-    Matrix<M, M, Scalar> whole = gram;
-    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-      for (Eigen::Index j = 0; j < i; ++j) whole.coeffRef(j, i) = gram.coeff(i, j);
-    }
-    const SymmetricEigen<M, Scalar> spectrum(whole);
-    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-      const Scalar gap = Scalar(1) - spectrum.values(i) / epsilon_squared;
+    const EigenpairsBelow<M, Scalar> lost(gram, epsilon_squared);
+    for (Eigen::Index i = 0; i < lost.count(); ++i) {
+      const Scalar gap = Scalar(1) - lost.value(i) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
+      const Vector<M, Scalar> u = lost.vector(i);
       for (Eigen::Index j = 0; j < gram.rows(); ++j) {
-        for (Eigen::Index k = 0; k < gram.rows(); ++k) {
-          delta(j, k) += (share * epsilon_squared) * (spectrum.vectors(j, i) * spectrum.vectors(k, i));
-        }
+        subtract_multiple(delta.data() + j * gram.rows(), -share * epsilon_squared * u(j), u.data(), gram.rows());
       }
       count += share;
     }
