@@ -640,7 +640,7 @@ class Tracker:
         Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
     keep_first_level : bool
         Whether the first level of a stack, such as a grasp of two arms, comes before speed: the lower levels leave it a
-        reserve of the limits, 0.6 of each bound on acceleration and 0.3 of each bound on velocity, and stop keeps it: its
+        reserve of the limits, 0.7 of each bound on acceleration and 0.35 of each bound on velocity, and stop keeps it: its
         references are held at rest, and the joints come to rest in its null space. A task that is farther than 0.001
         characteristic lengths, or 0.001 rad, from its reference stays where it is.
     measured_delay : int

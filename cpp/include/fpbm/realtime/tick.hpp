@@ -68,8 +68,8 @@ struct TrackerOptions {
   Scalar null_damping = Scalar(2);
   /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
   bool recovery = true;
-  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.6 of
-  /// each bound on acceleration and 0.3 of each bound on velocity. stop() keeps the first level: its references are
+  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.7 of
+  /// each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its references are
   /// held at rest, and the joints come to rest in its null space, which takes longer than the stop of each joint by
   /// itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it
   /// is. Without effect on resolve_measured(), and on a tracker of a single level.
