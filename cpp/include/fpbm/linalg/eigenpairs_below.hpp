@@ -43,8 +43,11 @@ class EigenpairsBelow {
       found_ = 1;
       return;
     }
-    if (!(size_ > Scalar(0))) size_ = Scalar(1);
-    const Scalar inverse = Scalar(1) / size_;  // The squares of entries of T are in range.
+    // The squares of entries must be in range. Elsewhere a scale would add a round-off error.
+    const bool in_range = size_ > kLeast && size_ < Scalar(1) / kLeast;
+    if (!in_range && size_ > Scalar(0)) scale_ = size_;
+    const Scalar inverse = Scalar(1) / scale_;
+    size_ *= inverse;
     for (Eigen::Index j = 0; j < m; ++j) {
       for (Eigen::Index i = j; i < m; ++i) T_(j, i) = T_(i, j) *= inverse;
     }
@@ -60,7 +63,7 @@ class EigenpairsBelow {
 
   /// Number of eigenvalues that were isolated: all below the bound, and perhaps others.
   [[nodiscard]] Eigen::Index count() const noexcept { return found_; }
-  [[nodiscard]] Scalar value(Eigen::Index k) const noexcept { return values_(k) * size_; }
+  [[nodiscard]] Scalar value(Eigen::Index k) const noexcept { return values_(k) * scale_; }
 
   /// Eigenvector k.
   [[nodiscard]] Column vector(Eigen::Index k) const noexcept {
@@ -75,6 +78,8 @@ class EigenpairsBelow {
 
  private:
   static constexpr int kSteps = 30;  // As in EISPACK's tql2.
+  /// √min of the Scalar, with some room.
+  static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-140) : Scalar(1e-14);
 
   /// T ← HᵀTH, tridiagonal, H a product of reflections I − share v vᵀ: values on the diagonal, beside(i) between i and
   /// i + 1. Column k of T becomes v of reflection k.
@@ -121,9 +126,10 @@ class EigenpairsBelow {
   void isolate(Eigen::Index first) noexcept {
     using std::abs;
     using std::sqrt;
+    const Scalar negligible = std::numeric_limits<Scalar>::epsilon() * size_;
     for (int step = 0; step < kSteps; ++step) {
       Eigen::Index last = first;
-      while (last + 1 < values_.size() && abs(beside_(last)) > std::numeric_limits<Scalar>::epsilon()) ++last;
+      while (last + 1 < values_.size() && abs(beside_(last)) > negligible) ++last;
       if (last == first) return;
       if (step == 0 && last > first + 1) {
         step_from(last, first, Scalar(0));
@@ -196,12 +202,13 @@ class EigenpairsBelow {
     }
   }
 
-  Matrix<M, M, Scalar> T_;  ///< A/size, then the reflections.
-  Column values_;           ///< Of A/size.
+  Matrix<M, M, Scalar> T_;  ///< A/scale, then the reflections.
+  Column values_;           ///< Of A/scale.
   Column beside_;
   Column shares_;
   Matrix<M, M, Scalar> vectors_;  ///< Of the tridiagonal matrix.
-  Scalar size_{0};                ///< Largest entry of A.
+  Scalar size_{0};                ///< Largest entry of A/scale.
+  Scalar scale_{1};
   Eigen::Index found_ = 0;
 };
 

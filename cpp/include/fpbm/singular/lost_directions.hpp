@@ -24,10 +24,12 @@ struct LostDirections {
     if (none_is_lost(gram, epsilon_squared)) return;
     const EigenpairsBelow<M, Scalar> lost(gram, epsilon_squared);
     for (Eigen::Index i = 0; i < lost.count(); ++i) {
-      const Scalar gap = Scalar(1) - lost.value(i) / epsilon_squared;
+      if (!(lost.value(i) < epsilon_squared)) continue;
+      const Vector<M, Scalar> u = lost.vector(i);
+      // uᵀGu has a smaller round-off error than the eigenvalue of QL steps.
+      const Scalar gap = Scalar(1) - quadratic_form(gram, u) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
-      const Vector<M, Scalar> u = lost.vector(i);
       for (Eigen::Index j = 0; j < gram.rows(); ++j) {
         subtract_multiple(delta.data() + j * gram.rows(), -share * epsilon_squared * u(j), u.data(), gram.rows());
       }
@@ -36,6 +38,17 @@ struct LostDirections {
   }
 
  private:
+  /// uᵀGu
+  [[nodiscard]] static Scalar quadratic_form(const Matrix<M, M, Scalar>& gram, const Vector<M, Scalar>& u) noexcept {
+    Scalar sum(0);
+    for (Eigen::Index j = 0; j < gram.rows(); ++j) {
+      Scalar below(0);
+      for (Eigen::Index i = j + 1; i < gram.rows(); ++i) below += gram.coeff(i, j) * u.coeff(i);
+      sum += u.coeff(j) * (gram.coeff(j, j) * u.coeff(j) + Scalar(2) * below);
+    }
+    return sum;
+  }
+
   /// Whether G − ε²I is positive definite: all σᵢ are above ε. Takes a small part of the time of the eigenvectors.
   [[nodiscard]] static bool none_is_lost(Matrix<M, M, Scalar> gram, Scalar epsilon_squared) noexcept {
     for (Eigen::Index i = 0; i < gram.rows(); ++i) gram.coeffRef(i, i) -= epsilon_squared;
