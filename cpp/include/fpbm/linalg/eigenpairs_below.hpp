@@ -43,7 +43,7 @@ class EigenpairsBelow {
       found_ = 1;
       return;
     }
-    // The squares of entries must be in range. Elsewhere a scale would add a round-off error.
+    // Squares of round-off errors must be in range. A scale adds a round-off error, hence none if they are.
     const bool in_range = size_ > kLeast && size_ < Scalar(1) / kLeast;
     if (!in_range && size_ > Scalar(0)) scale_ = size_;
     const Scalar inverse = Scalar(1) / scale_;
@@ -78,8 +78,8 @@ class EigenpairsBelow {
 
  private:
   static constexpr int kSteps = 30;  // As in EISPACK's tql2.
-  /// √min of the Scalar, with some room.
-  static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-140) : Scalar(1e-14);
+  /// More than 100 √(min/ε)/ε of the Scalar: round-off errors of such a matrix still have squares with all digits.
+  static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
   /// T ← HᵀTH, tridiagonal, H a product of reflections I − share v vᵀ: values on the diagonal, beside(i) between i and
   /// i + 1. Column k of T becomes v of reflection k.
