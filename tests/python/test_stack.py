@@ -170,7 +170,7 @@ def test_a_slow_approach_does_not_keep_lower_tasks_moving():
 
 
 def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
-    """A lower level that meets its limits, beside one that holds its target, and beside none (whose ticks are RK4's)."""
+    """A lower level meets its limits, beside one that holds its target, and beside none, whose ticks are RK4's."""
     first = fp.AxisTask(name="axis", k1=40, k2=400)
     alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
     held, moved = (
