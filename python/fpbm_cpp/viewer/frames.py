@@ -59,7 +59,7 @@ def z_to(direction: Array) -> Array:
     """A rotation that turns the z axis to a direction, by the smallest angle."""
     x, y, z = direction / np.linalg.norm(direction)
     sine = float(np.hypot(x, y))
-    axis = np.array([-y, x, 0.0]) / sine if sine > 1e-12 else np.array([1.0, 0.0, 0.0])
+    axis = np.array([-y, x, 0.0]) / sine if sine > 1e-300 else np.array([1.0, 0.0, 0.0])
     return np.asarray(rotation(float(np.arctan2(sine, z)) * axis))
 
 
