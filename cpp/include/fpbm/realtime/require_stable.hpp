@@ -32,14 +32,14 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   const Scalar h = tick.dt;
   const Scalar integral = tick.integral_gain;
   // With time scaled by the share: an error that decays as much more slowly.
-  const auto stable = [&, k1 = k1, k2 = k2](Scalar share, Scalar ki) {
+  const auto stable = [&](Scalar share, Scalar ki) {
     if constexpr (kLevel == Level::kVelocity) {
-      const Scalar x1 = share * k2 * h;
+      const Scalar x1 = share * gains.k2 * h;
       const Scalar x3 = ki * h * h;
       return is_stable_velocity(x1, x3) && (!tick.levels || is_stable_velocity_of_middle(x1, x3));
     } else {
-      const Scalar x1 = share * k1 * h;
-      const Scalar x2 = share * share * k2 * h * h;
+      const Scalar x1 = share * gains.k1 * h;
+      const Scalar x2 = share * share * gains.k2 * h * h;
       const Scalar x3 = ki * h * h * h;
       return is_stable_acceleration(x1, x2, x3) && (!tick.levels || is_stable_acceleration_of_middle(x1, x2, x3));
     }
