@@ -97,6 +97,17 @@ TEST_P(EigenpairsBelowOf, gram_matrices_of_every_rank_and_scale) {
   }
 }
 
+/// Entries whose squares are not in the range of the Scalar.
+TEST_P(EigenpairsBelowOf, matrices_that_are_scaled) {
+  const int rows = GetParam().rows;
+  const double power = GetParam().epsilon < 1e-10 ? 200.0 : 25.0;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const Eigen::MatrixXd J = random.uniform(rows, rows, -1.0, 1.0);
+    for (const double sign : {-1.0, 1.0}) expect_eigenpairs(std::pow(10.0, sign * power) * J * J.transpose());
+  }
+}
+
 TEST_P(EigenpairsBelowOf, matrices_with_eigenvalues_that_repeat) {
   const int rows = GetParam().rows;
   expect_eigenpairs(Eigen::MatrixXd::Zero(rows, rows));

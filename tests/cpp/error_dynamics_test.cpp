@@ -4,6 +4,10 @@
 #include <complex>
 #include <string>
 
+#include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/task/position_task.hpp"
+#include "fpbm/task/posture_task.hpp"
+#include "support/arms.hpp"
 #include "support/paper.hpp"
 #include "support/random.hpp"
 #include "support/recording.hpp"
@@ -13,10 +17,11 @@ namespace fpbm::test::error_dynamics_laws {
 namespace {
 
 /// The solution of ë + k₁ė + k₂e = 0 from e(0), ė(0), by its characteristic roots.
-Vector<2> closed_form(double k1, double k2, double t, const Vector<2>& e0, const Vector<2>& ed0) {
+template <int M>
+Vector<M> closed_form(double k1, double k2, double t, const Vector<M>& e0, const Vector<M>& ed0) {
   const std::complex<double> root = std::sqrt(std::complex<double>(k1 * k1 / 4.0 - k2));
   const double decay = std::exp(-k1 / 2.0 * t);
-  const Vector<2> slope = ed0 + k1 / 2.0 * e0;
+  const Vector<M> slope = ed0 + k1 / 2.0 * e0;
   if (root == 0.0) return decay * (e0 + t * slope);
   return decay * (std::cosh(root * t).real() * e0 + (std::sinh(root * t) / root).real() * slope);
 }
@@ -93,7 +98,33 @@ TEST(ErrorDynamics, of_a_wrong_start_position_are_those_of_the_gains) {
         const double t = (i + 1) * kStep;
         arm.kinematics(x.col(0), loop.kinematics);
         const Vector<2> error = reference(t).x - loop.kinematics.tip;
-        ASSERT_LE((error - closed_form(k1, k2, t, e0, ed0)).norm(), 1e-9) << "t = " << t;
+        ASSERT_LE((error - closed_form<2>(k1, k2, t, e0, ed0)).norm(), 1e-9) << "t = " << t;
+      }
+    }
+  }
+}
+
+/// Of two levels, in ticks with one acceleration (TickFeedback): up to terms of (k₁h)², from a target that jumps on,
+/// while the level below moves the joints.
+TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
+  const Robot<7> robot(presets::panda());
+  const auto scheme = Balanced<7>(0.0, UnitWeights{}, NullSpace<7>().with_damping(2.0));
+  const Vector<7> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};
+  const Vector<3> e0(1e-6, -5e-7, 3e-7);
+  for (const double k1 : {10.0, 30.0, 100.0, 300.0, 900.0}) {
+    for (const double ratio : {0.25, 1.0}) {
+      const double k2 = ratio * k1 * k1;
+      const Stack stack(PositionTask<>{{Robot<7>::kTip}, {k1, k2}}, PostureTask<7>{TaskGains<>(4.0, 4.0)});
+      auto tracker = stack_tracker(robot, stack, scheme, q0);
+      auto target = decltype(tracker)::Target::hold(tracker.tip());
+      std::get<0>(target.x) += e0;
+      std::get<1>(target.x)(2) += 0.05;
+      const double bound = 0.06 * k1 * k1 * 1e-6 * e0.norm();
+      for (int i = 1; i <= 2000; ++i) {
+        ASSERT_EQ(tracker.tick(target).status, Status::kOk);
+        const Vector<3> error = std::get<0>(target.x) - std::get<0>(tracker.tip());
+        const Vector<3> expected = closed_form<3>(k1, k2, i * 1e-3, e0, Vector<3>::Zero());
+        ASSERT_LE((error - expected).norm(), bound) << "k1 = " << k1 << ", k2 = " << k2 << ", tick " << i;
       }
     }
   }

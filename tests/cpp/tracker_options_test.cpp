@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdlib>
 #include <random>
 #include <stdexcept>
@@ -320,11 +321,12 @@ TEST(TickGains, are_stable_if_and_only_if_errors_decay) {
   EXPECT_TRUE(is_stable_velocity(0.0));
 }
 
-/// is_stable_…_of_middle() says the same of ticks that continue the last tick's motion to their middle.
+/// Of several levels: is_stable_acceleration_of_levels() says the same of ticks by TickFeedback,
+/// is_stable_…_of_middle() of ticks that continue the last tick's motion to their middle.
 TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> size(-2.0, 0.3);
-  std::array<int, 2> stable{};
+  std::array<int, 3> stable{};
   constexpr int kTrials = 2000;
   for (int trial = 0; trial < kTrials; ++trial) {
     const double x1 = std::pow(10.0, size(random));
@@ -335,25 +337,35 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
       for (int i = 0; i < 30 && power.norm() < 1e9; ++i) power = (power * power).eval();
       return power.norm();
     };
-    const auto expect = [&](std::size_t level, bool claimed, const Matrix<kOpen, kOpen>& tick) {
+    const auto expect = [&](std::size_t law, bool claimed, const Matrix<kOpen, kOpen>& tick) {
       const double end = decays(tick);
       if (end > 1e-2 && end < 1e3) return;  // On the boundary.
-      EXPECT_EQ(claimed, end <= 1e-2) << "level " << level << ": " << x1 << " " << x2 << " " << x3;
-      stable[level] += end <= 1e-2 ? 1 : 0;
+      EXPECT_EQ(claimed, end <= 1e-2) << "law " << law << ": " << x1 << " " << x2 << " " << x3;
+      stable[law] += end <= 1e-2 ? 1 : 0;
     };
     // Of e, ė and the acceleration (e and the velocity) of the last tick, and the integral.
-    Matrix<4, 4> second = Matrix<4, 4>::Zero();
-    Matrix<3, 3> first = Matrix<3, 3>::Zero();
+    Matrix<4, 4> task = Matrix<4, 4>::Zero();
+    Matrix<3, 3> null_space = Matrix<3, 3>::Zero();
+    Matrix<3, 3> velocity = Matrix<3, 3>::Zero();
+    const TickFeedback<> feedback(x1, x2, 1.0);
     for (int column = 0; column < 4; ++column) {
       const Vector<4> at = Vector<4>::Unit(column);
-      const double a = -x1 * (at(1) + at(2) / 2.0) - x2 * (at(0) + at(1) / 2.0 + at(2) / 8.0) - x3 * at(3);
-      second.col(column) << at(0) + at(1) + a / 2.0, at(1) + a, a, at(3) + at(0);
+      const double middle = at(0) + at(1) / 2.0 + at(2) / 8.0;
+      const double by_task = feedback.share * at(2) - (1.0 - feedback.share) * x3 * at(3) -
+                             feedback.velocity_gain * 2.0 * (middle - at(0)) - feedback.position_gain * middle;
+      task.col(column) << at(0) + at(1) + by_task / 2.0, at(1) + by_task, by_task, at(3) + at(0);
       if (column == 3) continue;
+      const double a = -x1 * (at(1) + at(2) / 2.0) - x2 * middle;
+      null_space.col(column) << at(0) + at(1) + a / 2.0, at(1) + a, a;
       const double v = -x1 * (at(0) + at(1) / 2.0) - x3 * at(2);
-      first.col(column) << at(0) + v, v, at(2) + at(0);
+      velocity.col(column) << at(0) + v, v, at(2) + at(0);
     }
-    expect(0, is_stable_velocity_of_middle(x1, x3), first.topLeftCorner(2 + integral, 2 + integral));
-    expect(1, is_stable_acceleration_of_middle(x1, x2, x3), second.topLeftCorner(3 + integral, 3 + integral));
+    expect(0, is_stable_velocity_of_middle(x1, x3), velocity.topLeftCorner(2 + integral, 2 + integral));
+    expect(1, is_stable_acceleration_of_middle(x1, x2), null_space);
+    // Gains that RK4 does not damp are refused before.
+    if (is_stable_acceleration(x1, x2)) {
+      expect(2, is_stable_acceleration_of_levels(x1, x2, x3), task.topLeftCorner(3 + integral, 3 + integral));
+    }
   }
   for (const int count : stable) {
     EXPECT_GT(count, kTrials / 8);
@@ -361,9 +373,32 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
   }
   for (const float x : {1e-6F, 1e-3F, 0.1F}) {
     EXPECT_TRUE(is_stable_acceleration_of_middle(2.0F * x, x * x));
-    EXPECT_TRUE(is_stable_acceleration_of_middle(2.0F * x, x * x, 0.2F * x * x * x));
-    EXPECT_FALSE(is_stable_acceleration_of_middle(2.0F * x, x * x, 2.2F * x * x * x));
+    EXPECT_TRUE(is_stable_acceleration_of_levels(2.0F * x, x * x));
+    EXPECT_TRUE(is_stable_acceleration_of_levels(2.0F * x, x * x, 0.2F * x * x * x));
+    EXPECT_FALSE(is_stable_acceleration_of_levels(2.0F * x, x * x, 2.2F * x * x * x));
     EXPECT_TRUE(is_stable_velocity_of_middle(x));
+  }
+}
+
+/// A tick by TickFeedback multiplies errors by e^(λh), up to terms of (λh)⁵: λ² + k₁λ + k₂ = 0.
+TEST(TickGains, of_several_levels_have_the_roots_of_the_gains) {
+  for (const double x1 : {0.01, 0.1, 0.3, 0.9}) {
+    for (const double ratio : {0.1, 0.25, 1.0}) {
+      const double x2 = ratio * x1 * x1;
+      const TickFeedback<> feedback(x1, x2, 1.0);
+      Matrix<2, 2> tick;
+      for (int column = 0; column < 2; ++column) {
+        const Vector<2> at = Vector<2>::Unit(column);
+        const double middle = at(0) + at(1) / 2.0;  // After a tick at rest: ẍ' = 0.
+        const double a = -feedback.velocity_gain * 2.0 * (middle - at(0)) - feedback.position_gain * middle;
+        tick.col(column) << at(0) + at(1) + a / 2.0, at(1) + a;
+      }
+      const std::complex<double> root = std::sqrt(std::complex<double>(x1 * x1 / 4.0 - x2));
+      const std::complex<double> a = std::exp(-x1 / 2.0 + root);
+      const std::complex<double> b = std::exp(-x1 / 2.0 - root);
+      EXPECT_NEAR(tick.trace(), (a + b).real(), 0.1 * std::pow(x1, 5)) << x1 << " " << ratio;
+      EXPECT_NEAR(tick.determinant(), (a * b).real(), 0.1 * std::pow(x1, 5)) << x1 << " " << ratio;
+    }
   }
 }
 

@@ -169,13 +169,17 @@ def test_a_slow_approach_does_not_keep_lower_tasks_moving():
     assert tick.scales[1] == 0
 
 
-def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
+@pytest.mark.parametrize("name", ["panda", "gen3"])
+@pytest.mark.parametrize("k1", [10, 40])
+def test_a_lower_level_does_not_disturb_a_higher_one(name, k1):
     """A lower level meets its limits, beside one that holds its target, and beside none, whose ticks are RK4's."""
-    first = fp.AxisTask(name="axis", k1=40, k2=400)
-    alone = fp.Tracker(panda, balanced, READY, stack=fp.Stack(first))
+    arm = fp.SerialArm.preset(name)
+    q0 = {"panda": READY, "gen3": [0.0, 0.3, 0.0, 1.6, 0.0, 1.2, 0.0]}[name]
+    scheme = fp.Balanced(0.6, [1, 2, 3, 4, 3, 2, 1], null_damping=2)
+    first = fp.AxisTask(name="axis", k1=k1, k2=k1**2 / 4)
+    alone = fp.Tracker(arm, scheme, q0, stack=fp.Stack(first))
     held, moved = (
-        fp.Tracker(panda, balanced, READY, stack=fp.Stack(first, fp.PositionTask()), keep_first_level=True)
-        for _ in range(2)
+        fp.Tracker(arm, scheme, q0, stack=fp.Stack(first, fp.PositionTask()), keep_first_level=True) for _ in range(2)
     )
     axis = np.add(alone.tip["axis"], [0.05, 0.03, 0.0])
     hold = held.tip["position"]
@@ -185,7 +189,7 @@ def test_a_lower_level_does_not_disturb_a_higher_one(panda, balanced):
         beside_held = held.tick({"axis": axis, "position": hold}).errors["axis"]
         tick = moved.tick({"axis": axis, "position": moved.tip["position"] + [0.3, 0.5, 0.2]})
         assert np.abs(tick.errors["axis"] - beside_held).max() < 1e-6
-        assert np.abs(tick.errors["axis"] - error).max() < 1e-5
+        assert np.abs(tick.errors["axis"] - error).max() < 1e-6
         slowed += tick.scales[1] < 1
     assert slowed > 50
 
@@ -349,16 +353,17 @@ def test_gains_are_checked(panda, balanced):
 @pytest.mark.parametrize("level", ["velocity", "acceleration"])
 def test_the_largest_gains_that_are_accepted_damp_errors(panda, level):
     """The tip stands still while its level's own gain is the largest, and a lower level meets its limits."""
-    largest = 1.0 / DT
+    largest = (1.0 if level == "velocity" else 2.785) / DT
     scheme = fp.WMVN(np.ones(7)) if level == "velocity" else fp.Balanced(0.6, np.ones(7), null_damping=2)
     last = []
     for gain in (0.95 * largest, 1.05 * largest):
         tip = fp.PositionTask(k1=gain, k2=0, k=gain)
         stack = fp.Stack(tip, fp.PostureTask(k1=100, k2=0, k=100))
         if gain > largest:
-            with pytest.raises(fp.ParameterError, match=r"k1? = 1050: must be at most 999"):
+            with pytest.raises(
+                fp.ParameterError, match=r"k1? = (1050: must be at most 999|2924.25: must be at most 2785)"
+            ):
                 fp.Tracker(panda, scheme, READY, stack=stack)
-            fp.Tracker(panda, scheme, READY, stack=fp.Stack(tip))  # A level alone is resolved by RK4.
             continue
         tracker = fp.Tracker(panda, scheme, READY, stack=stack)
         held = tracker.tip["position"]

@@ -55,4 +55,24 @@ template <typename Scalar>
   for (; i < n; ++i) a[i] -= s * b[i];
 }
 
+/// a and b become c a − s b and s a + c b, over n entries.
+template <typename Scalar>
+[[gnu::always_inline]] inline void rotate(Scalar* a, Scalar* b, Scalar c, Scalar s, Eigen::Index n) noexcept {
+  Eigen::Index i = 0;
+  if constexpr (kRowsInPairs<Scalar>) {
+    using Two = Pair<Scalar>;
+    for (; i + 2 <= n; i += 2) {
+      const Two x = Two::load(a + i);
+      const Two y = Two::load(b + i);
+      (Two(c) * x - Two(s) * y).store(a + i);
+      (Two(s) * x + Two(c) * y).store(b + i);
+    }
+  }
+  for (; i < n; ++i) {
+    const Scalar x = a[i];
+    a[i] = c * x - s * b[i];
+    b[i] = s * x + c * b[i];
+  }
+}
+
 }  // namespace fpbm

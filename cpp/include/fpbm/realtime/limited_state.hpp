@@ -38,8 +38,10 @@ class LimitedState {
         limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0)),
         guard_(guard),
         keeps_first_level_(kHasLevels && options.keep_first_level),
+        bounds_acceleration_(std::isfinite(limits.bounds().acceleration.minCoeff())),
         state_(start),
         last_(qdd0),
+        change_(filled<JointVector>(qdd0.size())),
         progress_(options, start.q) {}
 
   /// The tip of the start posture, and the arm's characteristic length [m]: the first posture to recover to.
@@ -82,19 +84,29 @@ class LimitedState {
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
-  /// Whether a tick has the one acceleration of its middle(): a tick of a stack of several levels within bounds on
+  /// Whether a tick has the one acceleration of its middle: a tick of a stack of several levels within bounds on
   /// acceleration. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion
   /// they would disturb the higher levels by J̇ q̇.
   [[nodiscard]] bool has_one_acceleration(const Kinematics<Space, N, Scalar>& kinematics) const noexcept {
     if constexpr (kHasLevels && kSecondOrder) {
-      return has_lower_levels(kinematics) && std::isfinite(limits().bounds().acceleration.minCoeff());
+      return bounds_acceleration_ && has_lower_levels(kinematics);
     } else {
       return false;
     }
   }
 
-  /// The state in the middle of a tick that continues the last tick's acceleration.
-  [[nodiscard]] JointState middle() const noexcept { return motion_.middle(state_, last_); }
+  /// Updates loop in the middle of a tick that continues the last tick's acceleration. loop: updated at the tick's
+  /// start.
+  template <typename Loop, typename References>
+  void update_middle(Loop& loop, const References& references) const noexcept {
+    const auto tip = loop.kinematics.tip;
+    loop.update(Loop::packed(motion_.middle(state_, last_)));
+    const auto reference = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
+    const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, tip);
+    loop.kinematics.continue_tick(dt(),
+                                  entrywise(moved, [&](Eigen::Index i) { return reference.coeff(i) - moved.coeff(i); }),
+                                  {loop.state.qd, last_, change_});
+  }
   /// The state after a tick of a constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion_.after(state_, u); }
 
@@ -170,7 +182,9 @@ class LimitedState {
     }
     result.q = next.q;
     result.qd = next.qd;
-    result.qdd = last_ = motion_.rate(state_.qd, next.qd);
+    result.qdd = motion_.rate(state_.qd, next.qd);
+    change_ = entrywise(last_, [&](Eigen::Index i) { return result.qdd.coeff(i) - last_.coeff(i); });
+    last_ = result.qdd;
     const JointVector q = state_.q;
     state_ = std::move(next);
     if (stopping_ || failed(result.status)) return;
@@ -249,8 +263,10 @@ class LimitedState {
   Limiter<kLevel, N, Scalar> limiter_;
   Guard_ guard_;
   bool keeps_first_level_;
+  bool bounds_acceleration_;  ///< Of some joint.
   JointState state_;
-  JointVector last_;  ///< Acceleration of the last tick.
+  JointVector last_;    ///< Acceleration of the last tick.
+  JointVector change_;  ///< By which it differs from that of the tick before.
   Progress<Space, N, Scalar> progress_;
   bool stopping_ = false;
 };

@@ -11,9 +11,10 @@ namespace fpbm {
 /// What the gains of a scheme meet in a tick.
 template <typename Scalar = double>
 struct TickOfGains {
-  Scalar dt;             ///< [s]
-  Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
-  bool levels = false;   ///< Whether it resolves several levels, whose motion is that of its middle (LimitedState).
+  Scalar dt;                ///< [s]
+  Scalar integral_gain;     ///< kᵢ [1/s³], or [1/s²] at velocity level.
+  bool levels = false;      ///< Whether it resolves several levels, whose motion is that of its middle (LimitedState).
+  bool null_space = false;  ///< Whether they are gains of the null space, to which TickFeedback does not apply.
 };
 
 /// The gains of one error, by name: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
@@ -41,7 +42,9 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
       const Scalar x1 = share * gains.k1 * h;
       const Scalar x2 = share * share * gains.k2 * h * h;
       const Scalar x3 = ki * h * h * h;
-      return is_stable_acceleration(x1, x2, x3) && (!tick.levels || is_stable_acceleration_of_middle(x1, x2, x3));
+      if (!is_stable_acceleration(x1, x2, x3)) return false;
+      if (!tick.levels) return true;
+      return tick.null_space ? is_stable_acceleration_of_middle(x1, x2) : is_stable_acceleration_of_levels(x1, x2, x3);
     }
   };
   if (!stable(Scalar(1), Scalar(0))) {
@@ -93,7 +96,7 @@ inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_spac
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;
-  const TickOfGains<Scalar> plain{tick.dt, Scalar(0), tick.levels};
+  const TickOfGains<Scalar> of_null_space{tick.dt, Scalar(0), tick.levels, true};
   const Scalar none(0);
   if constexpr (kWraps<Scheme>) {
     require_stable(scheme.scheme, tick);
@@ -112,8 +115,8 @@ void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
         validation::fail("null_stiffness", most, "at most ", Scalar(kSpring) / square, " at a tick of ", tick.dt,
                          " s: lower it, or shorten the tick");
       }
-      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", most}, plain);
-      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", least}, plain);
+      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", most}, of_null_space);
+      require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", least}, of_null_space);
     }
   }
 }

@@ -26,8 +26,8 @@ namespace fpbm {
 /// them closely. resolve_measured() answers for a measured state: the acceleration for a torque controller to realise.
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
-/// A step of RK4 that keeps every bound is taken as it is; otherwise the tick's mean motion is limited (Limiter). A
-/// tick of several levels within bounds on acceleration has the acceleration of its middle in place of RK4's four.
+/// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). A tick
+/// of several levels within bounds on acceleration has one acceleration, that of its middle, and no step of RK4.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -125,7 +125,7 @@ class Tracker {
     JointState next = state;
     JointVector field = state.qd;
     if (kept_.has_one_acceleration(loop.kinematics)) {
-      loop.update(Loop::packed(kept_.middle()));
+      if constexpr (kHasLevels) kept_.update_middle(loop, references);
       resolve(loop, references.stages[1], dx, result);
       if (!failed(result.status)) next = kept_.after(loop.qdd);
     } else {

@@ -22,8 +22,9 @@ namespace fpbm {
 ///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
 ///
 /// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
-/// level, all rows in metres. Directions that the posture or higher levels take away from a level are damped
-/// (DampedLevel). What no task determines is the null-space motion of the scheme's answer.
+/// level, all rows in metres. In a tick with one acceleration, b_k and J_k are those of TickFeedback. Directions that
+/// the posture or higher levels take away from a level are damped (DampedLevel). What no task determines is the
+/// null-space motion of the scheme's answer.
 template <typename Scheme, typename Stack_>
 struct ByLevels {
   using Scalar = typename Stack_::Scalar;
@@ -61,13 +62,13 @@ struct ByLevels {
       xd.resize(level.rows());
       r.resize(level.rows());
       command_level<kIndex>(kinematics, reference, xd, r);
+      if constexpr (kLevel == Level::kAcceleration) subtract_drift(kinematics.tick, level, state.qd, r);
       if constexpr (kIndex == 0) {
-        if constexpr (kLevel == Level::kAcceleration) r -= product(level.Jd, state.qd);
         result = filled<JointVector>(state.q.size());
         status = scheme.resolve_rows(r, xd, level.J, level.Jd, state, result, sigma);
         if constexpr (Stack_::kLevels > 1) space.add(level.J);
       } else {
-        if (space.rank() < space.size()) result += added(level, r, state.qd, result, space);
+        if (space.rank() < space.size()) result += added(level, r, result, space);
       }
     });
     if (failed(status)) return status;
@@ -86,12 +87,25 @@ struct ByLevels {
     (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
   }
 
-  /// u_k − u_{k−1} of a lower level, which the space takes in; zero where its rows are not finite. r: b_k without J̇ qd.
+  /// r −= J̇ qd, or drift in a tick with one acceleration.
   template <int M>
-  [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r,
-                                  [[maybe_unused]] const JointVector& qd, const JointVector& u,
+  static void subtract_drift(Scalar tick, const LevelRows<M, kDof, Scalar>& level, const JointVector& qd,
+                             Vector<M, Scalar>& r) noexcept {
+    if (tick > Scalar(0)) {
+      r -= level.drift;
+    } else {
+      r -= product(level.Jd, qd);
+    }
+  }
+  static void subtract_drift(Scalar tick, const PostureRows<kDof, Scalar>& level, const JointVector&,
+                             JointVector& r) noexcept {
+    if (tick > Scalar(0)) r -= level.drift;
+  }
+
+  /// u_k − u_{k−1} of a lower level, which is added to the space; zero where its rows are not finite. r: b_k.
+  template <int M>
+  [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r, const JointVector& u,
                                   LevelSpace<kDof, Scalar>& space) const noexcept {
-    if constexpr (kLevel == Level::kAcceleration) r -= product(level.Jd, qd);
     r -= product(level.J, u);
     if (!r.allFinite()) return filled<JointVector>(u.size());
     const ScaledLevel<M, kDof, Scalar> scaled(level.J, r);
@@ -99,8 +113,8 @@ struct ByLevels {
     return space.add(scaled.J, scaled.r, damped);
   }
   /// Of a posture of all joints: J Z has orthonormal columns.
-  [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector&,
-                                  const JointVector& u, LevelSpace<kDof, Scalar>& space) const noexcept {
+  [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector& u,
+                                  LevelSpace<kDof, Scalar>& space) const noexcept {
     if (!r.allFinite()) return filled<JointVector>(u.size());
     JointVector y = u;
     for (Eigen::Index i = 0; i < r.size(); ++i) {
@@ -110,7 +124,7 @@ struct ByLevels {
     return space.add_unit(y);
   }
 
-  /// Commands of a level's tasks: xd, and b_k without J̇ qd.
+  /// Commands of a level's tasks: xd, and b_k without the drift.
   template <int k, int M>
   void command_level(const Kinematics<Space, kDof, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
                      Vector<M, Scalar>& to_xd, Vector<M, Scalar>& to_b) const noexcept {
@@ -137,11 +151,15 @@ struct ByLevels {
         };
         if constexpr (kLevel == Level::kAcceleration) {
           put(to_xd, [&](Eigen::Index j) { return xd.coeff(j); });
+          const auto& feedback = task.feedback;
+          const bool in_tick = kinematics.tick > Scalar(0);
           put(to_b, [&](Eigen::Index j) {
-            return xdd.coeff(j) + task.k1 * (xd.coeff(j) - task.xd.coeff(j)) + task.k2 * error.coeff(j);
+            const Scalar error_rate = in_tick ? kinematics.error_rate.coeff(row + j) : xd.coeff(j) - task.xd.coeff(j);
+            return (Scalar(1) - feedback.share) * xdd.coeff(j) + feedback.velocity_gain * error_rate +
+                   feedback.position_gain * error.coeff(j);
           });
         } else {
-          put(to_b, [&](Eigen::Index j) { return xd.coeff(j) + task.k2 * error.coeff(j); });
+          put(to_b, [&](Eigen::Index j) { return xd.coeff(j) + task.feedback.position_gain * error.coeff(j); });
         }
         to_row += task.S.rows();
       }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fpbm/task/tick_feedback.hpp"
+
 /// Stability of a tick under feedback, with gains in units of the tick h: x₁ = k₁h, x₂ = k₂h², x₃ = kᵢh³ at
 /// acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
 namespace fpbm {
@@ -72,15 +74,24 @@ template <typename Scalar>
   return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
 }
 
-/// Whether a tick damps such errors if it has the acceleration of its middle, to which it continues the acceleration
-/// a' of the tick before (LimitedState::middle()): a = −x₁(ė + a'/2) − x₂(e + ė/2 + a'/8) − x₃I.
+/// Whether a tick with one acceleration damps such errors of a task, by TickFeedback. The integral is a part of xdd.
 template <typename Scalar>
-[[nodiscard]] bool is_stable_acceleration_of_middle(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
-  return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1 + Scalar(1.125) * x2, x1 + Scalar(2) * x2 + Scalar(0.5) * x3,
-                           x2 + Scalar(1.5) * x3, x3);
+[[nodiscard]] bool is_stable_acceleration_of_levels(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
+  const TickFeedback<Scalar> feedback(x1, x2, Scalar(1));
+  const Scalar integral = (Scalar(1) - feedback.share) * x3;
+  return is_in_unit_circle(feedback.velocity_gain + feedback.position_gain,
+                           feedback.position_gain + integral / Scalar(2), integral);
 }
 
-/// The same at velocity level, v' being the velocity of the tick before: v = −x₁(e + v'/2) − x₃I.
+/// Whether a tick damps such errors of the null space if it has the acceleration of its middle, to which it continues
+/// the acceleration a' of the tick before (LimitedState::update_middle): a = −x₁(ė + a'/2) − x₂(e + ė/2 + a'/8).
+template <typename Scalar>
+[[nodiscard]] bool is_stable_acceleration_of_middle(Scalar x1, Scalar x2) noexcept {
+  return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1 + Scalar(1.125) * x2, x1 + Scalar(2) * x2, x2);
+}
+
+/// Whether a tick damps such errors at velocity level if it has the velocity of its middle, to which it continues the
+/// velocity v' of the tick before: v = −x₁(e + v'/2) − x₃I.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_velocity_of_middle(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1, x1 + x3, x3);

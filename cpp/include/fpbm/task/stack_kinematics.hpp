@@ -11,15 +11,16 @@
 #include "fpbm/task/posture_task.hpp"
 #include "fpbm/task/stack.hpp"
 #include "fpbm/task/task_rows.hpp"
+#include "fpbm/task/tick_feedback.hpp"
 
 namespace fpbm {
 
-/// What a task adds to its rows: its gains, its selection S, in metres, and its velocity J qd in the rows of its space.
+/// What a task adds to its rows: its feedback, its selection S, in metres, and its velocity J qd in the rows of its
+/// space.
 template <typename Task>
 struct TaskState {
   using Scalar = typename Task::Scalar;
-  Scalar k1;
-  Scalar k2;
+  TickFeedback<Scalar> feedback;
   Matrix<Task::kRows, Task::Space::kRows, Scalar> S;
   Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only its first S.rows() entries.
 
@@ -74,6 +75,29 @@ struct StackKinematics {
 
   std::array<bool, Stack_::kLevels> enabled;  ///< Whether a level is to be resolved. The first one always is.
   Scalar length = Scalar(1);                  ///< The robot's characteristic length [m].
+
+  /// Of the middle of a tick with one acceleration (continue_tick): twice the change of the errors from its start,
+  /// divided by its length h [m/s, rad/s].
+  Vector<Stack_::Space::kRows, Scalar> error_rate;
+  Scalar tick = Scalar(0);  ///< h [s]; 0 otherwise.
+
+  /// In the middle of a tick that continues the tick before: the feedback and the rows become those of TickFeedback.
+  /// change: of the errors since the tick's start.
+  void continue_tick(Scalar h, const Vector<Stack_::Space::kRows, Scalar>& change,
+                     const TickBefore<N, Scalar>& before) noexcept {
+    tick = h;
+    error_rate = entrywise(change, [&](Eigen::Index i) { return Scalar(2) / h * change.coeff(i); });
+    int row = 0;  // Of the task on its level.
+    Stack_::Space::each([&](auto, auto i, int) noexcept {
+      constexpr int kIndex = decltype(i)::value;
+      if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
+      auto& [feedback, S, xd] = std::get<kIndex>(tasks);
+      feedback = {feedback.velocity_gain, feedback.position_gain, h};
+      auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(levels);
+      level.continue_tick(feedback, row, S.rows(), before);
+      row += static_cast<int>(S.rows());
+    });
+  }
 };
 
 template <typename... Levels, int N, typename Scalar>
@@ -158,9 +182,8 @@ class RobotTasks {
     stack_.each([&](const auto& task, auto i) noexcept {
       constexpr int kIndex = decltype(i)::value;
       if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
-      auto& [k1, k2, S, xd] = std::get<kIndex>(out.tasks);
-      k1 = task.gains.k1;
-      k2 = task.gains.k2;
+      auto& [feedback, S, xd] = std::get<kIndex>(out.tasks);
+      feedback = {task.gains.k1, task.gains.k2};
       auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
       task.evaluate(robot_, state, std::get<kIndex>(out.tip), xd, S, rows_from(level, row));
       row += rows_of(task);

@@ -4,15 +4,27 @@
 #include <cstddef>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/product.hpp"
+#include "fpbm/task/tick_feedback.hpp"
 
 namespace fpbm {
+
+/// Joint velocities in the middle of a tick that continues the acceleration of the tick before, and what they follow.
+template <int N, typename Scalar>
+struct TickBefore {
+  Vector<N, Scalar> qd;
+  const Vector<N, Scalar>& qdd;     ///< a', accelerations of the tick before.
+  const Vector<N, Scalar>& change;  ///< a' − a'', by which they changed.
+};
 
 /// Rows of a level: J and J̇, in metres.
 template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
+  Vector<M, Scalar> drift;  ///< What is left of ẍ where qdd = 0, once set: J̇ qd, or by continue_tick().
 
   // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
   LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
@@ -20,24 +32,51 @@ struct LevelRows {
   void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
     J.resize(rows, dof);
     Jd.resize(rows, dof);
+    drift.resize(rows);
   }
   [[nodiscard]] Eigen::Index rows() const noexcept { return J.rows(); }
   [[nodiscard]] const Matrix<M, N, Scalar>& matrix() const noexcept { return J; }
+
+  /// Linearises some rows about a tick that continues the one before: J becomes J + h'J̇, and drift
+  /// J̇ (qd − h'a' + correction (a' − a'')) − s ẍ' with ẍ' = J a' + J̇ qd.
+  void continue_tick(const TickFeedback<Scalar>& feedback, int first, Eigen::Index rows,
+                     const TickBefore<N, Scalar>& before) noexcept {
+    for (Eigen::Index i = first; i < first + rows; ++i) drift.coeffRef(i) = Scalar(0);
+    const Scalar of_velocity = Scalar(1) - feedback.share;
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      const Scalar by_J = -feedback.share * before.qdd.coeff(j);
+      const Scalar by_Jd = of_velocity * before.qd.coeff(j) - feedback.lead * before.qdd.coeff(j) +
+                           feedback.correction * before.change.coeff(j);
+      for (Eigen::Index i = first; i < first + rows; ++i) {
+        drift.coeffRef(i) += by_J * J.coeff(i, j) + by_Jd * Jd.coeff(i, j);
+        J.coeffRef(i, j) += feedback.lead * Jd.coeff(i, j);
+      }
+    }
+  }
 };
 
 /// Rows of a level that is a posture of all N joints: row i of J is 1 for joints[i] and 0 for the others, and J̇ is 0.
 template <int N, typename Scalar>
 struct PostureRows {
   std::array<int, static_cast<std::size_t>(kCapacity<N>)> joints;
+  Vector<N, Scalar> drift;
 
   PostureRows() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 
-  void resize(Eigen::Index, Eigen::Index) noexcept {}
+  void resize(Eigen::Index rows, Eigen::Index) noexcept { drift.resize(rows); }
   [[nodiscard]] static constexpr Eigen::Index rows() noexcept { return N; }
   [[nodiscard]] Matrix<N, N, Scalar> matrix() const noexcept {
     auto J = filled<Matrix<N, N, Scalar>>(N);
     for (int i = 0; i < N; ++i) J.coeffRef(i, joints[static_cast<std::size_t>(i)]) = Scalar(1);
     return J;
+  }
+
+  /// As of LevelRows.
+  void continue_tick(const TickFeedback<Scalar>& feedback, int, Eigen::Index,
+                     const TickBefore<N, Scalar>& before) noexcept {
+    for (int i = 0; i < N; ++i) {
+      drift.coeffRef(i) = -feedback.share * before.qdd.coeff(joints[static_cast<std::size_t>(i)]);
+    }
   }
 };
 
