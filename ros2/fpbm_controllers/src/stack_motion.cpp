@@ -53,10 +53,6 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   return Stack(level(0), level(1), level(2), level(3));
 }
 
-bool has_lower_levels(const std::vector<MotionTask>& tasks) {
-  return std::any_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.level > 0; });
-}
-
 /// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
 void require_stable_tasks(const std::vector<MotionTask>& tasks, const fpbm::TickOfGains<>& tick) {
   constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
@@ -88,7 +84,7 @@ class StackMotion final : public Motion {
         places_(places_of(settings.tasks)),
         tasks_(Robot(settings.tree), stack_of(settings.tasks)),
         filters_(places_.size(), Filter(fpbm::Transform<>{}, settings.bounds, settings.filter)) {
-    const fpbm::TickOfGains<> tick{options_.dt, 0.0, has_lower_levels(settings.tasks)};
+    const fpbm::TickOfGains<> tick{options_.dt, 0.0, settings.tasks.size() > 1};
     require_stable_tasks(settings.tasks, tick);
     fpbm::require_stable(scheme_from(Joints::Zero(tasks_.dof())), tick);
   }

@@ -47,6 +47,12 @@ template <typename Space, int N, typename Scalar>
   return false;
 }
 
+/// Whether there are several tasks.
+template <typename Space, int N, typename Scalar>
+[[nodiscard]] constexpr bool has_several_tasks(const Kinematics<Space, N, Scalar>&) noexcept {
+  return false;
+}
+
 /// x ⊖ f(q), the error of the task [m, rad]. x: the target.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,

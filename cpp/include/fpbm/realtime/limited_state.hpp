@@ -38,7 +38,6 @@ class LimitedState {
         limiter_(limits, kHasLevels && options.keep_first_level ? kReserve : Scalar(0)),
         guard_(guard),
         keeps_first_level_(kHasLevels && options.keep_first_level),
-        bounds_acceleration_(std::isfinite(limits.bounds().acceleration.minCoeff())),
         state_(start),
         last_(qdd0),
         change_(filled<JointVector>(qdd0.size())),
@@ -84,12 +83,12 @@ class LimitedState {
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
-  /// Whether a tick has the one acceleration of its middle: a tick of a stack of several levels within bounds on
-  /// acceleration. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion
-  /// they would disturb the higher levels by J̇ q̇.
+  /// Whether a tick has one acceleration (StackKinematics::continue_tick): a tick of several tasks at
+  /// acceleration level. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean
+  /// motion they would disturb the higher levels by J̇ q̇. A step of RK4 also resolves the tasks four times.
   [[nodiscard]] bool has_one_acceleration(const Kinematics<Space, N, Scalar>& kinematics) const noexcept {
-    if constexpr (kHasLevels && kSecondOrder) {
-      return bounds_acceleration_ && has_lower_levels(kinematics);
+    if constexpr (kIsProduct<Space> && kSecondOrder) {
+      return has_several_tasks(kinematics);
     } else {
       return false;
     }
@@ -152,13 +151,14 @@ class LimitedState {
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       const bool several = has_lower_levels(loop.kinematics);
+      const bool one_acceleration = has_one_acceleration(loop.kinematics);
       if constexpr (kHasLevels) {
-        if (several && !failed(result.status) && !has_one_acceleration(loop.kinematics)) {
+        if (several && !failed(result.status) && !one_acceleration) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));
           if (share < Scalar(1)) desired = entrywise(desired, [&](Eigen::Index i) { return share * desired.coeff(i); });
         }
       }
-      if (!several) {
+      if (!several && !one_acceleration) {
         // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
         const JointVector middle =
             entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });
@@ -263,7 +263,6 @@ class LimitedState {
   Limiter<kLevel, N, Scalar> limiter_;
   Guard_ guard_;
   bool keeps_first_level_;
-  bool bounds_acceleration_;  ///< Of some joint.
   JointState state_;
   JointVector last_;    ///< Acceleration of the last tick.
   JointVector change_;  ///< By which it differs from that of the tick before.

@@ -13,7 +13,7 @@ template <typename Scalar = double>
 struct TickOfGains {
   Scalar dt;                ///< [s]
   Scalar integral_gain;     ///< kᵢ [1/s³], or [1/s²] at velocity level.
-  bool levels = false;      ///< Whether it resolves several levels, whose motion is that of its middle (LimitedState).
+  bool continues = false;   ///< Whether it continues the tick before: several tasks, or levels at velocity level.
   bool null_space = false;  ///< Whether they are gains of the null space, to which TickFeedback does not apply.
 };
 
@@ -37,13 +37,13 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
     if constexpr (kLevel == Level::kVelocity) {
       const Scalar x1 = share * gains.k2 * h;
       const Scalar x3 = ki * h * h;
-      return is_stable_velocity(x1, x3) && (!tick.levels || is_stable_velocity_of_middle(x1, x3));
+      return is_stable_velocity(x1, x3) && (!tick.continues || is_stable_velocity_of_middle(x1, x3));
     } else {
       const Scalar x1 = share * gains.k1 * h;
       const Scalar x2 = share * share * gains.k2 * h * h;
       const Scalar x3 = ki * h * h * h;
       if (!is_stable_acceleration(x1, x2, x3)) return false;
-      if (!tick.levels) return true;
+      if (!tick.continues) return true;
       return tick.null_space ? is_stable_acceleration_of_middle(x1, x2) : is_stable_acceleration_of_levels(x1, x2, x3);
     }
   };
@@ -96,7 +96,7 @@ inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_spac
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;
-  const TickOfGains<Scalar> of_null_space{tick.dt, Scalar(0), tick.levels, true};
+  const TickOfGains<Scalar> of_null_space{tick.dt, Scalar(0), tick.continues, true};
   const Scalar none(0);
   if constexpr (kWraps<Scheme>) {
     require_stable(scheme.scheme, tick);

@@ -26,11 +26,13 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
   if constexpr (kHasGain<Scheme>) require_none("k", scheme.k);
   int levels = 0;
   for (int k = 0; k < Stack<Levels...>::kLevels; ++k) levels += stack.rows(k) > 0 ? 1 : 0;
-  const TickOfGains<Scalar> of_levels{tick.dt, tick.integral_gain, levels > 1};
+  const int tasks = std::apply([](const auto&... task) { return ((rows_of(task) > 0 ? 1 : 0) + ...); }, stack.tasks());
+  const bool continues = (kLevel == Level::kAcceleration ? tasks : levels) > 1;
+  const TickOfGains<Scalar> of_stack{tick.dt, tick.integral_gain, continues};
   const auto require = [&](const auto& task) {
     if (rows_of(task) == 0) return;
     const Scalar k1 = kLevel == Level::kVelocity ? Scalar(0) : task.gains.k1;
-    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, of_levels);
+    require_stable_gains<kLevel, Scalar>({"k1", k1, kLevel == Level::kVelocity ? "k" : "k2", task.gains.k2}, of_stack);
   };
   std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
 }
@@ -38,7 +40,7 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
 /// require_stable() for the scheme of a stack. The tracker's integral acts with the gains of the tasks.
 template <typename Scheme, typename Stack_, typename Scalar>
 void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
-  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0), tick.levels});
+  require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0), tick.continues});
 }
 
 /// A Tracker of a stack of tasks. more: the further arguments of Tracker's constructors, limits, qdd0 and what the

@@ -27,7 +27,7 @@ namespace fpbm {
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
 /// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). A tick
-/// of several levels within bounds on acceleration has one acceleration, that of its middle, and no step of RK4.
+/// of several tasks at acceleration level has one acceleration, and no step of RK4.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -75,7 +75,9 @@ class Tracker {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
     give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
-    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, has_lower_levels(kinematics)});
+    const bool continues =
+        kLevel == Level::kAcceleration ? has_several_tasks(kinematics) : has_lower_levels(kinematics);
+    require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     kept_.begin_at(kinematics.tip, kinematics.length);
   }
@@ -125,7 +127,7 @@ class Tracker {
     JointState next = state;
     JointVector field = state.qd;
     if (kept_.has_one_acceleration(loop.kinematics)) {
-      if constexpr (kHasLevels) kept_.update_middle(loop, references);
+      if constexpr (kIsProduct<Space>) kept_.update_middle(loop, references);
       resolve(loop, references.stages[1], dx, result);
       if (!failed(result.status)) next = kept_.after(loop.qdd);
     } else {

@@ -113,6 +113,11 @@ template <typename... Levels, int N, typename Scalar>
   return std::apply([](const auto&, const auto&... lower) { return ((lower.rows() > 0) || ...); }, kinematics.levels);
 }
 
+template <typename... Levels, int N, typename Scalar>
+[[nodiscard]] bool has_several_tasks(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+  return std::apply([](const auto&... task) { return ((task.S.rows() > 0 ? 1 : 0) + ...) > 1; }, kinematics.tasks);
+}
+
 /// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
 /// selected have no error. x: the targets.
 template <typename... Levels, int N, typename Scalar>
