@@ -55,7 +55,7 @@ TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
       paper_arm().kinematics(start.q, kinematics);
       const Vector<2> ed0 = -kinematics.J * start.qd;
       for (const auto& sample : run.samples) {
-        const Vector<2> expected = closed_form(k1, k2, sample.t, Vector<2>::Zero(), ed0);
+        const Vector<2> expected = closed_form<2>(k1, k2, sample.t, Vector<2>::Zero(), ed0);
         ASSERT_LE((sample.error - expected).norm(), 1e-9) << "t = " << sample.t;
       }
     }

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "fpbm/linalg/sums.hpp"
+#include "fpbm/linalg/paired.hpp"
 
 namespace fpbm {
 
@@ -56,19 +56,19 @@ class HeldJoints {
   [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) const noexcept {
     Motion rate = goal;
     if (count_ == 0) return rate;
-    Free change(Z.cols());
-    for (Eigen::Index k = 0; k < Z.cols(); ++k) change.coeffRef(k) = Scalar(0);
+    const Eigen::Index dimensions = Z.cols();
+    Free change(dimensions);
+    for (Eigen::Index k = 0; k < dimensions; ++k) change.coeffRef(k) = Scalar(0);
     Free y(count_);
     for (int j = 0; j < count_; ++j) {
       y(j) = -goal(held_[j].joint);
       for (int i = 0; i < j; ++i) y(j) -= R_[i][j] * y(i);
       y(j) /= R_[j][j];
-      for (Eigen::Index k = 0; k < Z.cols(); ++k) change.coeffRef(k) += y(j) * Q_[j].coeff(k);
+      subtract_multiple(change.data(), -y(j), Q_[j].data(), dimensions);
     }
-    for (Eigen::Index i = 0; i < Z.rows(); ++i) {
-      Scalar sum = Z.coeff(i, 0) * change.coeff(0);
-      for (Eigen::Index k = 1; k < Z.cols(); ++k) sum += Z.coeff(i, k) * change.coeff(k);
-      rate(i) += sum;
+    const auto rows = extent<Motion::RowsAtCompileTime>(Z.rows());
+    for (Eigen::Index k = 0; k < dimensions; ++k) {
+      subtract_multiple(rate.data(), -change.coeff(k), Z.data() + k * rows, rows);
     }
     for (int j = 0; j < count_; ++j) rate(held_[j].joint) = Scalar(0);
     return rate;
@@ -158,12 +158,12 @@ class HeldJoints {
     for (int i = 0; i < k; ++i) R_[i][k] = Scalar(0);
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < k; ++i) {
-        const Scalar along = dot(Q_[i], Q_[k]);
+        const Scalar along = paired_dot(Q_[i].data(), Q_[k].data(), Z.cols());
         R_[i][k] += along;
-        for (Eigen::Index j = 0; j < Z.cols(); ++j) Q_[k].coeffRef(j) -= along * Q_[i].coeff(j);
+        subtract_multiple(Q_[k].data(), along, Q_[i].data(), Z.cols());
       }
     }
-    R_[k][k] = norm(Q_[k]);
+    R_[k][k] = std::sqrt(squared_length(Q_[k].data(), Z.cols()));
   }
 
   static void shorten(Free& vector, Scalar length) noexcept {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "fpbm/core/types.hpp"
-#include "fpbm/linalg/cholesky.hpp"
-#include "fpbm/linalg/sums.hpp"
+#include "fpbm/linalg/paired.hpp"
 
 namespace fpbm {
 
@@ -20,25 +19,28 @@ template <typename Matrix>
 }
 
 /// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the columns of Z: orthonormal, and at most n of them.
-template <int N, typename Scalar, typename Basis, typename Diagonal, typename Rows>
-[[nodiscard]] Vector<N, Scalar> solve_diagonal(const Basis& Z, const Diagonal& D, const Rows& r) noexcept {
+///
+/// Gram and Schmidt's modified process makes the columns of D Z orthogonal, and so those of Z conjugate: zᵢᵀD²zⱼ = 0.
+template <int N, typename Scalar, typename Basis, typename Diagonal>
+[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Diagonal& D, Vector<N, Scalar> r) noexcept {
   const Eigen::Index n = Z.rows();
-  auto gram = filled<Matrix<N, N, Scalar>>(n);
-  auto b = filled<Vector<N, Scalar>>(n);
-  for (Eigen::Index j = 0; j < n; ++j) gram.coeffRef(j, j) = Scalar(1);  // Of columns that Z does not have.
-  for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-    b.coeffRef(j) = sum_over(r, [&](Eigen::Index i) { return Z.coeff(i, j) * D.coeff(i, i) * r.coeff(i); });
-    for (Eigen::Index k = 0; k <= j; ++k) {
-      gram.coeffRef(j, k) =
-          sum_over(r, [&](Eigen::Index i) { return Z.coeff(i, j) * Z.coeff(i, k) * (D.coeff(i, i) * D.coeff(i, i)); });
-    }
-  }
-  Cholesky<N, Scalar> cholesky;
-  (void)cholesky.factor(gram);  // Regular, as D and Z are.
-  b = cholesky.solve(b);
+  Basis DZ = Z;
+  auto squares = filled<Vector<N, Scalar>>(n);
   auto y = filled<Vector<N, Scalar>>(n);
   for (Eigen::Index j = 0; j < Z.cols(); ++j) {
-    for (Eigen::Index i = 0; i < n; ++i) y.coeffRef(i) += Z.coeff(i, j) * b.coeff(j);
+    Scalar* const z = Z.data() + j * n;
+    Scalar* const column = DZ.data() + j * n;
+    for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i, i);
+    for (Eigen::Index k = 0; k < j; ++k) {
+      const Scalar* const other = DZ.data() + k * n;
+      const Scalar share = paired_dot(other, column, n) / squares.coeff(k);
+      subtract_multiple(column, share, other, n);
+      subtract_multiple(z, share, Z.data() + k * n, n);
+    }
+    squares.coeffRef(j) = squared_length(column, n);
+    const Scalar share = paired_dot<Scalar>(column, r.data(), n) / squares.coeff(j);
+    subtract_multiple<Scalar>(r.data(), share, column, n);
+    subtract_multiple<Scalar>(y.data(), -share, z, n);
   }
   return y;
 }

@@ -47,9 +47,9 @@ template <typename Space, int N, typename Scalar>
   return false;
 }
 
-/// Whether there are several tasks.
-template <typename Space, int N, typename Scalar>
-[[nodiscard]] constexpr bool has_several_tasks(const Kinematics<Space, N, Scalar>&) noexcept {
+/// Whether an arm has several tasks.
+template <typename Arm>
+[[nodiscard]] constexpr bool has_several_tasks(const Arm&) noexcept {
   return false;
 }
 

@@ -83,19 +83,16 @@ class LimitedState {
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
-  /// Whether a tick has one acceleration (StackKinematics::continue_tick): a tick of several tasks at
-  /// acceleration level. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean
-  /// motion they would disturb the higher levels by J̇ q̇. A step of RK4 also resolves the tasks four times.
-  [[nodiscard]] bool has_one_acceleration(const Kinematics<Space, N, Scalar>& kinematics) const noexcept {
-    if constexpr (kIsProduct<Space> && kSecondOrder) {
-      return has_several_tasks(kinematics);
-    } else {
-      return false;
-    }
+  /// Whether a tick has one acceleration (StackKinematics::continue_tick): a tick of several tasks at acceleration
+  /// level. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion they
+  /// would disturb the higher levels by J̇ q̇. A step of RK4 also resolves the tasks four times.
+  template <typename Arm>
+  [[nodiscard]] static bool has_one_acceleration(const Arm& arm) noexcept {
+    return kSecondOrder && has_several_tasks(arm);
   }
 
-  /// Updates loop in the middle of a tick that continues the last tick's acceleration. loop: updated at the tick's
-  /// start.
+  /// Updates loop in the middle of a tick that continues the last tick's acceleration. loop: with the points of the
+  /// tick's start.
   template <typename Loop, typename References>
   void update_middle(Loop& loop, const References& references) const noexcept {
     const auto tip = loop.kinematics.tip;
@@ -151,7 +148,7 @@ class LimitedState {
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       const bool several = has_lower_levels(loop.kinematics);
-      const bool one_acceleration = has_one_acceleration(loop.kinematics);
+      const bool one_acceleration = has_one_acceleration(loop.arm);
       if constexpr (kHasLevels) {
         if (several && !failed(result.status) && !one_acceleration) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));

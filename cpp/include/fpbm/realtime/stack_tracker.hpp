@@ -26,8 +26,7 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
   if constexpr (kHasGain<Scheme>) require_none("k", scheme.k);
   int levels = 0;
   for (int k = 0; k < Stack<Levels...>::kLevels; ++k) levels += stack.rows(k) > 0 ? 1 : 0;
-  const int tasks = std::apply([](const auto&... task) { return ((rows_of(task) > 0 ? 1 : 0) + ...); }, stack.tasks());
-  const bool continues = (kLevel == Level::kAcceleration ? tasks : levels) > 1;
+  const bool continues = (kLevel == Level::kAcceleration ? stack.count() : levels) > 1;
   const TickOfGains<Scalar> of_stack{tick.dt, tick.integral_gain, continues};
   const auto require = [&](const auto& task) {
     if (rows_of(task) == 0) return;

@@ -75,8 +75,7 @@ class Tracker {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(start.q, kinematics);
     give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
-    const bool continues =
-        kLevel == Level::kAcceleration ? has_several_tasks(kinematics) : has_lower_levels(kinematics);
+    const bool continues = kLevel == Level::kAcceleration ? has_several_tasks(arm_) : has_lower_levels(kinematics);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
     if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
     kept_.begin_at(kinematics.tip, kinematics.length);
@@ -111,7 +110,11 @@ class Tracker {
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
-    loop.update(x);
+    const bool one_acceleration = kept_.has_one_acceleration(arm_);
+    if constexpr (kIsProduct<Space>) {
+      if (one_acceleration) arm_.points(state.q, loop.kinematics);
+    }
+    if (!one_acceleration) loop.update(x);
     if constexpr (kHasLevels) {
       if (kept_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
     }
@@ -126,7 +129,7 @@ class Tracker {
     };
     JointState next = state;
     JointVector field = state.qd;
-    if (kept_.has_one_acceleration(loop.kinematics)) {
+    if (one_acceleration) {
       if constexpr (kIsProduct<Space>) kept_.update_middle(loop, references);
       resolve(loop, references.stages[1], dx, result);
       if (!failed(result.status)) next = kept_.after(loop.qdd);

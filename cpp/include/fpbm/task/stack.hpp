@@ -110,6 +110,11 @@ class Stack {
     return rows;
   }
 
+  /// Number of tasks with rows.
+  [[nodiscard]] int count() const noexcept {
+    return std::apply([](const auto&... task) { return ((rows_of(task) > 0 ? 1 : 0) + ...); }, tasks());
+  }
+
   /// Enables or disables level k, counted from 0. The first level is always enabled. False if there is no lower level
   /// k.
   bool enable(int k, bool on) noexcept {

@@ -113,11 +113,6 @@ template <typename... Levels, int N, typename Scalar>
   return std::apply([](const auto&, const auto&... lower) { return ((lower.rows() > 0) || ...); }, kinematics.levels);
 }
 
-template <typename... Levels, int N, typename Scalar>
-[[nodiscard]] bool has_several_tasks(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
-  return std::apply([](const auto&... task) { return ((task.S.rows() > 0 ? 1 : 0) + ...) > 1; }, kinematics.tasks);
-}
-
 /// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
 /// selected have no error. x: the targets.
 template <typename... Levels, int N, typename Scalar>
@@ -163,6 +158,18 @@ class RobotTasks {
   bool reorder(const std::array<int, Stack_::kLevels>& order) noexcept { return stack_.reorder(order); }
   [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
 
+  /// The points of the tasks at q, and their selections.
+  void points(const Vector<kDof, Scalar>& q, State& out) const noexcept {
+    typename Robot_::State state;
+    robot_.update(q, state);
+    begin(out);
+    stack_.each([&](const auto& task, auto i) noexcept {
+      constexpr int kIndex = decltype(i)::value;
+      auto& task_state = std::get<kIndex>(out.tasks);
+      task.evaluate(robot_, state, std::get<kIndex>(out.tip), task_state.xd, task_state.S, NoRows{});
+    });
+  }
+
   /// At (q, qd).
   void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd, State& out) const noexcept {
     typename Robot_::State state;
@@ -178,11 +185,15 @@ class RobotTasks {
   }
 
  private:
-  void evaluate(const typename Robot_::State& state, State& out) const noexcept {
+  void begin(State& out) const noexcept {
     out.length = robot_.length();
     out.enabled = stack_.enabled();
     int k = 0;
     std::apply([&](auto&... level) { (level.resize(stack_.rows(k++), robot_.dof()), ...); }, out.levels);
+  }
+
+  void evaluate(const typename Robot_::State& state, State& out) const noexcept {
+    begin(out);
     int row = 0;  // Of the task on its level.
     stack_.each([&](const auto& task, auto i) noexcept {
       constexpr int kIndex = decltype(i)::value;
@@ -198,5 +209,10 @@ class RobotTasks {
   Robot_ robot_;
   Stack_ stack_;
 };
+
+template <typename Robot, typename Stack_>
+[[nodiscard]] bool has_several_tasks(const RobotTasks<Robot, Stack_>& arm) noexcept {
+  return arm.stack().count() > 1;
+}
 
 }  // namespace fpbm

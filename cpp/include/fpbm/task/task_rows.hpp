@@ -6,6 +6,7 @@
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
+#include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/task/tick_feedback.hpp"
 
@@ -42,15 +43,14 @@ struct LevelRows {
   void continue_tick(const TickFeedback<Scalar>& feedback, int first, Eigen::Index rows,
                      const TickBefore<N, Scalar>& before) noexcept {
     for (Eigen::Index i = first; i < first + rows; ++i) drift.coeffRef(i) = Scalar(0);
-    const Scalar of_velocity = Scalar(1) - feedback.share;
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      const Scalar by_J = -feedback.share * before.qdd.coeff(j);
-      const Scalar by_Jd = of_velocity * before.qd.coeff(j) - feedback.lead * before.qdd.coeff(j) +
-                           feedback.correction * before.change.coeff(j);
-      for (Eigen::Index i = first; i < first + rows; ++i) {
-        drift.coeffRef(i) += by_J * J.coeff(i, j) + by_Jd * Jd.coeff(i, j);
-        J.coeffRef(i, j) += feedback.lead * Jd.coeff(i, j);
-      }
+      Scalar* const of_J = &J.coeffRef(first, j);
+      const Scalar* const of_Jd = &Jd.coeffRef(first, j);
+      const Scalar qd = (Scalar(1) - feedback.share) * before.qd.coeff(j) - feedback.lead * before.qdd.coeff(j) +
+                        feedback.correction * before.change.coeff(j);
+      subtract_multiple(drift.data() + first, feedback.share * before.qdd.coeff(j), of_J, rows);
+      subtract_multiple(drift.data() + first, -qd, of_Jd, rows);
+      subtract_multiple(of_J, -feedback.lead, of_Jd, rows);
     }
   }
 };
@@ -131,6 +131,14 @@ class TaskRowsOfPosture {
 
  private:
   PostureRows<N, Scalar>& level_;
+};
+
+/// No rows: only the points of tasks are evaluated.
+struct NoRows {
+  template <typename... Arguments>
+  void set(const Arguments&...) const noexcept {}
+  template <typename... Arguments>
+  void set_unit(const Arguments&...) const noexcept {}
 };
 
 /// The rows of a task from row `first` of its level on.
