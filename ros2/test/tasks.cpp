@@ -97,6 +97,6 @@ void tasks() {
   stiff.own.task.tasks_map["left"].k1 = 5000.0;
   stiff.refused("a gain that the tick does not damp", "task.left.k1 = 5000: must be at most");
   Given by_levels;
-  by_levels.add("elbow", "link_of_left_panda_joint4", 2).own.task.tasks_map["elbow"].k1 = 1500.0;
-  by_levels.refused("a gain that a tick of two levels does not damp", "task.elbow.k1 = 1500: must be at most");
+  by_levels.add("elbow", "link_of_left_panda_joint4", 2).own.scheme.null_damping = 1500.0;
+  by_levels.refused("a null_damping that a tick of two tasks does not damp", "null_damping = 1500: must be at most");
 }

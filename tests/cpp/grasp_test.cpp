@@ -107,7 +107,7 @@ TEST(Grasp, outlasts_limits_and_a_stop) {
     }
   }
   std::printf("grasp kept to %.1e; without keep_first_level %.1e at least\n", worst, broken);
-  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(worst, 1e-8);
   EXPECT_GT(broken, 1e-4);
 }
 
