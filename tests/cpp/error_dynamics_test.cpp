@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <string>
 
 #include "fpbm/realtime/stack_tracker.hpp"
+#include "fpbm/task/axis_task.hpp"
 #include "fpbm/task/position_task.hpp"
 #include "fpbm/task/posture_task.hpp"
 #include "support/arms.hpp"
@@ -127,6 +129,42 @@ TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
         ASSERT_LE((error - expected).norm(), bound) << "k1 = " << k1 << ", k2 = " << k2 << ", tick " << i;
       }
     }
+  }
+}
+
+/// Of two levels, on a circle: the error is of the order of h², with the factor of the corrections of TickFeedback and
+/// TickReferences::middle().
+TEST(ErrorDynamics, of_several_levels_follow_paths) {
+  const Robot<7> robot(presets::panda());
+  const auto scheme = Balanced<7>(0.6, UnitWeights{}, NullSpace<7>().with_damping(5.0));
+  const TaskGains<> gains(40.0, 400.0);
+  const Stack stack(PositionTask<>{{Robot<7>::kTip}, gains}, AxisTask<>{{Robot<7>::kTip}, gains});
+  for (const double dt : {1e-2, 5e-3, 1e-3}) {
+    TrackerOptions<> options;
+    options.dt = dt;
+    auto tracker = stack_tracker(robot, stack, scheme, Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, options);
+    using Target = decltype(tracker)::Target;
+    const auto start = tracker.tip();
+    const auto at = [&](double t) noexcept {
+      constexpr double kRate = 1.5;
+      const double sine = 0.05 * std::sin(kRate * t);
+      const double cosine = 0.05 * std::cos(kRate * t);
+      Target target = Target::hold(start);
+      std::get<0>(target.x).head<2>() += Vector<2>(sine, 0.05 - cosine);
+      target.xd.head<2>() = kRate * Vector<2>(cosine, sine);
+      target.xdd.head<2>() = kRate * kRate * Vector<2>(-sine, cosine);
+      return target;
+    };
+    double worst = 0.0;
+    for (int i = 0; i * dt < 4.0; ++i) {
+      const double t = i * dt;
+      const auto references = decltype(tracker)::References::of([&](double s) noexcept { return at(t + s); }, dt);
+      const Status status = tracker.advance(references).status;
+      if (t < 2.0) continue;  // The start, at rest, is off the circle's velocity.
+      ASSERT_EQ(status, Status::kOk);
+      worst = std::max(worst, (std::get<0>(at(t + dt).x) - std::get<0>(tracker.tip())).norm());
+    }
+    EXPECT_LE(worst, 2.5e-5 * dt * dt) << dt;
   }
 }
 

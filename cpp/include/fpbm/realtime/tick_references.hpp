@@ -23,6 +23,19 @@ struct TickReferences {
     return stages[seconds < dt ? (seconds > Number<Scalar>(0) ? 1 : 0) : 2];
   }
 
+  /// The reference of a tick with one acceleration: that of its middle, with the acceleration
+  /// xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6, by which positions follow x at the ends of ticks
+  /// (docs/equations.md).
+  [[nodiscard]] Reference<Space, Scalar> middle() const noexcept {
+    Reference<Space, Scalar> reference = stages[1];
+    for (Eigen::Index i = 0; i < reference.xdd.size(); ++i) {
+      const Scalar xdd = stages[1].xdd.coeff(i);
+      const Scalar second_difference = stages[0].xdd.coeff(i) - xdd - xdd + stages[2].xdd.coeff(i);
+      reference.xdd.coeffRef(i) -= second_difference / Scalar(6);
+    }
+    return reference;
+  }
+
   /// The same seen from a point, in place of displacements from it. Other: lanes, say, where Scalar is not.
   template <typename Other>
   [[nodiscard]] TickReferences<Space, Other> from(const typename Space::template Point<Other>& start) const noexcept {

@@ -131,7 +131,7 @@ class Tracker {
     JointVector field = state.qd;
     if (one_acceleration) {
       if constexpr (kIsProduct<Space>) kept_.update_middle(loop, references);
-      resolve(loop, references.stages[1], dx, result);
+      resolve(loop, references.middle(), dx, result);
       if (!failed(result.status)) next = kept_.after(loop.qdd);
     } else {
       resolve(loop, references.stages[0], dx, result);
