@@ -25,7 +25,7 @@ template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
-  Vector<M, Scalar> drift;  ///< What is left of ẍ where qdd = 0, once set: J̇ qd, or by continue_tick().
+  Vector<M, Scalar> drift;  ///< Of ẍ = J qdd + drift, set by continue_tick() alone.
 
   // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
   LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
@@ -44,13 +44,13 @@ struct LevelRows {
                      const TickBefore<N, Scalar>& before) noexcept {
     for (Eigen::Index i = first; i < first + rows; ++i) drift.coeffRef(i) = Scalar(0);
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      Scalar* const of_J = &J.coeffRef(first, j);
-      const Scalar* const of_Jd = &Jd.coeffRef(first, j);
+      Scalar* const columns = &J.coeffRef(first, j);
+      const Scalar* const rates = &Jd.coeffRef(first, j);
       const Scalar qd = (Scalar(1) - feedback.share) * before.qd.coeff(j) - feedback.lead * before.qdd.coeff(j) +
                         feedback.correction * before.change.coeff(j);
-      subtract_multiple(drift.data() + first, feedback.share * before.qdd.coeff(j), of_J, rows);
-      subtract_multiple(drift.data() + first, -qd, of_Jd, rows);
-      subtract_multiple(of_J, -feedback.lead, of_Jd, rows);
+      subtract_multiple(drift.data() + first, feedback.share * before.qdd.coeff(j), columns, rows);
+      subtract_multiple(drift.data() + first, -qd, rates, rows);
+      subtract_multiple(columns, -feedback.lead, rates, rows);
     }
   }
 };
