@@ -132,6 +132,48 @@ TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
   }
 }
 
+/// A chain of float.
+Chain<float> rounded(const Chain<>& chain) {
+  const auto to_float = [](const Transform<>& at) {
+    Transform<float> result;
+    result.p = at.p.cast<float>();
+    result.R = at.R.cast<float>();
+    return result;
+  };
+  Chain<float> result{{}, to_float(chain.tip)};
+  for (const Joint<>& joint : chain.joints) {
+    Joint<float> same{joint.type, to_float(joint.placement), joint.axis.cast<float>()};
+    same.bounds.lower = static_cast<float>(joint.bounds.lower);
+    same.bounds.upper = static_cast<float>(joint.bounds.upper);
+    same.bounds.velocity = static_cast<float>(joint.bounds.velocity);
+    same.bounds.acceleration = static_cast<float>(joint.bounds.acceleration);
+    same.bounds.jerk = static_cast<float>(joint.bounds.jerk);
+    result.joints.push_back(same);
+  }
+  return result;
+}
+
+/// In float the feedback does not amplify the round-off error of positions: a robot comes to rest.
+TEST(ErrorDynamics, of_several_levels_settle_in_float) {
+  const Robot<7, float> robot(rounded(presets::panda()));
+  const Stack stack(AxisTask<float>{{Robot<7, float>::kTip}, {200.0F, 10000.0F}},
+                    PositionTask<3, float>{{Robot<7, float>::kTip}, {200.0F, 10000.0F}},
+                    PostureTask<7, float>{TaskGains<float>(4.0F, 4.0F)});
+  const auto scheme = Balanced<7, float>(0.6F, UnitWeights{}, NullSpace<7, float>().with_damping(2.0F));
+  TrackerOptions<float> options;
+  options.dt = 4e-3F;
+  const Vector<7, float> q0{0.0F, -0.3F, 0.0F, -2.2F, 0.0F, 2.0F, 0.785F};
+  auto tracker = stack_tracker(robot, stack, scheme, q0, options);
+  auto target = decltype(tracker)::Target::hold(tracker.tip());
+  std::get<1>(target.x) += Vector<3, float>(0.1F, 0.2F, -0.1F);
+  for (int i = 0; i < 8000; ++i) {
+    const auto tick = tracker.tick(target);
+    if (i < 7000) continue;
+    ASSERT_LT(tick.error.head<6>().norm(), 1e-5F) << i;
+    ASSERT_LT(tick.qdd.norm(), 1e-3F) << i;
+  }
+}
+
 /// Of two levels, on a circle: the error is of the order of h², with the factor of the corrections of TickFeedback and
 /// TickReferences::middle().
 TEST(ErrorDynamics, of_several_levels_follow_paths) {

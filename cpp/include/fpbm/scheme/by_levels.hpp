@@ -152,7 +152,7 @@ struct ByLevels {
         if constexpr (kLevel == Level::kAcceleration) {
           put(to_xd, [&](Eigen::Index j) { return xd.coeff(j); });
           const auto& feedback = task.feedback;
-          const bool in_tick = kinematics.tick > Scalar(0);
+          const bool in_tick = TickFeedback<Scalar>::kByPositions && kinematics.tick > Scalar(0);
           put(to_b, [&](Eigen::Index j) {
             const Scalar error_rate = in_tick ? kinematics.error_rate.coeff(row + j) : xd.coeff(j) - task.xd.coeff(j);
             return (Scalar(1) - feedback.share) * xdd.coeff(j) + feedback.velocity_gain * error_rate +

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 namespace fpbm {
 
 /// Feedback of a task. In a tick of length h with one acceleration, the commanded task acceleration is
@@ -14,8 +16,12 @@ namespace fpbm {
 ///
 /// have λ' = λ − λ³h²/12 with λ² + k₁λ + k₂ = 0, so that this factor is e^(λh) up to terms of λ⁵h⁵.
 /// h = 0: ẍ = xdd + k₁ė + k₂e.
+///
+/// In float, 2(e' − e)/h is mostly round-off error: there ė' takes its place, and s = (g − k₂'h²/8)/(1 + g).
 template <typename Scalar = double>
 struct TickFeedback {
+  static constexpr bool kByPositions = std::numeric_limits<Scalar>::digits > 24;  ///< Whether e' − e is used.
+
   Scalar velocity_gain;           ///< k₁'/(1 + g) [1/s].
   Scalar position_gain;           ///< k₂'/(1 + g) [1/s²].
   Scalar share = Scalar(0);       ///< s.
@@ -33,6 +39,7 @@ struct TickFeedback {
     velocity_gain = corrected1 * inverse;
     position_gain = corrected2 * inverse;
     share = half_g * inverse;
+    if constexpr (!kByPositions) share += velocity_gain * h / Scalar(4);
     lead = h * (Scalar(0.625) + half_g) * inverse;
     correction = h / Scalar(8) * inverse;
   }
