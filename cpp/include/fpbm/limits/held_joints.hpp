@@ -44,6 +44,7 @@ class HeldJoints {
 
   void clear() noexcept {
     count_ = 0;
+    solved_ = 0;
     fixed_.reset();
   }
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -51,24 +52,24 @@ class HeldJoints {
   /// Whether a joint is held, or rests because the held joints do.
   [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return fixed_[index(joint)]; }
 
-  /// The goal plus the least motion Z y that keeps the held joints at rest.
+  /// The goal plus the least motion Z Q y that keeps the held joints at rest. goal: the same for all joints that are
+  /// held since clear(), so that y keeps its entries when a joint is added.
   template <typename Basis, typename Motion>
-  [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) const noexcept {
+  [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) noexcept {
     Motion rate = goal;
     if (count_ == 0) return rate;
     const Eigen::Index dimensions = Z.cols();
-    Free change(dimensions);
-    for (Eigen::Index k = 0; k < dimensions; ++k) change.coeffRef(k) = Scalar(0);
-    Free y(count_);
-    for (int j = 0; j < count_; ++j) {
-      y(j) = -goal(held_[j].joint);
-      for (int i = 0; i < j; ++i) y(j) -= R_[i][j] * y(i);
-      y(j) /= R_[j][j];
-      subtract_multiple(change.data(), -y(j), Q_[j].data(), dimensions);
+    if (solved_ == 0) change_ = filled<Free>(dimensions);
+    for (; solved_ < count_; ++solved_) {
+      const int j = solved_;
+      y_[j] = -goal(held_[j].joint);
+      for (int i = 0; i < j; ++i) y_[j] -= R_[i][j] * y_[i];
+      y_[j] /= R_[j][j];
+      subtract_multiple(change_.data(), -y_[j], Q_[j].data(), dimensions);
     }
     const auto rows = extent<Motion::RowsAtCompileTime>(Z.rows());
     for (Eigen::Index k = 0; k < dimensions; ++k) {
-      subtract_multiple(rate.data(), -change.coeff(k), Z.data() + k * rows, rows);
+      subtract_multiple(rate.data(), -change_.coeff(k), Z.data() + k * rows, rows);
     }
     for (int j = 0; j < count_; ++j) rate(held_[j].joint) = Scalar(0);
     return rate;
@@ -128,6 +129,7 @@ class HeldJoints {
     }
     if (leaving < 0) return false;
     held_[leaving] = {joint, above};
+    solved_ = 0;
     for (int j = leaving; j < count_; ++j) {
       split(Z, held_[j].joint, j);
       shorten(Q_[j], R_[j][j]);
@@ -171,6 +173,9 @@ class HeldJoints {
   }
 
   int count_ = 0;
+  int solved_ = 0;  ///< Number of joints that y and change_ = Q y have.
+  Scalar y_[kMost];
+  Free change_;
   std::bitset<kEntries> fixed_;  ///< Bit i is set where has(i).
   Held held_[kMost];
   Free Q_[kMost + 1];
