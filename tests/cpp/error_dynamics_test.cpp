@@ -153,7 +153,7 @@ Chain<float> rounded(const Chain<>& chain) {
   return result;
 }
 
-/// In float the feedback does not amplify the round-off error of positions: a robot comes to rest.
+/// In float the feedback does not amplify the round-off error of positions: the joint accelerations vanish.
 TEST(ErrorDynamics, of_several_levels_settle_in_float) {
   const Robot<7, float> robot(rounded(presets::panda()));
   const Stack stack(AxisTask<float>{{Robot<7, float>::kTip}, {200.0F, 10000.0F}},

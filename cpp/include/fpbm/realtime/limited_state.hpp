@@ -103,6 +103,7 @@ class LimitedState {
                                   entrywise(moved, [&](Eigen::Index i) { return reference.coeff(i) - moved.coeff(i); }),
                                   {loop.state.qd, last_, change_});
   }
+
   /// The state after a tick of a constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion_.after(state_, u); }
 

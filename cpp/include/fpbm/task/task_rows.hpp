@@ -7,7 +7,6 @@
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/paired.hpp"
-#include "fpbm/linalg/product.hpp"
 #include "fpbm/task/tick_feedback.hpp"
 
 namespace fpbm {
@@ -15,9 +14,9 @@ namespace fpbm {
 /// Joint velocities in the middle of a tick that continues the acceleration of the tick before, and what they follow.
 template <int N, typename Scalar>
 struct TickBefore {
-  Vector<N, Scalar> qd;
-  const Vector<N, Scalar>& qdd;     ///< a', accelerations of the tick before.
-  const Vector<N, Scalar>& change;  ///< a' − a'', by which they changed.
+  Vector<N, Scalar> qd;             ///< In the middle [rad/s].
+  const Vector<N, Scalar>& qdd;     ///< a', accelerations of the tick before [rad/s²].
+  const Vector<N, Scalar>& change;  ///< a' − a'', from those of the tick before that [rad/s²].
 };
 
 /// Rows of a level: J and J̇, in metres.
@@ -25,7 +24,7 @@ template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
-  Vector<M, Scalar> drift;  ///< Of ẍ = J qdd + drift, set by continue_tick() alone.
+  Vector<M, Scalar> drift;  ///< See continue_tick(), which alone sets it [m/s²].
 
   // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
   LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
@@ -38,8 +37,8 @@ struct LevelRows {
   [[nodiscard]] Eigen::Index rows() const noexcept { return J.rows(); }
   [[nodiscard]] const Matrix<M, N, Scalar>& matrix() const noexcept { return J; }
 
-  /// Linearises some rows about a tick that continues the one before: J becomes J + h'J̇, and drift
-  /// J̇ (qd − h'a' + correction (a' − a'')) − s ẍ' with ẍ' = J a' + J̇ qd.
+  /// Linearises rows first … first + rows − 1 about a tick that continues the tick before (docs/equations.md, "A tick
+  /// with one acceleration"): J ← J + h'J̇, drift ← J̇ (qd − h'a' + correction (a' − a'')) − s ẍ', ẍ' = J a' + J̇ qd.
   void continue_tick(const TickFeedback<Scalar>& feedback, int first, Eigen::Index rows,
                      const TickBefore<N, Scalar>& before) noexcept {
     for (Eigen::Index i = first; i < first + rows; ++i) drift.coeffRef(i) = Scalar(0);
@@ -59,7 +58,7 @@ struct LevelRows {
 template <int N, typename Scalar>
 struct PostureRows {
   std::array<int, static_cast<std::size_t>(kCapacity<N>)> joints;
-  Vector<N, Scalar> drift;
+  Vector<N, Scalar> drift;  ///< As of LevelRows: −s a' of each row [rad/s²].
 
   PostureRows() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 

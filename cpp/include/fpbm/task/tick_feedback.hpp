@@ -10,7 +10,7 @@ namespace fpbm {
 ///
 /// e: error x ⊖ f(q) at the tick's start; e', ẍ': error and task acceleration in the middle of a tick that continues
 /// the acceleration of the tick before. This is the implicit midpoint rule for ë + k₁'ė + k₂'e = 0 (docs/equations.md,
-/// "A tick with one acceleration"): an error becomes its (2 + λ'h)/(2 − λ'h)-fold. The gains
+/// "A tick with one acceleration"): a tick multiplies an error by (2 + λ'h)/(2 − λ'h). The gains
 ///
 ///   k₁' = k₁ − (k₁² − 3k₂)k₁h²/12,   k₂' = k₂ − (k₁² − 2k₂)k₂h²/12
 ///
@@ -25,7 +25,7 @@ struct TickFeedback {
   Scalar velocity_gain;           ///< k₁'/(1 + g) [1/s].
   Scalar position_gain;           ///< k₂'/(1 + g) [1/s²].
   Scalar share = Scalar(0);       ///< s.
-  Scalar lead = Scalar(0);        ///< h' = h (5/8 + g/2)/(1 + g) [s]: by how much J leads the middle.
+  Scalar lead = Scalar(0);        ///< h' = h (5/8 + g/2)/(1 + g) [s]: time by which J leads the middle.
   Scalar correction = Scalar(0);  ///< h/(8 + 8g) [s], of the change of acceleration a tick before.
 
   TickFeedback() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
