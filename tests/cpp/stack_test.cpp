@@ -292,6 +292,11 @@ struct Levels {
         third(random.uniform(3, 7, -1.0, 1.0)) {}
 };
 
+template <typename... Matrices>
+[[nodiscard]] TaskLevels<7, double, Matrices...> task_levels(const Matrices&... J) {
+  return TaskLevels<7, double, Matrices...>(J...);
+}
+
 /// Motions of one, two and three levels within bounds, with rows and bounds on jerk.
 template <Level kLevel>
 void expect_no_interference() {
@@ -312,10 +317,9 @@ void expect_no_interference() {
     for (int k = 0; k < 2; ++k) {
       rows.b(k) = random.uniform(0.1, 1.0) * std::abs(rows.g.col(k).dot(desired)) + 0.1 * kTick;
     }
-    const auto three = limiter.motion(TaskLevels<7, double, 2, 1, 3>(levels.first, levels.second, levels.third), state,
-                                      desired, last, rows);
-    const auto two =
-        limiter.motion(TaskLevels<7, double, 2, 1>(levels.first, levels.second), state, desired, last, rows);
+    const auto three =
+        limiter.motion(task_levels(levels.first, levels.second, levels.third), state, desired, last, rows);
+    const auto two = limiter.motion(task_levels(levels.first, levels.second), state, desired, last, rows);
     const auto one = limiter.motion(levels.first, state, desired, last, rows);
     const double unit = desired.norm() + one.u.norm();
     worst =

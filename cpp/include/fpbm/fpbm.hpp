@@ -189,6 +189,7 @@
 #include "fpbm/task/posture_task.hpp"
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/relative_task.hpp"
+#include "fpbm/task/robot_tasks.hpp"
 #include "fpbm/task/rounding_compensation.hpp"
 #include "fpbm/task/sequence.hpp"
 #include "fpbm/task/shapes.hpp"

@@ -93,11 +93,12 @@ struct JerkLimitedJoint {
                             Interval<Scalar> some, int rounds = 6) const noexcept {
     const Scalar room = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
-    const Scalar gain = greatest * (tick + greatest / (Scalar(2) * stop.jerk));
+    const Scalar inverse_jerk = Scalar(1) / stop.jerk;
+    const Scalar gain = greatest * (tick + greatest * inverse_jerk / Scalar(2));
     // Most joints are far from all bounds. No velocity of a stop exceeds top, and its excess is greatest within
     // longest.
     const Scalar top = std::max(qd + gain, Scalar(0));
-    const Scalar longest = tick + (stop.acceleration + greatest) / stop.jerk;
+    const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
     const Scalar excess = q - envelope.rest + top * (longest + envelope.delay + top * envelope.softness / Scalar(2));
     if (gain <= room && excess <= Scalar(0)) return some.high;
     const Scalar high = within_velocity(room, some);

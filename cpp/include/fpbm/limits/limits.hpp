@@ -50,7 +50,7 @@ class Limits {
       const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
       upper_.set(i, joint.upper, delay, deceleration);
       lower_.set(i, -joint.lower, delay, deceleration);
-      bounds_jerk_ = bounds_jerk_ || bounds_jerk(i);
+      if (bounds_jerk(i)) ++jerk_bounds_;
     }
   }
 
@@ -58,7 +58,7 @@ class Limits {
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
   /// Whether any joint has a bound on its jerk, or joint i.
-  [[nodiscard]] bool bounds_jerk() const noexcept { return bounds_jerk_; }
+  [[nodiscard]] bool bounds_jerk() const noexcept { return jerk_bounds_ > 0; }
   [[nodiscard]] bool bounds_jerk(Eigen::Index i) const noexcept { return std::isfinite(bounds_.jerk(i)); }
   [[nodiscard]] JerkLimitedJoint<kLevel, Scalar> jerk_limited(Eigen::Index i) const noexcept {
     return {{bounds_.acceleration(i), bounds_.jerk(i)}, bounds_.velocity(i), upper_[i], lower_[i], tick_};
@@ -156,8 +156,10 @@ class Limits {
   [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Reach&& reach) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     // No joint is told from another where none has a bound on jerk: the compiler makes vectors of them.
-    for (Eigen::Index i = 0; i < state.q.size(); ++i) set(box, i, motions_of(i, state.q(i), state.qd(i)));
-    for (Eigen::Index i = 0; bounds_jerk_ && i < state.q.size(); ++i) {
+    if (jerk_bounds_ < state.q.size()) {
+      for (Eigen::Index i = 0; i < state.q.size(); ++i) set(box, i, motions_of(i, state.q(i), state.qd(i)));
+    }
+    for (Eigen::Index i = 0; jerk_bounds_ > 0 && i < state.q.size(); ++i) {
       if (!bounds_jerk(i)) continue;
       const auto joint = jerk_limited(i);
       const auto [low, high] = joint.viable(reach(i, joint), state.q(i), state.qd(i));
@@ -209,8 +211,8 @@ class Limits {
   Scalar tick_;
   JointLimits<N, Scalar> bounds_;
   Envelopes upper_;
-  Envelopes lower_;  ///< For −q.
-  bool bounds_jerk_ = false;
+  Envelopes lower_;               ///< For −q.
+  Eigen::Index jerk_bounds_ = 0;  ///< Number of joints that have one.
 
   static constexpr Scalar kSoft = Scalar(2);  ///< c J/A² of a joint with a bound on its jerk and no envelope.
 };

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <tuple>
 
@@ -22,15 +21,15 @@ namespace fpbm {
 /// u* stands for the commands, b_k = J_k u*, and for the preferred null-space motion. J_k d = J_k u*. If every higher
 /// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (ScaledLevel, DampedLevel,
 /// kLevelRadius). The first level is that of NullSpaceSaturation: J u* and the null-space motion of u* together.
-template <int N, typename Scalar, int P, int... M>
+template <int N, typename Scalar, int P, typename... Matrices>
 class SaturationByLevel {
  public:
   using JointVector = Vector<N, Scalar>;
-  static constexpr int kLevels = static_cast<int>(sizeof...(M));
+  static constexpr int kLevels = static_cast<int>(sizeof...(Matrices));
   using Result = SaturatedLevels<N, Scalar, kLevels>;
 
   /// unit: one unit of each joint's motion, such as its bound on acceleration.
-  SaturationByLevel(const TaskLevels<N, Scalar, M...>& levels, const JointVector& unit,
+  SaturationByLevel(const TaskLevels<N, Scalar, Matrices...>& levels, const JointVector& unit,
                     const Rows<N, P, Scalar>& rows = {}) noexcept
       : levels_(levels),
         unit_(unit),
@@ -51,11 +50,11 @@ class SaturationByLevel {
   void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
     LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
-    levels_.each_lower([&](std::size_t k, const auto& J) noexcept {
+    levels_.each_lower([&](std::size_t k, const auto& rows) noexcept {
       if (space.rank() == space.size()) return;  // The higher levels determine the motion.
       const JointVector goal =
-          whole ? desired : result.u + unit_.cwiseProduct(correction(space, J, desired - result.u));
-      if (whole) space.add(in_units(J, unit_));
+          whole ? desired : result.u + unit_.cwiseProduct(correction(space, rows, JointVector(desired - result.u)));
+      if (whole) space.add(in_units(rows, unit_));
       if (!goal.allFinite()) {
         result.scales[k] = Scalar(0);
       } else if (box.contains(goal) && rows_.admit(goal)) {
@@ -75,50 +74,49 @@ class SaturationByLevel {
 
  private:
   /// Of the first level. One level alone is saturated as a task without levels.
-  using First = NullSpaceSaturation<kLevels == 1 ? std::get<0>(std::array{M...}) : Eigen::Dynamic, N, Scalar, P>;
+  using FirstRows = std::tuple_element_t<0, std::tuple<Matrices...>>;
+  static constexpr int kFirst = kLevels == 1 ? FirstRows::RowsAtCompileTime : Eigen::Dynamic;
+  using First = NullSpaceSaturation<kFirst, N, Scalar, P>;
 
-  template <int M1>
-  [[nodiscard]] static LevelSpace<N, Scalar> space_of(const Matrix<M1, N, Scalar>& J,
-                                                      const JointVector& unit) noexcept {
+  [[nodiscard]] static LevelSpace<N, Scalar> space_of(const FirstRows& first, const JointVector& unit) noexcept {
     LevelSpace<N, Scalar> space(unit.size());
-    if constexpr (kLevels > 1) space.add(in_units(J, unit));
+    if constexpr (kLevels > 1) space.add(in_units(first, unit));
     return space;
   }
-  template <int M1>
-  [[nodiscard]] static First first_saturation(const Matrix<M1, N, Scalar>& J, const LevelSpace<N, Scalar>& space,
+  [[nodiscard]] static First first_saturation(const FirstRows& first, const LevelSpace<N, Scalar>& space,
                                               const JointVector& unit, const Rows<N, P, Scalar>& rows) noexcept {
     if constexpr (kLevels == 1) {
-      return {J, unit, rows};
+      return {first, unit, rows};
     } else {
       return {space, unit, rows};
     }
   }
 
-  template <int Mk>
-  [[nodiscard]] static Matrix<Mk, N, Scalar> in_units(const Matrix<Mk, N, Scalar>& J,
-                                                      const JointVector& unit) noexcept {
-    Matrix<Mk, N, Scalar> scaled = J;
-    for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      for (Eigen::Index i = 0; i < J.rows(); ++i) scaled.coeffRef(i, j) *= unit.coeff(j);
+  template <int M>
+  [[nodiscard]] static Matrix<M, N, Scalar> in_units(Matrix<M, N, Scalar> rows, const JointVector& unit) noexcept {
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.coeffRef(i, j) *= unit.coeff(j);
     }
-    return scaled;
+    return rows;
+  }
+  [[nodiscard]] static DiagonalLevel<N, Scalar> in_units(const DiagonalLevel<N, Scalar>& rows,
+                                                         const JointVector& unit) noexcept {
+    return {product(rows, unit)};
   }
 
   /// (d − u)/unit for v = u* − u. Adds the level to the space.
-  template <int Mk>
-  [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const Matrix<Mk, N, Scalar>& J,
+  template <typename LevelRows>
+  [[nodiscard]] JointVector correction(LevelSpace<N, Scalar>& space, const LevelRows& rows,
                                        const JointVector& v) const noexcept {
-    const Matrix<Mk, N, Scalar> scaled = in_units(J, unit_);
+    const LevelRows scaled = in_units(rows, unit_);
     const JointVector in_unit = v.cwiseQuotient(unit_);
     const JointVector projected = space.project(in_unit);
-    const JointVector outside = in_unit - projected;
-    const Vector<Mk, Scalar> r = product(scaled, outside);
-    const ScaledLevel<Mk, N, Scalar> level(scaled, r);
-    DampedLevel<Mk, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar>);
+    const auto level = scaled_level(scaled, product(scaled, JointVector(in_unit - projected)));
+    DampedLevel<decltype(level.r)::RowsAtCompileTime, Scalar> damped(kLevelRadius<Scalar> * kLevelRadius<Scalar>);
     return projected + space.add(level.J, level.r, damped);
   }
 
-  TaskLevels<N, Scalar, M...> levels_;
+  const TaskLevels<N, Scalar, Matrices...>& levels_;
   JointVector unit_;
   Rows<N, P, Scalar> rows_;
   LevelSpace<N, Scalar> above_;  ///< Of the first level.
@@ -126,26 +124,26 @@ class SaturationByLevel {
 };
 
 /// saturation_of() for several levels.
-template <int N, typename Scalar, int P, int... M>
-[[nodiscard]] SaturationByLevel<N, Scalar, P, M...> saturation_of(const TaskLevels<N, Scalar, M...>& levels,
-                                                                  const Vector<N, Scalar>& unit,
-                                                                  const Rows<N, P, Scalar>& rows) noexcept {
+template <int N, typename Scalar, int P, typename... Matrices>
+[[nodiscard]] SaturationByLevel<N, Scalar, P, Matrices...> saturation_of(
+    const TaskLevels<N, Scalar, Matrices...>& levels, const Vector<N, Scalar>& unit,
+    const Rows<N, P, Scalar>& rows) noexcept {
   return {levels, unit, rows};
 }
 
-template <int N, typename Scalar, int P, int... M>
-void resolve_lower(const SaturationByLevel<N, Scalar, P, M...>& saturation, const Box<N, Scalar>& box,
-                   const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(M)>& found) noexcept {
+template <int N, typename Scalar, int P, typename... Matrices>
+void resolve_lower(const SaturationByLevel<N, Scalar, P, Matrices...>& saturation, const Box<N, Scalar>& box,
+                   const Vector<N, Scalar>& desired, SaturatedLevels<N, Scalar, sizeof...(Matrices)>& found) noexcept {
   saturation.resolve_lower(box, desired, found);
 }
 
 /// The part of a motion that changes no level.
-template <int N, typename Scalar, int... M>
-[[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, M...>& levels,
+template <int N, typename Scalar, typename... Matrices>
+[[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, Matrices...>& levels,
                                                   const Vector<N, Scalar>& v) noexcept {
   LevelSpace<N, Scalar> space(v.size());
   space.add(levels.first());
-  levels.each_lower([&](std::size_t, const auto& J) noexcept { space.add(J); });
+  levels.each_lower([&](std::size_t, const auto& rows) noexcept { space.add(rows); });
   return space.project(v);
 }
 

@@ -12,13 +12,14 @@
 
 namespace fpbm {
 
-/// Jacobians of task levels in the order of their priority: J₁ (M₁ × n) … J_K (M_K × n), all rows in metres.
-template <int N, typename Scalar, int... M>
+/// Jacobians of task levels in the order of their priority: J₁ (M₁ × n) … J_K (M_K × n), all rows in metres. Each is a
+/// Matrix<M, N, Scalar>, or a DiagonalLevel below the first.
+template <int N, typename Scalar, typename... Matrices>
 class TaskLevels {
  public:
-  explicit TaskLevels(const Matrix<M, N, Scalar>&... J) noexcept : J_(J...) { enabled_.fill(true); }
+  explicit TaskLevels(const Matrices&... J) noexcept : J_(J...) { enabled_.fill(true); }
   /// enabled: levels that are not enabled, or have no rows, are left out. The first one is enabled.
-  explicit TaskLevels(const std::array<bool, sizeof...(M)>& enabled, const Matrix<M, N, Scalar>&... J) noexcept
+  explicit TaskLevels(const std::array<bool, sizeof...(Matrices)>& enabled, const Matrices&... J) noexcept
       : enabled_(enabled), J_(J...) {}
 
   [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
@@ -28,7 +29,7 @@ class TaskLevels {
   /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first that are enabled.
   template <typename F>
   void each_lower(F&& f) const noexcept {
-    each_from(f, std::make_index_sequence<sizeof...(M) - 1>{});
+    each_from(f, std::make_index_sequence<sizeof...(Matrices) - 1>{});
   }
 
  private:
@@ -37,8 +38,8 @@ class TaskLevels {
     ((enabled_[k + 1] && std::get<k + 1>(J_).rows() > 0 ? f(k + 1, std::get<k + 1>(J_)) : void()), ...);
   }
 
-  std::array<bool, sizeof...(M)> enabled_;
-  std::tuple<Matrix<M, N, Scalar>...> J_;
+  std::array<bool, sizeof...(Matrices)> enabled_;
+  std::tuple<Matrices...> J_;
 };
 
 /// A joint motion within a box that resolves task levels.
@@ -47,17 +48,17 @@ struct SaturatedLevels : Saturated<N, Scalar> {
   std::array<Scalar, K> scales;  ///< s_k of each level. The first is scale.
 };
 
-template <int N, typename Scalar, int... M>
-[[nodiscard]] const auto& first_level(const TaskLevels<N, Scalar, M...>& levels) noexcept {
+template <int N, typename Scalar, typename... Matrices>
+[[nodiscard]] const auto& first_level(const TaskLevels<N, Scalar, Matrices...>& levels) noexcept {
   return levels.first();
 }
 
-template <int N, typename Scalar, int... M>
-inline constexpr bool kHasLower<TaskLevels<N, Scalar, M...>> = sizeof...(M) > 1;
+template <int N, typename Scalar, typename... Matrices>
+inline constexpr bool kHasLower<TaskLevels<N, Scalar, Matrices...>> = sizeof...(Matrices) > 1;
 
 /// The levels without those below the first.
-template <int N, typename Scalar, int... M>
-[[nodiscard]] auto only_first(TaskLevels<N, Scalar, M...> levels) noexcept {
+template <int N, typename Scalar, typename... Matrices>
+[[nodiscard]] auto only_first(TaskLevels<N, Scalar, Matrices...> levels) noexcept {
   levels.disable_lower();
   return levels;
 }
@@ -67,9 +68,10 @@ void set_scale(SaturatedLevels<N, Scalar, K>& motion, Scalar scale) noexcept {
   motion.scales.fill(scale);
 }
 
-template <int N, typename Scalar, int... M>
-[[nodiscard]] auto with_scale(const TaskLevels<N, Scalar, M...>&, const Vector<N, Scalar>& u, Scalar scale) noexcept {
-  SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))> result{{u, scale, 0, 0}, {}};
+template <int N, typename Scalar, typename... Matrices>
+[[nodiscard]] auto with_scale(const TaskLevels<N, Scalar, Matrices...>&, const Vector<N, Scalar>& u,
+                              Scalar scale) noexcept {
+  SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(Matrices))> result{{u, scale, 0, 0}, {}};
   set_scale(result, scale);
   return result;
 }
@@ -80,9 +82,9 @@ void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevel
   motion.scale = motion.scales[0];
 }
 
-template <int N, typename Scalar, int... M, typename Share>
-void multiply_scales(SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(M))>& motion,
-                     const TaskLevels<N, Scalar, M...>& levels, const Share& share) noexcept {
+template <int N, typename Scalar, typename... Matrices, typename Share>
+void multiply_scales(SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(Matrices))>& motion,
+                     const TaskLevels<N, Scalar, Matrices...>& levels, const Share& share) noexcept {
   motion.scales[0] *= share(levels.first());
   levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= share(J); });
   motion.scale = motion.scales[0];

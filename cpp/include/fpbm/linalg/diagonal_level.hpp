@@ -1,9 +1,36 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/paired.hpp"
 
 namespace fpbm {
+
+/// Rows of a level that is a posture of all joints: J = diag(entries), without zeros there.
+template <int N, typename Scalar>
+struct DiagonalLevel {
+  Vector<N, Scalar> entries;
+
+  [[nodiscard]] Eigen::Index rows() const noexcept { return entries.size(); }
+  [[nodiscard]] Scalar least() const noexcept {
+    return std::abs(*std::min_element(entries.data(), entries.data() + entries.size(),
+                                      [](Scalar a, Scalar b) { return std::abs(a) < std::abs(b); }));
+  }
+  [[nodiscard]] Matrix<N, N, Scalar> matrix() const noexcept {
+    auto J = filled<Matrix<N, N, Scalar>>(entries.size());
+    for (Eigen::Index i = 0; i < entries.size(); ++i) J.coeffRef(i, i) = entries.coeff(i);
+    return J;
+  }
+};
+
+/// J v.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> product(const DiagonalLevel<N, Scalar>& J, const Vector<N, Scalar>& v) noexcept {
+  return entrywise(v, [&](Eigen::Index i) { return J.entries.coeff(i) * v.coeff(i); });
+}
 
 /// Whether A is square and diagonal, without zeros there: a posture of all joints determines all motion that the higher
 /// levels leave, without a factorisation of A.
@@ -21,8 +48,8 @@ template <typename Matrix>
 /// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the columns of Z: orthonormal, and at most n of them.
 ///
 /// Gram and Schmidt's modified process makes the columns of D Z orthogonal, and so those of Z conjugate: zᵢᵀD²zⱼ = 0.
-template <int N, typename Scalar, typename Basis, typename Diagonal>
-[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Diagonal& D, Vector<N, Scalar> r) noexcept {
+template <int N, typename Scalar, typename Basis>
+[[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Vector<N, Scalar>& D, Vector<N, Scalar> r) noexcept {
   const Eigen::Index n = Z.rows();
   Basis DZ = Z;
   auto squares = filled<Vector<N, Scalar>>(n);
@@ -30,7 +57,7 @@ template <int N, typename Scalar, typename Basis, typename Diagonal>
   for (Eigen::Index j = 0; j < Z.cols(); ++j) {
     Scalar* const z = Z.data() + j * n;
     Scalar* const column = DZ.data() + j * n;
-    for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i, i);
+    for (Eigen::Index i = 0; i < n; ++i) column[i] *= D.coeff(i);
     for (Eigen::Index k = 0; k < j; ++k) {
       const Scalar* const other = DZ.data() + k * n;
       const Scalar share = paired_dot(other, column, n) / squares.coeff(k);

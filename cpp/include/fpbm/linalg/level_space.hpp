@@ -7,6 +7,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/linalg/diagonal_level.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/paired.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/reflections.hpp"
@@ -52,9 +53,8 @@ class LevelSpace {
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
       if (is_diagonal(A)) {
-        Scalar least = std::abs(A.coeff(0, 0));
-        for (Eigen::Index i = 1; i < A.rows(); ++i) least = std::min(least, std::abs(A.coeff(i, i)));
-        if (!solver.loses(least)) return add_diagonal(A, r);
+        const DiagonalLevel<N, Scalar> diagonal{entrywise(r, [&](Eigen::Index i) { return A.coeff(i, i); })};
+        if (!solver.loses(diagonal.least())) return add_diagonal(diagonal, r);
       }
     }
     return add_with(A, r,
@@ -66,6 +66,11 @@ class LevelSpace {
                       }
                       if (!solver(L, result, count)) solve_trapezoidal(T, first, count, result);
                     });
+  }
+
+  template <typename Solver>
+  [[nodiscard]] Column add(const DiagonalLevel<N, Scalar>& A, const Column& r, Solver& solver) noexcept {
+    return solver.loses(A.least()) ? add(A.matrix(), r, solver) : add_diagonal(A, r);
   }
 
   /// Adds the level I. Returns y = Z Zᵀ r.
@@ -84,6 +89,8 @@ class LevelSpace {
     auto r = filled<Vector<M, Scalar>>(A.rows());
     (void)triangular(A, r);
   }
+
+  void add(const DiagonalLevel<N, Scalar>&) noexcept { Q_.fill(); }
 
   /// Z Zᵀ v, the part of v in the null space.
   [[nodiscard]] Column project(const Column& v) const noexcept {
@@ -110,20 +117,15 @@ class LevelSpace {
   /// A = D, of which no direction is lost: the singular values of D Z are at least the least entry of D.
   ///
   ///   y = Z (ZᵀD²Z)⁻¹ ZᵀD r,   and Z Zᵀ r/c where D = c I.
-  template <int M>
-  [[nodiscard]] Column add_diagonal(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
-    const Eigen::Index n = size();
-    const auto entry = [&](Eigen::Index i) -> const Scalar& { return A.coeffRef(i, i); };
-    Column y = filled<Column>(n);
+  [[nodiscard]] Column add_diagonal(const DiagonalLevel<N, Scalar>& A, const Column& r) noexcept {
+    const Column& entries = A.entries;
+    Column y = entrywise(r, [&](Eigen::Index i) { return r.coeff(i) / entries.coeff(i); });
     bool uniform = true;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      uniform = uniform && entry(i) == entry(0);
-      y.coeffRef(i) = r.coeff(i) / entry(i);
-    }
+    for (Eigen::Index i = 1; i < size(); ++i) uniform = uniform && entries.coeff(i) == entries.coeff(0);
     if (uniform) {
       y = project(y);
     } else {
-      y = solve_diagonal<N, Scalar>(basis(), A, r);
+      y = solve_diagonal<N, Scalar>(basis(), entries, r);
     }
     Q_.fill();
     return y;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 
 #include "fpbm/limits/task_levels.hpp"
 #include "fpbm/realtime/reference_sources.hpp"
@@ -59,11 +60,10 @@ template <typename... Levels, int N, typename Scalar>
 
 /// The levels' Jacobians, for the limits.
 template <typename... Levels, int N, typename Scalar>
-[[nodiscard]] TaskLevels<N, Scalar, Levels::kRows...> jacobian_in_metres(
-    const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
+[[nodiscard]] auto jacobian_in_metres(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   return std::apply(
       [&](const auto&... rows) {
-        return TaskLevels<N, Scalar, Levels::kRows...>(kinematics.enabled, rows.matrix()...);
+        return TaskLevels<N, Scalar, std::decay_t<decltype(rows.matrix())>...>(kinematics.enabled, rows.matrix()...);
       },
       kinematics.levels);
 }

@@ -6,7 +6,7 @@
 #include "fpbm/realtime/stack_tick.hpp"
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/by_levels.hpp"
-#include "fpbm/task/stack_kinematics.hpp"
+#include "fpbm/task/robot_tasks.hpp"
 #include "fpbm/task/task_gains.hpp"
 
 namespace fpbm {

@@ -4,8 +4,10 @@
 
 #include "fpbm/linalg/cholesky.hpp"
 #include "fpbm/linalg/diagonal_level.hpp"
+#include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/lower_gram.hpp"
 #include "fpbm/linalg/product.hpp"
+#include "fpbm/linalg/sums.hpp"
 
 namespace fpbm {
 
@@ -27,7 +29,11 @@ struct ScaledLevel {
   ScaledLevel(const Matrix<M, N, Scalar>& rows, const Vector<M, Scalar>& right) noexcept : J(rows), r(right) {
     if constexpr (M == N || M == Eigen::Dynamic || N == Eigen::Dynamic) {
       if (is_diagonal(J)) {
-        scale_diagonal();
+        const Vector<M, Scalar> shares = shares_of(entrywise(r, [&](Eigen::Index i) { return J.coeff(i, i); }));
+        for (Eigen::Index i = 0; i < J.rows(); ++i) {
+          J.coeffRef(i, i) *= shares.coeff(i);
+          r.coeffRef(i) *= shares.coeff(i);
+        }
         return;
       }
     }
@@ -40,22 +46,42 @@ struct ScaledLevel {
     cholesky.orthonormalize(J, r);
   }
 
- private:
-  void scale_diagonal() noexcept {
-    Scalar squares(0);
-    for (Eigen::Index i = 0; i < J.rows(); ++i) squares += J.coeff(i, i) * J.coeff(i, i);
-    const Scalar least = kPosture * kPosture * squares;
-    for (Eigen::Index i = 0; i < J.rows(); ++i) {
-      const Scalar share = Scalar(1) / std::sqrt(J.coeff(i, i) * J.coeff(i, i) + least);
-      J.coeffRef(i, i) *= share;
-      r.coeffRef(i) *= share;
-    }
+  /// C⁻¹ of a diagonal J.
+  [[nodiscard]] static Vector<M, Scalar> shares_of(const Vector<M, Scalar>& entries) noexcept {
+    const Scalar least = kPosture * kPosture * squared_norm(entries);
+    return entrywise(
+        entries, [&](Eigen::Index i) { return Scalar(1) / std::sqrt(entries.coeff(i) * entries.coeff(i) + least); });
   }
 
+ private:
   /// ρ: with the radius 0.1 of lower levels (kLevelRadius), a posture loses a direction at σ = 0.03 ‖J‖_F. Of 120
   /// positions below the axis of a Panda's tip that leave the workspace and come back, 112 are reached again, and 97
   /// with ρ = 0.1; without scaled rows and with the radius 0.1 ‖J‖_F, 111.
   static constexpr Scalar kPosture = Scalar(0.3);
 };
+
+/// The same for a posture of all joints.
+template <int N, typename Scalar>
+struct ScaledDiagonal {
+  DiagonalLevel<N, Scalar> J;
+  Vector<N, Scalar> r;
+
+  ScaledDiagonal(const DiagonalLevel<N, Scalar>& rows, const Vector<N, Scalar>& right) noexcept {
+    const Vector<N, Scalar> shares = ScaledLevel<N, N, Scalar>::shares_of(rows.entries);
+    J = {product(rows, shares)};
+    r = entrywise(right, [&](Eigen::Index i) { return right.coeff(i) * shares.coeff(i); });
+  }
+};
+
+template <int M, int N, typename Scalar>
+[[nodiscard]] ScaledLevel<M, N, Scalar> scaled_level(const Matrix<M, N, Scalar>& J,
+                                                     const Vector<M, Scalar>& r) noexcept {
+  return {J, r};
+}
+template <int N, typename Scalar>
+[[nodiscard]] ScaledDiagonal<N, Scalar> scaled_level(const DiagonalLevel<N, Scalar>& J,
+                                                     const Vector<N, Scalar>& r) noexcept {
+  return {J, r};
+}
 
 }  // namespace fpbm

@@ -7,7 +7,6 @@
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 #include "fpbm/model/kinematics.hpp"
-#include "fpbm/model/robot.hpp"
 #include "fpbm/task/posture_task.hpp"
 #include "fpbm/task/stack.hpp"
 #include "fpbm/task/task_rows.hpp"
@@ -136,83 +135,6 @@ template <typename... Levels, int N, typename Scalar>
     }
   });
   return error;
-}
-
-/// A robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
-template <typename Robot_, typename Stack_>
-class RobotTasks {
- public:
-  using Scalar = typename Robot_::Scalar;
-  static constexpr int kDof = Robot_::kDof;
-  using State = Kinematics<typename Stack_::Space, kDof, Scalar>;
-
-  /// Throws std::invalid_argument where a task does not suit the robot.
-  RobotTasks(const Robot_& robot, const Stack_& stack) : robot_(robot), stack_(stack) { stack_.bind(robot_); }
-
-  [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
-  [[nodiscard]] const Robot_& robot() const noexcept { return robot_; }
-  [[nodiscard]] const Stack_& stack() const noexcept { return stack_; }
-  /// As Stack::enable().
-  bool enable(int k, bool on) noexcept { return stack_.enable(k, on); }
-  /// As Stack::reorder().
-  bool reorder(const std::array<int, Stack_::kLevels>& order) noexcept { return stack_.reorder(order); }
-  [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
-
-  /// The points of the tasks at q, and their selections.
-  void points(const Vector<kDof, Scalar>& q, State& out) const noexcept {
-    typename Robot_::State state;
-    robot_.update(q, state);
-    begin(out);
-    stack_.each([&](const auto& task, auto i) noexcept {
-      constexpr int kIndex = decltype(i)::value;
-      auto& task_state = std::get<kIndex>(out.tasks);
-      task.evaluate(robot_, state, std::get<kIndex>(out.tip), task_state.xd, task_state.S, NoRows{});
-    });
-  }
-
-  /// At (q, qd).
-  void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd, State& out) const noexcept {
-    typename Robot_::State state;
-    robot_.update(q, qd, state);
-    evaluate(state, out);
-  }
-
-  /// At q, for velocity level: does not touch J̇.
-  void kinematics(const Vector<kDof, Scalar>& q, State& out) const noexcept {
-    typename Robot_::State state;
-    robot_.update(q, state);
-    evaluate(state, out);
-  }
-
- private:
-  void begin(State& out) const noexcept {
-    out.length = robot_.length();
-    out.enabled = stack_.enabled();
-    int k = 0;
-    std::apply([&](auto&... level) { (level.resize(stack_.rows(k++), robot_.dof()), ...); }, out.levels);
-  }
-
-  void evaluate(const typename Robot_::State& state, State& out) const noexcept {
-    begin(out);
-    int row = 0;  // Of the task on its level.
-    stack_.each([&](const auto& task, auto i) noexcept {
-      constexpr int kIndex = decltype(i)::value;
-      if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
-      auto& [feedback, S, xd] = std::get<kIndex>(out.tasks);
-      feedback = {task.gains.k1, task.gains.k2};
-      auto& level = std::get<static_cast<std::size_t>(Stack_::level(kIndex))>(out.levels);
-      task.evaluate(robot_, state, std::get<kIndex>(out.tip), xd, S, rows_from(level, row));
-      row += rows_of(task);
-    });
-  }
-
-  Robot_ robot_;
-  Stack_ stack_;
-};
-
-template <typename Robot, typename Stack_>
-[[nodiscard]] bool has_several_tasks(const RobotTasks<Robot, Stack_>& arm) noexcept {
-  return arm.stack().count() > 1;
 }
 
 }  // namespace fpbm

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "fpbm/core/types.hpp"
+#include "fpbm/linalg/diagonal_level.hpp"
 #include "fpbm/linalg/entrywise.hpp"
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/paired.hpp"
@@ -64,11 +65,8 @@ struct PostureRows {
 
   void resize(Eigen::Index rows, Eigen::Index) noexcept { drift.resize(rows); }
   [[nodiscard]] static constexpr Eigen::Index rows() noexcept { return N; }
-  [[nodiscard]] Matrix<N, N, Scalar> matrix() const noexcept {
-    auto J = filled<Matrix<N, N, Scalar>>(N);
-    for (int i = 0; i < N; ++i) J.coeffRef(i, joints[static_cast<std::size_t>(i)]) = Scalar(1);
-    return J;
-  }
+  /// I: the order of the rows does not matter to the limits.
+  [[nodiscard]] static DiagonalLevel<N, Scalar> matrix() noexcept { return {filled<Vector<N, Scalar>>(N, Scalar(1))}; }
 
   /// As of LevelRows.
   void continue_tick(const TickFeedback<Scalar>& feedback, int, Eigen::Index,
