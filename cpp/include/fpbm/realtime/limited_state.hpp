@@ -104,15 +104,29 @@ class LimitedState {
                                   {loop.state.qd, last_, change_});
   }
 
+  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration.
+  template <typename Loop, typename Target>
+  [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
+    const JointState middle = motion_.middle(state_, last_);
+    typename Loop::X dx = Loop::packed(middle);
+    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
+    if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
+    return status;
+  }
+
+  /// Whether the limits admit a tick to a state.
+  [[nodiscard]] bool admits(const JointState& next) const noexcept { return limiter_.admits(state_, next, last_); }
+
   /// The state after a tick of a constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion_.after(state_, u); }
 
   /// Ends a tick whose desired motion led to next, of which velocity level reads q alone. field: the joint velocities
-  /// at its start, which acceleration level does not read. now: the reference at its start. result has the status of
-  /// the desired motion, and the error that the correction began with. A tick of one acceleration takes the kinematics
-  /// of loop, other ticks evaluate them anew.
+  /// at its start, which acceleration level does not read. now: the reference at its start. one_acceleration: whether
+  /// loop has the kinematics of the tick's middle; otherwise they are evaluated where the motion is limited. result has
+  /// the status of the desired motion, and the error that the correction began with.
   template <typename Loop, typename Target>
-  void take(Loop& loop, const Target& now, JointState next, const JointVector& field, Result& result) noexcept {
+  void take(Loop& loop, const Target& now, JointState next, const JointVector& field, bool one_acceleration,
+            Result& result) noexcept {
     auto rows = guard_.rows(limits(), state_);
     if constexpr (kGuarded) {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
@@ -138,7 +152,7 @@ class LimitedState {
       next = motion_.after(state_, rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
       result.status = Status::kRecovering;
       multiply_scale(result, Scalar(0));
-    } else if (stopping_ || result.status >= Status::kStalled || !limiter_.admits(state_, next, last_) ||
+    } else if (stopping_ || result.status >= Status::kStalled || !admits(next) ||
                !rows.admit(motion_.between(state_, next))) {
       JointVector desired = next.qd;
       Scalar share(1);
@@ -149,7 +163,6 @@ class LimitedState {
         if (share < Scalar(1)) desired = entrywise(field, [&](Eigen::Index i) { return share * field.coeff(i); });
       }
       const bool several = has_lower_levels(loop.kinematics);
-      const bool one_acceleration = has_one_acceleration(loop.arm);
       if constexpr (kHasLevels) {
         if (several && !failed(result.status) && !one_acceleration) {
           result.status = worse(result.status, expect(loop, correction_(ahead(now, dt() / 2)), desired));
@@ -234,16 +247,6 @@ class LimitedState {
   /// Whether each joint brakes by itself: a stop that keeps the first level moves the joints together.
   [[nodiscard]] bool brakes(Status status) const noexcept {
     return (stopping_ && !keeps_first_level_) || failed(status);
-  }
-
-  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration.
-  template <typename Loop, typename Target>
-  [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
-    const JointState middle = motion_.middle(state_, last_);
-    typename Loop::X dx = Loop::packed(middle);
-    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
-    if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
-    return status;
   }
 
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.

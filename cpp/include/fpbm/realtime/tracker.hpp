@@ -110,7 +110,7 @@ class Tracker {
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
-    const bool one_acceleration = kept_.has_one_acceleration(arm_);
+    bool one_acceleration = kept_.has_one_acceleration(arm_);
     if constexpr (kIsProduct<Space>) {
       if (one_acceleration) arm_.points(state.q, loop.kinematics);
     }
@@ -136,13 +136,22 @@ class Tracker {
     } else {
       resolve(loop, references.stages[0], dx, result);
       field = column(dx, 0);
-      if (!failed(result.status)) {
-        result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+      if constexpr (Loop::kSecondOrder) {
+        one_acceleration = !failed(result.status) && !kept_.admits(kept_.after(loop.qdd));
       }
-      next.q = column(x, 0);
-      if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
+      if (one_acceleration) {
+        JointVector u = loop.qdd;
+        result.status = worse(result.status, kept_.expect(loop, references.stages[1], u));
+        next = kept_.after(u);
+      } else {
+        if (!failed(result.status)) {
+          result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+        }
+        next.q = column(x, 0);
+        if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
+      }
     }
-    kept_.take(loop, now, next, field, result);
+    kept_.take(loop, now, next, field, one_acceleration, result);
     lower_levels_.report(result);
     report_lower_levels(result);
     lower_levels_.end_tick(!kept_.stopping() && !failed(result.status), kept_.state().qd, Scalar(guard().room()),
@@ -161,7 +170,7 @@ class Tracker {
     Result result = kept_.idle(state());
     result.error = kept_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
-    kept_.take(loop, now, next, field, result);
+    kept_.take(loop, now, next, field, false, result);
     return result.status;
   }
 
