@@ -18,7 +18,7 @@ CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch
 
 .DELETE_ON_ERROR:
 .PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp peers lint \
-        format stubs docs notebooks bench count stalls sdist wheel clean
+        format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -42,6 +42,7 @@ help:
 	@echo 'make lint             formatting, static analysis, imports, types, stubs'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
+	@echo 'make worst            the longest ticks that a search has found; SEARCH=600 searches on'
 	@echo 'make stalls           the loads of each step that wait for stores, against those recorded'
 	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; write the Python stubs afresh'
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
@@ -232,6 +233,16 @@ count:
 	cmake --preset bench
 	cmake --build --preset bench --target bench_count
 	$(PYTHON) bench/count.py build/bench/bench/bench_count $(if $(RECORD),--record)
+
+# The longest ticks that a search has found: times, and instructions. SEARCH=600: searches on for so many seconds a case.
+worst:
+	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) $(BENCHMARK) valgrind
+	cmake --preset bench
+	cmake --build --preset bench --target bench_worst $(if $(SEARCH),bench_search_worst)
+	$(if $(SEARCH),build/bench/bench/bench_search_worst python/fpbm_cpp/worst_motions.txt $(SEARCH) > build/bench/worst_motions.txt)
+	$(if $(SEARCH),cp build/bench/worst_motions.txt python/fpbm_cpp/worst_motions.txt)
+	build/bench/bench/bench_worst 50
+	$(PYTHON) bench/worst.py build/bench/bench/bench_worst
 
 # Fails where a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
 # both, since they compile one program.

@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -43,6 +44,11 @@ inline int dimensions(const ArrayLike& argument) {
 
 /// Real numbers in an array of the given number of dimensions. Throws std::invalid_argument.
 inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argument, const char* name, int dimensions) {
+  // Most arguments need no conversion.
+  if (py::isinstance<py::array_t<double, py::array::c_style>>(argument)) {
+    auto array = py::reinterpret_borrow<py::array_t<double, py::array::c_style>>(argument);
+    if (array.ndim() == dimensions) return array;
+  }
   const auto any = py::array::ensure(argument);
   if (!any || (any.dtype().kind() != 'f' && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')) {
     PyErr_Clear();
@@ -57,6 +63,29 @@ inline py::array_t<double, py::array::c_style> real_array(const ArrayLike& argum
 }
 
 using OptionalArray = std::optional<ArrayLike>;
+
+/// An array for a result, in place of a new one.
+class OutArray : public py::object {
+ public:
+  PYBIND11_OBJECT_DEFAULT(OutArray, py::object, is_candidate)
+};
+using OptionalOut = std::optional<OutArray>;
+
+/// Where a result of a shape goes: to `out`, or to a new array. Throws std::invalid_argument where `out` is not an
+/// array of that shape that can be written without a conversion.
+inline Array result_array(const OptionalOut& out, const std::vector<py::ssize_t>& shape) {
+  if (!out) return Array(shape);
+  if (py::isinstance<py::array_t<double, py::array::c_style>>(*out)) {
+    auto array = py::reinterpret_borrow<Array>(*out);
+    if (array.writeable() && std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim())) {
+      return array;
+    }
+  }
+  std::string text;
+  for (const py::ssize_t each : shape) text += (text.empty() ? "" : ", ") + std::to_string(each);
+  if (shape.size() == 1) text += ",";
+  validation::reject("out", ": must be a writeable, C-contiguous array of float64 of shape (" + text + ")");
+}
 
 /// One entry per joint: 1 to kMaxDof of them, not yet checked further.
 inline Vector<Eigen::Dynamic> joint_vector(const ArrayLike& argument, const char* name) {
@@ -86,13 +115,14 @@ Vector<Size> fixed_vector(const ArrayLike& argument, const char* name) {
 }
 
 /// A matrix of exactly `rows` x `cols` finite entries.
-inline Eigen::MatrixXd matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
+template <typename Result = Eigen::MatrixXd>
+Result matrix(const ArrayLike& argument, const char* name, Eigen::Index rows, Eigen::Index cols) {
   const auto array = real_array(argument, name, 2);
   if (array.shape(0) != rows || array.shape(1) != cols) {
     validation::reject(name, ": must have shape (" + std::to_string(rows) + ", " + std::to_string(cols) + "), got " +
                                  shape_text(array));
   }
-  const Eigen::MatrixXd result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
+  const Result result = Eigen::Map<const RowMajor>(array.data(), rows, cols);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < cols; ++j) {
       if (!std::isfinite(result(i, j))) validation::fail(validation::element(name, i, j), result(i, j), "finite");
@@ -112,7 +142,7 @@ Transform<> transform_of(const Eigen::Matrix4d& H, const Name& name) {
   return result;
 }
 inline Transform<> transform(const ArrayLike& argument, const char* name) {
-  return transform_of(matrix(argument, name, 4, 4), [name] { return validation::Argument(name); });
+  return transform_of(matrix<Eigen::Matrix4d>(argument, name, 4, 4), [name] { return validation::Argument(name); });
 }
 
 /// A point of a task space: shape (2,), (3,) or (4, 4).
@@ -161,6 +191,10 @@ inline Array array_of(const Transform<>& x) {
 }  // namespace fpbm::bindings
 
 namespace pybind11::detail {
+template <>
+struct handle_type_name<fpbm::bindings::OutArray> {
+  static constexpr auto name = const_name("numpy.typing.NDArray[numpy.float64]");
+};
 template <>
 struct handle_type_name<fpbm::bindings::ArrayLike> {
   static constexpr auto name = const_name("numpy.typing.ArrayLike");

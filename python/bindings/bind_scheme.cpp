@@ -80,7 +80,7 @@ void bind_scheme(py::module_& m) {
   py::class_<Scheme>(m, "Scheme", "The compiled part of a scheme: the law of a level with its parameters.")
       .def(py::init(&make_scheme), py::arg("level"), py::arg("parameters"))
       .def("resolve", &resolve_for_arm, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
-           py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position",
+           py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position", py::arg("out") = py::none(),
            R"(Joint motion that the scheme asks for in a state, or in each of k states.
 
 Parameters
@@ -95,11 +95,13 @@ xd, xdd : array_like, shape (m,)
     Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
 task : str
     'position' or 'pose'.
+out : numpy.ndarray, shape (n,) or (k, n), optional
+    Array of float64, C-contiguous, for the result.
 
 Returns
 -------
-numpy.ndarray, shape (n,)
-    qd [rad/s] at velocity level, qdd [rad/s^2] at acceleration level.
+numpy.ndarray, shape (n,) or (k, n)
+    qd [rad/s] at velocity level, qdd [rad/s^2] at acceleration level: out, or a new array.
 
 Raises
 ------
@@ -108,7 +110,7 @@ ParameterError
 ResolutionError
     Where the posture is singular or the result not finite.)")
       .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
-           py::arg("xd"), py::arg("xdd") = py::none(),
+           py::arg("xd"), py::arg("xdd") = py::none(), py::kw_only(), py::arg("out") = py::none(),
            "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.");
 }
 

@@ -29,8 +29,9 @@ class LaneTracker {
   [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept {
     return held_->corrected(reference);
   }
-  Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept {
-    return held_->finish(now, next, field);
+  Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
+                const Vector<N>& at_start) noexcept {
+    return held_->finish(now, middle, next, at_start);
   }
   Ticked advance(const TickReferences<Space>& references) noexcept { return {held_->advance(references)}; }
 
@@ -45,7 +46,8 @@ class LaneTracker {
     [[nodiscard]] virtual Vector<N> acceleration() const noexcept = 0;
     virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
     [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
-    virtual Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept = 0;
+    virtual Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
+                          const Vector<N>& at_start) noexcept = 0;
     virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
   };
 
@@ -62,8 +64,9 @@ class LaneTracker {
     [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
       return tracker_->corrected(reference);
     }
-    Status finish(const Reference<Space>& now, const State<N>& next, const Vector<N>& field) noexcept override {
-      return tracker_->finish(now, {next.q, next.qd}, field);
+    Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<N>& next,
+                  const Vector<N>& at_start) noexcept override {
+      return tracker_->finish(now, middle, {next.q, next.qd}, at_start);
     }
     Status advance(const TickReferences<Space>& references) noexcept override { return tracker_->advance(references); }
 

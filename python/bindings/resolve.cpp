@@ -19,18 +19,21 @@ void require_xdd(const Scheme& scheme, const OptionalArray& xdd) {
 /// What made(Space), the scheme for these joints, asks for in a state.
 template <typename Space, typename Made>
 Array resolve(const Scheme& scheme, const Kinematics<Space, kDynamic>& kinematics, const State<kDynamic>& state,
-              const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const Made& made) {
+              const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out,
+              const Made& made) {
   require_enough_joints<Space>(state.q.size());
   require_xdd(scheme, xdd);
   auto reference = Reference<Space>::hold(point<Space>(x, "x"));
   reference.xd = fixed_vector<Space::kRows>(xd, "xd");
   if (xdd) reference.xdd = fixed_vector<Space::kRows>(*xdd, "xdd");
+  Array result = result_array(out, {state.q.size()});
   JointVector u = JointVector::Zero(state.q.size());
-  const EitherScheme<Space> either = made(Space{});
+  const EitherScheme<Space>& either = made(Space{});
   const Status status =
       std::visit([&](const auto& any) { return any.resolve(kinematics, reference, state, u); }, either);
   if (failed(status)) raise(status);
-  return array_of(u);
+  Eigen::Map<Eigen::VectorXd>(result.mutable_data(), u.size()) = u;
+  return result;
 }
 
 /// Finite numbers of a shape for each of some states, or for all of them.
@@ -83,7 +86,7 @@ typename Space::template Point<double> point_at(const PerState& x, py::ssize_t s
 /// resolve() in many states, of which each that is given once holds for all.
 template <typename Space, typename Any>
 Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
-                   const ArrayLike& xd, const OptionalArray& xdd) {
+                   const ArrayLike& xd, const OptionalArray& xdd, const OptionalOut& out) {
   const py::ssize_t dof = arm.dof();
   require_enough_joints<Space>(dof);
   require_xdd(scheme, xdd);
@@ -96,7 +99,7 @@ Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, con
   std::optional<PerState> xdds;
   if (xdd) xdds.emplace(*xdd, "xdd", PerState::Shape{Space::kRows}, states);
   const EitherScheme<Space> either = scheme.make<Space>(arm);
-  Array result({states, dof});
+  Array result = result_array(out, {states, dof});
   std::visit(
       [&](const auto& any) {
         using Row = Eigen::Map<const Vector<Space::kRows>>;
@@ -122,21 +125,25 @@ Array resolve_many(const Scheme& scheme, const Any& arm, const ArrayLike& q, con
 }  // namespace
 
 Array resolve_for_arm(const Scheme& scheme, const Arm& arm, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& x,
-                      const ArrayLike& xd, const OptionalArray& xdd, const std::string& task) {
+                      const ArrayLike& xd, const OptionalArray& xdd, const std::string& task, const OptionalOut& out) {
   return arm.visit(task, [&](const auto& any, auto space) {
     using Space = decltype(space);
     if (py::isinstance<py::array>(q) ? py::array(q).ndim() == 2 : dimensions(q) == 2) {
-      return resolve_many<Space>(scheme, any, q, qd, x, xd, xdd);
+      return resolve_many<Space>(scheme, any, q, qd, x, xd, xdd, out);
     }
     const State<kDynamic> state{joint_vector(q, "q", arm.dof()), joint_vector(qd, "qd", arm.dof())};
     Kinematics<Space, kDynamic> kinematics;
     any.kinematics(state.q, state.qd, kinematics);
-    return resolve(scheme, kinematics, state, x, xd, xdd, [&](auto) { return scheme.make<Space>(any); });
+    std::optional<EitherScheme<Space>> of_arm;
+    return resolve(scheme, kinematics, state, x, xd, xdd, out, [&](auto) -> const EitherScheme<Space>& {
+      return scheme.needs_arm() ? of_arm.emplace(scheme.make<Space>(any)) : scheme.kept<Space>(arm.dof());
+    });
   });
 }
 
 Array resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinematics, const ArrayLike& q,
-                             const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd) {
+                             const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
+                             const OptionalOut& out) {
   if (!kinematics.has_rate && scheme.level == Level::kAcceleration) {
     validation::reject("Jd", ": an acceleration-level scheme needs it");
   }
@@ -144,8 +151,9 @@ Array resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinemati
       [&](const auto& known) {
         const auto dof = static_cast<int>(known.J.cols());
         const State<kDynamic> state{joint_vector(q, "q", dof), joint_vector(qd, "qd", dof)};
-        const auto made = [&](auto space) { return scheme.make_without_arm<decltype(space)>(dof); };
-        return resolve(scheme, known, state, x, xd, xdd, made);
+        return resolve(
+            scheme, known, state, x, xd, xdd,
+            out, [&](auto space) -> const auto& { return scheme.kept<decltype(space)>(dof); });
       },
       kinematics.value);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -44,6 +46,17 @@ struct Scheme {
   /// Throws std::invalid_argument as make() does, and where an objective needs an arm.
   template <typename Space>
   [[nodiscard]] EitherScheme<Space> make_without_arm(Eigen::Index dof) const;
+
+  /// The same, made once: one call of resolve() takes less time than making a scheme.
+  template <typename Space>
+  [[nodiscard]] const EitherScheme<Space>& kept(Eigen::Index dof) const {
+    auto& [joints, scheme] = std::get<Kept<Space>>(kept_);  // The caller holds Python's lock.
+    if (!scheme || joints != dof) {
+      scheme = std::make_shared<const EitherScheme<Space>>(make_without_arm<Space>(dof));
+      joints = dof;
+    }
+    return *scheme;
+  }
 
   /// Whether all of it is in law(): no objective wraps it.
   [[nodiscard]] bool is_plain() const noexcept { return manipulability_gain == 0.0; }
@@ -94,6 +107,14 @@ struct Scheme {
     if (joint_centring != 0.0) result = result.with_joint_centring(limits, joint_centring);
     return result;
   }
+
+  template <typename Space>
+  struct Kept {
+    Eigen::Index dof = 0;
+    std::shared_ptr<const EitherScheme<Space>> scheme = {};
+  };
+  /// Of kept().
+  mutable std::tuple<Kept<Position<2>>, Kept<PlanarPose>, Kept<Position<3>>, Kept<Pose>> kept_ = {};
 };
 
 /// The weights of a scheme, behind one type. Throws std::invalid_argument where they are for another number of joints.

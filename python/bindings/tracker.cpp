@@ -47,8 +47,9 @@ class TrackerAt final : public AnyTracker<Space> {
   [[nodiscard]] Reference<Space> corrected(const Reference<Space>& reference) const noexcept override {
     return tracker_.corrected(reference);
   }
-  Status finish(const Reference<Space>& now, const State<kDynamic>& next, const JointVector& field) noexcept override {
-    return tracker_.finish(now, next, field);
+  Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<kDynamic>& next,
+                const JointVector& at_start) noexcept override {
+    return tracker_.finish(now, middle, next, at_start);
   }
   Status advance(const TickReferences<Space>& references) noexcept override {
     return tracker_.advance(references).status;

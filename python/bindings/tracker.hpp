@@ -46,8 +46,8 @@ class AnyTracker {
   // A tick whose step is made in lanes (LaneTracker).
   virtual bool begin(const Vector<Space::kRows>& error, double length) noexcept = 0;
   [[nodiscard]] virtual Reference<Space> corrected(const Reference<Space>& reference) const noexcept = 0;
-  virtual Status finish(const Reference<Space>& now, const State<kDynamic>& next,
-                        const JointVector& field) noexcept = 0;
+  virtual Status finish(const Reference<Space>& now, const Reference<Space>& middle, const State<kDynamic>& next,
+                        const JointVector& at_start) noexcept = 0;
   virtual Status advance(const TickReferences<Space>& references) noexcept = 0;
 };
 

@@ -23,6 +23,7 @@ from ..motion.lanes import LANES
 from ..motion.sweeping import sweep
 from ..robots import Robot
 from ..schemes import SCHEMES
+from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .text import columns
 
@@ -36,6 +37,11 @@ HOW = (
     f"{EVALUATIONS} evaluations that RK4 makes there. An evaluation is kinematics, reference and scheme; integrating "
     "and recording are in it. Below, motions of the same kind that fp.sweep() ran in a second with FPBM, "
     f"{MOTIONS} at a time, on all processors."
+)
+HOW_WORST = (
+    "Microseconds a tick of fp.Tracker, as called from Python: a tick without active limits, and ticks of the motion with "
+    "the longest tick that a search has found. Each is the least of some runs. Passes: bound on the passes of "
+    "saturation in a tick. The source's bench/worst.cpp has the same in C++, a clearance and two arms."
 )
 HEADER = "Header to write, whole or not at all; - is the standard output."
 PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
@@ -53,12 +59,18 @@ def tool(short_help: str, example: str) -> Callable[[Callable[..., None]], click
 
 @tool("Time this machine.", "bench --seconds 1")
 @click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="How long each is timed.")
-def bench(seconds: float) -> None:
+@click.option("--worst", is_flag=True, help="Time the longest ticks that a search has found instead.")
+@click.option("--runs", type=click.IntRange(1, 1000), default=20, help="Of each motion, with --worst.")
+def bench(seconds: float, worst: bool, runs: int) -> None:
     """Time this machine: what a scheme costs an evaluation, and how many motions a second a sweep runs.
 
     As called from Python, on whatever else the machine has to do. The source's bench folder times single steps in C++,
     and other libraries.
     """
+    if worst:
+        click.echo(f"{click.wrap_text(HOW_WORST, WIDTH)}\n")
+        rows = [[each.case, *(f"{time:.1f}" for time in each[1:5]), str(each.passes)] for each in measure(runs)]
+        return click.echo(columns(["", "free", "median", "p99.9", "worst", "passes"], *rows))
     lanes = f"{LANES} lanes" if LANES > 1 else "no lanes"
     machine = f"{platform.system()} {platform.machine()}, {PROCESSORS} processors, {lanes}"
     click.echo(f"fpbm_cpp {__version__}, Python {platform.python_version()}, NumPy {np.__version__}, {machine}")

@@ -41,8 +41,7 @@ struct JerkLimitedJoint {
 
   /// Whether a state within some errors of this one is viable. A velocity may be a difference of positions over a tick.
   [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
-    return keeps(upper, {at.q - error.q, at.v - error.v, at.a - error.a}, error.q / tick) &&
-           keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
+    return far_from_bounds(at) || viable_near_bounds(at, error);
   }
 
   /// Accelerations within the bounds on acceleration and jerk after another one.
@@ -81,6 +80,31 @@ struct JerkLimitedJoint {
   }
 
  private:
+  [[nodiscard, gnu::noinline]] bool viable_near_bounds(const AxisState<Scalar>& at,
+                                                       const AxisState<Scalar>& error) const noexcept {
+    return keeps(upper, {at.q - error.q, at.v - error.v, at.a - error.a}, error.q / tick) &&
+           keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
+  }
+
+  /// Whether a state is so far from all bounds that it is viable. Most are.
+  [[nodiscard]] bool far_from_bounds(const AxisState<Scalar>& at) const noexcept {
+    const Scalar inverse_jerk = Scalar(1) / stop.jerk;
+    const Scalar size = std::abs(at.a);
+    const Scalar fastest = std::abs(at.v) + size * size * inverse_jerk / Scalar(2);
+    const Scalar longest = (stop.acceleration + size) * inverse_jerk;
+    const auto room = [&](const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
+      return q - envelope.rest + most_excess(envelope, fastest, longest) <= Scalar(0);
+    };
+    return fastest <= velocity && room(upper, at.q) && room(lower, -at.q);
+  }
+
+  /// The most that a stop from a velocity of at most `fastest`, whose excess over an envelope is greatest within
+  /// `longest`, adds to that excess.
+  [[nodiscard]] static Scalar most_excess(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
+                                          Scalar longest) noexcept {
+    return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
+  }
+
   [[nodiscard]] bool keeps(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
                            Scalar slack) const noexcept {
     const Scalar rises = std::max(at.a, Scalar(0));
@@ -99,8 +123,7 @@ struct JerkLimitedJoint {
     // longest.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
-    const Scalar excess = q - envelope.rest + top * (longest + envelope.delay + top * envelope.softness / Scalar(2));
-    if (gain <= room && excess <= Scalar(0)) return some.high;
+    if (gain <= room && q - envelope.rest + most_excess(envelope, top, longest) <= Scalar(0)) return some.high;
     const Scalar high = within_velocity(room, some);
     if (!(envelope.rest < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.rest;

@@ -20,7 +20,8 @@ namespace fpbm {
 
 /// What a Tracker keeps from tick to tick, and how a tick ends: a step of RK4 that keeps every bound is taken as it is;
 /// otherwise the tick's mean motion is limited (Limiter). If only the position at the step's end breaks a bound, the
-/// tick has its mean acceleration throughout. has_one_acceleration() names the ticks without a step of RK4.
+/// tick has its mean acceleration throughout. has_one_acceleration() and expects_limits() name the ticks without a step
+/// of RK4.
 template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
@@ -104,18 +105,18 @@ class LimitedState {
                                   {loop.state.qd, last_, change_});
   }
 
-  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration.
+  /// Whether the limits do not admit the acceleration at a tick's start. Such a tick has one acceleration, that of its
+  /// middle, in place of RK4's mean: next becomes the state after it, and loop has the kinematics of the middle. So the
+  /// ticks in which limits take most time resolve the task twice, not four times. reference: of the middle.
   template <typename Loop, typename Target>
-  [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
-    const JointState middle = motion_.middle(state_, last_);
-    typename Loop::X dx = Loop::packed(middle);
-    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
-    if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
-    return status;
+  [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, JointVector at_start, JointState& next,
+                                    Result& result) const noexcept {
+    if constexpr (!kSecondOrder) return false;
+    if (failed(result.status) || admits(motion_.after(state_, at_start))) return false;
+    result.status = worse(result.status, expect(loop, reference, at_start));
+    next = motion_.after(state_, at_start);
+    return true;
   }
-
-  /// Whether the limits admit a tick to a state.
-  [[nodiscard]] bool admits(const JointState& next) const noexcept { return limiter_.admits(state_, next, last_); }
 
   /// The state after a tick of a constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion_.after(state_, u); }
@@ -248,6 +249,19 @@ class LimitedState {
   [[nodiscard]] bool brakes(Status status) const noexcept {
     return (stopping_ && !keeps_first_level_) || failed(status);
   }
+
+  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration.
+  template <typename Loop, typename Target>
+  [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
+    const JointState middle = motion_.middle(state_, last_);
+    typename Loop::X dx = Loop::packed(middle);
+    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
+    if (!failed(status)) desired = column(dx, kSecondOrder ? 1 : 0);
+    return status;
+  }
+
+  /// Whether the limits admit a tick to a state.
+  [[nodiscard]] bool admits(const JointState& next) const noexcept { return limiter_.admits(state_, next, last_); }
 
   /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
   template <typename Arm>

@@ -26,8 +26,9 @@ namespace fpbm {
 /// them closely. resolve_measured() answers for a measured state: the acceleration for a torque controller to realise.
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
-/// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). A tick
-/// of several tasks at acceleration level has one acceleration, and no step of RK4.
+/// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). At
+/// acceleration level a tick of several tasks, or one that the limits will not admit, has one acceleration, and no step
+/// of RK4.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -136,14 +137,8 @@ class Tracker {
     } else {
       resolve(loop, references.stages[0], dx, result);
       field = column(dx, 0);
-      if constexpr (Loop::kSecondOrder) {
-        one_acceleration = !failed(result.status) && !kept_.admits(kept_.after(loop.qdd));
-      }
-      if (one_acceleration) {
-        JointVector u = loop.qdd;
-        result.status = worse(result.status, kept_.expect(loop, references.stages[1], u));
-        next = kept_.after(u);
-      } else {
+      one_acceleration = kept_.expects_limits(loop, references.stages[1], column(dx, dx.cols() - 1), next, result);
+      if (!one_acceleration) {
         if (!failed(result.status)) {
           result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
         }
@@ -160,17 +155,19 @@ class Tracker {
   }
 
   /// A tick whose step is made elsewhere (TrackerBatch): begin() takes the error at its start, and says whether
-  /// references are to be corrected(); finish() takes where the step led, and its joint velocities at the start.
+  /// references are to be corrected(); finish() takes the corrected reference of the tick's middle, where the step led,
+  /// and the motion at its start: joint velocities, or accelerations at acceleration level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     kept_.correction().begin(error, length);
     return kept_.correction().active();
   }
   [[nodiscard]] Target corrected(const Target& reference) const noexcept { return kept_.correction()(reference); }
-  Status finish(const Target& now, const JointState& next, const JointVector& field) noexcept {
+  Status finish(const Target& now, const Target& middle, JointState next, const JointVector& at_start) noexcept {
     Result result = kept_.idle(state());
     result.error = kept_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
-    kept_.take(loop, now, next, field, false, result);
+    const bool one_acceleration = kept_.expects_limits(loop, middle, at_start, next, result);
+    kept_.take(loop, now, next, at_start, one_acceleration, result);
     return result.status;
   }
 

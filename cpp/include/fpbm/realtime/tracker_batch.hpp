@@ -69,7 +69,8 @@ class TrackerBatch {
     X dx = x;
     const Mask<In> stepped = step(loop, references, x, dx);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Status status = stepped[lane] ? finish(lane, sample.reference, x, dx) : alone(lane, way);
+      const Status status =
+          stepped[lane] ? finish(lane, sample.reference, references.stages[1], x, dx) : alone(lane, way);
       status_[lane] = worse(status_[lane], status);
       set_lane(sample.qdd, lane, Vector<N, Scalar>(trackers_[lane].acceleration()));
     }
@@ -102,9 +103,10 @@ class TrackerBatch {
   }
 
   /// The end of a tracker's tick that was stepped to x, with dx/dt at its start.
-  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const X& x, const X& dx) noexcept {
+  [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const Reference<Space, In>& middle,
+                              const X& x, const X& dx) noexcept {
     State<N, Scalar> next{column(x, 0, lane), column(x, x.cols() - 1, lane)};
-    return trackers_[lane].finish(of_lane(now, lane), next, column(dx, 0, lane));
+    return trackers_[lane].finish(of_lane(now, lane), of_lane(middle, lane), next, column(dx, dx.cols() - 1, lane));
   }
 
   /// A tracker's whole tick.
