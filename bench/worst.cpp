@@ -41,11 +41,15 @@ template <typename Case>
 void count_ticks(const Found& found) {
   WorstMotion<Case> free(free_motion<Case>());
   for (int k = 0; k < kLongest && free.next(); ++k) {
-    k + kWindow < kLongest ? free.tick() : count("free/" + Case::name(), [&] { free.tick(); });
+    k + kWindow < kLongest ? free.tick()
+                           : count(
+                                 "free/" + Case::name(), [&] { free.tick(); });
   }
   WorstMotion<Case> motion(found.numbers);
   for (int k = 0; motion.next() && k <= found.tick + kWindow; ++k) {
-    k < found.tick - kWindow ? motion.tick() : count("worst/" + Case::name(), [&] { motion.tick(); });
+    k < found.tick - kWindow ? motion.tick()
+                             : count(
+                                   "worst/" + Case::name(), [&] { motion.tick(); });
   }
 }
 #endif

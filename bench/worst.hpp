@@ -57,8 +57,8 @@ inline void move(fpbm::Reference<fpbm::Position<3>>& target, const fpbm::Vector<
 /// The second task of a stack of a grasp, and the hand and the elbow of other stacks.
 template <typename... Levels, typename Point>
 void move(fpbm::Reference<fpbm::StackSpace<Levels...>>& target, const Point& start, const Phase& phase, double s) {
-  constexpr bool kGrasp = sizeof...(Levels) == 3 && !std::is_same_v<std::decay_t<decltype(std::get<1>(start))>,
-                                                                    fpbm::Vector<3>>;
+  constexpr bool kGrasp =
+      sizeof...(Levels) == 3 && !std::is_same_v<std::decay_t<decltype(std::get<1>(start))>, fpbm::Vector<3>>;
   constexpr int kMoved = kGrasp ? 1 : 0;
   auto pose = fpbm::Reference<fpbm::Pose>::hold(std::get<kMoved>(start));
   move(pose, std::get<kMoved>(start), phase, s);

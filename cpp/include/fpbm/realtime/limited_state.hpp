@@ -105,14 +105,16 @@ class LimitedState {
                                   {loop.state.qd, last_, change_});
   }
 
-  /// Whether the limits do not admit the acceleration at a tick's start. Such a tick has one acceleration, that of its
-  /// middle, in place of RK4's mean: next becomes the state after it, and loop has the kinematics of the middle. So the
-  /// ticks in which limits take most time resolve the task twice, not four times. reference: of the middle.
+  /// Whether the limits do not admit the acceleration at a tick's start, or damping acts there. Such a tick has one
+  /// acceleration, that of its middle, in place of RK4's mean: next becomes the state after it, and loop has the
+  /// kinematics of the middle. So the ticks that take most time resolve the task twice, not four times. reference: of
+  /// the middle.
   template <typename Loop, typename Target>
   [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, JointVector at_start, JointState& next,
                                     Result& result) const noexcept {
     if constexpr (!kSecondOrder) return false;
-    if (failed(result.status) || admits(motion_.after(state_, at_start))) return false;
+    if (failed(result.status)) return false;
+    if (result.status != Status::kDamped && admits(motion_.after(state_, at_start))) return false;
     result.status = worse(result.status, expect(loop, reference, at_start));
     next = motion_.after(state_, at_start);
     return true;

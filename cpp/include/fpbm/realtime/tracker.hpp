@@ -27,8 +27,8 @@ namespace fpbm {
 /// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
 /// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). At
-/// acceleration level a tick of several tasks, or one that the limits will not admit, has one acceleration, and no step
-/// of RK4.
+/// acceleration level a tick of several tasks, or one at whose start the limits do not admit the motion or damping
+/// acts, has one acceleration, and no step of RK4.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
