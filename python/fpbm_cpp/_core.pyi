@@ -238,6 +238,7 @@ class Scheme:
         xdd: numpy.typing.ArrayLike | None = None,
         *,
         task: str = "position",
+        out: numpy.typing.NDArray[numpy.float64] | None = None,
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
         Joint motion that the scheme asks for in a state, or in each of k states.
@@ -254,11 +255,13 @@ class Scheme:
             Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
         task : str
             'position' or 'pose'.
+        out : numpy.ndarray, shape (n,) or (k, n), optional
+            Array of float64, C-contiguous, for the result.
 
         Returns
         -------
-        numpy.ndarray, shape (n,)
-            qd [rad/s] at velocity level, qdd [rad/s^2] at acceleration level.
+        numpy.ndarray, shape (n,) or (k, n)
+            qd [rad/s] at velocity level, qdd [rad/s^2] at acceleration level: out, or a new array.
 
         Raises
         ------
@@ -276,6 +279,8 @@ class Scheme:
         x: numpy.typing.ArrayLike,
         xd: numpy.typing.ArrayLike,
         xdd: numpy.typing.ArrayLike | None = None,
+        *,
+        out: numpy.typing.NDArray[numpy.float64] | None = None,
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
         The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.

@@ -78,9 +78,13 @@ def _references(case: str, tip: Any, numbers: Array) -> Iterator[tuple[Any, ...]
             pose = np.array(start)
             pose[:3, 3] += moved
             pose[:3, :3] = rotation(turned + k * DT * rates[3:]) @ pose[:3, :3]
-            yield ({"tip": (pose, rates), "elbow": tip["elbow"] - displacement / 2},) if case.endswith("_levels") else (
-                pose,
-                rates,
+            yield (
+                ({"tip": (pose, rates), "elbow": tip["elbow"] - displacement / 2},)
+                if case.endswith("_levels")
+                else (
+                    pose,
+                    rates,
+                )
             )
 
 

@@ -20,7 +20,7 @@ MOST = {
     "code and constants [bytes]": 225_000,
     "stack [bytes]": 9_000,
     "instructions a tick": 62_000,
-    "instructions a tick, where limits are met": 275_000,
+    "instructions a tick, where limits are met": 115_000,
 }
 # The heap; texts and streams; arithmetic in double, which this processor would do in software.
 FORBIDDEN = re.compile(

@@ -736,6 +736,21 @@ def test_ctrl_c_ends_servo_in_peace() -> None:
     assert (code, err, out) == (0, "", "")
 
 
+def test_bench_worst() -> None:
+    """Each case's longest tick takes longer than its free tick."""
+    result = call("bench", "--worst", "--runs", "2")
+    assert result.exit_code == 0, result.output
+    rows = [line.split() for line in result.output.splitlines() if line.startswith("panda/")]
+    assert [row[0] for row in rows] == [
+        "panda/pose_jerk", "panda/pose", "panda/position_jerk", "panda/position", "panda/three_levels"
+    ]  # fmt: skip
+    assert [int(row[-1]) for row in rows] == [42, 21, 42, 21, 126]
+    for row in rows:
+        free, median, most, worst = (float(each) for each in row[1:5])
+        assert free < worst
+        assert median <= most <= worst
+
+
 def test_bench() -> None:
     result = call("bench", "--seconds", "0.01")
     assert result.exit_code == 0, result.output

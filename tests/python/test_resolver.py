@@ -240,6 +240,50 @@ def test_many_states_are_each_alone(scheme, task):
     assert scheme.resolve(arm, q[:0], qd[:0], x[0], xd[0], xdd[0], task=task).shape == (0, 7)
 
 
+@pytest.mark.parametrize("states", [(), (5,)])
+def test_a_result_is_written_to_out(states):
+    arm, scheme = IN_SPACE[0], SCHEMES[2]
+    rng = np.random.default_rng(7)
+    q, qd = rng.uniform(-1.5, 1.5, (2, *states, 7))
+    arguments = (arm, q, qd, [0.4, 0.1, 0.3], np.zeros(3), np.zeros(3))
+    out = np.empty((*states, 7))
+    assert scheme.resolve(*arguments, out=out) is out
+    assert out.tobytes() == scheme.resolve(*arguments).tobytes()
+
+
+def test_of_kinematics_of_ones_own_too(arm, q0):
+    kinematics, out = arm.kinematics(q0, q0), np.empty(4)
+    known = fp.Kinematics(kinematics.tip, kinematics.J, kinematics.Jd)
+    assert fp.MAN().resolve(known, q0, q0, [1, 1], [0, 0], [0, 0], out=out) is out
+    assert out.tobytes() == fp.MAN().resolve(arm, q0, q0, [1, 1], [0, 0], [0, 0]).tobytes()
+
+
+@pytest.mark.parametrize(
+    "out",
+    [
+        np.empty(3),
+        np.empty((1, 4)),
+        np.empty(4, dtype=np.float32),
+        np.empty(8)[::2],
+        [0.0] * 4,
+        np.broadcast_to(0.0, 4),
+    ],
+)
+def test_out_that_cannot_be_written_is_refused(arm, q0, out):
+    with pytest.raises(ValueError, match=r"out: must be a writeable, C-contiguous array of float64 of shape \(4,\)"):
+        fp.MVN().resolve(arm, q0, q0, [1, 1], [0, 0], out=out)
+
+
+def test_a_scheme_serves_arms_of_several_sizes_in_turn():
+    one = fp.MVN(k=1)
+    for joints in (4, 3, 4, 7, 3):
+        arm, q = fp.PlanarArm(np.ones(joints)), np.linspace(0.2, 0.5, joints)
+        for task, x in (("position", [1, 1]), ("pose", [1, 1, 0.2])):
+            rates = np.zeros(len(x))
+            same = fp.MVN(k=1).resolve(arm, q, q, x, rates, rates, task=task)
+            assert one.resolve(arm, q, q, x, rates, rates, task=task).tobytes() == same.tobytes()
+
+
 def test_many_states_of_an_arm_in_the_plane(arm, q0):
     q = q0 + np.linspace(0, 0.1, 5)[:, None]
     many = fp.MVN().resolve(arm, q, 0 * q, [1.0, 1.0], [0.1, 0.2])

@@ -39,9 +39,9 @@ HOW = (
     f"{MOTIONS} at a time, on all processors."
 )
 HOW_WORST = (
-    "Microseconds a tick of fp.Tracker, as called from Python: a tick without active limits, and ticks of the motion with "
-    "the longest tick that a search has found. Each is the least of some runs. Passes: bound on the passes of "
-    "saturation in a tick. The source's bench/worst.cpp has the same in C++, a clearance and two arms."
+    "Microseconds a tick of fp.Tracker, as called from Python: a tick without active limits, and ticks of the motion "
+    "with the longest tick that a search has found. Each is the least of some runs. Passes: bound on the passes of "
+    "saturation in a tick. The source's bench/worst.cpp has the same in C++, and a clearance and two arms as well."
 )
 HEADER = "Header to write, whole or not at all; - is the standard output."
 PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
