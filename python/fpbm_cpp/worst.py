@@ -1,7 +1,7 @@
 """Motions whose ticks take longest, and how long their ticks take on this machine, as called from Python.
 
-bench/search_worst.cpp found the motions, by the number of executed basic blocks: worst_motions.txt has the numbers of
-each, which bench/worst.hpp reads in the same way.
+bench/search_worst.cpp found the motions, by the number of executed basic blocks. worst_motions.txt has the numbers of
+each motion; bench/worst.hpp says what they are, and reads the same file.
 """
 
 from __future__ import annotations

@@ -86,7 +86,8 @@ struct JerkLimitedJoint {
            keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
   }
 
-  /// Whether a state is so far from all bounds that it is viable. Most are.
+  /// Whether a state is so far from all bounds that it is viable: |q̇| + u²/2J is within the bound on q̇, and a stop from
+  /// that velocity ends before both envelopes. Most states are so far. False says nothing.
   [[nodiscard]] bool far_from_bounds(const AxisState<Scalar>& at) const noexcept {
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar size = std::abs(at.a);
@@ -98,8 +99,8 @@ struct JerkLimitedJoint {
     return fastest <= velocity && room(upper, at.q) && room(lower, -at.q);
   }
 
-  /// The most that a stop from a velocity of at most `fastest`, whose excess over an envelope is greatest within
-  /// `longest`, adds to that excess.
+  /// The most that a stop adds to the excess over an envelope [rad] or [m]: v (t + c/d + v/2d) for velocities up to v =
+  /// fastest [rad/s], if the excess is greatest within the time t = longest [s].
   [[nodiscard]] static Scalar most_excess(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
                                           Scalar longest) noexcept {
     return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));

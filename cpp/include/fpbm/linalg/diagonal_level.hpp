@@ -12,9 +12,10 @@ namespace fpbm {
 /// Rows of a level that is a posture of all joints: J = diag(entries), without zeros there.
 template <int N, typename Scalar>
 struct DiagonalLevel {
-  Vector<N, Scalar> entries;
+  Vector<N, Scalar> entries;  ///< Of the diagonal, n.
 
   [[nodiscard]] Eigen::Index rows() const noexcept { return entries.size(); }
+  /// Least magnitude of an entry: a lower bound on the singular values of J Z, Z orthonormal.
   [[nodiscard]] Scalar least() const noexcept {
     return std::abs(*std::min_element(entries.data(), entries.data() + entries.size(),
                                       [](Scalar a, Scalar b) { return std::abs(a) < std::abs(b); }));

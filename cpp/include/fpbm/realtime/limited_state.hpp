@@ -106,9 +106,9 @@ class LimitedState {
   }
 
   /// Whether the limits do not admit the acceleration at a tick's start, or damping acts there. Such a tick has one
-  /// acceleration, that of its middle, in place of RK4's mean: next becomes the state after it, and loop has the
-  /// kinematics of the middle. So the ticks that take most time resolve the task twice, not four times. reference: of
-  /// the middle.
+  /// acceleration, that of its middle, and no step of RK4: the function sets next to the state after the tick, and
+  /// leaves the kinematics of the middle in loop. So the ticks that take most time resolve the task twice, not four
+  /// times. reference: of the middle. at_start: joint accelerations [rad/s²].
   template <typename Loop, typename Target>
   [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, JointVector at_start, JointState& next,
                                     Result& result) const noexcept {
