@@ -258,3 +258,24 @@ def test_bad_references(panda, settling):
     slow = fp.Tracker(panda, fp.MVN(), BENT)
     with pytest.raises(ValueError, match="velocity-level"):
         slow.resolve_measured(BENT, np.zeros(7), slow.tip)
+
+
+@pytest.mark.parametrize("task", ["position", "pose"])
+@pytest.mark.parametrize("name", ["panda", "ur5e", "gen3"])
+def test_a_tick_without_active_limits_is_a_step_of_rk4(name, task):
+    """The same bits as with limits that are a hundred times as wide; other bits in ticks with active limits."""
+    arm = fp.SerialArm.preset(name)
+    limits = replace(arm.limits, jerk=None)
+    wide = replace(limits, velocity=100 * limits.velocity, acceleration=100 * limits.acceleration)
+    q0 = np.array([0.3, 0.5, 0.2, -1.5, 0.1, 1.2, 0.4])[: arm.dof]
+    scheme = fp.FPBM(0.6, np.ones(arm.dof), k1=10, k2=25, null_damping=2)
+    for speed, same in ((0.01, True), (5.0, False)):  # [m/s], of a target that leaves the tip at once.
+        trackers = [fp.Tracker(arm, scheme, q0, task=task, limits=each) for each in (limits, wide)]
+        x, xd = np.array(trackers[0].tip), np.zeros(6 if task == "pose" else 3)
+        xd[0] = speed
+        ticks = []
+        for k in range(100):
+            moved = x.copy()
+            moved[(0, 3) if task == "pose" else 0] += speed * DT * k
+            ticks.append([tracker.tick(moved, xd).q.tobytes() for tracker in trackers])
+        assert all(ours == others for ours, others in ticks) == same
