@@ -220,10 +220,11 @@ inline fpbm::Clearance<7> surroundings() {
 
 /// How many of its pairs are within 15 cm of one another in the bent posture.
 inline int near_pairs() {
-  auto clearance = surroundings();
-  clearance.place(Panda::bent());
+  const auto clearance = surroundings();
+  auto placed = clearance.placement();
+  clearance.place(Panda::bent(), placed);
   int count = 0;
-  for (const auto& pair : clearance.pairs()) count += clearance.nearest_of(pair).distance < 0.15;
+  for (const auto& pair : clearance.pairs()) count += clearance.nearest_of(placed, pair).distance < 0.15;
   return count;
 }
 

@@ -21,8 +21,7 @@ double run(const char* name, const Clearance& kept, Clearance measured) {
   fpbm::PathFollower follower(line, tracker.tip(), 1e-3);
   double nearest = 1.0, error = 0.0;
   const auto record = [&](const auto& sample, const auto&) noexcept {
-    measured.place(sample.q);
-    nearest = std::min(nearest, measured.nearest_pair().second);
+    nearest = std::min(nearest, measured.nearest_pair(sample.q).second);
     error = sample.error.norm();
   };
   const auto result = fpbm::track(tracker, follower, fpbm::TimeGrid(line.duration(), 1e-3, 1.0), record);

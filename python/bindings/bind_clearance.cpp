@@ -62,10 +62,9 @@ void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const py::ob
   }
 }
 
-std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q) {
+std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q) {
   if (clearance.shape_pairs() == 0) return std::nullopt;
-  clearance.place(q);
-  const auto [pair, distance] = clearance.nearest_pair();
+  const auto [pair, distance] = clearance.nearest_pair(q);
   return PyNearest{clearance.names(clearance.pairs()[pair]), distance};
 }
 
@@ -93,7 +92,7 @@ class PyClearance {
 
   PyClearance(const Model& model, const py::object& given) : clearance_(clearance_of(model, given)) {}
 
-  [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) {
+  [[nodiscard]] std::optional<PyNearest> nearest(const ArrayLike& q) const {
     return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.robot().dof())));
   }
   [[nodiscard]] Pairs pairs() const { return names(clearance_.pairs()); }

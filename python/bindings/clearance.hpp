@@ -29,7 +29,7 @@ Clearance<kDynamic> clearance_of(const Model& model, const pybind11::object& giv
 void add_bounds(Clearance<kDynamic>& clearance, const Model& model, const pybind11::object& bounds);
 
 /// The pair of shapes nearest to one another in a posture; none where none is kept apart.
-std::optional<PyNearest> nearest_at(Clearance<kDynamic>& clearance, const JointVector& q);
+std::optional<PyNearest> nearest_at(const Clearance<kDynamic>& clearance, const JointVector& q);
 
 /// Moves the obstacle of that name. Throws std::invalid_argument where there is none, or the shape is of another kind.
 void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, const Shape& shape,

@@ -109,14 +109,14 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& 
   Recorder<Space> record(output, Level::kAcceleration);
   RolloutResult<kDynamic> result{Status::kOk, 0.0, tracker.state(), 0};
   Kinematics<Space, kDynamic> kinematics;
+  auto placed = tracker.clearance().placement();
   for (int k = 0; k < motion.grid.samples(); ++k) {
     const State<kDynamic> state = tracker.state();
     const auto tip = point_of<Space>(tasks.frame_of(led));
     const auto reference = Reference<Space>::hold(point_of<Space>(followers.first()));
     if (output.summary != nullptr) motion.arm->kinematics(state.q, kinematics);
     if (output.clearance != nullptr) {
-      tracker.clearance().place(state.q);
-      output.clearance[k] = tracker.clearance().nearest_pair().second;
+      output.clearance[k] = tracker.clearance().nearest_pair(state.q, placed).second;
     }
     const StackMotion::Result tick = tasks.tick(sources);
     result = {worse(result.status, tick.status), motion.grid.time(k), state, k + 1};
@@ -145,11 +145,11 @@ RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Outpu
   const auto tracker = tracker_of(*this, limited);
   Recorder<Space> record(output, Level::kAcceleration);
   AnyFollower<Space> follower(path, tracker->tip());
-  auto& clearance = tracker->clearance();
+  const auto& clearance = tracker->clearance();
+  auto placed = clearance.placement();
   const auto with_clearance = [&](const auto& sample, const auto& tick) noexcept {
     if (output.clearance != nullptr) {
-      clearance.place(sample.q);
-      output.clearance[sample.index] = clearance.nearest_pair().second;
+      output.clearance[sample.index] = clearance.nearest_pair(sample.q, placed).second;
     }
     return record(sample, tick);
   };

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fpbm/clearance/advance.hpp"
+#include "fpbm/clearance/advancement.hpp"
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 
@@ -76,18 +76,18 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
       Random random(seed);
       auto clearance = surrounded(tree, random);
       const Joints q = random.uniform(clearance.robot().dof(), -1.5, 1.5);
-      clearance.place(q);
+      auto placed = clearance.placement();
       for (const ShapePair& pair : clearance.pairs()) {
-        clearance.place(q);
-        const Separation<kOpen, double> plane(clearance, pair);
+        clearance.place(q, placed);
+        const Separation<Clearance<kOpen>> plane(clearance, placed, pair, clearance.nearest_of(placed, pair));
         if (plane.distance < 0.01) continue;
         EXPECT_NEAR(std::min(plane.gap(0), plane.gap(1)), plane.distance, 1e-12);
         const Joints analytic = clearance.robot().drives().by_drive(plane.of_distance());
         constexpr double kStep = 1e-6;
         for (Eigen::Index i = 0; i < q.size(); ++i) {
           const auto distance = [&](double step) {
-            clearance.place(q + step * Joints::Unit(q.size(), i));
-            return clearance.nearest_of(pair).distance;
+            clearance.place(q + step * Joints::Unit(q.size(), i), placed);
+            return clearance.nearest_of(placed, pair).distance;
           };
           const double forward = (distance(kStep) - plane.distance) / kStep;
           const double backward = (plane.distance - distance(-kStep)) / kStep;
@@ -101,6 +101,85 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
   EXPECT_GE(compared, trials(40000));
 }
 
+/// Whether all pairs keep their margin along a sweep from q.
+[[nodiscard]] bool keeps_apart(Clearance<kOpen>& clearance, const Joints& q, const Sweep<kOpen>& sweep) {
+  NearPairs<Clearance<kOpen>> near(clearance);
+  near.go_to(clearance, q);
+  return Advancement<Clearance<kOpen>>(clearance).keeps_apart(clearance, near, sweep, 0.0);
+}
+
+template <typename Scalar>
+[[nodiscard]] Tree<Scalar> tree_in(const Tree<>& tree) {
+  Tree<Scalar> result;
+  for (const auto& [joint, parent, moved] : tree.joints) {
+    Joint<Scalar> cast{joint.type, {}, joint.axis.template cast<Scalar>()};
+    cast.placement.p = joint.placement.p.template cast<Scalar>();
+    cast.placement.R = joint.placement.R.template cast<Scalar>();
+    cast.bounds.lower = static_cast<Scalar>(joint.bounds.lower);
+    cast.bounds.upper = static_cast<Scalar>(joint.bounds.upper);
+    const auto& [leader, ratio, offset] = joint.mimic;
+    cast.mimic = {leader, static_cast<Scalar>(ratio), static_cast<Scalar>(offset)};
+    result.joints.push_back({cast, parent});
+  }
+  return result;
+}
+
+/// From posture to posture, with an obstacle that jumps, the near pairs are those found from distances alone.
+template <typename Scalar>
+void expect_all_near_pairs() {
+  int near_pairs = 0;
+  for (const auto& [name, tree] : robots()) {
+    std::vector<LinkCapsule<Scalar>> capsules;
+    for (const auto& [link, stick, title] : sticks(tree, 0.05)) {
+      capsules.push_back(
+          {link, {stick.a.template cast<Scalar>(), stick.b.template cast<Scalar>(), Scalar(stick.radius)}, title});
+    }
+    Capsule<Scalar> post{{Scalar(0.4), Scalar(0), Scalar(0)}, {Scalar(0.4), Scalar(0), Scalar(1)}, Scalar(0.05)};
+    for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(40)); ++seed) {
+      Random random(seed);
+      Clearance<kOpen, Scalar> clearance(tree_in<Scalar>(tree), capsules, {{"post", post}}, Scalar(0.01));
+      const Eigen::Index n = clearance.robot().dof();
+      const Eigen::Index joints = clearance.robot().joints();
+      Vector<kOpen, Scalar> q = random.uniform(n, -1.5, 1.5).template cast<Scalar>();
+      NearPairs<Clearance<kOpen, Scalar>> near(clearance);
+      auto placed = clearance.placement();
+      const double size = std::pow(10.0, random.uniform(-7.0, -1.0));  // Below the round-off of float, up to 0.1 rad.
+      const Joints drift = size * random.uniform(n, -1.0, 1.0);
+      for (int k = 0; k < 200; ++k) {
+        q += drift.template cast<Scalar>();
+        if (seed % 4 == 0 && k % 50 == 49) {
+          post.a(1) = post.b(1) = Scalar(random.uniform(-1.0, 1.0));
+          ASSERT_TRUE(clearance.move(0, post, Vector<3, Scalar>::Zero()));
+        }
+        near.go_to(clearance, q);
+        clearance.place(q, placed);
+        near.set_displacements(clearance, (random.uniform(0.0, 0.1) * Joints::Ones(joints)).template cast<Scalar>());
+        const auto needs = [&](const ShapePair& pair) { return clearance.margin() + near.displacement_of(pair); };
+        std::vector<std::size_t> found;
+        near.each(clearance, needs, [&](std::size_t i, const Nearest<Scalar>& nearest) {
+          EXPECT_EQ(nearest.distance, clearance.nearest_of(placed, clearance.pairs()[i]).distance);
+          found.push_back(i);
+        });
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < clearance.pairs().size(); ++i) {
+          const ShapePair& pair = clearance.pairs()[i];
+          if (clearance.nearest_of(placed, pair).distance < needs(pair)) expected.push_back(i);
+        }
+        ASSERT_EQ(found, expected) << name << ", seed " << seed << ", step " << k;
+        near_pairs += static_cast<int>(found.size());
+      }
+    }
+  }
+  EXPECT_GE(near_pairs, trials(40000));
+}
+
+TEST(NearPairs, are_those_of_the_distances_in_double) {
+  expect_all_near_pairs<double>();
+}
+TEST(NearPairs, are_those_of_the_distances_in_float) {
+  expect_all_near_pairs<float>();
+}
+
 /// Where keeps_apart() says so, no place in the sweep is nearer than the margin; and it says so nearly as often as it
 /// is so.
 TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
@@ -112,8 +191,7 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       auto clearance = surrounded(tree, random);
       const Eigen::Index n = clearance.robot().dof();
       const Joints q = random.uniform(n, -1.5, 1.5);
-      clearance.place(q);
-      if (!(clearance.nearest_pair().second > 0.0)) continue;
+      if (!(clearance.nearest_pair(q).second > 0.0)) continue;
       const double size = std::pow(10.0, random.uniform(-2.0, 0.0));
       const Joints none = Joints::Zero(n);
       const Joints unknown = Joints::Constant(n, std::numeric_limits<double>::quiet_NaN());
@@ -124,15 +202,15 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       const Joints either = 0.02 * size * random.uniform(n, -1.0, 1.0);
       if (seed % 2 == 0) sweep.low = either.cwiseMin(0.0);
       if (seed % 3 == 0) sweep.high = either.cwiseMax(0.0);
-      const bool kept = keeps_apart(clearance, q, sweep, 0.0);
+      const bool kept = keeps_apart(clearance, q, sweep);
       double least = 1e9;
       for (int place = 0; place < 60; ++place) {
         const double t = random.uniform(0.0, 1.0);
         const Joints rest = sweep.low + Joints(random.uniform(n, 0.0, 1.0)).cwiseProduct(sweep.high - sweep.low);
         const double s = place < 30 ? place / 29.0 : t;
         const double most = gains ? std::min(2.0 * s, 1.0) : 1.0;
-        clearance.place(q + s * sweep.way + random.uniform(0.0, most) * sweep.tick + rest);
-        least = std::min(least, clearance.nearest_pair().second);
+        const Joints between = q + s * sweep.way + random.uniform(0.0, most) * sweep.tick + rest;
+        least = std::min(least, clearance.nearest_pair(between).second);
       }
       if (kept) {
         ASSERT_GE(least, 0.0) << name << ", seed " << seed;
@@ -155,8 +233,7 @@ TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
     for (int part = 0; part < 4; ++part) {
       Sweep<kOpen> sweep{none, none, none, none, none};
       (part == 0 ? sweep.way : part == 1 ? sweep.tick : part == 2 ? sweep.low : sweep.high)(3) = bad;
-      clearance.place(q);
-      EXPECT_FALSE(keeps_apart(clearance, q, sweep, 0.0)) << "part " << part;
+      EXPECT_FALSE(keeps_apart(clearance, q, sweep)) << "part " << part;
     }
   }
 }

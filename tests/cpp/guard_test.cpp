@@ -61,8 +61,7 @@ struct Scene {
     std::vector<Obstacle<>> obstacles;
     for (int k = 0; k < 3; ++k) obstacles.push_back(random_obstacle(random, kinematics.length, k));
     Clearance<kOpen> clearance(chain, sticks(chain, 0.04 * kinematics.length), obstacles, margin);
-    clearance.place(q);
-    if (clearance.nearest_pair().second > margin) return {clearance, q};
+    if (clearance.nearest_pair(q).second > margin) return {clearance, q};
   }
 }
 
@@ -95,8 +94,7 @@ void pull(const Chain<>& chain, std::uint32_t seed, int ticks, Run& run) {
       const double t = part * kTick / 4.0;
       Vector<kOpen> between = q + (part / 4.0) * (tick.q - q);
       if (kLevel == Level::kAcceleration) between = q + t * qd + t * t / 2.0 * tick.qdd;
-      scene.clearance.place(between);
-      run.nearest = std::min(run.nearest, scene.clearance.nearest_pair().second - margin);
+      run.nearest = std::min(run.nearest, scene.clearance.nearest_pair(between).second - margin);
     }
     ++run.ticks;
     if (tick.status == Status::kBlocked) ++run.blocked;
@@ -197,8 +195,7 @@ template <typename Tracker_>
     target.xdd(1) = -0.25 * w * w * std::sin(w * s);
     const auto tick = tracker.tick(target);
     auto clearance = tracker.guard().clearance();
-    clearance.place(tick.q);
-    slide.nearest = std::min(slide.nearest, clearance.nearest_pair().second);
+    slide.nearest = std::min(slide.nearest, clearance.nearest_pair(tick.q).second);
     const Vector<kOpen> jerk = (tick.qdd - last) / kTick;
     last = tick.qdd;
     if (s < 2.0) continue;
@@ -244,8 +241,7 @@ TEST(Guard, gives_way_to_a_post) {
       ASSERT_TRUE(tracker.guard().clearance().move(0, post_at(y), Vector<3>(0.0, speed, 0.0)));
       const auto tick = tracker.tick(home);
       auto clearance = tracker.guard().clearance();
-      clearance.place(tick.q);
-      nearest = std::min(nearest, clearance.nearest_pair().second);
+      nearest = std::min(nearest, clearance.nearest_pair(tick.q).second);
       away = std::max(away, tick.error.norm());
     }
     EXPECT_GE(nearest, 0.0) << speed;
@@ -303,8 +299,7 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
         (void)tracker.guard().clearance().move(0, post_at(k), Vector<3>(speed * way));
         const auto tick = tracker.tick(home);
         auto clearance = tracker.guard().clearance();
-        clearance.place(tick.q);
-        nearest = std::min(nearest, clearance.nearest_pair().second);
+        nearest = std::min(nearest, clearance.nearest_pair(tick.q).second);
       }
       EXPECT_GE(nearest, 0.0) << "seed " << seed << ", " << speed << " m/s";
     }
@@ -330,8 +325,7 @@ TEST(Guard, goes_back_when_a_shape_leaves) {
     }
     if (k >= 10000 && k < 15000) {
       auto clearance = tracker.guard().clearance();
-      clearance.place(tick.q);
-      ASSERT_GE(clearance.nearest_pair().second, 0.005) << k;
+      ASSERT_GE(clearance.nearest_pair(tick.q).second, 0.005) << k;
       ASSERT_LE(tick.qd.cwiseAbs().maxCoeff(), 0.5) << k;
     }
   }
@@ -345,14 +339,12 @@ TEST(Guard, goes_out_of_a_shape_that_jumped) {
     auto tracker = panda_tracker({{"post", post_at(-0.7)}});
     const auto home = Reference<Position<3>>::hold(tracker.tip());
     auto& clearance = tracker.guard().clearance();
-    const double room = clearance.nearest_pair().second - clearance.margin();
+    const double room = clearance.nearest_pair(tracker.state().q).second - clearance.margin();
     (void)clearance.move(0, post_at(-0.7 + room + nearer), Vector<3>::Zero());
     double before = -1.0;
     for (int k = 0; k < 2000; ++k) {
       const auto tick = tracker.tick(home);
-      auto placed = tracker.guard().clearance();
-      placed.place(tick.q);
-      const double now = placed.nearest_pair().second - clearance.margin();
+      const double now = clearance.nearest_pair(tick.q).second - clearance.margin();
       if (before < 0.0) {
         ASSERT_GE(now, before - 1e-9) << nearer << " m, tick " << k;
       } else {
@@ -385,8 +377,7 @@ TEST(Guard, self_motion_keeps_away_in_time) {
     double error = 0.0;
     for (int k = 0; k < 5000; ++k) error = std::max(error, tracker.tick(home).error.norm());
     auto clearance = tracker.guard().clearance();
-    clearance.place(tracker.state().q);
-    return std::pair(clearance.nearest_pair().second, error);
+    return std::pair(clearance.nearest_pair(tracker.state().q).second, error);
   };
   const auto [without, still] = settle(0.0);
   const auto [with, error] = settle(40.0);
@@ -496,8 +487,7 @@ void expect_arms_apart(bool with_torso) {
       const auto tick = tracker.tick(target);
       blocked += tick.status == Status::kBlocked ? 1 : 0;
       for (int part = 1; part <= 2; ++part) {
-        clearance.place(q + (part / 2.0) * (tick.q - q));
-        nearest = std::min(nearest, clearance.nearest_pair().second - kMargin);
+        nearest = std::min(nearest, clearance.nearest_pair(q + (part / 2.0) * (tick.q - q)).second - kMargin);
       }
       for (int i = 0; i < N; ++i) {
         const double change = (tick.q(i) - 2.0 * q(i) + before(i)) / (kTick * kTick);

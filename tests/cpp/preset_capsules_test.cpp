@@ -87,8 +87,7 @@ TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
       ADD_FAILURE() << name << ": " << first << " and " << second << " overlap in all postures";
     }
     for (const Vector<kOpen>& home : homes(name)) {
-      clearance.place(kDegree * home);
-      const auto [pair, distance] = clearance.nearest_pair();
+      const auto [pair, distance] = clearance.nearest_pair(kDegree * home);
       const auto [first, second] = clearance.names(clearance.pairs()[pair]);
       EXPECT_GT(distance, 1e-3) << name << " at " << home.transpose() << ": " << first << " and " << second;
     }
@@ -123,16 +122,18 @@ TEST(PresetCapsules, two_pandas_have_those_of_each_arm) {
   EXPECT_TRUE(both.left_out().empty());
   const std::size_t count = one.bodies().size();
   ASSERT_EQ(both.bodies().size(), 2 * count);
+  auto placed = both.placement();
+  auto placed_alone = one.placement();
   for (int k = 0; k < 20; ++k) {
     const Vector<14> q = spread_posture(both.robot().limits(), k);
-    both.place(q);
+    both.place(q, placed);
     for (const std::size_t arm : {0U, 1U}) {
-      one.place(arm == 0 ? Vector<7>(q.head<7>()) : Vector<7>(q.tail<7>()));
+      one.place(arm == 0 ? Vector<7>(q.head<7>()) : Vector<7>(q.tail<7>()), placed_alone);
       const Vector<3> place(0.0, arm == 0 ? -0.4 : 0.4, 0.0);
       for (std::size_t i = 0; i < count; ++i) {
-        const auto& [moved, alone] = std::tie(both.bodies()[count * arm + i], one.bodies()[i]);
-        EXPECT_LT((moved.now.a - alone.now.a - place).norm() + (moved.now.b - alone.now.b - place).norm(), 1e-12);
-        EXPECT_EQ(moved.name, (arm == 0 ? "right_" : "left_") + alone.name);
+        const auto& [moved, alone] = std::tie(placed.bodies[count * arm + i], placed_alone.bodies[i]);
+        EXPECT_LT((moved.a - alone.a - place).norm() + (moved.b - alone.b - place).norm(), 1e-12);
+        EXPECT_EQ(both.bodies()[count * arm + i].name, (arm == 0 ? "right_" : "left_") + one.bodies()[i].name);
       }
     }
   }

@@ -37,7 +37,7 @@ Soaked soak(Tracker_ tracker, const Path_& path, double ticks) {
       soaked.error = std::fmax(soaked.error, tick.error.norm());
       if constexpr (Tracker_::kGuarded) {
         const auto& clearance = tracker.guard().clearance();
-        soaked.nearest = std::fmin(soaked.nearest, clearance.nearest_pair().second - clearance.margin());
+        soaked.nearest = std::fmin(soaked.nearest, clearance.nearest_pair(tick.q).second - clearance.margin());
       }
     }
     const auto& q = tracker.state().q;

@@ -204,8 +204,8 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     last = result.qdd;
     if constexpr (Tracker_::kGuarded) {
       auto clearance = tracker.guard().clearance();
-      clearance.place(result.q);
-      require(wild || clearance.nearest_pair().second >= clearance.margin() - keeper.kSlack, "pairs keep their margin");
+      require(wild || clearance.nearest_pair(result.q).second >= clearance.margin() - keeper.kSlack,
+              "pairs keep their margin");
     }
   };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fpbm/clearance/near_pairs.hpp"
 #include "fpbm/clearance/separation.hpp"
 #include "fpbm/limits/stop_plan.hpp"
 #include "fpbm/linalg/sums.hpp"
@@ -11,9 +12,10 @@
 namespace fpbm {
 
 /// A sweep of a robot's drives, as one of its joints.
-template <int N, typename Scalar>
+template <typename Clearance>
 struct JointSweep {
-  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
+  using Scalar = typename Clearance::Scalar;
+  using AllJoints = typename Clearance::AllJoints;
 
   AllJoints way;
   AllJoints tick;
@@ -21,12 +23,9 @@ struct JointSweep {
   AllJoints high;
   AllJoints rest;  ///< Most that all but `way` displaces a joint, either way.
 
-  JointSweep(const Drives<N, Eigen::Dynamic, Scalar>& drives, const Sweep<N, Scalar>& sweep) noexcept
-      : way(drives.rates(sweep.way)),
-        tick(drives.rates(sweep.tick)),
-        low(drives.least(sweep.low, sweep.high)),
-        high(-drives.least(-sweep.high, -sweep.low)),
-        rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
+  template <int N>
+  JointSweep(const Clearance& clearance, const Sweep<N, Scalar>& sweep) noexcept
+      : JointSweep(clearance.robot().drives(), sweep) {}
 
   /// Least that all but `way` adds to what has this gradient.
   [[nodiscard]] Scalar least(const AllJoints& gradient) const noexcept {
@@ -40,27 +39,38 @@ struct JointSweep {
   [[nodiscard]] bool opens(const AllJoints& gradient, const AllJoints& begun) const noexcept {
     return gradient.dot(begun) >= Scalar(0) && gradient.dot(tick) <= Scalar(0);
   }
+
+ private:
+  template <typename Drives, int N>
+  JointSweep(const Drives& drives, const Sweep<N, Scalar>& sweep) noexcept
+      : way(drives.rates(sweep.way)),
+        tick(drives.rates(sweep.tick)),
+        low(drives.least(sweep.low, sweep.high)),
+        high(-drives.least(-sweep.high, -sweep.low)),
+        rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 };
 
 /// What a sweep may take from a gap between shapes, t of its way done: at most linear·t + c₀ + c₁ t + c₂ t².
 ///
 /// c bounds the gap's second derivative along the sweep: a turn of joint j by a and of a joint k beyond it by b bends
 /// the way of a point at lever r of joint k by no more than r a b.
-template <int N, typename Scalar>
+template <typename Clearance>
 struct Bend {
+  using Scalar = typename Clearance::Scalar;
+
   Scalar c0 = Scalar(0);
   Scalar c1 = Scalar(0);
   Scalar c2 = Scalar(0);
 
-  Bend(const Clearance<N, Scalar>& clearance, const ShapePair& pair, const JointSweep<N, Scalar>& sweep) noexcept {
+  Bend(const Clearance& clearance, const ShapePair& pair, const JointSweep<Clearance>& sweep) noexcept {
     add(clearance, clearance.bodies()[pair.first], pair.by_first, sweep);
     if (pair.by_second != 0) add(clearance, clearance.bodies()[pair.second], pair.by_second, sweep);
   }
 
  private:
   /// That of the way of one body.
-  void add(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body, JointBits joints,
-           const JointSweep<N, Scalar>& sweep) noexcept {
+  void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
+           const JointSweep<Clearance>& sweep) noexcept {
     Scalar way(0);  // Turned by joints so far.
     Scalar rest(0);
     each_joint(joints, [&](Eigen::Index k) noexcept {
@@ -78,11 +88,11 @@ struct Bend {
 };
 
 /// Most that a sweep's way, t of it, and its rest can bring a pair nearer, by the levers of its joints.
-template <int N, typename Scalar>
-[[nodiscard]] Scalar reach(const Clearance<N, Scalar>& clearance, const ShapePair& pair,
-                           const JointSweep<N, Scalar>& sweep, Scalar t) noexcept {
+template <typename Clearance, typename Scalar>
+[[nodiscard]] Scalar reach(const Clearance& clearance, const ShapePair& pair, const JointSweep<Clearance>& sweep,
+                           Scalar t) noexcept {
   Scalar sum(0);
-  const auto add = [&](const Body<Scalar>& body, JointBits joints) noexcept {
+  const auto add = [&](const typename Clearance::Body& body, JointBits joints) noexcept {
     each_joint(joints,
                [&](Eigen::Index k) noexcept { sum += body.levers(k) * (t * std::abs(sweep.way(k)) + sweep.rest(k)); });
   };
@@ -92,10 +102,9 @@ template <int N, typename Scalar>
 }
 
 /// What joints that take their own quickest stop may take from a gap, beyond its slope at their speed for some time.
-template <int N, typename Scalar>
-[[nodiscard]] Scalar beyond_slope(const JointSweep<N, Scalar>& sweep,
-                                  const typename JointSweep<N, Scalar>::AllJoints& speed,
-                                  const typename JointSweep<N, Scalar>::AllJoints& gradient, Scalar time) noexcept {
+template <typename Clearance, typename Scalar>
+[[nodiscard]] Scalar beyond_slope(const JointSweep<Clearance>& sweep, const typename Clearance::AllJoints& speed,
+                                  const typename Clearance::AllJoints& gradient, Scalar time) noexcept {
   Scalar beyond(0);
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     const Scalar least = std::min(gradient(k) * sweep.low(k), gradient(k) * sweep.high(k));
@@ -112,77 +121,6 @@ template <typename Scalar>
   if (!(gap >= Scalar(0))) return Scalar(-1);
   if (gap >= whole * (slope + whole * bend)) return whole;
   return Scalar(2) * gap / (slope + sqrt(slope * slope + Scalar(4) * bend * gap));
-}
-
-/// Pairs that keeps_apart() is asked about.
-enum class Pairs : unsigned char {
-  kAll,
-  kAtRest,  ///< All but those with a shape that moves by itself.
-};
-
-/// Whether all pairs surely keep their margin along a sweep from the posture q, where the clearance is placed: by
-/// conservative advancement, in kAdvances steps at most. Each goes as far as the nearest pair's gap, its slope there
-/// and a bound on its bend allow for sure. Pairs that are sure to the sweep's end are not looked at again. Of a pair
-/// that is nearer than its margin from the start, because a shape has moved, it is enough that it comes no nearer.
-/// time: that of the sweep, in which moving shapes go on [s].
-template <int N, typename Scalar>
-[[nodiscard]] bool keeps_apart(Clearance<N, Scalar>& clearance, const Vector<N, Scalar>& q,
-                               const Sweep<N, Scalar>& drives, Scalar time, Pairs pairs = Pairs::kAll) noexcept {
-  // Of 48,019 stops of random motions among 26 near pairs that 16 advances accept, 8 accept 48,002. The worst tick of a
-  // clearance takes 25 % fewer instructions with 8 (bench/README.md, "The longest ticks").
-  constexpr int kAdvances = 8;
-  constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
-  const auto all = [&](Eigen::Index i) {
-    return drives.way.coeff(i) + drives.tick.coeff(i) + drives.low.coeff(i) + drives.high.coeff(i);
-  };
-  if (!is_finite(entrywise(drives.way, all))) return false;
-  const JointSweep<N, Scalar> sweep(clearance.robot().drives(), drives);
-  const auto begun = clearance.robot().drives().rates(drives.begun);
-  clearance.set_reach(sweep.way.cwiseAbs() + sweep.rest);
-  OpenPairs& open = clearance.open();
-  open.open_all();
-  Scalar done(0);
-  for (int advance = 0; advance < kAdvances; ++advance) {
-    const Scalar whole = Scalar(1) - done;
-    Scalar step = whole;
-    open.close_if([&](std::size_t number) noexcept {
-      const ShapePair& pair = clearance.pairs()[number];
-      const Scalar moves = pair.world ? time * clearance.obstacles()[pair.second].velocity.norm() : Scalar(0);
-      if (moves > Scalar(0) && pairs == Pairs::kAtRest) return true;
-      const Scalar most = clearance.margin() + moves;
-      if (clearance.roughly(pair) >= most + clearance.reach_of(pair)) return true;
-      const Scalar needs = most + reach(clearance, pair, sweep, whole);
-      const Nearest<Scalar> nearest = clearance.nearest_of(pair);
-      if (nearest.distance >= needs) return true;
-      const Separation<N, Scalar> plane(clearance, pair, nearest);
-      if (nearest.distance < clearance.margin() - kIntrusion && done == Scalar(0)) {
-        const auto gradient = plane.of_distance();
-        const bool opens = gradient.dot(sweep.way) + sweep.least(gradient) >= Scalar(0);
-        if (!opens) step = Scalar(0);
-        return opens;
-      }
-      const Bend<N, Scalar> bend(clearance, pair, sweep);
-      Scalar sure = whole;
-      for (int k = 0; k < 2 * plane.seconds; ++k) {
-        const auto g = plane.gradient_of(k % 2, k / 2);
-        const Scalar gap =
-            plane.gap(k % 2, k / 2) - clearance.margin() - bend.c0 - time * std::max(plane.closing, Scalar(0));
-        const Scalar slope = bend.c1 - std::min(g.dot(sweep.way), Scalar(0));
-        Scalar far = furthest(gap + sweep.least(g), slope, bend.c2, whole);
-        if (far < whole && done == Scalar(0) && sweep.opens(g, begun)) {
-          far = std::max(furthest(gap + sweep.least_of_own(g), bend.c1, bend.c2, whole), far);
-        }
-        sure = std::min(far, sure);  // In this order NaN stays.
-      }
-      step = std::min(sure, step);
-      return sure == whole;
-    });
-    if (!(step > Scalar(0))) return false;
-    if (step == whole) return true;
-    done += step;
-    clearance.place(q + done * drives.way);
-  }
-  return false;
 }
 
 }  // namespace fpbm

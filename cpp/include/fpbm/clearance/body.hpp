@@ -9,18 +9,15 @@
 
 namespace fpbm {
 
-/// One of a robot's capsules, and where it is. The body of a bound on a task is a point of a link, or a unit vector
-/// that turns with a link: a point that only turning joints move, by no more than their angles.
-template <typename Scalar>
+/// One of a robot's capsules. The body of a bound on a task is a point of a link, or a unit vector that turns with a
+/// link: a point that only turning joints move, by no more than their angles.
+template <typename Scalar, int Joints = Eigen::Dynamic>
 struct Body {
   int link;
   Capsule<Scalar> in_link;  ///< Seen from the link's joint.
   std::string name;
-  Vector<Eigen::Dynamic, Scalar> levers;  ///< Of both ends, the longer, by joint.
-  Capsule<Scalar> now;
-  Vector<3, Scalar> centre;
-  Scalar size;               ///< Radius of the ball around it.
-  Scalar reach = Scalar(0);  ///< Most that a motion in question can move its axis.
+  Vector<Joints, Scalar> levers;  ///< Of both ends, the longer, by joint.
+  Scalar size;                    ///< Radius of the smallest ball around the capsule [m].
   bool is_direction = false;
   Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Most toward a bound of a task.
 
@@ -30,27 +27,17 @@ struct Body {
       : link(link_),
         in_link(placed(capsule, in_joint)),
         name(std::move(name_)),
-        levers(levers_of(link, capsule.a).cwiseMax(levers_of(link, capsule.b))) {
-    place({});
-  }
+        levers(levers_of(link, capsule.a).cwiseMax(levers_of(link, capsule.b))),
+        size((capsule.b - capsule.a).norm() / Scalar(2) + capsule.radius) {}
 
-  /// frame: that of the link's joint.
-  void place(const Transform<Scalar>& frame) noexcept {
-    now = placed(in_link, frame);
-    set_ball();
+  /// The capsule in the base frame. frame: that of the link's joint.
+  [[nodiscard]] Capsule<Scalar> placed_by(const Transform<Scalar>& frame) const noexcept {
+    return placed(in_link, frame);
   }
-
-  /// The same of the body of a bound.
-  void place_in_bound(const Transform<Scalar>& frame) noexcept {
-    now = placed(in_link, frame);
-    if (is_direction) now.a = now.b = frame.R.lazyProduct(in_link.a);
-    set_ball();
-  }
-
- private:
-  void set_ball() noexcept {
-    centre = (now.a + now.b) / Scalar(2);
-    size = (now.b - now.a).norm() / Scalar(2) + now.radius;
+  /// The point or the direction of a bound, in the base frame.
+  [[nodiscard]] Vector<3, Scalar> point_by(const Transform<Scalar>& frame) const noexcept {
+    const Vector<3, Scalar> turned = frame.R.lazyProduct(in_link.a);
+    return is_direction ? turned : Vector<3, Scalar>(frame.p + turned);
   }
 };
 

@@ -11,23 +11,26 @@
 #include "fpbm/clearance/body.hpp"
 #include "fpbm/clearance/link_capsule.hpp"
 #include "fpbm/clearance/obstacle.hpp"
-#include "fpbm/clearance/open_pairs.hpp"
+#include "fpbm/clearance/placement.hpp"
 #include "fpbm/model/robot.hpp"
 #include "fpbm/model/spread_posture.hpp"
 #include "fpbm/task/link_frame.hpp"
 
 namespace fpbm {
 
-/// What a robot must keep clear of: itself and its surroundings, by a margin. Shapes of the world may move; all else is
-/// settled at construction.
-template <int N, typename Scalar = double>
+/// The shapes of a robot and of its surroundings, and the pairs that must keep a margin. Shapes of the world may move;
+/// all else is settled at construction. Joints: their number, where it is not N: Eigen::Dynamic for a robot with joints
+/// that follow others.
+template <int N, typename Scalar_ = double, int Joints = N>
 class Clearance {
  public:
+  using Scalar = Scalar_;
   using JointVector = Vector<N, Scalar>;
   using Vector3 = Vector<3, Scalar>;
-  using Tree = Robot<N, Scalar, Eigen::Dynamic>;  ///< Of joints that have a drive, and any that follow them.
-  using AllJoints = Vector<Eigen::Dynamic, Scalar>;
-  using Body = fpbm::Body<Scalar>;
+  using Tree = Robot<N, Scalar, Joints>;  ///< Of joints that have a drive, and any that follow them.
+  using AllJoints = Vector<Joints, Scalar>;
+  using Body = fpbm::Body<Scalar, Joints>;
+  using Placement = fpbm::Placement<N, Scalar, Joints>;
   using Names = std::pair<std::string, std::string>;
 
   /// Most of the speed of a body over some coordinates of the base frame [m/s], or [rad/s] of a direction.
@@ -70,9 +73,7 @@ class Clearance {
         pairs_.push_back({i, j, true, robot_.moved_by(bodies_[i].link), 0});
       }
     }
-    shapes_ = bodies_.size();
     leave_out_overlaps();
-    open_.resize(pairs_.size());
     shape_pairs_ = pairs_.size();
   }
 
@@ -81,8 +82,6 @@ class Clearance {
   [[nodiscard]] const std::vector<ShapePair>& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const std::vector<Obstacle<Scalar>>& obstacles() const noexcept { return obstacles_; }
   [[nodiscard]] Scalar margin() const noexcept { return margin_; }
-  /// Of the robot where the clearance is placed.
-  [[nodiscard]] const typename Tree::State& state() const noexcept { return state_; }
 
   [[nodiscard]] Names names(const ShapePair& pair) const {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
@@ -100,7 +99,13 @@ class Clearance {
     if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
     obstacles_[i].shape = shape;
     obstacles_[i].velocity = velocity;
+    obstacles_[i].moved = true;
     return true;
+  }
+
+  /// Marks all obstacles as read: none has moved since.
+  void read_obstacles() noexcept {
+    for (auto& each : obstacles_) each.moved = false;
   }
 
   /// Keeps a distance in time, by self-motion. Throws std::invalid_argument where a number is out of range.
@@ -140,7 +145,6 @@ class Clearance {
     pairs_.push_back({bodies_.size(), obstacles_.size(), true, robot_.moved_by(body.link), 0});
     obstacles_.push_back({body.name, HalfSpace<Scalar>{n, offset}});
     bodies_.push_back(std::move(body));
-    open_.resize(pairs_.size());
   }
 
   /// Keeps the speed of a body at a bound or below. Throws std::invalid_argument unless that is positive.
@@ -156,50 +160,62 @@ class Clearance {
                        [](const auto& each) { return !each.velocity.isZero(Scalar(0)); });
   }
 
-  /// Places the robot's capsules at a posture.
-  void place(const JointVector& q) noexcept {
-    robot_.update(q, state_);
-    const auto frame = [this](const Body& body) { return state_.placement(static_cast<std::size_t>(body.link)); };
-    for (std::size_t i = 0; i < shapes_; ++i) bodies_[i].place(frame(bodies_[i]));
-    for (std::size_t i = shapes_; i < bodies_.size(); ++i) bodies_[i].place_in_bound(frame(bodies_[i]));
-    for (SpeedBound& bound : speed_bounds_) bound.body.place_in_bound(frame(bound.body));
+  /// Memory for place().
+  [[nodiscard]] Placement placement() const {
+    Placement placed;
+    placed.bodies.resize(bodies_.size());
+    placed.centres.resize(bodies_.size());
+    placed.speed_points.resize(speed_bounds_.size());
+    return placed;
   }
 
-  /// A lower bound on the distance of a pair where the robot is placed, found faster than nearest_of().
-  [[nodiscard]] Scalar roughly(const ShapePair& pair) const noexcept {
-    const Body& body = bodies_[pair.first];
-    if (pair.world) return obstacles_[pair.second].at_least(body.centre, body.size);
-    const Body& other = bodies_[pair.second];
-    return (body.centre - other.centre).norm() - body.size - other.size;
+  /// Places the bodies in a posture. placed: a placement().
+  void place(const JointVector& q, Placement& placed) const noexcept {
+    robot_.update(q, placed.state);
+    const auto frame = [&](const Body& body) { return placed.state.placement(static_cast<std::size_t>(body.link)); };
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Capsule<Scalar>& body = placed.bodies[i];
+      body = bodies_[i].placed_by(frame(bodies_[i]));
+      if (bodies_[i].is_direction) body.a = body.b = bodies_[i].point_by(frame(bodies_[i]));
+      placed.centres[i] = (body.a + body.b) / Scalar(2);
+    }
+    for (std::size_t i = 0; i < speed_bounds_.size(); ++i) {
+      const Body& body = speed_bounds_[i].body;
+      placed.speed_points[i] = body.point_by(frame(body));
+    }
   }
 
-  [[nodiscard]] Nearest<Scalar> nearest_of(const ShapePair& pair) const noexcept {
-    const Capsule<Scalar>& first = bodies_[pair.first].now;
-    return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, bodies_[pair.second].now);
+  /// A lower bound on the distance of a pair, found faster than nearest_of().
+  [[nodiscard]] Scalar roughly(const Placement& placed, const ShapePair& pair) const noexcept {
+    const Scalar size = bodies_[pair.first].size;
+    const Vector3& centre = placed.centres[pair.first];
+    if (pair.world) return obstacles_[pair.second].at_least(centre, size);
+    return (centre - placed.centres[pair.second]).norm() - size - bodies_[pair.second].size;
   }
 
-  /// Sets how far each capsule's axis may be moved by joints that move by no more than so much.
-  void set_reach(const AllJoints& most) noexcept {
-    for (Body& body : bodies_) body.reach = body.levers.dot(most);
-  }
-  /// How far a pair's axes may be moved toward one another, at most.
-  [[nodiscard]] Scalar reach_of(const ShapePair& pair) const noexcept {
-    return bodies_[pair.first].reach + (pair.by_second != 0 ? bodies_[pair.second].reach : Scalar(0));
+  [[nodiscard]] Nearest<Scalar> nearest_of(const Placement& placed, const ShapePair& pair) const noexcept {
+    const Capsule<Scalar>& first = placed.bodies[pair.first];
+    return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, placed.bodies[pair.second]);
   }
 
-  /// Pairs that a question is still open about, for who asks it.
-  [[nodiscard]] OpenPairs& open() noexcept { return open_; }
-
-  /// The pair of shapes that is nearest to one another where the robot is placed, and its distance; infinite without
-  /// pairs.
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair() const noexcept { return nearest_pair(0, shape_pairs_); }
+  /// The pair of shapes that is nearest to one another in a posture, and its distance; infinite without pairs.
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q) const {
+    Placement memory = placement();
+    return nearest_pair(q, memory);
+  }
+  /// The same without an allocation. memory: a placement().
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q, Placement& memory) const noexcept {
+    place(q, memory);
+    return nearest_pair(memory, 0, shape_pairs_);
+  }
 
   /// The same of the pairs of shapes or the bounds of tasks from a number up to another.
-  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(std::size_t first, std::size_t end) const noexcept {
+  [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const Placement& placed, std::size_t first,
+                                                            std::size_t end) const noexcept {
     std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
     for (std::size_t i = first; i < end; ++i) {
-      if (roughly(pairs_[i]) >= found.second) continue;
-      const Scalar distance = nearest_of(pairs_[i]).distance;
+      if (roughly(placed, pairs_[i]) >= found.second) continue;
+      const Scalar distance = nearest_of(placed, pairs_[i]).distance;
       if (distance < found.second) found = {i, distance};
     }
     return found;
@@ -249,10 +265,12 @@ class Clearance {
     if (pairs_.empty()) return;
     constexpr int kPostures = 256;
     std::vector<bool> apart(pairs_.size(), false);
+    Placement placed = placement();
     for (int k = 0; k < kPostures; ++k) {
-      place(spread_posture(robot_.limits(), k));
+      place(spread_posture(robot_.limits(), k), placed);
       for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        if (!apart[p]) apart[p] = roughly(pairs_[p]) >= margin_ || nearest_of(pairs_[p]).distance >= margin_;
+        if (apart[p]) continue;
+        apart[p] = roughly(placed, pairs_[p]) >= margin_ || nearest_of(placed, pairs_[p]).distance >= margin_;
       }
     }
     std::vector<ShapePair> kept;
@@ -263,16 +281,13 @@ class Clearance {
   Tree robot_;
   Levers<Scalar> levers_;
   std::vector<Body> bodies_;  ///< Those of bounds of tasks come last.
-  std::size_t shapes_ = 0;    ///< Number of bodies that are shapes.
   std::size_t shape_pairs_ = 0;
   std::vector<SpeedBound> speed_bounds_;
   std::vector<Obstacle<Scalar>> obstacles_;
   std::vector<ShapePair> pairs_;
   std::vector<ShapePair> left_out_;
-  OpenPairs open_;
   Scalar margin_;
   Away<Scalar> away_;
-  typename Tree::State state_;
 };
 
 }  // namespace fpbm

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fpbm/clearance/advance.hpp"
+#include "fpbm/clearance/advancement.hpp"
 #include "fpbm/clearance/motion_away.hpp"
 #include "fpbm/clearance/speed_bound.hpp"
 #include "fpbm/clearance/too_close.hpp"
@@ -18,45 +18,54 @@ namespace fpbm {
 /// (keeps_apart()); else the arm goes on with the stop that was found for the tick before. So no pair that does not
 /// move by itself ever comes nearer than its margin, by induction from the start. rows() are bounds on the next motion
 /// that leave room for that: they make the arm slide along a surface rather than stop before it.
-template <Level kLevel, int N, typename Scalar = double>
+/// Joints: that of the Clearance.
+template <Level kLevel, int N, typename Scalar = double, int Joints = N>
 class Guard {
  public:
+  using Clearance = fpbm::Clearance<N, Scalar, Joints>;
   static constexpr int kPairs = 16;         ///< Rows for pairs, at most: of more, those with least to spare.
   static constexpr int kRows = kPairs + 2;  ///< The last ones for speeds.
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
 
-  explicit Guard(const Clearance<N, Scalar>& clearance)
-      : clearance_(clearance), plan_(clearance.robot().dof()), sweep_(plan_.sweep()) {}
+  explicit Guard(const Clearance& clearance)
+      : clearance_(clearance),
+        near_pairs_(clearance),
+        advancement_(clearance),
+        middle_(clearance.placement()),
+        ahead_(clearance.placement()),
+        plan_(clearance.robot().dof()),
+        sweep_(plan_.sweep()) {}
 
   /// Starts from a state after a tick of acceleration last. Throws std::invalid_argument, with the pair's names, where
   /// the arm is not clear of all, or cannot stop clear of it.
   void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
     validation::require_size("clearance's joints", clearance_.robot().dof(), start.q.size());
     if (empty()) return;
-    clearance_.place(start.q);
-    const auto [pair, distance] = clearance_.nearest_pair();
+    near_pairs_.go_to(clearance_, start.q);
+    const auto [pair, distance] = clearance_.nearest_pair(near_pairs_.here(), 0, clearance_.shape_pairs());
     if (!(distance >= clearance_.margin())) {
       const ShapePair& close = clearance_.pairs()[pair];
       reject_close(clearance_.names(close), static_cast<double>(distance), static_cast<double>(clearance_.margin()));
     }
-    const auto [bound, room] = clearance_.nearest_pair(clearance_.shape_pairs(), clearance_.pairs().size());
+    const auto [bound, room] =
+        clearance_.nearest_pair(near_pairs_.here(), clearance_.shape_pairs(), clearance_.pairs().size());
     if (!(room >= clearance_.margin())) {
       validation::reject("q0", ": is beyond the bound '" + clearance_.names(clearance_.pairs()[bound]).first +
                                    "', must be within the bounds of tasks");
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);
-    if (!keeps_apart(clearance_, start.q, sweep_, time(limits), Pairs::kAtRest)) {
+    if (!advancement_.keeps_apart(clearance_, near_pairs_, sweep_, time(limits), Pairs::kAtRest)) {
       validation::reject("qd0", ": too fast for the arm to stop clear of all shapes");
     }
   }
 
   /// Whether there is nothing to keep clear of.
   [[nodiscard]] bool empty() const noexcept { return clearance_.pairs().empty(); }
-  [[nodiscard]] Clearance<N, Scalar>& clearance() noexcept { return clearance_; }
-  [[nodiscard]] const Clearance<N, Scalar>& clearance() const noexcept { return clearance_; }
+  [[nodiscard]] Clearance& clearance() noexcept { return clearance_; }
+  [[nodiscard]] const Clearance& clearance() const noexcept { return clearance_; }
 
   /// Bounds on the next tick's motion from a state, for the pairs that are near enough to need them.
   ///
@@ -70,54 +79,65 @@ class Guard {
     near_ = 0;
     if (empty()) return rows;
     const Scalar h = limits.tick();
-    const JointVector middle = state.q + h / Scalar(2) * state.qd;  // Of the tick, where the task's J is taken as well.
-    clearance_.place(middle);
+    near_pairs_.go_to(clearance_, state.q);
+    const auto& drives = clearance_.robot().drives();
     // Without the steps that whole ticks make, which would be felt as jerks.
     const Scalar ticks = Scalar(1) + plan_.smooth_average(limits);
     const Scalar average = h * ticks;
     const Scalar time = average + kSoft;
     // Velocity at the tick's end, after letting go of the acceleration: qd + late h u.
     const Scalar late = plan_.latency(limits);
-    JointSweep<N, Scalar> sweep(clearance_.robot().drives(), sweep_);
+    JointSweep<Clearance> sweep(clearance_, sweep_);
     const JointVector way = ticks / (Scalar(1) + plan_.average()) * sweep_.way;
-    sweep.way = clearance_.robot().drives().rates(way);
-    JointSweep<N, Scalar> fastest = sweep;
-    fastest.way = (time / kShare) * clearance_.robot().drives().rates(fastest_of(limits, state, late));
+    sweep.way = drives.rates(way);
+    JointSweep<Clearance> fastest = sweep;
+    fastest.way = (time / kShare) * drives.rates(fastest_of(limits, state, late));
     // No pair whose distance exceeds a reach of fastest needs a row; bend takes no more than its reach times all turns.
     const auto most = (sweep.way.cwiseAbs() + sweep.rest).eval();
     const Scalar turned = most.sum();
-    clearance_.set_reach(fastest.way + sweep.rest + turned * most);
-    const auto speed = clearance_.robot().drives().rates(state.qd);
+    const auto speed = drives.rates(state.qd);
+    near_pairs_.set_displacements(clearance_,
+                                  fastest.way + sweep.rest + turned * most + h / Scalar(2) * speed.cwiseAbs(), time);
+    // The rows are those of the tick's middle, as the task's J is: at its start they differ by h/2 d(∇s)/dt.
+    const JointVector middle = state.q + h / Scalar(2) * state.qd;
+    bool is_placed = false;
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
     Scalar gaps[kPairs];  // Of rows of bounds with a deceleration.
     std::uint32_t gentle_rows = 0;
     Scalar spares[kPairs];  // By how much gaps close slower than they may.
-    const ShapePair* const first_bound = clearance_.pairs().data() + clearance_.shape_pairs();
-    for (const ShapePair& pair : clearance_.pairs()) {
-      const Scalar moves = pair.world ? time * clearance_.obstacles()[pair.second].velocity.norm() : Scalar(0);
-      const auto& body = clearance_.bodies()[pair.first];
-      // A bound with its own deceleration may need more distance than the quickest stop.
-      const bool gentle = &pair >= first_bound && std::isfinite(body.deceleration);
-      if (!gentle && clearance_.roughly(pair) >= clearance_.margin() + clearance_.reach_of(pair) + moves) continue;
-      const Bend<N, Scalar> bend(clearance_, pair, sweep);
+    // A bound with its own deceleration may need more distance than the quickest stop.
+    const auto is_gentle = [&](const ShapePair& pair) noexcept {
+      return &pair >= clearance_.pairs().data() + clearance_.shape_pairs() &&
+             std::isfinite(clearance_.bodies()[pair.first].deceleration);
+    };
+    const auto needs = [&](const ShapePair& pair) noexcept {
+      return is_gentle(pair) ? std::numeric_limits<Scalar>::infinity()
+                             : clearance_.margin() + near_pairs_.displacement_of(pair);
+    };
+    near_pairs_.each(clearance_, needs, [&](std::size_t number, const Nearest<Scalar>&) noexcept {
+      const ShapePair& pair = clearance_.pairs()[number];
+      const bool gentle = is_gentle(pair);
+      if (!is_placed) clearance_.place(middle, middle_);
+      is_placed = true;
+      const Nearest<Scalar> found = clearance_.nearest_of(middle_, pair);
+      const Bend<Clearance> bend(clearance_, pair, sweep);
       const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
-      const Scalar far =
-          clearance_.margin() + bend.c0 + bend.c1 + bend.c2 + moves + reach(clearance_, pair, fastest, Scalar(1));
-      const Nearest<Scalar> found = clearance_.nearest_of(pair);
-      if (!gentle && found.distance >= far) continue;
+      const Scalar far = clearance_.margin() + bend.c0 + bend.c1 + bend.c2 + near_pairs_.moves(pair) +
+                         reach(clearance_, pair, fastest, Scalar(1));
+      if (!gentle && found.distance >= far) return;
       room_ += found.distance;
-      const Separation<N, Scalar> plane(clearance_, pair, found);
+      const Separation<Clearance> plane(clearance_, middle_, pair, found);
       const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
       const auto nearest = plane.of_distance();
       for (int e = 0; e < (between ? 1 : 2); ++e) {
         const Scalar gap = between ? plane.distance : plane.gap(e);
         const auto gradient = between ? nearest : plane.gradient_of(e);
-        const JointVector g = clearance_.robot().drives().by_drive(gradient);
+        const JointVector g = drives.by_drive(gradient);
         const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
         Scalar allowed = kShare * left / time;
-        if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, body, h);
+        if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, clearance_.bodies()[pair.first], h);
         const Scalar spare = allowed - plane.closing + g.dot(state.qd);
         const Eigen::Index k = row_for(spare, spares, rows.count);
         if (k == kPairs) continue;
@@ -133,12 +153,12 @@ class Guard {
         rows.b(k) = left;
         rows.g.col(k) = g;
       }
-    }
+    });
     near_ = rows.count;
     if (near_ == 0) return rows;
-    clearance_.place(middle + way);
+    clearance_.place(JointVector(middle + way), ahead_);
     for (Eigen::Index k = 0; k < rows.count; ++k) {
-      const Scalar bent = slack[k] - clearance_.nearest_of(*pairs[k]).distance;
+      const Scalar bent = slack[k] - clearance_.nearest_of(ahead_, *pairs[k]).distance;
       const Scalar left = rows.b(k) - std::max(bent, Scalar(0));
       const Scalar now = rows.g.col(k).dot(state.qd);
       Scalar allowed = left > Scalar(0) ? kShare * left / time : left / (kShare * average);
@@ -155,7 +175,7 @@ class Guard {
   /// Adds rows for the speeds that a tick's motion would exceed.
   void bound_speeds(const JointLimits& limits, const JointState& state, const JointVector& u,
                     Rows<N, kRows, Scalar>& rows) noexcept {
-    fpbm::bound_speeds(clearance_, limits, state, plan_.latency(limits), u, rows);
+    fpbm::bound_speeds(clearance_, ahead_, limits, state, plan_.latency(limits), u, rows);
   }
 
   /// Whether some of the rows that bound a motion are those of pairs; bit k is for row k.
@@ -168,22 +188,18 @@ class Guard {
 
   /// Motion away from shapes, for the null space, where it was asked for.
   [[nodiscard]] bool draws_away() const noexcept { return clearance_.away().gain > Scalar(0) && !empty(); }
-  [[nodiscard]] JointVector away(const JointVector& q) noexcept {
-    clearance_.place(q);
-    return motion_away(clearance_);
-  }
+  /// At the state of rows().
+  [[nodiscard]] JointVector away() const noexcept { return motion_away(clearance_, near_pairs_.here()); }
 
-  /// Whether the arm may go from one state to another in a tick; if so, a stop from there is the plan. Where no stop is
-  /// sure to be clear of shapes that move, the arm gives way to them as its rows say.
+  /// Whether the arm may move from the state of rows() to another in a tick; if so, a stop from there is the plan. If
+  /// no stop is sure to be clear of shapes that move, the rows bound the motion toward them.
   [[nodiscard]] bool accepts(const JointLimits& limits, const JointState& from, const JointState& to) noexcept {
     const StopPlan<kLevel, N, Scalar> plan(limits, to, (to.qd - from.qd) / limits.tick());
     const Sweep<N, Scalar> sweep = plan.sweep(limits, from, to);
     const Scalar time = limits.tick() * (Scalar(1) + plan.ticks_left());
-    clearance_.place(from.q);
-    if (!keeps_apart(clearance_, from.q, sweep, time)) {
+    if (!advancement_.keeps_apart(clearance_, near_pairs_, sweep, time)) {
       if (!clearance_.moves()) return false;
-      clearance_.place(from.q);
-      if (!keeps_apart(clearance_, from.q, sweep, time, Pairs::kAtRest)) return false;
+      if (!advancement_.keeps_apart(clearance_, near_pairs_, sweep, time, Pairs::kAtRest)) return false;
     }
     plan_ = plan;
     sweep_ = sweep;
@@ -198,7 +214,8 @@ class Guard {
  private:
   /// Most speed v at which a gap s may close. A body with a deceleration a brakes by a, v²/2a + v h ≤ s − s₀/2, until
   /// s₀ = a τ², from where v = s/τ decelerates by less.
-  [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const Body<Scalar>& body, Scalar h) noexcept {
+  [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const typename Clearance::Body& body,
+                                           Scalar h) noexcept {
     const Scalar a = body.deceleration;
     const Scalar last = a * kTail * kTail;
     if (!(gap > last)) return std::min(hard, std::max(gap, Scalar(0)) / kTail);
@@ -231,7 +248,11 @@ class Guard {
   static constexpr Scalar kShare = Scalar(0.8);  ///< κ
   static constexpr Scalar kSteps = Scalar(4);    ///< Advances that a stop along a surface may take.
 
-  Clearance<N, Scalar> clearance_;
+  Clearance clearance_;
+  NearPairs<Clearance> near_pairs_;  ///< At the state of rows().
+  Advancement<Clearance> advancement_;
+  typename Clearance::Placement middle_;  ///< In the middle of the tick.
+  typename Clearance::Placement ahead_;   ///< At the end of the stop.
   StopPlan<kLevel, N, Scalar> plan_;
   Sweep<N, Scalar> sweep_;  ///< Of the plan and the tick before it.
   Scalar room_ = Scalar(0);

@@ -7,16 +7,19 @@
 namespace fpbm {
 
 /// The joint motion gain Σ (1 − s/range)² ∇s over the gaps s of all pairs that are nearer than the range beyond their
-/// margin, where the clearance is placed: up the gradient of −gain range/3 Σ (1 − s/range)³. Both ends of a capsule
+/// margin: up the gradient of −gain range/3 Σ (1 − s/range)³. Both ends of a capsule
 /// count, so that it is continuous where the nearest points jump.
-template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> motion_away(const Clearance<N, Scalar>& clearance) noexcept {
+/// placed: the bodies of the clearance.
+template <typename Clearance>
+[[nodiscard]] typename Clearance::JointVector motion_away(const Clearance& clearance,
+                                                          const typename Clearance::Placement& placed) noexcept {
+  using Scalar = typename Clearance::Scalar;
+  using AllJoints = typename Clearance::AllJoints;
   const Away<Scalar>& away = clearance.away();
-  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
   AllJoints sum = AllJoints::Zero(clearance.robot().joints());
   for (const ShapePair& pair : clearance.pairs()) {
-    if (clearance.roughly(pair) >= clearance.margin() + away.range) continue;
-    const Separation<N, Scalar> plane(clearance, pair);
+    if (clearance.roughly(placed, pair) >= clearance.margin() + away.range) continue;
+    const Separation<Clearance> plane(clearance, placed, pair, clearance.nearest_of(placed, pair));
     for (int e = 0; e < 2; ++e) {
       const Scalar near = Scalar(1) - (plane.gap(e) - clearance.margin()) / away.range;
       if (!(near > Scalar(0))) continue;

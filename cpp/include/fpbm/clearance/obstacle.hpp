@@ -28,7 +28,8 @@ struct Obstacle {
 
   std::string name;
   WorldShape<Scalar> shape;
-  Vector3 velocity;  ///< By which all of it is expected to go on [m/s].
+  Vector3 velocity;   ///< By which all of it is expected to go on [m/s].
+  bool moved = true;  ///< Since NearPairs last read the shape.
 
   Obstacle(std::string its_name, const WorldShape<Scalar>& its_shape, const Vector3& its_velocity = Vector3::Zero())
       : name(std::move(its_name)), shape(its_shape), velocity(its_velocity) {}

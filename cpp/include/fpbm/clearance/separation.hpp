@@ -14,9 +14,12 @@ namespace fpbm {
 /// (n·b + radius of the second). The distance of the shapes is at least the smallest gap, and equal to it in the
 /// posture in which n is the normal of the nearest points. If no joint moves the second shape alone, its support along
 /// n takes the place of its ends.
-template <int N, typename Scalar>
+template <typename Clearance>
 struct Separation {
-  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
+  using Scalar = typename Clearance::Scalar;
+  using AllJoints = typename Clearance::AllJoints;
+  using Placement = typename Clearance::Placement;
+  using Body = typename Clearance::Body;
   using Vector3 = Vector<3, Scalar>;
 
   Scalar distance;
@@ -29,31 +32,31 @@ struct Separation {
   Scalar at;               ///< Where the first one's axis is nearest: 0 at one end, 1 at the other.
   Scalar at_second = Scalar(0);
 
-  Separation(const Clearance<N, Scalar>& clearance, const ShapePair& pair) noexcept
-      : Separation(clearance, pair, clearance.nearest_of(pair)) {}
-
-  /// found: that of the pair.
-  Separation(const Clearance<N, Scalar>& clearance, const ShapePair& pair, const Nearest<Scalar>& found) noexcept {
-    const auto& body = clearance.bodies()[pair.first];
+  /// placed: the bodies of the clearance; found: the nearest points of the pair there.
+  Separation(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
+             const Nearest<Scalar>& found) noexcept {
+    const auto& body = placed.bodies[pair.first];
     const Vector3& n = found.normal;
     distance = found.distance;
     closing = Scalar(0);
-    set_ends(clearance, body, pair.by_first, n, -body.now.radius, along, gradient);
-    at = nearest_on(body.now, found.on_first + body.now.radius * n);
+    const auto& first = clearance.bodies()[pair.first];
+    set_ends(clearance, placed, first, body, pair.by_first, n, -body.radius, along, gradient);
+    at = nearest_on(body, found.on_first + body.radius * n);
     if (pair.world) {
       const auto& obstacle = clearance.obstacles()[pair.second];
       beyond[0] = obstacle.support_along(n);
       closing = n.dot(obstacle.velocity);
       return;
     }
-    const auto& other = clearance.bodies()[pair.second];
+    const auto& other = placed.bodies[pair.second];
     if (pair.by_second == 0) {
-      beyond[0] = support(other.now, n);
+      beyond[0] = support(other, n);
       return;
     }
     seconds = 2;
-    set_ends(clearance, other, pair.by_second, n, other.now.radius, beyond, of_beyond);
-    at_second = nearest_on(other.now, found.on_first - (found.distance + other.now.radius) * n);
+    const auto& second = clearance.bodies()[pair.second];
+    set_ends(clearance, placed, second, other, pair.by_second, n, other.radius, beyond, of_beyond);
+    at_second = nearest_on(other, found.on_first - (found.distance + other.radius) * n);
   }
 
   /// Of end e of the first one and end f of the second one.
@@ -88,12 +91,13 @@ struct Separation {
   }
 
   /// n·x + more at both ends x of a body's axis, and its gradient by the joints.
-  static void set_ends(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body, JointBits joints,
-                       const Vector3& n, Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
-    const auto& state = clearance.state();
-    const Vector3 moments[2] = {cross(body.now.a, n), cross(body.now.b, n)};
-    value[0] = n.dot(body.now.a) + more;
-    value[1] = n.dot(body.now.b) + more;
+  static void set_ends(const Clearance& clearance, const Placement& placed, const Body& body,
+                       const Capsule<Scalar>& capsule, JointBits joints, const Vector3& n, Scalar more,
+                       Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
+    const auto& state = placed.state;
+    const Vector3 moments[2] = {cross(capsule.a, n), cross(capsule.b, n)};
+    value[0] = n.dot(capsule.a) + more;
+    value[1] = n.dot(capsule.b) + more;
     for (auto& each : gradient) each.setZero(clearance.robot().joints());
     each_joint(joints, [&](Eigen::Index k) noexcept {
       const auto joint = static_cast<std::size_t>(k + 1);

@@ -6,18 +6,21 @@
 
 namespace fpbm {
 
-/// Gradient of n·x by the drives, for the point x of a body, where the clearance is placed: nᵀJ.
-template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> gradient_along(const Clearance<N, Scalar>& clearance, const Body<Scalar>& body,
-                                               const Vector<3, Scalar>& n) noexcept {
-  using AllJoints = typename Clearance<N, Scalar>::AllJoints;
+/// Gradient of n·x by the drives, for the point x of a body: nᵀJ.
+template <typename Clearance, typename Scalar>
+[[nodiscard]] typename Clearance::JointVector gradient_along(const Clearance& clearance,
+                                                             const typename Clearance::Placement& placed,
+                                                             const typename Clearance::Body& body,
+                                                             const Vector<3, Scalar>& x,
+                                                             const Vector<3, Scalar>& n) noexcept {
+  using AllJoints = typename Clearance::AllJoints;
   AllJoints row = AllJoints::Zero(clearance.robot().joints());
-  const Vector<3, Scalar> moment = cross(body.now.a, n);
+  const Vector<3, Scalar> moment = cross(x, n);
   each_joint(clearance.robot().moved_by(body.link), [&](Eigen::Index k) noexcept {
     const auto joint = static_cast<std::size_t>(k + 1);
-    const Vector<3, Scalar> z = clearance.state().R[joint].col(2);
+    const Vector<3, Scalar> z = placed.state.R[joint].col(2);
     if (clearance.robot().turns(k)) {
-      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(clearance.state().p[joint], n)));
+      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(placed.state.p[joint], n)));
     } else if (!body.is_direction) {
       row(k) = z.dot(n);
     }
@@ -28,26 +31,31 @@ template <int N, typename Scalar>
 /// Adds a row n · v ≤ most for each speed bound that a tick's motion u would exceed with the velocity v, with n along
 /// v: at the tick's end, or once the acceleration has been let go, which takes `late` ticks. So the speed is kept but
 /// for the change of direction in a tick, and where other rows and the joints' limits leave no motion that keeps it.
-template <Level kLevel, int N, int P, typename Scalar>
-void bound_speeds(Clearance<N, Scalar>& clearance, const Limits<kLevel, N, Scalar>& limits,
-                  const State<N, Scalar>& state, Scalar late, const Vector<N, Scalar>& u,
-                  Rows<N, P, Scalar>& rows) noexcept {
+/// placed: memory for the bodies in the middle of the tick.
+template <Level kLevel, typename Clearance, int N, int P, typename Scalar>
+void bound_speeds(const Clearance& clearance, typename Clearance::Placement& placed,
+                  const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state, Scalar late,
+                  const Vector<N, Scalar>& u, Rows<N, P, Scalar>& rows) noexcept {
   if (clearance.speed_bounds().empty()) return;
   // qd + g u is the velocity then.
   const Scalar h = limits.tick();
   const Scalar g = kLevel == Level::kAcceleration ? late * h : late;
   const Vector<N, Scalar> left = kLevel == Level::kAcceleration ? state.qd : (Scalar(1) - late) * state.qd;
   const Vector<N, Scalar> then = left + g * u;
-  clearance.place(state.q + h / Scalar(2) * (state.qd + then));
-  for (const auto& bound : clearance.speed_bounds()) {
+  clearance.place(state.q + h / Scalar(2) * (state.qd + then), placed);
+  for (std::size_t i = 0; i < clearance.speed_bounds().size(); ++i) {
+    const auto& bound = clearance.speed_bounds()[i];
+    const auto gradient = [&](const Vector<3, Scalar>& n) noexcept {
+      return gradient_along(clearance, placed, bound.body, placed.speed_points[i], n);
+    };
     Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       if (!bound.rows[static_cast<std::size_t>(axis)]) continue;
-      v(axis) = gradient_along(clearance, bound.body, Vector<3, Scalar>(Vector<3, Scalar>::Unit(axis))).dot(then);
+      v(axis) = gradient(Vector<3, Scalar>::Unit(axis)).dot(then);
     }
     const Scalar speed = v.norm();
     if (!(speed > bound.most) || rows.count == P) continue;
-    const Vector<N, Scalar> row = gradient_along(clearance, bound.body, Vector<3, Scalar>(v / speed));
+    const Vector<N, Scalar> row = gradient(v / speed);
     rows.g.col(rows.count) = g * row;
     rows.b(rows.count++) = bound.most - row.dot(left);
   }

@@ -29,8 +29,8 @@ struct PositionBounds {
   std::string name = "tip";
 
   /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
-  template <int N>
-  void add_to(Clearance<N, Scalar>& clearance) const {
+  template <int N, int Joints>
+  void add_to(Clearance<N, Scalar, Joints>& clearance) const {
     const auto body = [&](const std::string& bound) { return clearance.point_of(frame, bound + " of " + name); };
     for (int i = 0; i < 3; ++i) {
       if (!(lower(i) < upper(i))) validation::fail(validation::element("lower", i), lower(i), "below upper");
@@ -63,8 +63,8 @@ struct AxisBounds {
   std::string name = "axis";
 
   /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
-  template <int N>
-  void add_to(Clearance<N, Scalar>& clearance) const {
+  template <int N, int Joints>
+  void add_to(Clearance<N, Scalar, Joints>& clearance) const {
     const Vector<3, Scalar> a = unit_vector("axis", axis);
     const Vector<3, Scalar> d = unit_vector("direction", direction);
     validation::require_non_negative("lower", lower);

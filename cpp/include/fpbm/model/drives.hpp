@@ -53,22 +53,34 @@ class Drives {
   }
   /// Rates of the joints for those of the drives.
   [[nodiscard]] JointVector rates(const Vector<N, Scalar>& qd) const noexcept {
-    return entrywise(ratio_, [&](Eigen::Index i) { return ratio_.coeff(i) * qd.coeff(drive(i)); });
+    if constexpr (kMayFollow) {
+      return entrywise(ratio_, [&](Eigen::Index i) { return ratio_.coeff(i) * qd.coeff(drive(i)); });
+    } else {
+      return qd;
+    }
   }
   /// Least rates of the joints for drives anywhere between low and high.
   [[nodiscard]] JointVector least(const Vector<N, Scalar>& low, const Vector<N, Scalar>& high) const noexcept {
-    return entrywise(ratio_, [&](Eigen::Index i) {
-      const Scalar ratio = ratio_.coeff(i);
-      return ratio * (ratio > Scalar(0) ? low : high).coeff(drive(i));
-    });
+    if constexpr (kMayFollow) {
+      return entrywise(ratio_, [&](Eigen::Index i) {
+        const Scalar ratio = ratio_.coeff(i);
+        return ratio * (ratio > Scalar(0) ? low : high).coeff(drive(i));
+      });
+    } else {
+      return low;
+    }
   }
   /// Entries for the drives of a gradient by the joints.
   [[nodiscard]] Vector<N, Scalar> by_drive(const JointVector& gradient) const noexcept {
-    Vector<N, Scalar> result = filled<Vector<N, Scalar>>(count());
-    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-      result.coeffRef(drive(i)) += ratio_.coeff(i) * gradient.coeff(i);
+    if constexpr (kMayFollow) {
+      Vector<N, Scalar> result = filled<Vector<N, Scalar>>(count());
+      for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+        result.coeffRef(drive(i)) += ratio_.coeff(i) * gradient.coeff(i);
+      }
+      return result;
+    } else {
+      return gradient;
     }
-    return result;
   }
   /// Columns for the drives from columns for the joints.
   template <int M>

@@ -105,16 +105,20 @@ class LimitedState {
                                   {loop.state.qd, last_, change_});
   }
 
-  /// Whether the limits do not admit the acceleration at a tick's start, or damping acts there. Such a tick has one
-  /// acceleration, that of its middle, and no step of RK4: the function sets next to the state after the tick, and
-  /// leaves the kinematics of the middle in loop. So the ticks that take most time resolve the task twice, not four
+  /// The guard's rows at the tick's start.
+  [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), state_); }
+
+  /// Whether the limits or the rows do not admit the acceleration at a tick's start, or damping acts there. Such a tick
+  /// has one acceleration, that of its middle, and no step of RK4: the function sets next to the state after the tick,
+  /// and leaves the kinematics of the middle in loop. So the ticks that take most time resolve the task twice, not four
   /// times. reference: of the middle. at_start: joint accelerations [rad/s²].
-  template <typename Loop, typename Target>
-  [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, JointVector at_start, JointState& next,
-                                    Result& result) const noexcept {
+  template <typename Loop, typename Target, typename Rows>
+  [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, const Rows& rows, JointVector at_start,
+                                    JointState& next, Result& result) const noexcept {
     if constexpr (!kSecondOrder) return false;
     if (failed(result.status)) return false;
-    if (result.status != Status::kDamped && admits(motion_.after(state_, at_start))) return false;
+    const bool admitted = rows.admit(at_start) && admits(motion_.after(state_, at_start));
+    if (result.status != Status::kDamped && admitted) return false;
     result.status = worse(result.status, expect(loop, reference, at_start));
     next = motion_.after(state_, at_start);
     return true;
@@ -127,10 +131,9 @@ class LimitedState {
   /// at its start, which acceleration level does not read. now: the reference at its start. one_acceleration: whether
   /// loop has the kinematics of the tick's middle; otherwise they are evaluated where the motion is limited. result has
   /// the status of the desired motion, and the error that the correction began with.
-  template <typename Loop, typename Target>
-  void take(Loop& loop, const Target& now, JointState next, const JointVector& field, bool one_acceleration,
+  template <typename Loop, typename Target, typename Rows>
+  void take(Loop& loop, const Target& now, Rows rows, JointState next, const JointVector& field, bool one_acceleration,
             Result& result) noexcept {
-    auto rows = guard_.rows(limits(), state_);
     if constexpr (kGuarded) {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
@@ -155,8 +158,8 @@ class LimitedState {
       next = motion_.after(state_, rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
       result.status = Status::kRecovering;
       multiply_scale(result, Scalar(0));
-    } else if (stopping_ || result.status >= Status::kStalled || !admits(next) ||
-               !rows.admit(motion_.between(state_, next))) {
+    } else if (stopping_ || result.status >= Status::kStalled || !rows.admit(motion_.between(state_, next)) ||
+               !admits(next)) {
       JointVector desired = next.qd;
       Scalar share(1);
       if constexpr (kSecondOrder) {
@@ -272,7 +275,7 @@ class LimitedState {
         entrywise(end, [&](Eigen::Index i) { return (state_.q.coeff(i) + end.coeff(i)) / Scalar(2); });
     Kinematics<Space, N, Scalar> kinematics;
     arm.kinematics(middle, kinematics);
-    return null_space_motion(jacobian_in_metres(kinematics), guard_.away(state_.q));
+    return null_space_motion(jacobian_in_metres(kinematics), guard_.away());
   }
 
   TickMotion<kLevel, N, Scalar> motion_;

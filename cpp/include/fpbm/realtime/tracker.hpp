@@ -130,6 +130,7 @@ class Tracker {
     };
     JointState next = state;
     JointVector field = state.qd;
+    const auto rows = kept_.rows();
     if (one_acceleration) {
       if constexpr (kIsProduct<Space>) kept_.update_middle(loop, references);
       resolve(loop, references.middle(), dx, result);
@@ -137,7 +138,8 @@ class Tracker {
     } else {
       resolve(loop, references.stages[0], dx, result);
       field = column(dx, 0);
-      one_acceleration = kept_.expects_limits(loop, references.stages[1], column(dx, dx.cols() - 1), next, result);
+      one_acceleration =
+          kept_.expects_limits(loop, references.stages[1], rows, column(dx, dx.cols() - 1), next, result);
       if (!one_acceleration) {
         if (!failed(result.status)) {
           result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
@@ -146,7 +148,7 @@ class Tracker {
         if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
       }
     }
-    kept_.take(loop, now, next, field, one_acceleration, result);
+    kept_.take(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
     report_lower_levels(result);
     lower_levels_.end_tick(!kept_.stopping() && !failed(result.status), kept_.state().qd, Scalar(guard().room()),
@@ -166,8 +168,9 @@ class Tracker {
     Result result = kept_.idle(state());
     result.error = kept_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
-    const bool one_acceleration = kept_.expects_limits(loop, middle, at_start, next, result);
-    kept_.take(loop, now, next, at_start, one_acceleration, result);
+    const auto rows = kept_.rows();
+    const bool one_acceleration = kept_.expects_limits(loop, middle, rows, at_start, next, result);
+    kept_.take(loop, now, rows, next, at_start, one_acceleration, result);
     return result.status;
   }
 
