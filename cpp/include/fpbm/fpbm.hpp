@@ -17,6 +17,7 @@
 #include "fpbm/clearance/away.hpp"
 #include "fpbm/clearance/body.hpp"
 #include "fpbm/clearance/clearance.hpp"
+#include "fpbm/clearance/displacement_bound.hpp"
 #include "fpbm/clearance/distance.hpp"
 #include "fpbm/clearance/guard.hpp"
 #include "fpbm/clearance/levers.hpp"

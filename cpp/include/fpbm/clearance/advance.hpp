@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "fpbm/clearance/near_pairs.hpp"
 #include "fpbm/clearance/separation.hpp"
 #include "fpbm/limits/stop_plan.hpp"
 #include "fpbm/linalg/sums.hpp"
@@ -49,57 +48,6 @@ struct JointSweep {
         high(-drives.least(-sweep.high, -sweep.low)),
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 };
-
-/// What a sweep may take from a gap between shapes, t of its way done: at most linear·t + c₀ + c₁ t + c₂ t².
-///
-/// c bounds the gap's second derivative along the sweep: a turn of joint j by a and of a joint k beyond it by b bends
-/// the way of a point at lever r of joint k by no more than r a b.
-template <typename Clearance>
-struct Bend {
-  using Scalar = typename Clearance::Scalar;
-
-  Scalar c0 = Scalar(0);
-  Scalar c1 = Scalar(0);
-  Scalar c2 = Scalar(0);
-
-  Bend(const Clearance& clearance, const ShapePair& pair, const JointSweep<Clearance>& sweep) noexcept {
-    add(clearance, clearance.bodies()[pair.first], pair.by_first, sweep);
-    if (pair.by_second != 0) add(clearance, clearance.bodies()[pair.second], pair.by_second, sweep);
-  }
-
- private:
-  /// That of the way of one body.
-  void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
-           const JointSweep<Clearance>& sweep) noexcept {
-    Scalar way(0);  // Turned by joints so far.
-    Scalar rest(0);
-    each_joint(joints, [&](Eigen::Index k) noexcept {
-      const Scalar lever = body.levers(k);
-      const Scalar v = std::abs(sweep.way(k));
-      const Scalar e = sweep.rest(k);
-      const Scalar half = clearance.robot().turns(k) ? Scalar(0.5) : Scalar(0);
-      c0 += lever * e * (half * e + rest);
-      c1 += lever * (v * (Scalar(2) * half * e + rest) + e * way);
-      c2 += lever * v * (half * v + way);
-      way += Scalar(2) * half * v;
-      rest += Scalar(2) * half * e;
-    });
-  }
-};
-
-/// Most that a sweep's way, t of it, and its rest can bring a pair nearer, by the levers of its joints.
-template <typename Clearance, typename Scalar>
-[[nodiscard]] Scalar reach(const Clearance& clearance, const ShapePair& pair, const JointSweep<Clearance>& sweep,
-                           Scalar t) noexcept {
-  Scalar sum(0);
-  const auto add = [&](const typename Clearance::Body& body, JointBits joints) noexcept {
-    each_joint(joints,
-               [&](Eigen::Index k) noexcept { sum += body.levers(k) * (t * std::abs(sweep.way(k)) + sweep.rest(k)); });
-  };
-  add(clearance.bodies()[pair.first], pair.by_first);
-  if (pair.by_second != 0) add(clearance.bodies()[pair.second], pair.by_second);
-  return sum;
-}
 
 /// What joints that take their own quickest stop may take from a gap, beyond its slope at their speed for some time.
 template <typename Clearance, typename Scalar>

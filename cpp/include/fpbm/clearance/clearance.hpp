@@ -172,6 +172,7 @@ class Clearance {
   /// Places the bodies in a posture. placed: a placement().
   void place(const JointVector& q, Placement& placed) const noexcept {
     robot_.update(q, placed.state);
+    placed.set_axes(robot_.joints(), [this](Eigen::Index k) noexcept { return robot_.turns(k); });
     const auto frame = [&](const Body& body) { return placed.state.placement(static_cast<std::size_t>(body.link)); };
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Capsule<Scalar>& body = placed.bodies[i];

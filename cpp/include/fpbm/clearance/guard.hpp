@@ -33,6 +33,8 @@ class Guard {
       : clearance_(clearance),
         near_pairs_(clearance),
         advancement_(clearance),
+        of_plan_(clearance),
+        of_fastest_(clearance),
         middle_(clearance.placement()),
         ahead_(clearance.placement()),
         plan_(clearance.robot().dof()),
@@ -101,6 +103,8 @@ class Guard {
     // The rows are those of the tick's middle, as the task's J is: at its start they differ by h/2 d(∇s)/dt.
     const JointVector middle = state.q + h / Scalar(2) * state.qd;
     bool is_placed = false;
+    of_plan_.begin();
+    of_fastest_.begin();
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
@@ -122,14 +126,15 @@ class Guard {
       if (!is_placed) clearance_.place(middle, middle_);
       is_placed = true;
       const Nearest<Scalar> found = clearance_.nearest_of(middle_, pair);
-      const Bend<Clearance> bend(clearance_, pair, sweep);
-      const Scalar taken = clearance_.margin() + bend.c0 + bend.c1 / kSteps + bend.c2 / (kSteps * kSteps);
-      const Scalar far = clearance_.margin() + bend.c0 + bend.c1 + bend.c2 + near_pairs_.moves(pair) +
-                         reach(clearance_, pair, fastest, Scalar(1));
+      const DisplacementBound<Scalar> bound = of_plan_.of(clearance_, pair, sweep);
+      const Scalar taken = clearance_.margin() + bound.c0 + bound.c1 / kSteps + bound.c2 / (kSteps * kSteps);
+      const Scalar far = clearance_.margin() + bound.c0 + bound.c1 + bound.c2 + near_pairs_.moves(pair) +
+                         of_fastest_.of(clearance_, pair, fastest).displacement(Scalar(1));
       if (!gentle && found.distance >= far) return;
       room_ += found.distance;
       const Separation<Clearance> plane(clearance_, middle_, pair, found);
-      const bool between = Scalar(0) < plane.at && plane.at < Scalar(1);
+      const Scalar at = plane.at();
+      const bool between = Scalar(0) < at && at < Scalar(1);
       const auto nearest = plane.of_distance();
       for (int e = 0; e < (between ? 1 : 2); ++e) {
         const Scalar gap = between ? plane.distance : plane.gap(e);
@@ -251,6 +256,8 @@ class Guard {
   Clearance clearance_;
   NearPairs<Clearance> near_pairs_;  ///< At the state of rows().
   Advancement<Clearance> advancement_;
+  DisplacementBounds<Clearance> of_plan_;
+  DisplacementBounds<Clearance> of_fastest_;
   typename Clearance::Placement middle_;  ///< In the middle of the tick.
   typename Clearance::Placement ahead_;   ///< At the end of the stop.
   StopPlan<kLevel, N, Scalar> plan_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "fpbm/clearance/shape.hpp"
@@ -10,10 +11,51 @@ namespace fpbm {
 /// The bodies of a clearance in a posture, in the base frame. Clearance::place() sets all members.
 template <int N, typename Scalar = double, int Joints = N>
 struct Placement {
+  using Vector3 = Vector<3, Scalar>;
+
   RobotState<N, Scalar, Joints> state;
   std::vector<Capsule<Scalar>> bodies;
-  std::vector<Vector<3, Scalar>> centres;       ///< Of the smallest balls around the bodies [m].
-  std::vector<Vector<3, Scalar>> speed_points;  ///< The points, or directions, whose speed is bounded.
+  std::vector<Vector3> centres;       ///< Of the smallest balls around the bodies [m].
+  std::vector<Vector3> speed_points;  ///< The points, or directions, whose speed is bounded.
+  /// Rows zₖ and zₖ × pₖ of joints that turn, 0 and −zₖ of those that slide.
+  Matrix<Joints, 3, Scalar> axes;
+  Matrix<Joints, 3, Scalar> moments;
+
+  /// Sets gradients[e] to that of n·xₑ by joints k, for points x₀, x₁ of a link that they move: n·(zₖ × (x − pₖ)) =
+  /// zₖ·(x × n) − n·(zₖ × pₖ) of a joint that turns, n·zₖ of one that slides. Without the second term, that of a
+  /// direction x.
+  void set_gradients(const Vector3& n, const Vector3& x0, const Vector3& x1, JointBits joints, bool is_direction,
+                     Vector<Joints, Scalar> (&gradients)[2]) const noexcept {
+    const Vector3 m0 = cross(x0, n);
+    const Vector3 m1 = cross(x1, n);
+    const Scalar by_moment(is_direction ? 0 : 1);
+    const auto along = [](const Matrix<Joints, 3, Scalar>& rows, Eigen::Index k, const Vector3& v) noexcept {
+      return rows.coeff(k, 0) * v.coeff(0) + rows.coeff(k, 1) * v.coeff(1) + rows.coeff(k, 2) * v.coeff(2);
+    };
+    for (auto& each : gradients) each.resize(axes.rows());
+    for (Eigen::Index k = 0; k < axes.rows(); ++k) {
+      const Scalar moment = by_moment * along(moments, k, n);
+      gradients[0].coeffRef(k) = along(axes, k, m0) - moment;
+      gradients[1].coeffRef(k) = along(axes, k, m1) - moment;
+    }
+    for (Eigen::Index k = 0; k < axes.rows(); ++k, joints >>= 1U) {
+      if ((joints & 1U) == 0) gradients[0].coeffRef(k) = gradients[1].coeffRef(k) = Scalar(0);
+    }
+  }
+
+  /// Sets axes and moments from the state. turns(k): whether joint k turns, not slides.
+  template <typename Turns>
+  void set_axes(Eigen::Index joints, const Turns& turns) noexcept {
+    axes.resize(joints, 3);
+    moments.resize(joints, 3);
+    for (Eigen::Index k = 0; k < joints; ++k) {
+      const auto joint = static_cast<std::size_t>(k + 1);
+      const Vector3 z = state.R[joint].col(2);
+      const bool turn = turns(k);
+      axes.row(k) = turn ? z : Vector3(Vector3::Zero());
+      moments.row(k) = turn ? Vector3(cross(z, state.p[joint])) : Vector3(-z);
+    }
+  }
 };
 
 }  // namespace fpbm

@@ -29,19 +29,17 @@ struct Separation {
   AllJoints gradient[2];   ///< Of along, by the joints.
   AllJoints of_beyond[2];  ///< That of beyond, where the second one moves.
   int seconds = 1;         ///< Number of ends of the second one.
-  Scalar at;               ///< Where the first one's axis is nearest: 0 at one end, 1 at the other.
-  Scalar at_second = Scalar(0);
 
-  /// placed: the bodies of the clearance; found: the nearest points of the pair there.
+  /// placed: the bodies of the clearance; found: the nearest points of the pair there. Both must outlive this.
   Separation(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
-             const Nearest<Scalar>& found) noexcept {
-    const auto& body = placed.bodies[pair.first];
+             const Nearest<Scalar>& found) noexcept
+      : found_(found), first_(placed.bodies[pair.first]) {
+    const auto& body = first_;
     const Vector3& n = found.normal;
     distance = found.distance;
     closing = Scalar(0);
     const auto& first = clearance.bodies()[pair.first];
-    set_ends(clearance, placed, first, body, pair.by_first, n, -body.radius, along, gradient);
-    at = nearest_on(body, found.on_first + body.radius * n);
+    set_ends(placed, first, body, pair.by_first, n, -body.radius, along, gradient);
     if (pair.world) {
       const auto& obstacle = clearance.obstacles()[pair.second];
       beyond[0] = obstacle.support_along(n);
@@ -54,9 +52,13 @@ struct Separation {
       return;
     }
     seconds = 2;
-    const auto& second = clearance.bodies()[pair.second];
-    set_ends(clearance, placed, second, other, pair.by_second, n, other.radius, beyond, of_beyond);
-    at_second = nearest_on(other, found.on_first - (found.distance + other.radius) * n);
+    second_ = &other;
+    set_ends(placed, clearance.bodies()[pair.second], other, pair.by_second, n, other.radius, beyond, of_beyond);
+  }
+
+  /// Where the first one's axis is nearest: 0 at one end, 1 at the other.
+  [[nodiscard]] Scalar at() const noexcept {
+    return nearest_on(first_, found_.on_first + first_.radius * found_.normal);
   }
 
   /// Of end e of the first one and end f of the second one.
@@ -69,15 +71,20 @@ struct Separation {
     return along[e] - (seconds == 1 ? beyond[0] : std::max(beyond[0], beyond[1]));
   }
   [[nodiscard]] AllJoints gradient_of(int e) const noexcept {
-    return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - between(of_beyond, at_second));
+    return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - between(of_beyond, at_second()));
   }
   /// Gradient of the distance, by the joints.
   [[nodiscard]] AllJoints of_distance() const noexcept {
-    const AllJoints first = between(gradient, at);
-    return seconds == 1 ? first : AllJoints(first - between(of_beyond, at_second));
+    const AllJoints first = between(gradient, at());
+    return seconds == 1 ? first : AllJoints(first - between(of_beyond, at_second()));
   }
 
  private:
+  /// Where the second one's axis is nearest.
+  [[nodiscard]] Scalar at_second() const noexcept {
+    return nearest_on(*second_, found_.on_first - (found_.distance + second_->radius) * found_.normal);
+  }
+
   [[nodiscard]] static AllJoints between(const AllJoints (&ends)[2], Scalar share) noexcept {
     return ends[0] + share * (ends[1] - ends[0]);
   }
@@ -91,26 +98,16 @@ struct Separation {
   }
 
   /// n·x + more at both ends x of a body's axis, and its gradient by the joints.
-  static void set_ends(const Clearance& clearance, const Placement& placed, const Body& body,
-                       const Capsule<Scalar>& capsule, JointBits joints, const Vector3& n, Scalar more,
-                       Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
-    const auto& state = placed.state;
-    const Vector3 moments[2] = {cross(capsule.a, n), cross(capsule.b, n)};
+  static void set_ends(const Placement& placed, const Body& body, const Capsule<Scalar>& capsule, JointBits joints,
+                       const Vector3& n, Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
     value[0] = n.dot(capsule.a) + more;
     value[1] = n.dot(capsule.b) + more;
-    for (auto& each : gradient) each.setZero(clearance.robot().joints());
-    each_joint(joints, [&](Eigen::Index k) noexcept {
-      const auto joint = static_cast<std::size_t>(k + 1);
-      const Vector3 z = state.R[joint].col(2);
-      if (!clearance.robot().turns(k)) {
-        if (!body.is_direction) gradient[0](k) = gradient[1](k) = z.dot(n);
-        return;
-      }
-      // n · (z × (x − p)) = z · ((x − p) × n), and without p of a direction.
-      const Vector3 offset = body.is_direction ? Vector3(Vector3::Zero()) : cross(state.p[joint], n);
-      for (int e = 0; e < 2; ++e) gradient[e](k) = z.dot(moments[e] - offset);
-    });
+    placed.set_gradients(n, capsule.a, capsule.b, joints, body.is_direction, gradient);
   }
+
+  const Nearest<Scalar>& found_;
+  const Capsule<Scalar>& first_;
+  const Capsule<Scalar>* second_ = nullptr;  ///< If joints move the second one alone.
 };
 
 }  // namespace fpbm

@@ -6,28 +6,6 @@
 
 namespace fpbm {
 
-/// Gradient of n·x by the drives, for the point x of a body: nᵀJ.
-template <typename Clearance, typename Scalar>
-[[nodiscard]] typename Clearance::JointVector gradient_along(const Clearance& clearance,
-                                                             const typename Clearance::Placement& placed,
-                                                             const typename Clearance::Body& body,
-                                                             const Vector<3, Scalar>& x,
-                                                             const Vector<3, Scalar>& n) noexcept {
-  using AllJoints = typename Clearance::AllJoints;
-  AllJoints row = AllJoints::Zero(clearance.robot().joints());
-  const Vector<3, Scalar> moment = cross(x, n);
-  each_joint(clearance.robot().moved_by(body.link), [&](Eigen::Index k) noexcept {
-    const auto joint = static_cast<std::size_t>(k + 1);
-    const Vector<3, Scalar> z = placed.state.R[joint].col(2);
-    if (clearance.robot().turns(k)) {
-      row(k) = z.dot(body.is_direction ? moment : Vector<3, Scalar>(moment - cross(placed.state.p[joint], n)));
-    } else if (!body.is_direction) {
-      row(k) = z.dot(n);
-    }
-  });
-  return clearance.robot().drives().by_drive(row);
-}
-
 /// Adds a row n · v ≤ most for each speed bound that a tick's motion u would exceed with the velocity v, with n along
 /// v: at the tick's end, or once the acceleration has been let go, which takes `late` ticks. So the speed is kept but
 /// for the change of direction in a tick, and where other rows and the joints' limits leave no motion that keeps it.
@@ -46,7 +24,10 @@ void bound_speeds(const Clearance& clearance, typename Clearance::Placement& pla
   for (std::size_t i = 0; i < clearance.speed_bounds().size(); ++i) {
     const auto& bound = clearance.speed_bounds()[i];
     const auto gradient = [&](const Vector<3, Scalar>& n) noexcept {
-      return gradient_along(clearance, placed, bound.body, placed.speed_points[i], n);
+      const Vector<3, Scalar>& x = placed.speed_points[i];
+      typename Clearance::AllJoints gradients[2];
+      placed.set_gradients(n, x, x, clearance.robot().moved_by(bound.body.link), bound.body.is_direction, gradients);
+      return clearance.robot().drives().by_drive(gradients[0]);
     };
     Vector<3, Scalar> v = Vector<3, Scalar>::Zero();
     for (int axis = 0; axis < 3; ++axis) {

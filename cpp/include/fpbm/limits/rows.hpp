@@ -59,13 +59,18 @@ struct Rows {
   /// A motion in a box that keeps the rows, or nearly, near to a given one: the same where that keeps them.
   [[nodiscard]] Vector<N, Scalar> near(Vector<N, Scalar> u, const Box<N, Scalar>& box) const noexcept {
     constexpr int kRounds = 8;
-    for (int round = 0; round < kRounds && !admit(u); ++round) {
+    for (int round = 0; round < kRounds; ++round) {
+      bool is_kept = true;
       for (Eigen::Index k = 0; k < count; ++k) {
         const Scalar beyond = excess(k, u);
+        if (!(beyond > Scalar(0))) continue;
+        is_kept = false;
         const Scalar square = sum_over(u, [&](Eigen::Index i) { return g.coeff(i, k) * g.coeff(i, k); });
-        if (!(beyond > Scalar(0) && square > Scalar(0))) continue;
-        for (Eigen::Index i = 0; i < u.size(); ++i) u.coeffRef(i) -= beyond / square * g.coeff(i, k);
+        if (!(square > Scalar(0))) continue;
+        const Scalar step = beyond / square;
+        for (Eigen::Index i = 0; i < u.size(); ++i) u.coeffRef(i) -= step * g.coeff(i, k);
       }
+      if (is_kept) break;
       u = box.nearest(u);
     }
     return u;

@@ -36,18 +36,20 @@ template <int M, int N, int P, typename Scalar>
   if (cholesky.factor(gram) != Status::kOk) return {change, Scalar(0)};
   std::array<Vector<M, Scalar>, P> normals;  // Of the rows, in the task's space.
   Vector<P, Scalar> squares;
+  Vector<P, Scalar> excess;  // Of u over the rows.
   Vector<P, Scalar> multipliers;
   for (Eigen::Index k = 0; k < rows.count; ++k) {
     Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
     normal = cholesky.solve(product(J, column(rows.g, k)));
     squares(k) = squared_norm(normal);
+    excess(k) = rows.excess(k, u);
     multipliers(k) = Scalar(0);
   }
   for (int round = 0; round < kRounds; ++round) {
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       if (!(squares(k) > Scalar(0))) continue;
       const Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
-      const Scalar beyond = rows.excess(k, u) + dot(normal, change);
+      const Scalar beyond = excess(k) + dot(normal, change);
       const Scalar multiplier = std::max(multipliers(k) + beyond / squares(k), Scalar(0));
       const Scalar added = multiplier - multipliers(k);
       change = entrywise(change, [&](Eigen::Index i) { return change.coeff(i) - added * normal.coeff(i); });
