@@ -263,9 +263,9 @@ def limited(results: Results) -> list[str]:
         "The limits alone: the difference to the same step without them.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Answers to 10,000 problems, beside this library's, which answers all of them. With bounds on jerk, line and s are",
-        "those of the second problem. The last column counts the problems that have no solution where the whole task is an",
-        "equality.",
+        "Answers to 10,000 problems, beside this library's, which answers all of them. With bounds on jerk, line and s",
+        "are those of the second problem. The last column counts problems without a solution if the whole task",
+        "is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
     ]
