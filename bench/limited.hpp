@@ -40,13 +40,26 @@ struct Answer {
   double scale;  ///< Share of the task that is left.
 };
 
-/// Where the task's line starts, within the box: a motion that slows the arm down or, from the last tick's
-/// acceleration, one that its jerk may reach.
-template <typename Case, int N = Case::kDof>
-fpbm::Vector<N> rest(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, const Asked<Case>& asked,
-                     const fpbm::Box<N>& box) {
-  if (limits.bounds_jerk()) return box.nearest(asked.last);
-  return fpbm::brake_in_proportion(limits, asked.state, box);
+/// Calls solve(box, from, desired, answer) for each problem that Limiter has: the motion from `from` toward a desired
+/// one within a box, as far as the box allows. Without bounds on jerk this is one problem: from a motion that slows the
+/// arm down. With bounds on jerk there are two: the same within the box in time; then from the last tick's acceleration
+/// toward that answer, within the box of the tick. False if solve() finds no answer.
+template <typename Case, int N = Case::kDof, typename Solve>
+bool solve_within(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, const Asked<Case>& asked,
+                  const fpbm::Vector<N>& desired, Answer<Case>& answer, Solve&& solve) {
+  const auto& state = asked.state;
+  const fpbm::Box<N> box = limits.box(state, asked.last);
+  if (!limits.bounds_jerk()) return solve(box, brake_in_proportion(limits, state, box), desired, answer);
+  answer = {desired, 1.0};
+  const fpbm::Box<N> in_time = box_in_time(limits, state, asked.last, box);
+  if (!in_time.contains(desired)) {
+    if (!solve(in_time, brake_in_proportion(limits, state, in_time), desired, answer)) return false;
+  }
+  if (box.contains(answer.u)) return true;
+  const Answer<Case> goal = answer;
+  if (!solve(box, box.nearest(asked.last), goal.u, answer)) return false;
+  answer.scale *= goal.scale;
+  return true;
 }
 
 /// This library's limited step.
@@ -129,6 +142,31 @@ struct Score {
   int larger = 0;    ///< It keeps more of the task, by more than 1 %.
 };
 
+/// The task's line of the last problem of a step, and how far along it this library's saturation goes.
+template <typename Case>
+struct Line {
+  fpbm::Vector<Case::kDof> from;
+  fpbm::Vector<Case::kRows> task;
+  double scale;
+};
+
+template <typename Case, typename Ours>
+Line<Case> line(const Ours& ours, const Asked<Case>& asked) {
+  constexpr int N = Case::kDof;
+  const auto& limits = ours.limiter().limits();
+  fpbm::NullSpaceSaturation<Case::kRows, N, double> saturation(ours.J(), limits.bounds().acceleration);
+  Line<Case> line;
+  Answer<Case> answer;
+  const auto saturate = [&](const auto& box, const auto& from, const auto& desired, Answer<Case>& found) {
+    const auto saturated = saturation(box, from, desired);
+    found = {saturated.u, saturated.scale};
+    line = {from, ours.J() * (desired - from), found.scale};
+    return true;
+  };
+  solve_within(limits, asked, ours.desired(), answer, saturate);
+  return line;
+}
+
 template <typename Solver, Bounds bounds>
 Score score() {
   using Case = typename Solver::Case;
@@ -148,16 +186,15 @@ Score score() {
     }
     const auto& limits = ours.limiter().limits();
     const auto box = limits.box(one.state, one.last);
-    const auto rest = bench::rest(limits, one, box);
-    const fpbm::Vector<Case::kRows> line = ours.J() * (ours.desired() - rest);
-    const fpbm::Vector<Case::kRows> done = ours.J() * (found.u - rest);
-    const double along = done.dot(line) / line.squaredNorm();
-    score.off_line += (done - along * line).norm() > 1e-3 * done.norm() && done.norm() > 1e-6 * line.norm() ? 1 : 0;
+    const auto [from, task, scale] = line(ours, one);
+    const fpbm::Vector<Case::kRows> done = ours.J() * (found.u - from);
+    const double along = done.dot(task) / task.squaredNorm();
+    score.off_line += (done - along * task).norm() > 1e-3 * done.norm() && done.norm() > 1e-6 * task.norm() ? 1 : 0;
     const fpbm::Vector<Case::kDof> beyond =
         (found.u - box.nearest(found.u)).cwiseQuotient(limits.bounds().acceleration);
     score.outside += beyond.cwiseAbs().maxCoeff() > 1e-6 ? 1 : 0;
-    score.smaller += along < 0.99 * expected.scale ? 1 : 0;
-    score.larger += along > 1.01 * expected.scale ? 1 : 0;
+    score.smaller += along < 0.99 * scale ? 1 : 0;
+    score.larger += along > 1.01 * scale ? 1 : 0;
   }
   return score;
 }

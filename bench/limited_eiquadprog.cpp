@@ -6,11 +6,12 @@
 #include "textbook.hpp"
 
 // The joint limits as a quadratic program, on Pinocchio's kinematics and the scheme in Eigen. In each joint's unit, its
-// bound on acceleration, z = (u − rest)/unit and g = (desired − rest)/unit:
+// bound on acceleration, z = (u − from)/unit and g = (desired − from)/unit:
 //
 //   min ½ ‖z − g‖² + ½ w (1 − s)²,  J z = s J g,  lower ≤ z ≤ upper,  0 ≤ s ≤ 1.
 //
-// The box is this library's, as a QP library brings none, and so is the rest motion within it.
+// The box is this library's, as a QP library brings none, and so is the motion `from` within it. With bounds on jerk
+// there are two such programs a step, as in Limiter (solve_within).
 namespace bench {
 namespace {
 
@@ -78,17 +79,18 @@ class Eiquadprog {
   }
 
   bool limit(const Asked<Case>& asked, Answer<Case>& answer) {
-    const auto box = limits_.box(asked.state, asked.last);
-    const fpbm::Vector<N> rest = bench::rest(limits_, asked, box);
-    const fpbm::Vector<N> goal = (desired_ - rest).cwiseQuotient(unit_);
-    qp_.g.template head<N>() = -goal;
     qp_.CE.template leftCols<N>() = textbook_.J() * unit_.asDiagonal();
-    qp_.CE.col(N).noalias() = -qp_.CE.template leftCols<N>() * goal;
-    qp_.ci.template head<N>() = (rest - box.lower).cwiseQuotient(unit_);
-    qp_.ci.template segment<N>(N + 1) = (box.upper - rest).cwiseQuotient(unit_);
-    const bool solved = qp_.solve();
-    answer = {rest + unit_.cwiseProduct(qp_.x.template head<N>()), qp_.x(N)};
-    return solved;
+    const auto solve = [this](const auto& box, const auto& from, const auto& desired, Answer<Case>& found) {
+      const fpbm::Vector<N> goal = (desired - from).cwiseQuotient(unit_);
+      qp_.g.template head<N>() = -goal;
+      qp_.CE.col(N).noalias() = -qp_.CE.template leftCols<N>() * goal;
+      qp_.ci.template head<N>() = (from - box.lower).cwiseQuotient(unit_);
+      qp_.ci.template segment<N>(N + 1) = (box.upper - from).cwiseQuotient(unit_);
+      const bool solved = qp_.solve();
+      found = {from + unit_.cwiseProduct(qp_.x.template head<N>()), qp_.x(N)};
+      return solved;
+    };
+    return solve_within(limits_, asked, desired_, answer, solve);
   }
 
  private:

@@ -54,7 +54,7 @@ def rows(results: Results) -> list[list[str]]:
     for case in ("panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration", "panda/position/jerk"):
         shares = [results.ratio(f"limited/{case}", qp) for qp in ("eiquadprog_rt", "eiquadprog_fast")]
         share = max((each for each in shares if each), default=None)
-        words = case.replace("/", ", ")
+        words = case.replace("/", ", ") + (", two problems each" if case.endswith("jerk") else "")
         add(f"limited step, {words}: share of the faster eiquadprog's time", share, 0.30, "{:.2f}")
     for job, before in OLD_INSTRUCTIONS.items():
         count, bar = instructions(results, job), 0.75 if job.endswith("tick") else 0.8

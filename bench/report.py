@@ -254,8 +254,7 @@ def limited(results: Results) -> list[str]:
     for row in results.values["limited"]:
         part, *case, library = row["name"].split("/")
         if part == "limited" and library != "fpbm_cpp":
-            known = list(columns)[:2] if case[-1] == "jerk" else columns
-            counts = (str(row[key]) if key in known else "" for key in columns)
+            counts = (str(row[key]) for key in columns)
             scores.append([f"{', '.join(case)}: {LIMITED[library]}", *counts])
     return [
         "Kinematics, scheme and limits, in random states whose scheme asks for more than the limits allow:",
@@ -264,8 +263,9 @@ def limited(results: Results) -> list[str]:
         "The limits alone: the difference to the same step without them.",
         "",
         *comparison(results, "limits", LIMITED, kind="bounds"),
-        "Answers to 10,000 problems, beside this library's, which answers all of them. The last column counts the",
-        "problems that have no solution where the whole task is an equality.",
+        "Answers to 10,000 problems, beside this library's, which answers all of them. With bounds on jerk, line and s",
+        "are those of the second problem. The last column counts problems without a solution if the whole task",
+        "is an equality.",
         "",
         *table(["arm, task, bounds: library", *columns.values()], scores),
     ]

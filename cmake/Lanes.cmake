@@ -1,6 +1,7 @@
 # Whether code in a processor's lanes can be compiled (FPBM_HAS_SIMD), and for x86-64 (FPBM_HAS_LANES), with which options
 # for each kind of those processors. Some standard libraries have the header and little in it, so what the lanes need of
 # it is tried.
+include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX17_STANDARD_COMPILE_OPTION})
 check_cxx_source_compiles("
@@ -18,6 +19,12 @@ endif()
 set(lane_options -fno-math-errno)
 set(avx2_options -mavx2 -mfma)
 set(avx512_options ${avx2_options} -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512)
+# By default g++ copies structs of AVX2 vectors in parts of 16 bytes, and a load of a whole vector waits for its two stores.
+# For AVX-512 the preferred width is the default.
+check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" FPBM_HAS_MOVE_MAX)
+if(FPBM_HAS_MOVE_MAX)
+  list(APPEND avx2_options -mmove-max=256 -mstore-max=256)
+endif()
 
 # Sets a variable to the kinds that a choice names: native (the kind of this machine's processor, by the macros that the
 # compiler defines for it; all kinds in a cross build, which cannot know), all, or a list of kinds.

@@ -22,7 +22,7 @@ template <typename Value>
 }
 
 template <typename Value>
-[[nodiscard]] Three<Value> cross(const Three<Value>& a, const Three<Value>& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline Three<Value> cross(const Three<Value>& a, const Three<Value>& b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
