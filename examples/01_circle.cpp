@@ -8,7 +8,7 @@ int main() {
   constexpr double kPi = fpbm::kTwoPi / 2.0;
   const fpbm::PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});  // lengths [m]
   const fpbm::Vector<4> weights{1.0, 2.0, 3.0, 4.0};   // the diagonal of W
-  // As in the paper, without NullSpace::with_damping: the joints still move at the end. Other examples have it.
+  // As in the paper, without null-space damping: the joints still move at the end. Other examples have damping.
   const auto scheme = fpbm::FPBM<4>(0.6, weights, 1.0, 1.0);  // alpha, W, k1, k2
   const fpbm::Path path(fpbm::Circle(0.45), 10.0);            // radius [m], duration [s]
   const fpbm::State<4> start{{kPi / 12, kPi / 12, kPi / 15, kPi / 15}, {0.0, 0.0, 0.0, 0.0}};

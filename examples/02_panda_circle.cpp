@@ -1,4 +1,4 @@
-// A Panda draws a circle twice with its hand held level, then stands still: four schemes in one table.
+// A Panda draws a circle twice with a constant orientation, then holds the tip: four schemes in one table.
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,13 +8,13 @@
 
 using Joints = fpbm::Vector<7>;
 
-/// Moves the Panda under a scheme and prints the key figures; false where the motion must stop early.
+/// Moves the Panda with a scheme and prints the key figures. Returns false if the motion stops early.
 template <typename Scheme>
 bool run(const char* name, const Scheme& scheme, const Joints& start) {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const fpbm::InPlane circle(fpbm::Path(fpbm::Circle(0.12), 3.0, fpbm::Quintic{}),  // radius [m], duration [s]
                              {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
-  const fpbm::WithRotation path(fpbm::Sequence(circle, circle));  // Twice, and the orientation is held.
+  const fpbm::WithRotation path(fpbm::Sequence(circle, circle));  // Twice, with a constant orientation.
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 4.0);
 
   double speed = 0.0, acceleration = 0.0, error = 0.0, orientation_error = 0.0, manipulability = 1.0;
@@ -42,12 +42,12 @@ bool run(const char* name, const Scheme& scheme, const Joints& start) {
 int main() {
   constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints ready{0.0, -kPi / 4, 0.0, -3 * kPi / 4, 0.0, kPi / 2, kPi / 4};  // [rad], the hand points down
-  const Joints weights{8, 8, 4, 4, 2, 1, 1};  // The diagonal of W: the nearer the base, the more a joint has to carry.
+  const Joints weights{8, 8, 4, 4, 2, 1, 1};  // The diagonal of W: larger near the base, where joints carry more.
   const auto rest = fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(ready, 4.0);
 
-  // The task takes six of the seven degrees of freedom, so all peaks are alike; what differs is where the elbow goes.
-  // MVN and WMVN end each circle in another posture. MAN's elbow still moves when the hand stands still, and its tip
-  // error grows. FPBM's tip error dies out, and the arm comes to rest in the posture that it started from.
+  // The task determines six of the seven degrees of freedom, so all peaks are similar, and only the motion of the elbow
+  // differs. MVN and WMVN end each circle in a different posture. With MAN, the elbow still moves when the tip is at
+  // rest, and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start posture.
   std::puts("        peak    peak     final   tip error      least    from first");
   std::puts("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad");
   const bool done = run("MVN", fpbm::MVN<7>(), ready) && run("WMVN", fpbm::WMVN<7>(weights), ready) &&

@@ -1,4 +1,4 @@
-"""A Panda draws a circle twice with its hand held level, then stands still: four schemes in one picture."""
+"""A Panda draws a circle twice with a constant orientation, then holds the tip: four schemes in one figure."""
 
 from math import pi
 
@@ -10,7 +10,7 @@ from fpbm_cpp.plot import compare
 arm = fp.SerialArm.preset("panda")
 ready = np.array([0, -pi / 4, 0, -3 * pi / 4, 0, pi / 2, pi / 4])  # [rad], the hand points down
 circle = fp.Circle(0.12, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
-weights = [8, 8, 4, 4, 2, 1, 1]  # the nearer the base, the more a joint has to carry
+weights = [8, 8, 4, 4, 2, 1, 1]  # larger near the base, where joints carry more
 
 schemes = {
     "MVN": fp.MVN(),
@@ -23,9 +23,9 @@ runs = {
     for name, scheme in schemes.items()
 }
 
-# The task takes six of the seven degrees of freedom, so all peaks are alike; what differs is where the elbow goes. MVN
-# and WMVN end each circle in another posture. MAN's elbow still moves when the hand stands still, and its tip error
-# grows. FPBM's tip error dies out, and the arm comes to rest in the posture that it started from.
+# The task determines six of the seven degrees of freedom, so all peaks are similar, and only the motion of the elbow
+# differs. MVN and WMVN end each circle in a different posture. With MAN, the elbow still moves when the tip is at rest,
+# and the tip error grows. With FPBM, the tip error decays, and the arm comes to rest in its start posture.
 print("        peak    peak     final   tip error      least    from first")
 print("        rad/s   rad/s²   rad/s   m      rad     manip.  posture, rad")
 for name, run in runs.items():

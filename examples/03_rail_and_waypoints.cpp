@@ -1,4 +1,4 @@
-// An iiwa 14 on a rail works along a bench that is longer than its reach: the weights set how far the rail moves.
+// An iiwa 14 on a rail moves along a bench beyond its workspace: the weights determine how far the rail moves.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 using Joints = fpbm::Vector<8>;
 
-/// The preset arm, carried by a prismatic joint along y.
+/// The preset arm on a prismatic joint along y.
 fpbm::Chain<> iiwa_on_rail() {
   fpbm::Joint<> rail;
   rail.type = fpbm::JointType::kPrismatic;
@@ -21,14 +21,14 @@ fpbm::Chain<> iiwa_on_rail() {
   return chain;
 }
 
-/// Moves the arm along the whole bench and prints how far the rail went; false where the motion must stop early. 1 m/s
-/// of the rail costs as much as √weight rad/s of a joint.
+/// Moves the arm along the whole bench and prints the displacement of the rail. Returns false if the motion stops
+/// early. 1 m/s of the rail costs as much as √weight rad/s of a joint.
 bool run(const char* name, double weight) {
   const fpbm::SerialArm<8> arm(iiwa_on_rail());
   constexpr double kPi = fpbm::kTwoPi / 2.0;
   const Joints start{-0.8, -0.3, 0.6, 0.0, -1.5, 0.0, kPi - 2.1, 0.0};  // [m], [rad]: the hand points down
 
-  // Poses moved from the first by x, y, z [m] and rotated about the vertical by an angle [rad].
+  // The first pose, displaced by x, y, z [m] and rotated about the vertical axis by an angle [rad].
   fpbm::Kinematics<fpbm::Pose, 8> first;
   arm.kinematics(start, first);
   const auto hand = [&](double x, double y, double z, double angle) {
@@ -65,6 +65,6 @@ bool run(const char* name, double weight) {
 }
 
 int main() {
-  // A light rail follows the hand; a heavy rail moves only as far as the arm cannot reach.
+  // A rail of small weight follows the hand. A rail of large weight moves only as far as the workspace requires.
   return run("light rail", 0.1) && run("heavy rail", 10.0) ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-"""An iiwa 14 on a rail works along a bench that is longer than its reach: the weights set how far the rail moves."""
+"""An iiwa 14 on a rail moves along a bench beyond its workspace: the weights determine how far the rail moves."""
 
 from math import pi
 
@@ -17,7 +17,7 @@ first = arm.forward(start)
 
 
 def hand(x: float, y: float, z: float, angle: float) -> np.ndarray:
-    """The first pose, moved by x, y, z [m] and rotated about the vertical by an angle [rad]."""
+    """The first pose, displaced by x, y, z [m] and rotated about the vertical axis by an angle [rad]."""
     pose = first.copy()
     pose[:3, 3] += x, y, z
     pose[:3, :3] = fp.rotation([0, 0, angle]) @ first[:3, :3]
@@ -29,12 +29,12 @@ path = fp.Waypoints([hand(*station) for station in stations], velocity=0.5, acce
 
 
 def run(weight: float) -> fp.Run:
-    """Along the whole bench, where 1 m/s of the rail costs as much as sqrt(weight) rad/s of a joint."""
+    """The motion along the whole bench. 1 m/s of the rail costs as much as sqrt(weight) rad/s of a joint."""
     scheme = fp.FPBM(0.6, [weight, 1, 1, 1, 1, 1, 1, 1], k1=20, k2=100, null_damping=2)
     return fp.simulate(arm, path, scheme, start, hold=1.0, task="pose")
 
 
-# A light rail follows the hand; a heavy rail moves only as far as the arm cannot reach.
+# A rail of small weight follows the hand. A rail of large weight moves only as far as the workspace requires.
 runs = {"light rail, W = diag(0.1, 1, …, 1)": run(0.1), "heavy rail, W = diag(10, 1, …, 1)": run(10)}
 for name, done in runs.items():
     print(

@@ -1,5 +1,5 @@
-// A 7-joint arm from a URDF file, in a program without a parser: its tool draws a line under FPBM. The header was
-// written by
+// A 7-joint arm from a URDF file, in a program without a URDF parser: the tool draws a line with FPBM. This command
+// wrote the header:
 //   fpbm-cpp export-header examples/04_exported_arm.urdf --tip tool -o examples/04_exported_arm.hpp
 
 #include "04_exported_arm.hpp"
@@ -18,7 +18,7 @@ int main() {
   std::printf("tool at [m]: %.3f %.3f %.3f\n", kinematics.tip(0), kinematics.tip(1), kinematics.tip(2));
 
   const fpbm::Path path(fpbm::Line<3>({0.1, 0.0, 0.05}), 2.0);     // displacement [m], duration [s]
-  const auto damping = fpbm::NullSpace<kDof>().with_damping(2.0);  // [1/s]: the joints come to rest with the tool
+  const auto damping = fpbm::NullSpace<kDof>().with_damping(2.0);  // [1/s]: the joints stop with the tool
   const auto scheme = fpbm::FPBM<kDof>(0.6, fpbm::UnitWeights{}, 20.0, 100.0, damping);  // alpha, W, k1, k2, z
   const fpbm::TimeGrid grid(path.duration(), 1e-3);
 

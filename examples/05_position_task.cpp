@@ -1,4 +1,4 @@
-// A Kinova Gen3 draws a Lissajous figure with its tip, whose orientation is free, and comes to rest where it began.
+// A Kinova Gen3 draws a Lissajous figure with a free orientation of the tip, and returns to its start posture.
 
 #include <algorithm>
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 using Joints = fpbm::Vector<7>;
 
-/// Draws the figure under FPBM with a secondary motion and prints the key figures; false where it must stop early.
+/// Draws the figure by FPBM with a secondary motion and prints key figures. Returns false if the motion stops early.
 bool run(const char* name, const Joints& home, const fpbm::NullSpace<7>& secondary) {
   const fpbm::SerialArm<7> arm(fpbm::presets::gen3());
   const fpbm::Lissajous<double> figure({0.15, 0.1}, {1, 2}, 0.0);  // amplitudes [m], frequencies, phase [rad]
@@ -34,7 +34,7 @@ int main() {
   const fpbm::NullSpace<7> nothing;
   const auto homeward = nothing.with_damping(4.0).with_rest_posture(home, 4.0);
 
-  // The task takes three of the seven degrees of freedom. Left alone, the other four end elsewhere, and still move when
-  // the tip rests.
+  // The task determines three of the seven degrees of freedom. Without a secondary motion, the four others end in
+  // another posture, and still move when the tip is at rest.
   return run("left alone", home, nothing) && run("drawn home", home, homeward) ? 0 : 1;
 }

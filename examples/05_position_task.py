@@ -1,4 +1,4 @@
-"""A Kinova Gen3 draws a Lissajous figure with its tip, whose orientation is free, and comes to rest where it began."""
+"""A Kinova Gen3 draws a Lissajous figure with a free orientation of the tip, and returns to its start posture."""
 
 from math import pi
 
@@ -11,8 +11,8 @@ arm = fp.SerialArm.preset("gen3")
 home = np.array([0, 0.26, pi, -2.27, 0, 0.96, pi / 2])  # [rad]
 path = fp.Lissajous((0.15, 0.1), 8.0, frequencies=(1, 2), phase=0.0, time_law="quintic").in_plane("yz")  # [m], [s]
 
-# The task takes three of the seven degrees of freedom. Left alone, the other four end elsewhere, and still move when
-# the tip rests.
+# The task determines three of the seven degrees of freedom. Without a secondary motion, the four others end in another
+# posture, and still move when the tip is at rest.
 schemes = {
     "left alone": fp.FPBM(0.6, np.ones(7), k1=20, k2=100),
     "drawn home": fp.FPBM(0.6, np.ones(7), k1=20, k2=100, null_damping=4, rest_posture=home, null_stiffness=4),

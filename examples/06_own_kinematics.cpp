@@ -1,4 +1,4 @@
-// Your own kinematics: tip, J and Jd are written by hand, FPBM gives the joint accelerations, in a control loop.
+// Custom kinematics in a control loop: tip, J and Jd are hand-written, and FPBM computes the joint accelerations.
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 
 using Plane = fpbm::Position<2>;
 
-/// A slide along x [m] that carries two links of 0.5 m and 0.4 m. Any library can fill `out`. For an arm of N joints in
-/// space, Kinematics<Position<3>, N>, Pinocchio does so by
+/// A prismatic joint along x [m] with two links of 0.5 m and 0.4 m. Any library can fill `out`. For an arm of N joints
+/// in space, Kinematics<Position<3>, N>, the calls of Pinocchio are
 ///   computeJointJacobiansTimeVariation(model, data, q, qd), updateFramePlacements(model, data);
 ///   getFrameJacobian(model, data, tip, LOCAL_WORLD_ALIGNED, J);
 ///   getFrameJacobianTimeVariation(model, data, tip, LOCAL_WORLD_ALIGNED, Jd);
 ///   out.tip = data.oMf[tip].translation(), out.J = J.topRows<3>(), out.Jd = Jd.topRows<3>();
-/// and Kinematics<Pose, N> with out.tip = {data.oMf[tip].translation(), data.oMf[tip].rotation()} and all six rows.
+/// Kinematics<Pose, N> needs out.tip = {data.oMf[tip].translation(), data.oMf[tip].rotation()} and all six rows.
 void kinematics(const fpbm::State<3>& state, fpbm::Kinematics<Plane, 3>& out) {
   const double a = state.q(1);
   const double b = state.q(1) + state.q(2);
@@ -54,7 +54,7 @@ int main() {
       std::printf("stopped at %g s: %s. %s\n", step * kStep, message(status), advice(status));
       return 1;
     }
-    state.q += kStep * state.qd + kStep * kStep / 2.0 * qdd;  // The drives, until the next tick.
+    state.q += kStep * state.qd + kStep * kStep / 2.0 * qdd;  // Motion until the next tick.
     state.qd += kStep * qdd;
   }
   std::printf("tip error [m]: %.1e at most, %.1e at the end\n", max_error, error);

@@ -1,4 +1,4 @@
-"""Your own kinematics: Pinocchio gives tip, J and Jd, FPBM gives the joint accelerations, in a control loop."""
+"""Custom kinematics in a control loop: Pinocchio computes tip, J and Jd, and FPBM the joint accelerations."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ tip = model.getFrameId("effector_body")
 
 
 def kinematics(q: np.ndarray, qd: np.ndarray) -> fp.Kinematics:
-    """Tip, J and Jd of a position task; for a pose task oMf[tip].homogeneous and all six rows."""
+    """Tip, J and Jd of a position task. A pose task needs oMf[tip].homogeneous and all six rows."""
     pin.computeJointJacobiansTimeVariation(model, data, q, qd)
     pin.updateFramePlacements(model, data)
     J = pin.getFrameJacobian(model, data, tip, pin.LOCAL_WORLD_ALIGNED)
@@ -36,6 +36,6 @@ for step in range(1001):
     x, xd, xdd = path.sample(step * h)
     errors.append(np.linalg.norm(start + x - here.tip))
     qdd = scheme.resolve(here, q, qd, start + x, xd, xdd)
-    q, qd = q + h * qd + h * h / 2 * qdd, qd + h * qdd  # the drives, until the next tick
+    q, qd = q + h * qd + h * h / 2 * qdd, qd + h * qdd  # motion of the drives until the next tick
 
 print(f"tip error [m]: {max(errors):.1e} at most, {errors[-1]:.1e} at the end")

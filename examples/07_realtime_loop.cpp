@@ -1,7 +1,7 @@
-// A control loop at 1 kHz on POSIX: a Panda draws circles, reaches for a target that is too far, comes back and stops.
-// Then the program prints how punctual it was.
-//   example_07_realtime_loop [seconds to run, 10] [ticks a second, 1000]      Ctrl-C brings the arm to rest and ends.
-// There is no Python twin: an interpreter may pause at any time, and this loop must not.
+// A control loop at 1 kHz on POSIX: a Panda draws circles, moves toward an unreachable target, returns and stops. Then
+// the program prints histograms of its timing.
+//   example_07_realtime_loop [seconds to run, 10] [ticks per second, 1000]    Ctrl-C stops the arm and the program.
+// This example has no Python version: an interpreter may pause at any time, but this loop must not pause.
 
 #include <pthread.h>
 #include <sched.h>
@@ -26,7 +26,7 @@ constexpr Nanoseconds kSecond = 1000000000;
 
 volatile std::sig_atomic_t interrupted = 0;
 
-/// Counts durations in a fixed array: 48 bins a decade, from 0.1 µs to 1 s.
+/// Counts durations in a fixed array: 48 bins per decade, from 0.1 µs to 1 s.
 class Histogram {
  public:
   void add(Nanoseconds duration) noexcept {
@@ -43,7 +43,7 @@ class Histogram {
       long count = 0;
       for (std::size_t i = first; i < first + kPerRow; ++i) count += bins_[i];
       if (count == 0) continue;
-      // A bar as long as the logarithm of the count, so that a single late tick is seen beside many thousands.
+      // The length of a bar is the logarithm of the count, so that a single late tick is visible beside many thousands.
       const int bar = 1 + static_cast<int>(8.0 * std::log10(static_cast<double>(count)));
       std::printf("%9.1f to %9.1f %8ld %.*s\n", edge(first), edge(first + kPerRow), count, bar, kBar);
     }
@@ -55,12 +55,12 @@ class Histogram {
   static constexpr double kLeast = 100.0;  // [ns]
   static constexpr const char* kBar = "################################################################";
 
-  /// Where a bin begins [µs].
+  /// Lower edge of a bin [µs].
   [[nodiscard]] static double edge(std::size_t bin) {
     return kLeast * std::pow(10.0, static_cast<double>(bin) / kPerDecade) * 1e-3;
   }
 
-  /// The end of the bin that it falls in: at most 5 % too high.
+  /// Upper edge of the quantile's bin [µs]: at most 5 % too high.
   [[nodiscard]] double quantile(double share) const {
     std::size_t bin = 0;
     for (long below = bins_[0]; static_cast<double>(below) < share * static_cast<double>(total_);) {
@@ -80,14 +80,14 @@ Nanoseconds now() noexcept {
   return kSecond * time.tv_sec + time.tv_nsec;
 }
 
-/// Sleeps until a point in time, not for a duration: if one tick is late, the next is not.
+/// Sleeps until an absolute time, so that a late tick does not delay the next tick.
 void sleep_until(Nanoseconds when) noexcept {
   const timespec time{when / kSecond, when % kSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) == EINTR) {
   }
 }
 
-/// Gets priority over everything that is not real-time, and keeps all memory at hand: no page is fetched during a tick.
+/// Sets a real-time priority, and locks all memory: no page fault occurs during a tick.
 void become_realtime() {
   sched_param priority{};
   priority.sched_priority = 80;
@@ -101,7 +101,7 @@ void become_realtime() {
   for (std::size_t i = 0; i < sizeof stack; i += 1024) stack[i] = 0;
 }
 
-/// A number from the command line, or its default.
+/// A number from the command line, or its default value.
 double argument(int count, char** values, int index, double standard, double most) {
   if (index >= count) return standard;
   char* end = nullptr;
@@ -127,21 +127,21 @@ int main(int argc, char** argv) {
   const auto start = tracker.tip();
   const fpbm::InPlane circle(fpbm::Path(fpbm::Circle(0.1), 3.0, fpbm::Quintic{}),  // radius [m], duration [s]
                              {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
-  const fpbm::WithRotation path(circle);  // The hand is held level.
+  const fpbm::WithRotation path(circle);  // The orientation is constant.
   const fpbm::PathFollower lap(path, start);
   auto follower = lap;
   const auto back = fpbm::Reference<fpbm::Pose>::hold(start);
   auto beyond = back;
-  beyond.x.p(0) += 1.0;  // [m], out of reach
+  beyond.x.p(0) += 1.0;  // [m], unreachable
 
   Histogram lateness, compute;
-  std::array<long, 6> seen{};  // Ticks that ended in each status.
+  std::array<long, 6> seen{};  // Number of ticks with each status.
   long missed = 0;
   double error = 0.0, orientation_error = 0.0, speed = 0.0;
   std::signal(SIGINT, [](int) { interrupted = 1; });
   become_realtime();
 
-  // From here to the loop's end: no allocation, no input or output, no lock.
+  // From here to the end of the loop: no allocation, no input or output, no lock.
   const auto period = static_cast<Nanoseconds>(std::llround(1e9 / rate));
   const Nanoseconds begin = now() + period;
   Nanoseconds deadline = begin;
@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
     const Nanoseconds awake = now();
     lateness.add(awake - deadline);
 
-    // Circles for 60 % of the time, 20 % toward the target that is too far, 20 % back; then the stop.
+    // Circles for 60 % of the time, then 20 % toward the unreachable target, 20 % back, and the stop.
     const double share = static_cast<double>(deadline - begin) * 1e-9 / seconds;
     if (!stopping && (interrupted || share >= 1.0)) {
       stopping = true;
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
     if (follower.done()) follower = lap;
     const bool circling = share < 0.6;
     const auto tick = circling ? tracker.tick(follower) : tracker.tick(share < 0.8 ? beyond : back);
-    // Here tick.q, or tick.qd, goes to the drives.
+    // Send tick.q or tick.qd to the drives here.
 
     ++seen[static_cast<std::size_t>(tick.status)];
     if (circling && !stopping) {
@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
     speed = tick.qd.cwiseAbs().maxCoeff();
     at_rest = stopping && speed < 1e-9;
 
-    // A deadline that has passed by now is skipped, not made up for: the arm is late by a tick, but does not jump.
+    // A missed deadline is skipped and not repeated: the arm is late by one tick, but does not jump.
     const Nanoseconds done = now();
     compute.add(done - awake);
     for (deadline += period; deadline <= done; deadline += period) ++missed;

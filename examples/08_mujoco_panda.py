@@ -1,8 +1,8 @@
-"""A Panda in MuJoCo, commanded by torques: it draws a circle, is pushed, reaches too far and too near, and goes home.
+"""A Panda in MuJoCo with computed torque: circle, hold, push, two unreachable targets, and return to the start.
 
-Every millisecond Tracker.resolve_measured() answers the measured joints with an acceleration within their limits. The
-torques tau = M(q) qdd + h(q, qd) would give exactly that (computed torque), but the controller takes every mass and
-inertia for 2 % greater than it is, and knows nothing of friction.
+Every millisecond, Tracker.resolve_measured() computes an acceleration within the joint limits from the measured state.
+With an exact model, the torques tau = M(q) qdd + h(q, qd) would realise this acceleration (computed torque). But in the
+controller's model, every mass and inertia is 2 % too large, and there is no friction.
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ except ModuleNotFoundError:
 ARM = fp.SerialArm.preset("panda")
 HOME = np.array([0, -pi / 4, 0, -3 * pi / 4, 0, pi / 2, pi / 4])  # [rad], the hand points down
 DT = 1e-3  # A tick of the controller [s].
-STEPS = 4  # Steps of the simulation in a tick.
+STEPS = 4  # Simulation steps per tick.
 
-PHASES = {"circle": 0.0, "hold": 4.0, "push": 6.0, "too far": 9.0, "too near": 13.0, "home": 17.0}  # Beginnings [s].
+PHASES = {"circle": 0.0, "hold": 4.0, "push": 6.0, "too far": 9.0, "too near": 13.0, "home": 17.0}  # Start times [s].
 END = 21.0  # [s]
 CIRCLE = fp.Circle(0.12, 4.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
 START = ARM.forward(HOME)
 AWAY = {"too far": (0.5, 0.0, 0.0), "too near": (-0.35, 0.0, -0.35)}  # Jumps of the target from START [m].
-PUSH = (0.0, 30.0, 0.0)  # Force on link 4, at the elbow [N],
-PUSH_LASTS = 0.3  # and for how long [s].
+PUSH = (0.0, 30.0, 0.0)  # Force on link 4, at the elbow [N].
+PUSH_LASTS = 0.3  # Duration of the push [s].
 
-WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
+WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # Larger near the base, where joints carry more.
 SCHEME = {"k1": 60, "k2": 900, "null_damping": 10, "rest_posture": HOME, "null_stiffness": 25}
-# A quarter of the gain k1 k2 at which the loop would be unstable. The bound holds for rad/s², too: the wrist's friction
-# torque over its inertia is about 6 rad/s².
+# A quarter of k1 k2, the gain at the stability limit. The bound is for m/s² and rad/s²: the friction torque of the
+# wrist divided by its inertia is about 6 rad/s².
 INTEGRAL = {"integral_gain": 0.25 * 60 * 900, "integral_bound": 10.0}
 
 
 def margins() -> fp.JointLimits:
-    """A little less than the arm's limits, since its acceleration is not quite the commanded one."""
+    """Limits slightly inside the arm's limits, because the realised acceleration differs from the commanded one."""
     real = ARM.limits
     return fp.JointLimits(
         lower=real.lower + 0.005,  # [rad]
@@ -58,8 +58,8 @@ def phase(t: float) -> str:
 
 
 def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The target's pose, velocity and acceleration [m, s]; its orientation stays."""
-    way, velocity, acceleration = CIRCLE.sample(t)  # At rest from its end on.
+    """Pose, velocity and acceleration of the target [m, s]. The orientation is constant."""
+    way, velocity, acceleration = CIRCLE.sample(t)  # At rest after its end.
     x = START.copy()
     x[:3, 3] += way + AWAY.get(phase(t), (0, 0, 0))
     return x, np.append(velocity, np.zeros(3)), np.append(acceleration, np.zeros(3))
@@ -67,7 +67,7 @@ def reference(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @dataclass
 class Motion:
-    """Tip errors [m], [rad] and torques [Nm] at each tick; joints [rad], [rad/s] at each step of the simulation."""
+    """Tip errors [m], [rad] and torques [Nm] at each tick, joints [rad], [rad/s] at each simulation step."""
 
     tip: list[float] = field(default_factory=list)
     orientation: list[float] = field(default_factory=list)
@@ -83,12 +83,12 @@ class Motion:
         return np.array(getattr(self, rows)[round(begins[i] * per_second) : round(begins[i + 1] * per_second)])
 
     def clearance(self) -> tuple[np.ndarray, np.ndarray]:
-        """The least distance of each joint from its bounds on position [rad] and on velocity [rad/s]."""
+        """Smallest distance of each joint from its bounds on position [rad] and on velocity [rad/s]."""
         q, qd, real = np.array(self.q), np.array(self.qd), ARM.limits
         return np.minimum(q - real.lower, real.upper - q).min(axis=0), (real.velocity - abs(qd)).min(axis=0)
 
     def settled(self) -> float:
-        """Seconds from the push until every joint stays below 0.01 rad/s and the tip error below 1 mm."""
+        """Settling time [s] from the push until all joints stay below 0.01 rad/s and the tip error below 1 mm."""
         busy = (abs(self.during("push", "qd")[::STEPS]).max(axis=1) > 0.01) | (self.during("push", "tip") > 1e-3)
         return float(DT * (np.flatnonzero(busy).max(initial=-1) + 1))
 
@@ -100,7 +100,7 @@ def simulate(
     limits: fp.JointLimits | None = None,
     inertia_error: float = 0.02,
     friction: float = 1.0,
-    delay: int = 0,  # The simulated state is exact and of this moment.
+    delay: int = 0,  # The simulated state is exact and current.
     end: float = END,
 ) -> Motion:
     tracker = fp.Tracker(
@@ -127,7 +127,7 @@ def simulate(
         believed.qpos[:], believed.qvel[:] = q, qd
         mujoco.mj_forward(belief, believed)
         mujoco.mj_mulM(belief, believed, torque, tick.qdd)
-        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo bounds the torques.
+        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo limits the torques.
 
         pushed = PHASES["push"] <= t < PHASES["push"] + PUSH_LASTS
         world.body("link4").xfrc_applied[:3] = PUSH if pushed else (0, 0, 0)

@@ -1,4 +1,4 @@
-// A Panda on a circle from eleven elbow postures, from MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped.
+// A Panda on a circle from eleven start postures, from MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped.
 
 #include <algorithm>
 #include <cstdio>
@@ -11,7 +11,7 @@ int main() {
   const fpbm::TimeGrid grid(path.duration(), 1e-3, 1.0);
   fpbm::State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, fpbm::Vector<7>::Zero()};  // [rad]
 
-  // Twelve schemes from eleven starts. Each motion is summed up while it runs; no sample is stored.
+  // Twelve schemes from eleven starts. Each motion is summarised during its computation, and no sample is stored.
   std::printf("damping  alpha  complete  error [m]  peak qd [rad/s]  final qd [rad/s]  manipulability\n");
   for (const double damping : {0.0, 2.0}) {
     for (const double alpha : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {

@@ -1,4 +1,4 @@
-"""A Panda on a circle from eleven elbow postures, from MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped."""
+"""A Panda on a circle from eleven start postures, from MAN (alpha = 0) to WMVN (alpha = 1), undamped and damped."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ schemes = [fp.FPBM(alpha, np.ones(7), k1=10, k2=25, null_damping=damping) for da
 starts = np.tile([0, -0.3, 0, -2.2, 0, 2.0, 0.785], (11, 1))  # [rad]
 starts[:, 2] = np.linspace(-0.5, 0.5, 11)
 
-# Twelve schemes from eleven starts, on all cores. Each row shows the worst of a scheme's starts.
+# Twelve schemes from eleven starts, on all cores. Each row shows the worst values over the starts of a scheme.
 sweep = fp.sweep(arm, path, schemes, starts, hold=1.0, task="pose")
 print("damping  alpha  complete  error [m]  peak qd [rad/s]  final qd [rad/s]  manipulability")
 for i, (damping, alpha) in enumerate(cases):

@@ -1,10 +1,10 @@
-"""Better values of FPBM's alpha, W and damping than a first choice: on the paper's three paths, and for a Panda."""
+"""Tuning of alpha, W and damping of FPBM: for the paper's robot on its three paths, and for a Panda."""
 
 import numpy as np
 
 import fpbm_cpp as fp
 
-# The paper's robot, start and paths. The paper's choice, alpha = 0.6 and W = diag(1, 2, 3, 4), is tune()'s baseline.
+# The paper's robot, start and paths. The baseline of tune() is the paper's alpha = 0.6 and W = diag(1, 2, 3, 4).
 arm = fp.PlanarArm([1, 1, 1, 1])
 q0 = np.pi / np.array([12, 12, 15, 15])  # [rad]
 paths = {"circle": fp.Circle(0.45, 10.0), "Lissajous": fp.Lissajous(0.4, 10.0), "tricuspid": fp.Tricuspid(0.3, 10.0)}
@@ -21,7 +21,7 @@ for name, path in paths.items():
         if (name, objective) == ("tricuspid", "peak_velocity"):
             tuning.plot().savefig("tuning.png")
 
-# A Panda draws a circle. With its hand's orientation free, four degrees of freedom are left; with it held, one is.
+# A Panda draws a circle, with four degrees of redundancy if the orientation is free, and one if it is constant.
 panda = fp.SerialArm.preset("panda")
 ready = np.array([0, -0.3, 0, -2.2, 0, 2.0, 0.785])  # [rad]
 circle = fp.Circle(0.15, 4.0).in_plane("yz")

@@ -1,12 +1,12 @@
-"""A Franka Research 3 at 1 kHz through libfranka: a circle, then targets that come as they can, 30 a second.
+"""A Franka Research 3 at 1 kHz through libfranka: a circle, then targets at 30 Hz with irregular delays.
 
-    python examples/11_franka.py                        against franky-sim, a simulated robot that is started here
-    python examples/11_franka.py --robot 172.16.0.2     against a real one
+    python examples/11_franka.py                        with franky-sim, a simulated robot that this program starts
+    python examples/11_franka.py --robot 172.16.0.2     with a real robot
 
-libfranka reports every millisecond and takes joint positions; the robot refuses those whose velocity, acceleration or
-jerk is out of bounds. The tracker keeps its commands within all of them. A TargetFilter makes of bare poses, late,
-uneven and with gaps, a motion that the arm can follow. This has never run on a robot: begin slowly, with the stop
-button at hand. Ctrl-C brings the arm to rest and ends.
+libfranka calls every millisecond and accepts joint positions. The robot rejects positions with a velocity, acceleration
+or jerk out of bounds. The tracker keeps its commands within all these bounds. From poses that are late and irregular,
+with gaps, a TargetFilter computes a motion that the arm can follow. This program has never run on a robot: start
+slowly, with the stop button at hand. Ctrl-C brings the arm to rest and ends the program.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ try:
 except ImportError:
     sys.exit("this example needs libfranka: pip install pylibfranka franky-sim")
 
-DT = 1e-3  # A tick, which is the robot's [s].
+DT = 1e-3  # A tick, equal to the cycle of the robot [s].
 ARM = fp.SerialArm.preset("fr3")
-MARGIN = 1e-3  # The distance that libfranka's own limiter keeps from every bound (kLimitEps).
+MARGIN = 1e-3  # Distance from every bound that libfranka's own limiter keeps (kLimitEps).
 LIMITS = replace(
     ARM.limits,
     velocity=ARM.limits.velocity - MARGIN,
@@ -41,17 +41,17 @@ LIMITS = replace(
     jerk=ARM.limits.jerk - MARGIN,
     velocity_offset=ARM.limits.velocity_offset + MARGIN,
 )
-WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # The nearer the base, the more a joint has to carry.
+WEIGHTS = [8, 8, 4, 4, 2, 1, 1]  # Larger near the base, where joints carry more.
 
 CIRCLE = fp.Circle(0.08, 3.0, time_law="quintic").in_plane("xy")  # radius [m], duration [s]
-TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # What the filter may ask of the tip [m, s],
-TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # and of its orientation [rad, s].
+TIP = {"velocity": 0.5, "acceleration": 1.5, "jerk": 30.0}  # Bounds of the filter for the tip [m, s].
+TURN = {"angular_velocity": 1.0, "angular_acceleration": 3.0, "angular_jerk": 60.0}  # For its orientation [rad, s].
 
 interrupted = Event()
 
 
 class Target(NamedTuple):
-    """A pose [m], the time at which it was seen and the time at which it comes, from the stream's beginning [s]."""
+    """A pose [m], the time of its observation and the time of its arrival, from the start of the stream [s]."""
 
     comes: float
     stamp: float
@@ -59,7 +59,7 @@ class Target(NamedTuple):
 
 
 def hand(start: np.ndarray, t: float) -> np.ndarray:
-    """Where somebody's hand leads the tip: sideways, up and down and round the vertical for 3 s, then nowhere."""
+    """The pose of a moving hand: sideways, up and down and about the vertical axis for 3 s, then constant."""
     sideways, up = np.sin(np.pi * min(t, 3.0) / np.array([2.0, 1.5])) ** 2
     x = start.copy()
     x[:3, 3] += 0.0, 0.1 * sideways, 0.06 * up
@@ -68,9 +68,9 @@ def hand(start: np.ndarray, t: float) -> np.ndarray:
 
 
 def stream(start: np.ndarray, seconds: float, seed: int = 1) -> list[Target]:
-    """What a camera would tell of the hand: 30 poses a second, 10 ms early or late, on their way for 5 to 40 ms.
+    """Poses of the hand from a camera at 30 Hz, with a jitter of 10 ms and a delay of 5 to 40 ms.
 
-    One in ten is lost, and from 1.2 to 1.6 s there are none.
+    One pose in ten is lost, and there are no poses from 1.2 to 1.6 s.
     """
     rng = np.random.default_rng(seed)
     targets = []
@@ -83,7 +83,7 @@ def stream(start: np.ndarray, seconds: float, seed: int = 1) -> list[Target]:
 
 
 def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator[fp.Tick]:
-    """One tick a millisecond without end: along the path, then after the targets, then at rest at the last."""
+    """One tick per millisecond without end: along the path, toward the targets, and at rest at the last target."""
     follower = tracker.follow(path)
     while not follower.done:
         yield tracker.tick(follower)
@@ -100,21 +100,21 @@ def ticks(tracker: fp.Tracker, path: fp.Path, targets: list[Target]) -> Iterator
 
 @dataclass
 class Motion:
-    """Joint positions of every tick [rad], those that the robot was sent among them, and how it went."""
+    """Joint positions of every tick [rad], the commands among them, and results."""
 
     q: list[np.ndarray]  # The first is the start.
-    sent: list[int] = field(default_factory=list)  # Which of them were sent,
-    time: list[float] = field(default_factory=list)  # when, by the robot's clock [s],
-    desired: list[list[float]] = field(default_factory=list)  # and which command it followed until then, as it said.
-    error: list[np.ndarray] = field(default_factory=list)  # Of the tip, on its path or the filter's [m], [rad].
+    sent: list[int] = field(default_factory=list)  # Indices of the commands in q.
+    time: list[float] = field(default_factory=list)  # Times of the commands by the robot's clock [s].
+    desired: list[list[float]] = field(default_factory=list)  # Commands that the robot reported at these times [rad].
+    error: list[np.ndarray] = field(default_factory=list)  # Tip errors relative to the path or the filter [m], [rad].
     statuses: Counter[str] = field(default_factory=Counter)
 
     def missed(self) -> int:
-        """Milliseconds in which the robot got no command."""
+        """Number of milliseconds without a command."""
         return len(self.q) - len(self.sent)
 
     def shares(self) -> dict[str, float]:
-        """The most that any joint uses of each limit, by finite differences of the positions, from rest to rest."""
+        """Largest fraction of each limit over all joints, by finite differences of the positions, from rest to rest."""
         q = np.array([self.q[0]] * 3 + self.q + [self.q[-1]] * 3)
         middle, half = (LIMITS.upper + LIMITS.lower) / 2, (LIMITS.upper - LIMITS.lower) / 2
         used = {"position": abs(q - middle) / half}
@@ -124,7 +124,7 @@ class Motion:
 
 
 def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> Motion:
-    """The robot along a path, then after so many seconds of targets, then at rest. Raises where libfranka does."""
+    """Move along a path, then toward targets for some seconds, then stop. Raises the exceptions of libfranka."""
     start = np.array(robot.read_once().q)
     scheme = fp.FPBM(0.6, WEIGHTS, k1=20, k2=100, null_damping=4, rest_posture=start, null_stiffness=4)
     tracker = fp.Tracker(ARM, scheme, start, task="pose", dt=DT, limits=LIMITS)
@@ -135,8 +135,8 @@ def move(robot: franka.Robot, path: fp.Path = CIRCLE, seconds: float = 4.0) -> M
 
     control = robot.start_joint_position_control(franka.ControllerMode.JointImpedance)
     while not finished:
-        # The measured state is not used: the tracker goes on from its own command, which the robot follows. The first
-        # call makes no tick. After lost packets there are several, since the robot has moved on meanwhile.
+        # The tracker continues from its own command, which the robot follows, and does not use the measured state. The
+        # first call has no tick. A call after lost packets has several ticks, because the robot moved on.
         state, period = control.readOnce()
         for _ in range(round(period.to_sec() / DT)):
             tick = next(due)
@@ -163,13 +163,13 @@ SERVE = "import signal; signal.alarm({}); from franky_sim import run_server_main
 
 @contextmanager
 def simulator(lifetime: int = 120) -> Iterator[str]:
-    """The address of a simulated robot on the loopback interface, a process of its own that ends with the block.
+    """The address of a simulated robot on the loopback interface, a separate process that ends with the block.
 
-    After its lifetime [s] it ends in any case, so that libfranka, which may wait for a robot forever, does not.
-    Raises RuntimeError where it does not start.
+    The process also ends after its lifetime [s], because libfranka may wait for a robot without a timeout.
+    Raises RuntimeError if the process does not start.
     """
     command = [sys.executable, "-u", "-c", SERVE.format(lifetime), "--simulator", "mujoco"]
-    # In a session of its own: a Ctrl-C is for the arm.
+    # In a separate session, so that Ctrl-C stops the arm and not the simulator.
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
         try:
             said = next((line for line in process.stdout or () if line.startswith("Connect")), None)
@@ -198,11 +198,11 @@ def main() -> None:
         report(move(franka.Robot(address)))
         return
     with simulator() as address:
-        report(move(franka.Robot(address, franka.RealtimeConfig.kIgnore)))  # No real-time kernel is needed for it.
+        report(move(franka.Robot(address, franka.RealtimeConfig.kIgnore)))  # A simulation needs no real-time kernel.
 
 
 if __name__ == "__main__":
     try:
         main()
-    except RuntimeError as error:  # From libfranka, or where the simulator does not start.
+    except RuntimeError as error:  # From libfranka, or if the simulator does not start.
         sys.exit(str(error))

@@ -1,4 +1,4 @@
-// A Panda whose reference goes straight through a post and into the table: as asked for, and kept clear of both.
+// A Panda with a reference through a post and into a table, without and with collision avoidance.
 
 #include <algorithm>
 #include <cstdio>
@@ -8,7 +8,7 @@
 using Joints = fpbm::Vector<7>;
 using Clearance = fpbm::Clearance<7>;
 
-/// Draws the line and prints how near the shapes of `measured` come, where the arm keeps clear of those of `kept`.
+/// Draws the line and avoids the shapes of `kept`. Prints and returns the smallest distance of those of `measured`.
 double run(const char* name, const Clearance& kept, Clearance measured) {
   const fpbm::SerialArm<7> arm(fpbm::presets::panda());
   const Joints q0{0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854}, rest = Joints::Zero();  // [rad]

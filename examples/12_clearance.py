@@ -1,4 +1,4 @@
-"""A Panda whose reference goes straight through a post and into the table: as asked for, and kept clear of both."""
+"""A Panda with a reference through a post and into a table, without and with collision avoidance."""
 
 import numpy as np
 

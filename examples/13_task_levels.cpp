@@ -1,5 +1,5 @@
-// A Panda carries a cup: upright first, then its place, then the elbow's height, then a posture. Joint limits slow the
-// lower levels, never the cup's direction.
+// A Panda carries a cup. The levels are: cup upright, position of the tip, height of the elbow, posture. Joint limits
+// slow the lower levels, and the cup stays upright.
 
 #include <algorithm>
 #include <cstdio>

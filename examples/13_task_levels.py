@@ -1,6 +1,6 @@
-"""A Panda carries a cup: upright first, then its place, then the elbow's height, then a posture.
+"""A Panda carries a cup. The levels are: cup upright, position of the tip, height of the elbow, posture.
 
-Joint limits slow the lower levels, never the cup's direction.
+Joint limits slow the lower levels, and the cup stays upright.
 """
 
 import numpy as np

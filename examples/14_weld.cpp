@@ -1,4 +1,4 @@
-// A UR5e welds along a circle: the torch points down, and is free to turn about its axis.
+// A UR5e welds along a circle: the torch points down, and its rotation about its axis is free.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ int main() {
   const fpbm::Robot<6> robot(fpbm::presets::ur5e());
   constexpr int kTip = fpbm::Robot<6>::kTip;
   const fpbm::TaskGains<> gains(20.0, 100.0);  // k1 [1/s], k2 [1/s²]
-  // Position and axis side by side, 5 rows, then the posture.
+  // Position and axis on one level (5 rows), then the posture.
   const fpbm::Stack stack(fpbm::TaskLevel(fpbm::PositionTask<>{{kTip}, gains}, fpbm::AxisTask<>{{kTip}, gains}),
                           fpbm::PostureTask<6>{fpbm::TaskGains<>(4.0, 4.0)});
   const auto scheme = fpbm::Balanced<6>(0.6, fpbm::UnitWeights{}, fpbm::NullSpace<6>().with_damping(2.0));

@@ -1,4 +1,4 @@
-"""A UR5e welds along a circle: the torch points down, and is free to turn about its axis."""
+"""A UR5e welds along a circle: the torch points down, and its rotation about its axis is free."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ torch = [
     fp.PositionTask("tip", name="seam", k1=20, k2=100),
     fp.AxisTask("tip", name="torch", k1=20, k2=100),
 ]
-stack = fp.Stack(torch, fp.PostureTask(q0, k1=4, k2=4))  # Position and axis side by side, 5 rows, then the posture.
+stack = fp.Stack(torch, fp.PostureTask(q0, k1=4, k2=4))  # Position and axis on one level (5 rows), then the posture.
 tracker = fp.Tracker(arm, fp.Balanced(0.6, np.ones(6), null_damping=2), q0, stack=stack)
 
 for _ in range(3000):

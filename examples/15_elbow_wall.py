@@ -1,4 +1,4 @@
-"""A Panda carries a cup upright to a place and back, behind a wall for its elbow, no faster than 0.5 m/s."""
+"""A Panda carries an upright cup to a target and back, with a wall for its elbow and at most 0.5 m/s."""
 
 import numpy as np
 

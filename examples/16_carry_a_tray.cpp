@@ -1,5 +1,5 @@
-// Two Pandas carry a tray along a circle: the grasp first, then the tray, then a posture. The tray jumps at the end,
-// beyond what the joints' limits admit: the tray slows down, and the grasp holds.
+// Two Pandas carry a tray along a circle. The levels are: grasp, pose of the tray, posture. At the end, the target of
+// the tray jumps. The joint limits slow the tray, and the grasp holds.
 
 #include <algorithm>
 #include <cstdio>
@@ -20,7 +20,7 @@ int main() {
   const auto [held, start, posture] = tracker.tip();
   const auto grasp = fpbm::Reference<fpbm::Pose>::hold(held);
   const auto home = fpbm::Reference<fpbm::JointSpace<14>>::hold(posture);
-  const fpbm::WithRotation circle(  // Radius [m], duration [s]; the orientation is held.
+  const fpbm::WithRotation circle(  // Radius [m], duration [s], constant orientation.
       fpbm::InPlane(fpbm::Path(fpbm::Circle(0.1), 6.0), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}));
   fpbm::PathFollower follower(circle, start);
   double slip = 0.0;

@@ -1,6 +1,6 @@
-"""Two Pandas carry a tray along a circle: the grasp first, then the tray, then a posture.
+"""Two Pandas carry a tray along a circle. The levels are: grasp, pose of the tray, posture.
 
-The tray jumps at the end, beyond what the joints' limits admit: the tray slows down, and the grasp holds.
+At the end, the target of the tray jumps. The joint limits slow the tray, and the grasp holds.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 // The upper body of a humanoid, a Unitree G1 of 17 joints, reaches forward, lifts and turns with both hands. Both hands
-// are on the first level, side by side; the waist bends as far as the hands need. With the robot's centre of mass on
-// the second level, the arms do more and the waist less. The header was written by
+// are on the first level. The waist bends as far as the hands need. With the centre of mass of the robot on the second
+// level, the arms move more and the waist less. The header was written by
 //   fpbm-cpp export-header g1_29dof_rev_1_0.urdf --base fixed --tip left_wrist_yaw_link --tip right_wrist_yaw_link
 //       -o examples/17_upper_body.hpp
 // from the URDF file of the package example-robot-data (BSD-3-Clause, Unitree Robotics).
@@ -23,7 +23,7 @@ struct Place {
 constexpr Place kPlaces[] = {{"forward", 0.3, 0.05, 0.0}, {"lifted", 0.3, 0.2, 0.0}, {"turned", 0.3, 0.2, 0.6}};
 constexpr double kHalf = 0.16;  // Half of the distance between the hands [m].
 
-/// The pose of a hand at a place before the pelvis, turned about the vertical. side: 1 left, -1 right.
+/// The pose of a hand at a place in front of the pelvis, rotated about the vertical axis. side: 1 left, -1 right.
 fpbm::Reference<fpbm::Pose> goal(const Place& place, double side) {
   fpbm::Transform<> at;
   at.R = Eigen::AngleAxisd(place.yaw, fpbm::Vector<3>::UnitZ()).toRotationMatrix();
@@ -41,8 +41,8 @@ fpbm::Vector<3> center_of_mass(const Robot& robot, const Joints& q) {
   return centre;
 }
 
-/// Prints errors, waist and centre of mass at each place; false where the robot must stop. lower: references of the
-/// levels below the hands.
+/// Prints errors, waist and centre of mass at each place. Returns false if the robot stops early. lower: references of
+/// the levels below the hands.
 template <typename Stack, typename... Lower>
 bool reach(const Robot& robot, const Stack& stack, const Lower&... lower) {
   const auto scheme = fpbm::Balanced<kDof>(0.0, fpbm::UnitWeights{}, fpbm::NullSpace<kDof>().with_damping(2.0));
@@ -66,7 +66,7 @@ int main() {
   auto tree = upper_body::tree();
   for (auto& each : tree.joints) {
     each.joint.bounds.velocity = 3.0;       // [rad/s]
-    each.joint.bounds.acceleration = 20.0;  // [rad/s²]; a URDF file has none.
+    each.joint.bounds.acceleration = 20.0;  // [rad/s²]; the URDF file has no bounds on acceleration.
   }
   const Robot robot(tree);
   const fpbm::TaskGains<> gains(20.0, 100.0);  // k1 [1/s], k2 [1/s²]

@@ -1,6 +1,6 @@
 // A Panda on a mobile base wipes a table: the tip follows 3 m of strokes, and points down. Velocity and acceleration of
-// the base are bounded. The weights of the scheme decide how much the base moves: the greater a joint's weight, the
-// less the joint moves.
+// the base are bounded. The weights of the scheme determine how much the base moves: a joint with a larger weight moves
+// less.
 
 #include <algorithm>
 #include <cstdio>
@@ -10,7 +10,7 @@
 constexpr int kDof = 10;
 using Joints = fpbm::Vector<kDof>;
 
-/// A joint of the base, without ends.
+/// A joint of the base, without bounds on position.
 fpbm::TreeJoint<> base_joint(const std::string& name, fpbm::JointType type, const fpbm::Vector<3>& axis, int parent,
                              double velocity, double acceleration) {
   fpbm::TreeJoint<> each;
@@ -35,7 +35,7 @@ fpbm::Tree<> mobile_panda() {
   return tree;
 }
 
-/// Wipes with a weight of the base's joints, and prints errors and what the base does; false where it must stop.
+/// Wipes with a weight of the base joints, and prints errors and base motion. Returns false if the robot stops early.
 bool wipe(const char* name, double weight) {
   const auto tree = mobile_panda();
   const fpbm::Robot<kDof> robot(tree);

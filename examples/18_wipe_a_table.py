@@ -1,7 +1,7 @@
 """A Panda on a mobile base wipes a table: the tip follows 3 m of strokes, and points down.
 
-Velocity and acceleration of the base are bounded. The weights of the scheme decide how much the base moves: the greater
-a joint's weight, the less the joint moves. The URDF file is that of the package example-robot-data.
+Velocity and acceleration of the base are bounded. The weights of the scheme determine how much the base moves: a joint
+with a larger weight moves less. The URDF file is from the package example-robot-data.
 """
 
 import sys
@@ -34,7 +34,7 @@ stack = fp.Stack(
 
 
 def wipe(weight: float) -> tuple[np.ndarray, float, float]:
-    """Positions of all joints at each tick, the largest error of the tip [m] and its largest tilt [rad]."""
+    """Joint positions at each tick, the largest error [m] and the largest tilt [rad] of the tip."""
     scheme = fp.Balanced(1, np.append(np.full(3, weight), np.ones(7)), null_damping=2)
     tracker = fp.Tracker(robot, scheme, q0, stack=stack, limits=limits)  # 1 kHz
     for _ in range(1500):  # Until the tip points down.

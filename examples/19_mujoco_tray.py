@@ -1,11 +1,11 @@
 """Two Pandas in MuJoCo carry a tray along a circle: the motion of 16_carry_a_tray by computed torque.
 
-Every millisecond the tracker gives positions, velocities and accelerations of the joints, and the torques are
+Every millisecond, the tracker computes positions, velocities and accelerations of the joints. The torques are
 
     tau = M(q) (qdd_r + K_d (qd_r - qd) + K_p (q_r - q)) + h(q, qd).
 
-The controller takes every mass and inertia for 2 % greater than it is, and does not know the friction. Nothing but
-these torques keeps the hands at the tray: the error of the relative pose is the distance that a grasp must yield.
+In the controller's model, every mass and inertia is 2 % too large, and there is no friction. The simulation has no
+contact between hands and tray: the error of the relative pose is the displacement that a grasp must tolerate.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ HANDS = ("right", "left")
 START = np.array([0.3, -0.6, 0, -2.4, 0, 1.8, 0.785, -0.3, -0.6, 0, -2.4, 0, 1.8, 0.785])  # [rad]
 STIFFNESS, DAMPING = 1e4, 200.0  # K_p [1/s²], K_d [1/s]
 DT = 1e-3  # A tick of the controller [s].
-STEPS = 4  # Steps of the simulation in a tick.
+STEPS = 4  # Simulation steps per tick.
 
 
 def placements() -> dict[str, np.ndarray]:
-    """Bases of the arms, as in the preset."""
+    """Base poses of the arms, as in the preset."""
     poses = {}
     for hand, y in zip(HANDS, (-0.4, 0.4)):
         poses[f"{hand}_"] = np.eye(4)
@@ -40,7 +40,7 @@ def placements() -> dict[str, np.ndarray]:
 
 
 def relative_error(data: mujoco.MjData, grasp: np.ndarray) -> tuple[float, float]:
-    """Distance [m] and angle [rad] of the left hand from where the right hand carries it."""
+    """Distance [m] and angle [rad] of the left hand from its pose in the grasp."""
     poses = []
     for hand in HANDS:
         site = data.site(f"{hand}_tip")
@@ -50,7 +50,7 @@ def relative_error(data: mujoco.MjData, grasp: np.ndarray) -> tuple[float, float
 
 
 def simulate(duration: float = 6.0, hold: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """Relative errors [m], [rad], and distances of the right hand from the path [m], at each tick."""
+    """Errors of the relative pose [m], [rad], and distances of the right hand from the path [m], at each tick."""
     stack = fp.Stack(
         fp.RelativePoseTask("left_tip", "right_tip", name="grasp", k1=500, k2=62_500),
         fp.PoseTask("right_tip", name="tray", k1=40, k2=400),
@@ -73,7 +73,7 @@ def simulate(duration: float = 6.0, hold: float = 1.0) -> tuple[np.ndarray, np.n
         mujoco.mj_forward(belief, believed)
         qdd = tick.qdd + DAMPING * (tick.qd - world.qvel) + STIFFNESS * (tick.q - world.qpos)
         mujoco.mj_mulM(belief, believed, torque, qdd)
-        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo bounds the torques.
+        world.ctrl[:] = torque + believed.qfrc_bias  # MuJoCo limits the torques.
         mujoco.mj_step(arms, world, STEPS)
         mujoco.mj_kinematics(arms, world)
         relative.append(relative_error(world, grasp))

@@ -1,12 +1,12 @@
 """The Panda of fp.SerialArm.preset("panda") as a MuJoCo model (MJCF), written from published numbers.
 
-Kinematics: the preset's own joints, so that MuJoCo's arm is the library's. Masses, centres of mass and inertias: Gaz,
-Cognetti, Oliva, Robuffo Giordano, De Luca, "Dynamic Identification of the Franka Emika Panda Robot With Retrieval of
-Feasible Parameters Using Penalty-Based Optimization", IEEE RA-L 4(4), 2019, as franka_ros has them
-(franka_description/robots/common/inertial.yaml). Coulomb friction: the same paper's supplement, where friction changes
-by FI_1 from one direction to the other; here it is FI_1 each way, twice as much, since theirs was identified behind the
-robot's own torque sensors. Viscous friction and armature: mujoco_menagerie, franka_emika_panda. Bounds on
-torque: Franka Control Interface documentation, "Limits for Panda".
+Kinematics: the joints of the preset, so that MuJoCo and the library have the same kinematics. Masses, centres of mass
+and inertias: Gaz, Cognetti, Oliva, Robuffo Giordano, De Luca, "Dynamic Identification of the Franka Emika Panda Robot
+With Retrieval of Feasible Parameters Using Penalty-Based Optimization", IEEE RA-L 4(4), 2019, as in franka_ros
+(franka_description/robots/common/inertial.yaml). Coulomb friction: the supplement of the same paper, where friction
+changes by FI_1 from one direction to the opposite direction. This model has FI_1 in each direction, twice as much,
+because the paper identified the friction with the robot's own torque sensors. Viscous friction and armature:
+mujoco_menagerie, franka_emika_panda. Bounds on torque: Franka Control Interface documentation, "Limits for Panda".
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ INERTIAS = (
 )
 COULOMB = (0.54615, 0.87224, 0.64068, 1.2794, 0.83904, 0.30301, 0.56489)  # [Nm]
 VISCOUS = 1.0  # [Nm s/rad]
-ARMATURE = 0.1  # [kg m²], what the rotors add behind their gears
+ARMATURE = 0.1  # [kg m²], inertia of the rotors at the joints
 ONE = {"": np.eye(4)}
 TORQUE = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)  # [Nm]
 
@@ -45,8 +45,8 @@ def panda_mjcf(
     """MJCF of the Panda with a torque motor on each joint and a site "tip" at its flange.
 
     inertia_error: relative error of every mass and inertia. friction: factor on all friction. The joints have no stops
-    and the links do not collide, so that a joint which leaves its range is seen. placements: (4, 4) poses of the bases
-    of several Pandas, by what their names begin with.
+    and the links do not collide, so that a joint can leave its range visibly. placements: (4, 4) poses of the bases of
+    several Pandas, by the prefixes of their names.
     """
     heavier = 1 + inertia_error
     root = ElementTree.Element("mujoco", model="panda")
@@ -54,7 +54,7 @@ def panda_mjcf(
     _add(root, "option", timestep=timestep, integrator="implicitfast")
     defaults = _add(root, "default")
     _add(defaults, "geom", mass=0, contype=0, conaffinity=0, size=0.045, rgba=(0.9, 0.9, 0.9, 1))
-    # As close to dry friction as the time step allows: MuJoCo's own setting lets a joint creep.
+    # As close to dry friction as the time step allows: with MuJoCo's default, a joint creeps.
     dry = {"solreffriction": (2 * timestep, 1), "solimpfriction": (0.99, 0.999, 1e-3)}
     _add(defaults, "joint", axis=(0, 0, 1), damping=friction * VISCOUS, armature=heavier * ARMATURE, **dry)
 
@@ -87,7 +87,7 @@ def _add_arm(
 
 
 def _link(body: ElementTree.Element, end: np.ndarray) -> None:
-    """The visible part of a link, from its joint to the next."""
+    """The visible part of a link, from its joint to the next joint."""
     if np.linalg.norm(end) > 0.01:
         _add(body, "geom", type="capsule", fromto=(0, 0, 0, *end))
 
@@ -97,7 +97,7 @@ def _frame(placement: np.ndarray) -> dict[str, object]:
 
 
 def _add(parent: ElementTree.Element, tag: str, **attributes: object) -> ElementTree.Element:
-    """Add a child element; numbers keep all their digits."""
+    """Add a child element. Numbers keep all their digits."""
     texts = {
         key: value if isinstance(value, str) else " ".join(map(repr, np.ravel(value).tolist()))
         for key, value in attributes.items()

@@ -1,4 +1,4 @@
-// Puts the page into one file: node build.mjs PACKED_SIMULATOR NODE_MODULES OUT
+// Writes the page as one file: node build.mjs PACKED_SIMULATOR NODE_MODULES OUT
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the page, one file that needs no server: build.sh OUT.html [FOLDER FOR WHAT IS BETWEEN]
-# Where a tool is missing it says so, and ends well without a page.
+# Builds the page, one file that needs no server: build.sh OUT.html [BUILD FOLDER]
+# If a tool is missing, the script prints its name and succeeds without a page.
 set -eu
 
 out=$1
@@ -24,7 +24,7 @@ if ! test -e "$work/node_modules/.package-lock.json" || ! cmp -s "$here/package-
     (cd "$work" && npm ci --no-audit --no-fund > npm.log 2>&1) || no_page "npm could not fetch what it needs, see $work/npm.log"
 fi
 
-# By a link of its own: em++ takes no headers from /usr/include.
+# With a separate link, because em++ does not search /usr/include.
 ln -sfn "$eigen" "$work/eigen3"
 wasm=$work/simulator.wasm
 functions=_settings_address,_view_address,_begin,_change,_restart,_follow_path,_push,_ticks

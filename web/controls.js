@@ -1,4 +1,4 @@
-// Sliders and buttons, and what they show.
+// Sliders, buttons and their values.
 
 import { FPBM, MAN, MVN, SCHEMES, WMVN_ACCELERATION } from "./simulator.js";
 import { SCHEME_WORDS } from "./words.js";
@@ -12,7 +12,7 @@ const SLIDERS = {
 export const element = (id) => document.getElementById(id);
 
 export class Controls {
-  /// changed(changes): settings that somebody chose; arm(number): an arm.
+  /// changed(changes): called with new settings. arm(number): called with a new arm.
   constructor({ changed, arm }) {
     this.changed = changed;
     for (const name of Object.keys(SLIDERS)) {
@@ -31,7 +31,7 @@ export class Controls {
     this.changed(changes);
   }
 
-  /// Shows what is set; dof: how many weights there are.
+  /// Shows the settings. dof: number of weights.
   show(settings, dof, colors) {
     for (const [name, words] of Object.entries(SLIDERS)) {
       element(name).value = settings[name];
@@ -73,7 +73,7 @@ async function copy() {
     await navigator.clipboard.writeText(element("install").textContent);
     button.textContent = "Copied";
   } catch {
-    getSelection().selectAllChildren(element("install")); // Where a page may not write to the clipboard.
+    getSelection().selectAllChildren(element("install")); // If the page may not write to the clipboard.
     button.textContent = "Selected";
   }
   setTimeout(() => (button.textContent = "Copy"), 2000);

@@ -1,19 +1,19 @@
-// Dragging the target: by mouse, finger or arrow keys. Elsewhere on the canvas the same turns the view.
+// Drags the target by mouse, finger or arrow keys. A drag beside the target rotates the view.
 
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 
-const NEAR = { mouse: 36, touch: 56, pen: 44 }; // From the target's middle or the tip, on the screen.
-const EDGE = 16; // That the target keeps from the canvas' edge [pixels].
+const NEAR = { mouse: 36, touch: 56, pen: 44 }; // Largest distance from the target's centre or the tip [pixels].
+const EDGE = 16; // Distance of the target from the edge of the canvas [pixels].
 
 export class Drag {
-  /// goal(): where the target is; tip(): where the tip is; moved(point), began(), ended(): what is told.
+  /// goal(), tip(): positions of target and tip. moved(point), began(), ended(): called during a drag.
   constructor(stage, { goal, tip, moved, began, ended }) {
     this.stage = stage;
     this.asked = { goal, tip, moved, began, ended };
     this.pointer = null;
     this.ray = new Raycaster();
     const canvas = stage.renderer.domElement;
-    // Before OrbitControls hears of it.
+    // Captured before OrbitControls receives the event.
     canvas.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
     canvas.addEventListener("pointermove", (event) => this.move(event), { capture: true });
     for (const end of ["pointerup", "pointercancel"]) {
@@ -84,20 +84,20 @@ export class Drag {
     return this.stage.world.localToWorld(new Vector3(...point));
   }
 
-  /// Where a point of the base frame is on the page.
+  /// Position on the page of a point of the base frame.
   onPage(point) {
     const seen = this.inWorld(point).project(this.stage.camera);
     const box = this.stage.renderer.domElement.getBoundingClientRect();
     return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
   }
 
-  /// Of a pointer from a point of the base frame, on the page.
+  /// Distance on the page of a pointer from a point of the base frame.
   distance(event, point) {
     const [x, y] = this.onPage(point);
     return Math.hypot(event.clientX - x, event.clientY - y);
   }
 
-  /// What a pointer points at, or where it left the canvas: a target is never lost from sight.
+  /// The point under a pointer, limited to the canvas, so that the target stays visible.
   hit(event) {
     const box = this.stage.renderer.domElement.getBoundingClientRect();
     const within = (value, size) => Math.min(Math.max(value, EDGE), size - EDGE);

@@ -1,4 +1,4 @@
-// Colours of the style sheet, for what is drawn.
+// Colours of the style sheet, for the canvases.
 
 export function look() {
   const style = getComputedStyle(document.documentElement);

@@ -11,7 +11,7 @@ import { ARMS } from "./words.js";
 
 const PAPER = { scheme: 4, alpha: 0.6, damping: 0 };
 const STILL = 0.02; // [rad/s]
-const HURRY = 2.5; // Times faster than the clock.
+const HURRY = 2.5; // Simulated time over real time.
 
 async function unpacked(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -63,7 +63,7 @@ async function main() {
     for (const choice of document.getElementsByName("arm")) choice.checked = Number(choice.value) === simulator.arm;
   }
 
-  /// The paper's scheme on a target that rests. An arm at rest first needs a motion to come from.
+  /// Holds the target with the paper's scheme. An arm at rest first follows the path, so that its joints drift.
   function rest() {
     set(PAPER);
     if (simulator.fastest < STILL) show.followPath(HURRY);
@@ -104,7 +104,7 @@ async function main() {
   greet();
   requestAnimationFrame(frame);
 
-  /// For tests: the clock can be stopped, and ticks made one by one.
+  /// For tests: stop the clock, and compute single ticks.
   window.fpbm = {
     simulator,
     show,
@@ -117,7 +117,7 @@ async function main() {
       running = true;
       last = null;
     },
-    /// Where a point of the base frame is on the page.
+    /// Position on the page of a point of the base frame.
     onPage: (point) => drag.onPage(point),
   };
 }

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <fpbm/core/types.hpp>
 
-/// What passes between the page and its arms.
+/// Data between the page and its arms.
 namespace page {
 
 enum class Scheme { kMvn, kWmvn, kMan, kWmvnAcceleration, kFpbm };
 
-/// What the page chooses, as plain numbers.
+/// Settings of the page, as numbers.
 struct Settings {
   double scheme = static_cast<double>(Scheme::kFpbm);
   double alpha = 0.6;
-  double feedback = 5.0;  ///< Rate at which a tip error decays [1/s].
-  double damping = 0.0;   ///< Of the self-motion [1/s].
+  double feedback = 5.0;  ///< Decay rate of a tip error [1/s].
+  double damping = 0.0;   ///< Null-space damping [1/s].
   double limited = 1.0;   ///< Whether joint limits are kept.
   double weights[7] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 
@@ -25,24 +25,24 @@ struct Settings {
   }
 };
 
-/// What the page draws, as plain numbers. Velocities are those of the last tick; scale and status are the worst of the
-/// last call's ticks.
+/// Data that the page draws, as numbers. Velocities are from the last tick. Scale and status are the worst of the ticks
+/// of the last call.
 struct View {
   double dof = 0.0;
   double time = 0.0;
   double status = 0.0;
   double scale = 1.0;
-  double error = 0.0;      ///< Of the tip's place [m].
+  double error = 0.0;      ///< Position error of the tip [m].
   double following = 0.0;  ///< Whether the arm follows its path.
   double q[7] = {};
   double qd[7] = {};
   double tip[3] = {};
-  double reference[3] = {};    ///< Where the tip should be now.
-  double frames[8][12] = {};   ///< Place, then axes x, y, z, of the base and of each link.
-  double capsules[8][8] = {};  ///< Link, two points in its frame, radius; 0 where there is none.
+  double reference[3] = {};    ///< Current reference of the tip.
+  double frames[8][12] = {};   ///< Origin, then axes x, y, z, of the base and of each link.
+  double capsules[8][8] = {};  ///< Link, two points in its frame, radius; 0 without a capsule.
 };
 
-/// An arm that follows its path or a target, whatever its kind.
+/// An arm of any type that follows its path or a target.
 struct Simulator {
   Simulator() = default;
   Simulator(const Simulator&) = delete;

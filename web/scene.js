@@ -1,4 +1,4 @@
-// What is seen of the arm: light, ground, links, the target, the tip's way, and a ghost of the posture it came to rest in.
+// The scene: light, ground, links, target, path of the tip, and a ghost of the posture in which the tip came to rest.
 
 import {
   AmbientLight,
@@ -27,16 +27,16 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { ArmShapes } from "./shapes.js";
 
-const WAY = 600; // Points of the tip's way.
+const WAY = 600; // Number of points of the tip's path.
 
-/// Camera, centre of view and what must be seen about it [m]; the size of a target.
+/// Camera, centre of the view, visible width and height [m], and size of the target [m].
 const STAGES = {
   planar: { from: [0.8, 0.1, 10], at: [1.6, 1.05, 0], width: 4.7, height: 3.5, size: 0.16 },
   panda: { from: [2.7, 1.05, 1.25], at: [0.22, 0.42, 0], width: 1.4, height: 1.0, size: 0.036 },
 };
 
 export class Stage {
-  /// covered(): what words cover of the canvas, from its top and from its bottom [pixels].
+  /// covered(): heights that text covers at the top and at the bottom of the canvas [pixels].
   constructor(canvas, look, covered) {
     this.covered = covered;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -47,7 +47,7 @@ export class Stage {
     this.orbit.enablePan = false;
     this.orbit.enableDamping = true;
     this.scene = new Scene();
-    this.world = new Group(); // Axes are those of the arm's base.
+    this.world = new Group(); // Its axes are the axes of the base frame.
     this.scene.add(this.world);
     this.light();
     this.look = look;
@@ -62,13 +62,13 @@ export class Stage {
     this.scene.add(this.sun, this.sun.target, this.sky, new AmbientLight(0xffffff, 0.35));
   }
 
-  /// Puts an arm on the stage. look: colours by name.
+  /// Shows another arm. look: colours by name.
   set(simulator, look = this.look) {
     this.look = look;
     this.flat = simulator.arm === 0;
     const stage = this.flat ? STAGES.planar : STAGES.panda;
     this.stage = stage;
-    // An arm in the plane is seen from above only, and what is not its target scrolls the page.
+    // The view of a planar arm is from above only, and a drag beside the target scrolls the page.
     this.orbit.enabled = !this.flat;
     this.renderer.domElement.style.touchAction = this.flat ? "pan-y" : "none";
     this.arm?.dispose();
@@ -108,7 +108,7 @@ export class Stage {
     return [board, base];
   }
 
-  /// Fits the drawing to the canvas, and with home the view to the arm.
+  /// Fits the drawing to the canvas. home: also fits the view to the arm.
   resize(home = false) {
     const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
     if (width === 0 || height === 0) return;
@@ -130,7 +130,7 @@ export class Stage {
     this.orbit.update();
   }
 
-  /// goal: where the target is dragged to, in the base frame.
+  /// goal: position of the dragged target, in the base frame.
   show(simulator, goal) {
     this.arm.show(simulator.frames);
     this.target.position.fromArray(goal);
@@ -138,13 +138,13 @@ export class Stage {
     if (!this.flat) this.target.getObjectByName("halo").quaternion.premultiply(this.world.quaternion.clone().invert());
   }
 
-  /// Remembers the posture as one at rest, or forgets it.
+  /// Shows a ghost of the current posture, or hides the ghost.
   rest(simulator) {
     this.ghost.visible = Boolean(simulator);
     if (simulator) this.ghost.show(simulator.frames);
   }
 
-  /// Goes on with the tip's way.
+  /// Extends the path of the tip.
   pass(tip) {
     const points = this.way.geometry.attributes.position;
     if (this.passed === WAY) points.array.copyWithin(0, 3);
@@ -167,7 +167,7 @@ export class Stage {
 
 function target(size, color) {
   const group = new Group();
-  const seen = { color, transparent: true, depthTest: false }; // Through the arm, too.
+  const seen = { color, transparent: true, depthTest: false }; // Visible through the arm.
   const ball = new Mesh(new SphereGeometry(size, 32, 24), new MeshStandardMaterial({ ...seen, roughness: 0.3 }));
   const halo = new Mesh(
     new RingGeometry(1.7 * size, 1.95 * size, 64),

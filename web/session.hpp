@@ -16,7 +16,7 @@
 
 namespace page {
 
-/// An arm under a scheme of either level, by ticks of a Tracker: behind its path, or a target that is dragged.
+/// An arm with a scheme of either level, moved by a Tracker: on its path, or toward a dragged target.
 template <typename Arm, typename Space, typename Path>
 class Session final : public Simulator {
  public:
@@ -41,8 +41,8 @@ class Session final : public Simulator {
     restart();
   }
 
-  /// Goes on from the present state. Where that breaks the limits it does so from rest, and where the posture does,
-  /// from the start; then it returns false.
+  /// Continues from the current state with new settings. If the state exceeds the limits, the arm continues from rest.
+  /// If the posture exceeds the limits, the arm restarts, and the function returns false.
   bool change(const Settings& settings) override {
     const bool same =
         settings.limited == settings_.limited && at_velocity_level(settings) == at_velocity_level(settings_);
@@ -75,7 +75,7 @@ class Session final : public Simulator {
     following_ = true;
   }
 
-  /// A target seen now. On the path the arm first comes to rest.
+  /// A target at the current time. If the arm is on its path, it first comes to rest.
   void push(const fpbm::Vector<3>& target) noexcept override {
     if (following_ && !leaving_) follower_.pause();
     leaving_ = following_;
@@ -123,7 +123,7 @@ class Session final : public Simulator {
  private:
   static constexpr int kAxes = Space::kRows - Space::kTurns;
   static constexpr double kTick = 1e-3;  ///< [s]
-  static constexpr double kRamp = 0.2;   ///< In which the arm leaves its path [s].
+  static constexpr double kRamp = 0.2;   ///< Duration of the stop on the path [s].
   using Weights = fpbm::DiagonalWeights<N, double>;
   using AtVelocity = fpbm::Tracker<Arm, Space, fpbm::VelocityScheme<N, double, Weights>>;
   using AtAcceleration = fpbm::Tracker<Arm, Space, fpbm::AccelerationScheme<N, double, Weights>>;
@@ -134,7 +134,7 @@ class Session final : public Simulator {
     return static_cast<Scheme>(settings.scheme) <= Scheme::kWmvn;
   }
 
-  /// The part of a point that is a place.
+  /// The position of a point.
   template <typename P>
   [[nodiscard]] static auto& place(P& point) noexcept {
     if constexpr (Space::kTurns > 0) {
@@ -171,7 +171,7 @@ class Session final : public Simulator {
     const auto scheme = fpbm::FPBM<N>(alpha, weights(kind == Scheme::kMan), 2.0 * rate, rate * rate,
                                       fpbm::NullSpace<N>().with_damping(settings_.damping));
     fpbm::TrackerOptions<> options;
-    options.null_damping = 0.0;  // The page shows the schemes without damping, too.
+    options.null_damping = 0.0;  // The page also shows the schemes without damping.
     return AtAcceleration(arm_, Space{}, scheme, state, options, limits<fpbm::Level::kAcceleration>(), qdd);
   }
 
@@ -218,7 +218,7 @@ class Session final : public Simulator {
   Follower follower_;
   fpbm::TargetFilter<Space> filter_;
   bool following_ = false;
-  bool leaving_ = false;  ///< Whether it brakes on its path, to follow a target.
+  bool leaving_ = false;  ///< Whether the arm brakes on its path, to follow a target.
   double ticks_ = 0;
   fpbm::Status worst_ = fpbm::Status::kOk;
   double scale_ = 1.0;

@@ -1,4 +1,4 @@
-// The arm's links as capsules, and a disc in its own colour on each joint.
+// The links of the arm as capsules, and a coloured disc on each joint.
 
 import {
   CapsuleGeometry,
@@ -13,7 +13,7 @@ import {
 
 const UP = new Vector3(0, 1, 0);
 
-/// Where a joint's disc is along its axis, its radius and its height [m], for each joint of each arm.
+/// Position of a joint's disc along the joint axis, its radius and its height [m], for each joint of each arm.
 const PLANAR = [0.21, 0.195, 0.18, 0.165].map((radius) => [0, radius, 0.34]);
 const PANDA = [
   [-0.19, 0.08, 0.022],
@@ -48,7 +48,7 @@ export class ArmShapes extends Group {
     this.show(simulator.frames);
   }
 
-  /// frames: those of a view.
+  /// frames: the frames of a view.
   show(frames) {
     this.links.forEach((link, i) => {
       const [px, py, pz, xx, xy, xz, yx, yy, yz, zx, zy, zz] = frames.subarray(12 * i, 12 * i + 12);
@@ -66,7 +66,7 @@ export class ArmShapes extends Group {
 }
 
 function material(color, ghost) {
-  // Behind the arm where both are in one place.
+  // Behind the arm if both coincide.
   const faint = { transparent: true, opacity: 0.24, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 4 };
   return new MeshStandardMaterial({ color, roughness: 0.45, metalness: 0.05, ...(ghost ? faint : {}) });
 }

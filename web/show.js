@@ -1,4 +1,4 @@
-// The arm, what is asked of it, and how the page tells it: one frame after another.
+// Simulates the arm with its target and updates the page, frame by frame.
 
 import { element } from "./controls.js";
 import { Strip, errorScale, shareScale, speedScale } from "./strips.js";
@@ -6,15 +6,15 @@ import { MAN, TICK, WMVN_ACCELERATION } from "./simulator.js";
 import { describe, length, speed } from "./words.js";
 
 const DEGREE = 180 / Math.PI;
-const MOST = 100; // Ticks a frame: a machine that is too slow is late, and not stuck.
-const QUIET = 0.4; // How long the target must have rested for its arm to be called at rest [s].
+const MOST = 100; // Ticks per frame: if the machine is too slow, the arm lags, but the page does not block.
+const QUIET = 0.4; // Duration of a constant target after which the tip counts as at rest [s].
 
 export class Show {
   constructor(simulator, stage, look) {
     this.simulator = simulator;
     this.stage = stage;
     this.look = look;
-    this.moved = false; // Whether somebody ever moved the target.
+    this.moved = false; // Whether the visitor has moved the target.
     this.strips = {
       speed: new Strip(element("plot-speed"), { lines: 4, ...speedScale }),
       error: new Strip(element("plot-error"), { lines: 1, ...errorScale }),
@@ -23,7 +23,7 @@ export class Show {
     this.begin();
   }
 
-  /// Anew, after the simulator began with an arm, or from its start.
+  /// Resets the state of the page after the simulator has started with an arm, or restarted.
   begin() {
     this.goal = [...this.simulator.tip];
     this.pushing = false;
@@ -51,7 +51,7 @@ export class Show {
     this.pace = pace;
   }
 
-  /// The target is taken hold of, moved, let go.
+  /// The target is grabbed, moved, released.
   take() {
     if (!this.pushing) this.goal = [...this.simulator.reference];
     this.pushing = this.dragging = true;
@@ -65,13 +65,13 @@ export class Show {
     this.dragging = false;
   }
 
-  /// The target stays where it is now.
+  /// The target stays at its current position.
   hold() {
     this.take();
     this.release();
   }
 
-  /// Whether the target has rested for a while, and the tip with it.
+  /// Whether target and tip are at rest.
   get resting() {
     return this.simulator.time - this.movedAt > QUIET && this.simulator.error < 0.02;
   }
@@ -103,7 +103,7 @@ export class Show {
     this.strips.scale.add(time, [this.simulator.scale]);
   }
 
-  /// Makes the ticks of some seconds.
+  /// Computes the ticks of a duration [s].
   advance(seconds) {
     this.owed = Math.min(this.owed + (this.pace * seconds) / TICK, MOST);
     const due = Math.floor(this.owed);
@@ -123,7 +123,7 @@ export class Show {
     const limited = simulator.settings.limited !== 0;
     say("scale-value", limited ? `${Math.round(100 * simulator.scale)} %` : "off");
     const { resting, following, dragging } = this;
-    say("speed-label", resting ? "the fastest joint, while the tip rests" : "the fastest joint");
+    say("speed-label", resting ? "fastest joint, tip at rest" : "fastest joint");
     const still = simulator.fastest * DEGREE < 0.05;
     element("speed").closest(".meter").className = `meter ${resting ? (still ? "still" : "moving") : ""}`;
     const { status, fastest, error, settings } = simulator;

@@ -1,5 +1,5 @@
-// The page's arms behind plain functions, for WebAssembly. Settings and view are arrays of numbers that the caller
-// writes and reads: web/simulator.js knows their order.
+// C functions for the arms of the page, for WebAssembly. Settings and view are arrays of numbers that the caller writes
+// and reads. web/simulator.js has the same order.
 
 #include <cmath>
 #include <fpbm/clearance/preset_capsules.hpp>
@@ -60,7 +60,7 @@ const double* view_address() {
   return &view.dof;
 }
 
-/// Begins with an arm: 0 planar, 1 a Panda whose hand keeps its orientation, 2 one whose hand is free to turn.
+/// Starts with an arm: 0 the planar arm, 1 a Panda with a pose task, 2 a Panda with a position task.
 void begin(int arm) {
   const Upright circle(SmoothCircle(fpbm::Circle(0.15), 4.0), {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
   if (!settings.good()) settings = {};
@@ -71,7 +71,7 @@ void begin(int arm) {
   simulator->show(view);
 }
 
-/// Takes the settings: 1; 0 where the arm had to begin anew, -1 where a setting is out of range.
+/// Applies the settings. Returns 1, or 0 if the arm had to restart, or -1 if a setting is out of range.
 int change() {
   if (!simulator || !settings.good()) return -1;
   const bool goes_on = simulator->change(settings);

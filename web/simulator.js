@@ -1,4 +1,4 @@
-// The simulator in WebAssembly: its settings and its view, by name. The order is that of session.hpp.
+// The simulator in WebAssembly: settings and view by name, in the order of plain.hpp.
 
 const SETTINGS = ["scheme", "alpha", "feedback", "damping", "limited"];
 const WEIGHTS = 7;
@@ -23,7 +23,8 @@ export const TICK = 1e-3; // [s]
 
 export async function load(bytes) {
   const module = await WebAssembly.compile(bytes);
-  // It asks for a way to print and to end, for the case of a bad argument: settings are checked before.
+  // The module imports functions to print and to exit, for wrong arguments. They are never called, because change()
+  // checks the settings.
   const imports = {};
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
     imports[from] ??= {};
@@ -55,7 +56,7 @@ class Simulator {
     return { ...named, weights: [...this.numbers.subarray(SETTINGS.length)] };
   }
 
-  /// Returns whether the arm goes on; it does not where it had to begin anew.
+  /// Returns true if the arm continues, false if it had to restart.
   set(changes) {
     const before = this.numbers.slice();
     for (const [name, value] of Object.entries(changes)) {
@@ -94,7 +95,7 @@ class Simulator {
     this.core.ticks(count);
   }
 
-  /// Of the joint that turns fastest [rad/s].
+  /// Velocity of the fastest joint [rad/s].
   get fastest() {
     return this.qd.reduce((most, rate) => Math.max(most, Math.abs(rate)), 0);
   }

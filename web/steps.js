@@ -1,4 +1,4 @@
-// The three things to try, ticked off as they are done, and the hint at the target.
+// The three steps of the introduction, marked as they are completed, and the hint at the target.
 
 import { Vector3 } from "three";
 
@@ -12,11 +12,11 @@ const ALMOST = 0.1; // At rest [°/s].
 export class Steps {
   constructor() {
     this.done = new Set();
-    this.drifted = false; // Whether joints went on without damping, in this rest.
+    this.drifted = false; // Whether joints moved without damping since the tip came to rest.
     this.mark();
   }
 
-  /// Sees what a visitor has done so far.
+  /// Detects the steps that the visitor has completed.
   watch({ moved, resting, simulator }) {
     const fastest = simulator.fastest * DEGREE;
     const damped = simulator.settings.damping > 0 || simulator.settings.scheme < MAN;

@@ -1,10 +1,10 @@
-// Curves of the last ten seconds, drawn on plain canvases.
+// Curves of the last ten seconds, drawn on canvases.
 
 const SAMPLES = 600;
 const SECONDS = 10;
 
 export class Strip {
-  /// scale: value to height, 0 at the bottom and 1 at the top; marks: values and the words for them.
+  /// scale: maps a value to a height, 0 at the bottom and 1 at the top. marks: values and their labels.
   constructor(canvas, { lines, scale, marks }) {
     this.canvas = canvas;
     this.scale = scale;
@@ -76,7 +76,7 @@ export class Strip {
   }
 }
 
-/// Joint speeds in °/s: even near zero, and squeezed far from it, so that neither a drift nor a jerk is lost.
+/// Joint velocities in °/s: linear near zero, logarithmic far from zero, so that slow and fast motion are visible.
 const squeeze = (value) => Math.asinh(value / 20);
 export const speedScale = {
   scale: (value) => 0.5 + squeeze(value) / (2 * squeeze(180)),

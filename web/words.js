@@ -1,34 +1,34 @@
-// What the page says, in plain words.
+// Texts of the page.
 
 const DEGREE = 180 / Math.PI;
 
 export const ARMS = [
   {
-    spare: "two joints to spare",
-    story: `Two joints are enough to reach any point of a plane. This arm has four. So its tip can rest while its joints move,
-      and something must choose how all four turn: fpbm_cpp does, a thousand times a second.`,
+    spare: "two redundant joints",
+    story: `Two joints are enough for any position in a plane. This arm has four, so its joints can move while its tip
+      is at rest. fpbm_cpp computes the motion of all four joints, a thousand times a second.`,
     weights: [1, 2, 3, 4],
   },
   {
-    spare: "one joint to spare",
-    story: `Six joints are enough to place a hand and to turn it. This Panda has seven, as your own arm has: hold your hand on
-      the table, and your elbow can still move. fpbm_cpp chooses how all seven turn, a thousand times a second.`,
+    spare: "one redundant joint",
+    story: `Six joints are enough for any pose of a hand. This Panda has seven, like your own arm: hold your hand on the
+      table, and your elbow can still move. fpbm_cpp computes the motion of all joints, a thousand times a second.`,
     weights: [1, 1, 1, 1, 1, 1, 1],
   },
   {
-    spare: "four joints to spare",
-    story: `Three joints are enough to place a hand that may turn as it likes. This Panda has seven. So its hand can stay in
-      place while its joints move, and something must choose how: fpbm_cpp does, a thousand times a second.`,
+    spare: "four redundant joints",
+    story: `Three joints are enough for any position of a hand. This Panda has seven, so its joints can move while its
+      hand stays in place. fpbm_cpp computes the motion of all joints, a thousand times a second.`,
     weights: [1, 1, 1, 1, 1, 1, 1],
   },
 ];
 
 export const SCHEME_WORDS = [
-  "The least joint speed for the motion of the tip.",
-  "The least joint speed; joints with more weight move less.",
-  "The least joint acceleration. Nothing leads the tip back once it is off its target.",
-  "WMVN by accelerations. Nothing leads the tip back once it is off its target.",
-  "Of Wang et al., 2019: a balance of MAN and WMVN, with feedback that leads the tip back to its target.",
+  "The minimum joint velocity for the motion of the tip.",
+  "The minimum joint velocity. Joints with a larger weight move less.",
+  "The minimum joint acceleration, without feedback of the tip error.",
+  "WMVN at acceleration level, without feedback of the tip error.",
+  "Wang et al., 2019: a balance of MAN and WMVN, with feedback of the tip error.",
 ];
 
 const OK = 0;
@@ -38,28 +38,28 @@ const RECOVERING = 5;
 const STALLED = 6;
 const NOT_FINITE = 9;
 
-/// What the arm does now. leads: whether the scheme has feedback on the tip.
+/// The current state of the arm as a sentence. leads: whether the scheme has feedback of the tip error.
 export function describe({ status, dragging, following, resting, damped, limited, leads, fastest, error }) {
   const turning = fastest * DEGREE;
   const off = error > 0.01;
-  if (status === NOT_FINITE) return "The motion has grown beyond all bounds. Press “Back to start”.";
+  if (status === NOT_FINITE) return "The motion is not finite. Press “Back to start”.";
   if (off && !leads && !dragging && (status === STALLED || turning < 0.05)) {
-    return "The arm rests off its target: this scheme has no feedback that would lead it there.";
+    return "The arm is at rest away from its target: this scheme has no feedback of the tip error.";
   }
-  if (status === RECOVERING) return "The arm got no nearer. It moves to a posture that it remembers, and tries again.";
-  if (status === STALLED) return "The arm gets no nearer. It waits at rest until the target moves.";
-  if (status > STALLED) return "The arm is stretched out, where it cannot move in every direction. It brakes.";
-  if (dragging && status === SLOWED) return "A joint is at its limit: the others take over, or the tip slows down.";
-  if (dragging && status === DAMPED) return "The arm is almost straight. It moves only where it still can.";
-  if (dragging && error > 0.1) return "The tip is on its way to you.";
-  if (dragging && limited) return "The tip follows you, and every joint keeps within its limits.";
-  if (dragging) return "The tip follows you, whatever that asks of the joints.";
+  if (status === RECOVERING) return "The arm made no progress. It moves to a remembered posture, and tries again.";
+  if (status === STALLED) return "The arm makes no progress. It stays at rest until the target moves.";
+  if (status > STALLED) return "The posture is singular: the tip cannot move in every direction. The arm brakes.";
+  if (dragging && status === SLOWED) return "A joint is at its limit: other joints take over, or the tip slows down.";
+  if (dragging && status === DAMPED) return "Near a singular posture, the tip moves in the remaining directions only.";
+  if (dragging && error > 0.1) return "The tip moves toward the target.";
+  if (dragging && limited) return "The tip follows the target, and every joint stays within its limits.";
+  if (dragging) return "The tip follows the target, without joint limits.";
   if (following) return "The tip draws its circle.";
-  if (off && !resting) return "The tip is on its way.";
-  if (turning > 0.05 && damped) return "The damping brakes the joints. The tip stays where it is.";
-  if (turning > 1) return "The tip rests, but the joints go on: nothing in this scheme brakes them.";
-  if (turning > 0.05) return "The tip rests. The joints still turn, slowly.";
-  return status === OK ? "All joints are at rest." : "The arm rests.";
+  if (off && !resting) return "The tip moves toward its target.";
+  if (turning > 0.05 && damped) return "The damping brakes the joints. The tip stays at rest.";
+  if (turning > 1) return "The tip is at rest, but the joints still move: nothing in this scheme brakes them.";
+  if (turning > 0.05) return "The tip is at rest. The joints still move slowly.";
+  return status === OK ? "All joints are at rest." : "The arm is at rest.";
 }
 
 export function speed(fastest) {

@@ -1,4 +1,4 @@
-# A Cortex-M7 whose floating-point unit knows float only, by Debian's gcc-arm-none-eabi with newlib-nano.
+# A Cortex-M7 with a floating-point unit for float only, with Debian's gcc-arm-none-eabi and newlib-nano.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_CXX_COMPILER arm-none-eabi-g++)

@@ -3,8 +3,8 @@
 #include "report.hpp"
 #include "semihosting.hpp"
 
-// A Panda and a UR5e on a Cortex-M7: each draws a circle, and says over semihosting where its joints are, how many
-// instructions a tick takes, and how deep the stack gets.
+// A Panda and a UR5e on a Cortex-M7: each draws circles, and prints by semihosting its joint positions, the number of
+// instructions per tick, and the size of the stack.
 
 extern "C" {
 extern std::uint32_t stack_bottom[];
@@ -16,13 +16,13 @@ int run();
 
 namespace {
 
-/// Instructions by the core's SysTick timer, which counts down at 25 MHz; qemu -icount shift=0 takes 1 ns for each.
+/// Counts instructions by the SysTick timer of the core, at 25 MHz. In qemu -icount shift=0, an instruction is 1 ns.
 class Counter {
  public:
   Counter() {
     at(kReload) = kMost;
     at(kCurrent) = 0;
-    at(kControl) = 0b101;  // On, at the core's clock.
+    at(kControl) = 0b101;  // Enabled, at the clock of the core.
   }
 
   std::uint32_t operator()() {
@@ -37,7 +37,7 @@ class Counter {
   static constexpr std::uintptr_t kReload = 0xE000E014;
   static constexpr std::uintptr_t kCurrent = 0xE000E018;
   static constexpr std::uint32_t kMost = 0xFFFFFF;
-  static constexpr std::uint32_t kInstructions = 40;  // A count.
+  static constexpr std::uint32_t kInstructions = 40;  // Per count.
 
   static volatile std::uint32_t& at(std::uintptr_t place) { return *reinterpret_cast<volatile std::uint32_t*>(place); }
 
@@ -47,7 +47,7 @@ class Counter {
 
 constexpr std::uint32_t kUnused = 0xA5A5A5A5;
 
-/// Marks what lies below this function's frame, so that what has been used can be told.
+/// Marks the unused stack below the frame of this function, to measure the used stack.
 void mark_stack() {
   auto* frame = static_cast<std::uint32_t*>(__builtin_frame_address(0));
   for (std::uint32_t* word = stack_bottom; word < frame - 64; ++word) *word = kUnused;

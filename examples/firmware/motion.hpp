@@ -11,18 +11,18 @@
 #include "panda.hpp"
 #include "ur5e.hpp"
 
-/// What the board computes, and a PC to compare with: circles at 1 kHz in float, within the joints' limits.
+/// The motions of the board, also computed on a PC: circles at 1 kHz in float, within the joint limits.
 namespace firmware {
 
 constexpr int kTicks = 10000;
 
-/// An arm whose tip draws a circle, its orientation held, a tick a call.
+/// An arm with a tip that draws a circle with constant orientation: one tick for each call.
 template <int N>
 class Motion {
  public:
   using Joints = fpbm::Vector<N, float>;
 
-  /// seconds: how long a circle takes.
+  /// seconds: duration of a circle [s].
   Motion(const fpbm::SerialArm<N, float>& arm, const Joints& q0, float radius, float seconds)
       : tracker_(arm, fpbm::Pose{}, scheme(q0), q0, options()), follower_(path(radius, seconds), tracker_.tip()) {}
 
@@ -41,7 +41,7 @@ class Motion {
 
   static fpbm::TrackerOptions<float> options() {
     fpbm::TrackerOptions<float> options;
-    options.recovery = false;  // Remembering a posture takes 29,000 instructions in one tick.
+    options.recovery = false;  // To remember a posture costs 29,000 instructions in one tick.
     return options;
   }
 

@@ -6,11 +6,11 @@
 
 #include "motion.hpp"
 
-/// A motion in words, the same on the board and on a PC: the joints every second, in hexadecimal to the last bit, then
-/// the worst status and the largest error.
+/// Prints a motion, with the same text on the board and on a PC: the joint positions every second, in hexadecimal to
+/// the last bit, then the worst status and the largest error.
 namespace firmware {
 
-/// A line of text, without the heap.
+/// A line of text that does not use the heap.
 class Line {
  public:
   Line& operator<<(const char* text) {
@@ -29,7 +29,7 @@ class Line {
     return *this << digit;
   }
 
-  /// The number's bits.
+  /// The bits of the number.
   Line& operator<<(float number) {
     std::uint32_t bits = 0;
     std::memcpy(&bits, &number, sizeof bits);
@@ -45,7 +45,7 @@ class Line {
   std::size_t size_ = 0;
 };
 
-/// print(text) writes a text; counter() counts instructions, or nothing.
+/// print(text) writes a text. counter() returns the number of instructions, or 0.
 template <int N, typename Print, typename Counter>
 fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Counter&& counter) {
   fpbm::Status worst = fpbm::Status::kOk;
@@ -77,10 +77,10 @@ fpbm::Status report(const char* name, Motion<N>& motion, const Print& print, Cou
   return worst;
 }
 
-/// Both arms on circles that they draw with ease, then on wide and quick ones, where joints meet their limits.
+/// Both arms on slow circles within the limits, then on wide and fast circles on which joints meet their limits.
 template <typename Print, typename Counter>
 fpbm::Status report_all(const Print& print, Counter&& counter) {
-  // Trackers are static, as in a controller: the stack is for the ticks.
+  // The trackers are static, as in a controller, so that the stack contains only the ticks.
   static Motion<7> panda = panda_motion(0.1F, 10.0F);
   static Motion<6> ur5e = ur5e_motion(0.1F, 10.0F);
   static Motion<7> panda_pressed = panda_motion(0.25F, 2.0F);

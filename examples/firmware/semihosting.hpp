@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What a debugger, or qemu, does for a board that asks by a breakpoint (Arm's Semihosting specification).
+/// Services of a debugger or qemu, which the board calls by a breakpoint (Arm's Semihosting specification).
 namespace semihosting {
 
 inline std::uint32_t call(std::uint32_t operation, const void* argument) {
@@ -16,7 +16,7 @@ inline void write(const char* text) {
   call(0x04, text);  // SYS_WRITE0
 }
 
-/// Ends qemu, which then succeeds or fails.
+/// Ends qemu with success or failure.
 [[noreturn]] inline void exit(bool success) {
   constexpr std::uint32_t kApplicationExit = 0x20026;
   constexpr std::uint32_t kRunTimeError = 0x20023;

@@ -3,8 +3,8 @@
 
 #include "semihosting.hpp"
 
-// From reset to run(): the stack's pointer and the vectors, the floating-point unit, .data and .bss, constructors of
-// globals. A fault ends the program.
+// From reset to run(): stack pointer and vectors, floating-point unit, .data and .bss, constructors of global objects.
+// A fault ends the program.
 
 extern "C" {
 extern std::uint32_t stack_bottom[];
@@ -25,7 +25,7 @@ int run();
   semihosting::exit(false);
 }
 
-/// Called by a constructor of fpbm that refuses its argument.
+/// Called by a constructor of fpbm that rejects its argument.
 [[noreturn]] void abort() {
   semihosting::write("aborted\n");
   semihosting::exit(false);
@@ -51,7 +51,7 @@ struct Vectors {
   Function handlers[15];
 };
 
-// Reset, then the core's exceptions; no interrupt is used.
+// Reset, then the exceptions of the core. No interrupt is used.
 [[gnu::section(".vectors"), gnu::used]] const Vectors kVectors = {
     stack_top,
     {reset, fault, fault, fault, fault, fault, nullptr, nullptr, nullptr, nullptr, fault, fault, nullptr, fault,

@@ -8,19 +8,19 @@
 #include <fpbm/fpbm.hpp>
 #include <fpbm/realtime/tracker.hpp>
 
-/// What both programs here need to know of a Franka Research 3.
+/// Limits, scheme and path of a Franka Research 3, for both programs in this folder.
 namespace fr3 {
 
 using Joints = fpbm::Vector<7>;
 using Limits = fpbm::Limits<fpbm::Level::kAcceleration, 7>;
 
-inline constexpr double kMargin = 1e-3;  // The distance that libfranka's own limiter keeps from every bound.
+inline constexpr double kMargin = 1e-3;  // Distance from every bound that libfranka's own limiter keeps.
 
 inline fpbm::SerialArm<7> arm() {
   return fpbm::SerialArm<7>(fpbm::presets::fr3());
 }
 
-/// Everything that the robot checks in a motion.
+/// All limits that the robot checks in a motion.
 inline Limits limits(double tick) {
   fpbm::JointLimits<7> bounds = arm().limits();
   for (Joints* row : {&bounds.velocity, &bounds.acceleration, &bounds.jerk}) row->array() -= kMargin;
@@ -28,13 +28,13 @@ inline Limits limits(double tick) {
   return Limits(bounds, tick);
 }
 
-/// FPBM that holds the elbow near a posture.
+/// FPBM with a rest posture.
 inline auto scheme(const Joints& posture) {
   return fpbm::FPBM<7>(0.6, Joints{8, 8, 4, 4, 2, 1, 1}, 20.0, 100.0,
                        fpbm::NullSpace<7>().with_damping(4.0).with_rest_posture(posture, 4.0));
 }
 
-/// A horizontal circle with the hand's orientation held; smooth at both ends, as the robot requires.
+/// A horizontal circle with a constant orientation of the hand, smooth at both ends, as the robot requires.
 inline auto circle(double radius, double duration) {
   return fpbm::WithRotation(
       fpbm::InPlane(fpbm::Path(fpbm::Circle(radius), duration, fpbm::Quintic{}), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
@@ -52,7 +52,7 @@ inline std::array<double, 7> array(const Joints& values) {
 
 inline volatile std::sig_atomic_t interrupted = 0;
 
-/// From now on Ctrl-C asks for a stop and does not end the program.
+/// After this call, Ctrl-C requests a stop and does not end the program.
 inline void catch_interrupt() {
   std::signal(SIGINT, [](int) { interrupted = 1; });
 }

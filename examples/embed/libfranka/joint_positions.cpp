@@ -1,8 +1,7 @@
-// A Franka Research 3 draws a circle with its hand held level, commanded by joint positions: Tracker::tick() in
-// libfranka's callback.
-//   joint_positions ROBOT_ADDRESS                                     Ctrl-C brings the arm to rest and ends.
-// This has been compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, with the stop
-// button at hand.
+// A Franka Research 3 draws a circle with a constant orientation of the hand, by joint positions: Tracker::tick() in
+// the callback of libfranka.
+//   joint_positions ROBOT_ADDRESS                                     Ctrl-C stops the arm and the program.
+// This program has run with a stand-in of libfranka only, never on a robot: start slowly, with the stop button at hand.
 
 #include <franka/exception.h>
 #include <franka/robot.h>
@@ -19,7 +18,7 @@ int main(int argc, char** argv) {
   try {
     franka::Robot robot(argv[1]);
     const fr3::Joints start = fr3::joints(robot.readOnce().q);
-    const fpbm::TrackerOptions<> options;  // A tick of 1 ms, which is the robot's.
+    const fpbm::TrackerOptions<> options;  // A tick of 1 ms, as the robot's cycle.
     const fpbm::State<7> at_rest{start, fr3::Joints::Zero()};
     fpbm::Tracker tracker(fr3::arm(), fpbm::Pose{}, fr3::scheme(start), at_rest, options, fr3::limits(options.dt));
     fpbm::PathFollower follower(fr3::circle(0.1, 5.0), tracker.tip());  // radius [m], duration [s]
@@ -28,8 +27,8 @@ int main(int argc, char** argv) {
     fr3::catch_interrupt();
 
     const auto callback = [&](const franka::RobotState&, franka::Duration period) -> franka::JointPositions {
-      // The measured state is not used: the tracker goes on from its own command, which the robot follows. The first
-      // call makes no tick. After lost packets there are several, since the robot has moved on meanwhile.
+      // The tracker continues from its own command, which the robot follows, and does not use the measured state. The
+      // first call has no tick. A call after lost packets has several ticks, because the robot moved on.
       for (auto milliseconds = period.toMSec(); milliseconds > 0; --milliseconds) {
         worst = worse(worst, tracker.tick(follower).status);
       }
@@ -48,7 +47,7 @@ int main(int argc, char** argv) {
     robot.control(callback, franka::ControllerMode::kJointImpedance, kLimitRate);
     std::printf("at worst: %s\n", message(worst));
     return failed(worst) ? 1 : 0;
-  } catch (const std::exception& error) {  // From libfranka, or where the start posture is outside the limits.
+  } catch (const std::exception& error) {  // From libfranka, or if the start posture is outside the limits.
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }

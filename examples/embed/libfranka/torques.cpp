@@ -1,8 +1,7 @@
-// A Franka Research 3 draws a circle with its hand held level, commanded by torques: Tracker::resolve_measured() gives
-// the acceleration for the state just measured, and the robot's own model gives the torques for it.
-//   torques ROBOT_ADDRESS                                             Ctrl-C brings the arm to rest and ends.
-// This has been compiled and run against a stand-in of libfranka only, never on a robot: begin slowly, with the stop
-// button at hand.
+// A Franka Research 3 draws a circle with a constant orientation of the hand, by torques: Tracker::resolve_measured()
+// computes the acceleration for the measured state, and the robot's own model the torques for this acceleration.
+//   torques ROBOT_ADDRESS                                             Ctrl-C stops the arm and the program.
+// This program has run with a stand-in of libfranka only, never on a robot: start slowly, with the stop button at hand.
 
 #include <franka/exception.h>
 #include <franka/model.h>
@@ -35,8 +34,8 @@ int main(int argc, char** argv) {
       const auto tick = tracker.resolve_measured(fr3::joints(state.q), qd, follower.ahead(0.0));
       worst = worse(worst, tick.status);
 
-      // M(q) qdd + c(q, qd); the robot itself adds gravity and friction.
-      const std::array<double, 49> mass = model.mass(state);  // Stored column by column.
+      // M(q) qdd + c(q, qd). The robot adds gravity and friction.
+      const std::array<double, 49> mass = model.mass(state);  // Column-major.
       const Eigen::Map<const Eigen::Matrix<double, 7, 7>> M(mass.data());
       const fr3::Joints torque = M * tick.qdd + fr3::joints(model.coriolis(state));
 
@@ -46,14 +45,14 @@ int main(int argc, char** argv) {
         stopping = true;
       }
       const franka::Torques command(fr3::array(torque));
-      return stopping && speed < 0.02 ? franka::MotionFinished(command) : command;  // The robot holds itself from here.
+      return stopping && speed < 0.02 ? franka::MotionFinished(command) : command;  // The robot holds its position.
     };
 
-    constexpr bool kLimitRate = true;  // Torques that jump by more than 1 Nm in a tick are refused.
+    constexpr bool kLimitRate = true;  // The robot rejects torques that jump by more than 1 Nm in a tick.
     robot.control(callback, kLimitRate);
     std::printf("at worst: %s\n", message(worst));
     return failed(worst) ? 1 : 0;
-  } catch (const std::exception& error) {  // From libfranka, or where the start posture is outside the limits.
+  } catch (const std::exception& error) {  // From libfranka, or if the start posture is outside the limits.
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-// Stands in for libfranka's header of this name.
+// Stand-in for the header of libfranka with this name.
 namespace franka {
 
 struct Exception : std::runtime_error {

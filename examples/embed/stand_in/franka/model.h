@@ -2,7 +2,7 @@
 
 #include <franka/robot_state.h>
 
-// Stands in for libfranka's header of this name: no joint acts on another, and each has an inertia of 1 kg m².
+// Stand-in for the header of libfranka with this name: decoupled joints with an inertia of 1 kg m² each.
 namespace franka {
 
 class Model {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-// Stands in for libfranka's headers of this name and control_types.h: a robot that follows its commands exactly.
+// Stand-in for the header of libfranka with this name and control_types.h: a robot that follows commands exactly.
 namespace franka {
 
 enum class ControllerMode { kJointImpedance, kCartesianImpedance };

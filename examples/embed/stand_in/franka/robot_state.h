@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-// Stands in for libfranka's header of this name: only what the examples use, with an ideal robot behind it.
+// Stand-in for the header of libfranka with this name: only the parts that the examples use.
 namespace franka {
 
 struct RobotState {
