@@ -79,7 +79,8 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
       auto placed = clearance.placement();
       for (const ShapePair& pair : clearance.pairs()) {
         clearance.place(q, placed);
-        const Separation<Clearance<kOpen>> plane(clearance, placed, pair, clearance.nearest_of(placed, pair));
+        const Nearest<> found = clearance.nearest_of(placed, pair);
+        const Separation<Clearance<kOpen>> plane(clearance, placed, pair, found);
         if (plane.distance < 0.01) continue;
         EXPECT_NEAR(std::min(plane.gap(0), plane.gap(1)), plane.distance, 1e-12);
         const Joints analytic = clearance.robot().drives().by_drive(plane.of_distance());

@@ -19,7 +19,8 @@ template <typename Clearance>
   AllJoints sum = AllJoints::Zero(clearance.robot().joints());
   for (const ShapePair& pair : clearance.pairs()) {
     if (clearance.roughly(placed, pair) >= clearance.margin() + away.range) continue;
-    const Separation<Clearance> plane(clearance, placed, pair, clearance.nearest_of(placed, pair));
+    const Nearest<Scalar> found = clearance.nearest_of(placed, pair);
+    const Separation<Clearance> plane(clearance, placed, pair, found);
     for (int e = 0; e < 2; ++e) {
       const Scalar near = Scalar(1) - (plane.gap(e) - clearance.margin()) / away.range;
       if (!(near > Scalar(0))) continue;

@@ -56,6 +56,8 @@ struct Separation {
     set_ends(placed, clearance.bodies()[pair.second], other, pair.by_second, n, other.radius, beyond, of_beyond);
   }
 
+  Separation(const Clearance&, const Placement&, const ShapePair&, Nearest<Scalar>&&) = delete;
+
   /// Where the first one's axis is nearest: 0 at one end, 1 at the other.
   [[nodiscard]] Scalar at() const noexcept {
     return nearest_on(first_, found_.on_first + first_.radius * found_.normal);
