@@ -1,8 +1,8 @@
-"""Redundancy resolution for robot arms, in closed form.
+"""Redundancy resolution for robot arms in closed form.
 
-An arm with more joints than its task needs must decide how every joint moves so that the tip follows its path. The
-schemes here decide at joint-velocity level (MVN, WMVN) or joint-acceleration level (MAN, WMVNAcceleration, Balanced,
-FPBM). Radians, metres, seconds throughout; numbers in brackets are the equations of Wang et al., IEEE Access 2019.
+If an arm has more joints than its task has rows, many joint motions give the same tip motion. A scheme selects one of
+them at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, WMVNAcceleration, Balanced, FPBM).
+Units are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
 from . import arms, paths, robots, schemes, tasks

@@ -4,7 +4,7 @@ import sys
 
 
 def main() -> int:
-    """Run the command line; say plainly what to install where its library is missing."""
+    """Run the command line. If a library is missing, print the pip command that installs it."""
     try:
         from .cli import command
     except ModuleNotFoundError as missing:

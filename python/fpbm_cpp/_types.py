@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
-    # How type checkers see fields of data classes that are not read as they are given.
+    # Types of data class fields that accept other types than they return.
 
     class ArrayField:
         def __get__(self, thing: object, owner: Any = None) -> Array: ...

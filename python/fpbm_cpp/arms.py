@@ -27,20 +27,20 @@ FRAME = Parameter(shape="(4, 4)", unit="m")
 
 @data
 class JointLimits(Data):
-    """Bounds of each joint's motion: infinite where there is none. Prismatic joints have m for rad.
+    """Bounds of the motion of each joint; infinity means no bound. For a prismatic joint, read m in place of rad.
 
-    Raises ParameterError where a bound is not a number, or has another length.
+    Raises ParameterError if a bound is not a number, or the lengths of the arrays differ.
     """
 
     kind: ClassVar[str] = "limits"
     _: KW_ONLY
-    lower: ArrayField = parameter("Lowest positions.", BOUND, unit="rad")
-    upper: ArrayField = parameter("Highest positions.", BOUND, unit="rad")
-    velocity: ArrayField = parameter("Highest velocities, either way.", BOUND, unit="rad/s")
-    acceleration: ArrayField = parameter("Highest accelerations, either way.", BOUND, unit="rad/s^2")
-    jerk: FilledArrayField = parameter("Highest jerks, either way.", BOUND, default=None, unit="rad/s^3")
+    lower: ArrayField = parameter("Lower bounds of the positions.", BOUND, unit="rad")
+    upper: ArrayField = parameter("Upper bounds of the positions.", BOUND, unit="rad")
+    velocity: ArrayField = parameter("Largest velocities, in both directions.", BOUND, unit="rad/s")
+    acceleration: ArrayField = parameter("Largest accelerations, in both directions.", BOUND, unit="rad/s^2")
+    jerk: FilledArrayField = parameter("Largest jerks, in both directions.", BOUND, default=None, unit="rad/s^3")
     velocity_offset: FilledArrayField = parameter(
-        "Toward an end, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        "Toward an end of the range, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
         BOUND,
         default=None,
         unit="rad/s",
@@ -60,26 +60,28 @@ class JointLimits(Data):
 
 @data
 class Joint(Data):
-    """One joint of a chain, prismatic joints with m for rad."""
+    """One joint of a chain. For a prismatic joint, read m in place of rad."""
 
-    type: str = parameter("How it moves.", default="revolute", choices=("revolute", "continuous", "prismatic"))
-    placement: ArrayField = parameter("Its frame, seen from the joint before, both at zero.", FRAME, default=IDENTITY)
-    axis: ArrayField = parameter("In the joint's frame; its length does not matter.", default=(0, 0, 1), shape="(3,)")
-    lower: float = parameter("Lowest position.", default=-inf, infinite=True, unit="rad")
-    upper: float = parameter("Highest position.", default=inf, infinite=True, unit="rad")
-    velocity: float = parameter("Highest velocity, either way.", default=inf, infinite=True, unit="rad/s")
-    acceleration: float = parameter("Highest acceleration, either way.", default=inf, infinite=True, unit="rad/s^2")
-    jerk: float = parameter("Highest jerk, either way.", default=inf, infinite=True, unit="rad/s^3")
+    type: str = parameter("Type of the joint.", default="revolute", choices=("revolute", "continuous", "prismatic"))
+    placement: ArrayField = parameter("Frame in that of the previous joint, both at zero.", FRAME, default=IDENTITY)
+    axis: ArrayField = parameter("Axis in the joint's frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
+    lower: float = parameter("Lower bound of the position.", default=-inf, infinite=True, unit="rad")
+    upper: float = parameter("Upper bound of the position.", default=inf, infinite=True, unit="rad")
+    velocity: float = parameter("Largest velocity, in both directions.", default=inf, infinite=True, unit="rad/s")
+    acceleration: float = parameter(
+        "Largest acceleration, in both directions.", default=inf, infinite=True, unit="rad/s^2"
+    )
+    jerk: float = parameter("Largest jerk, in both directions.", default=inf, infinite=True, unit="rad/s^3")
     velocity_offset: float = parameter(
-        "Toward an end, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
+        "Toward an end of the range, the velocity is at most -velocity_offset + sqrt(2 deceleration distance).",
         default=0.0,
         unit="rad/s",
     )
     deceleration: float = parameter("See velocity_offset.", default=inf, infinite=True, unit="rad/s^2")
-    name: str = parameter("'joint_1' and so on where empty.", default="")
+    name: str = parameter("Name; if empty, 'joint_1', 'joint_2' and so on.", default="")
     mimic: tuple[int, float, float] | None = parameter(
-        "Of a joint that another one moves: the other's index in the chain, ratio and offset. The position is ratio "
-        "times the other's plus offset. The joint is no degree of freedom; its bounds narrow the other's.",
+        "For a mimic joint: index of the leader in the chain, ratio and offset. The position is ratio times the "
+        "leader's position plus offset. A mimic joint is not a degree of freedom. Its bounds narrow the leader's.",
         default=None,
     )
 
@@ -104,10 +106,10 @@ class Arm(Data, CoreArm):
 class PlanarArm(Arm):
     """Planar arm of n revolute joints.
 
-    f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i: joint angles are relative [rad], the first from
-    the base frame's x axis. The pose of the tip is (x, y, th_n).
+    The tip is f(q) = sum_i l_i (cos th_i, sin th_i) with th_i = q_1 + ... + q_i. Each joint angle [rad] is relative to
+    the previous link, and the first to the x axis of the base frame. The pose of the tip is (x, y, th_n).
 
-    Raises ParameterError where a length is out of range, or there are too few or too many.
+    Raises ParameterError if a length is out of range, or if there are too few or too many lengths.
     """
 
     kind: ClassVar[str] = "planar"
@@ -121,15 +123,15 @@ class PlanarArm(Arm):
 class SerialArm(Arm):
     """A chain of revolute, continuous and prismatic joints in space.
 
-    Joint positions are in radians or metres. The base frame is the one that the first joint's placement is seen from.
+    Joint positions are in radians or metres. The placement of the first joint is in the base frame.
 
-    Raises ParameterError where an axis is zero, a number is not finite, a frame is not one, or a joint's bounds leave
-    it no room.
+    Raises ParameterError if an axis is zero, a number is not finite, a matrix is not a frame, or bounds leave no range
+    for a joint.
     """
 
     kind: ClassVar[str] = "joints"
-    joints: Sequence[Joint] = parameter("From base to tip, 1 to MAX_DOF of them. Nameless ones are given names.")
-    tip: ArrayField = parameter("The tip's frame, seen from the last joint.", FRAME, default=IDENTITY)
+    joints: Sequence[Joint] = parameter("Joints from base to tip, 1 to MAX_DOF of them. Joints without a name get one.")
+    tip: ArrayField = parameter("Frame of the tip in the last joint's frame.", FRAME, default=IDENTITY)
 
     def _finish(self) -> None:
         for i, joint in enumerate(self.joints):
@@ -163,22 +165,22 @@ class SerialArm(Arm):
         base: ArrayLike | None = None,
         tip: ArrayLike | None = None,
     ) -> SerialArm:
-        """Arm of a table of Denavit-Hartenberg parameters.
+        """Arm from a table of Denavit-Hartenberg parameters.
 
-        Frame i is, seen from frame i - 1, Rz(theta) Tz(d) Tx(a) Rx(alpha) in the classic convention, and
-        Rx(alpha) Tx(a) Rz(theta) Tz(d) in the modified one (Craig), where a and alpha are those of the link before.
+        In the classic convention, frame i in frame i - 1 is Rz(theta) Tz(d) Tx(a) Rx(alpha). In the modified convention
+        (Craig), frame i in frame i - 1 is Rx(alpha) Tx(a) Rz(theta) Tz(d), and a and alpha belong to the previous link.
 
         Parameters
         ----------
         table : array_like, shape (n, 4)
-            One row (a, alpha, d, theta) a joint [m, rad, m, rad]; the joint position is added to theta, or to d where
+            One row (a, alpha, d, theta) per joint [m, rad, m, rad]. The joint position is added to theta, or to d if
             the joint is prismatic.
         convention : str
             'classic' or 'modified'.
         types, lower, upper, velocity, acceleration, jerk, names : array_like, shape (n,), optional
-            As for each Joint: 'revolute' (unless given), 'continuous' or 'prismatic', bounds of its motion, its name.
+            As in Joint: 'revolute' (default), 'continuous' or 'prismatic'; bounds of the motion; names.
         base, tip : array_like, shape (4, 4), optional
-            Frame 0 in the base frame, and the tip's frame seen from frame n.
+            Frame 0 in the base frame, and the frame of the tip in frame n.
         """
         rows = Parameter(name="table", shape="(n, 4)").check(table)
         joints, end = dh(rows, convention, ["revolute"] * len(rows) if types is None else list(types))
@@ -195,12 +197,13 @@ class SerialArm(Arm):
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], tip: str, base: str | None = None) -> SerialArm:
-        """Arm between two links, base (the root unless given) and tip, of a URDF file; xacro must be expanded first.
+        """Arm between two links of a URDF file: base (default: the root) and tip. Expand xacro first.
 
-        Fixed joints become part of the frames; bounds and names are kept; mimic joints follow. A joint that mimics one
-        that does not move between base and tip is held where that one's zero puts it, with a UserWarning.
+        Fixed joints become part of the frames. Bounds, names and mimic joints are kept. If the leader of a mimic joint
+        does not move between base and tip, the mimic joint is fixed at its position for the leader at zero, with a
+        UserWarning.
 
-        Raises ValueError where the file is no sound URDF or has no chain between these links, OSError where it cannot
+        Raises ValueError if the file is not a valid URDF or has no chain between the links, OSError if the file cannot
         be read.
         """
         from .io.urdf import read_urdf
@@ -209,7 +212,7 @@ class SerialArm(Arm):
 
     @classmethod
     def preset(cls, name: str) -> SerialArm:
-        """Arm of a data sheet, up to its flange: one of PRESETS, 'panda' say. Raises ParameterError."""
+        """Arm from a data sheet, up to the flange. name: one of PRESETS, for example 'panda'. Raises ParameterError."""
         if name not in PRESETS:
             raise not_one_of("name", name, PRESETS)
         joints, tip = preset(name)
@@ -217,7 +220,7 @@ class SerialArm(Arm):
 
 
 def require_length(name: str, values: Sized, dof: int) -> None:
-    """Raise ParameterError where there is not one value a joint."""
+    """Raise ParameterError unless there is one value per joint."""
     if len(values) != dof:
         raise wrong(name, values, f" has {len(values)} entries: must have {dof}, one per joint")
 
@@ -230,7 +233,7 @@ def _from_urdf(file: str, tip: str, base: str | None = None) -> SerialArm:
     return SerialArm.from_urdf(file, tip, base)
 
 
-# What makes an arm, by the kind that a table has.
+# Constructors of arms, by the kind in a table.
 ARMS: dict[str, Callable[..., Arm]] = {
     "preset": SerialArm.preset,
     PlanarArm.kind: PlanarArm,

@@ -1,4 +1,4 @@
-"""Capsules, on an arm's links or in the world around it."""
+"""Capsules, on the links of an arm or as obstacles."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from .parameter import NOT_NEGATIVE, Data, data, parameter
 
 @data
 class Capsule(Data, Shape):
-    """All points of a link within a radius of a segment; a ball where both ends are one point.
+    """All points within a radius of a segment that is fixed to a link; a ball if both ends of the segment coincide.
 
-    As an obstacle in the world it is of link 0, the base. Raises ParameterError.
+    The link of an obstacle is 0, the base. Raises ParameterError.
     """
 
     kind: ClassVar[str] = "capsule"
     link: int = parameter(
-        "How many of arm.joints move it: 0 is the base. Its frame is that of joint number link after its motion, "
-        "placement_1 motion_1(q_1) ... placement_link motion_link(q_link), or the base frame.",
+        "Number of joints in arm.joints that move the link; 0 is the base. The frame of the link is that of joint "
+        "number link after its motion, placement_1 motion_1(q_1) ... placement_link motion_link(q_link), or the base "
+        "frame.",
         NOT_NEGATIVE,
     )
     a: ArrayField = parameter("One end of the segment, in the link's frame.", shape="(3,)", unit="m")
-    b: ArrayField = parameter("The other end.", shape="(3,)", unit="m")
+    b: ArrayField = parameter("Other end of the segment.", shape="(3,)", unit="m")
     radius: float = parameter("Radius.", NOT_NEGATIVE, unit="m")
-    name: str = parameter("The link's name in its URDF file; capsules of one link share it.", default="")
+    name: str = parameter("Name of the link in the URDF file; capsules of one link share the name.", default="")
 
     def _finish(self) -> None:
         Shape.__init__(self, a=self.a, b=self.b, radius=self.radius, link=self.link)

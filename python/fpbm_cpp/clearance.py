@@ -1,4 +1,4 @@
-"""What an arm or a robot keeps clear of."""
+"""Clearance: self-collision and obstacles that an arm or a robot avoids."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ from .parameter import NOT_NEGATIVE, POSITIVE, Data, data, parameter
 from .robots import PLACE, Robot
 
 MARGIN = 0.01
-PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Of Robot.from_urdf(base="planar"): SRDF files do not have them.
+PLANAR_BASE = {"base_x", "base_y", "base_yaw"}  # Joints of Robot.from_urdf(base="planar"); not in SRDF files.
 
 
 @data
 class Clearance(Data):
-    """What an arm or a Robot keeps clear of: of itself and of obstacles around it, by a margin.
+    """Self-collision and obstacles that an arm or a Robot avoids, with a margin.
 
-    Kept apart are all capsules whose links are not next to one another, on one branch of a Robot or on two, and each
-    capsule of a link that moves from each obstacle; but for pairs that overlap in every posture, and for those that are
-    allowed to meet. Names without which a pair could not be told are given: 'link_3' to a capsule, 'obstacle_1' to an
-    obstacle.
+    The checked pairs are all capsules of two links that are not adjacent, on one branch of a Robot or on two, and each
+    capsule of a moving link with each obstacle. Pairs that overlap in every posture and allowed pairs are not checked.
+    Shapes without a name get one: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
-    Raises ParameterError where a shape is none, an obstacle is not in the base frame or shares another's name, or an
-    allowed name is nobody's.
+    Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,
+    or no shape has an allowed name.
     """
 
     kind: ClassVar[str] = "clearance"
-    capsules: Sequence[Capsule] = parameter("On the arm's links, which they contain.")
+    capsules: Sequence[Capsule] = parameter("Capsules that contain the links of the arm.")
     obstacles: Sequence[Obstacle] = parameter(
-        "In the base frame, which for an arm in the plane has its z axis out of it.", default=()
+        "Obstacles in the base frame; the z axis of a planar arm is normal to the plane.", default=()
     )
     _: KW_ONLY
-    margin: float = parameter("Least distance of two shapes.", NOT_NEGATIVE, default=MARGIN, unit="m")
-    allowed: Sequence[tuple[str, str]] = parameter("Names of pairs that need not be kept apart.", default=())
+    margin: float = parameter("Least distance between two shapes.", NOT_NEGATIVE, default=MARGIN, unit="m")
+    allowed: Sequence[tuple[str, str]] = parameter("Names of the pairs that are not checked.", default=())
     away_gain: float = parameter(
-        "How strongly self-motion keeps the arm away from shapes, where the task leaves it free to; at velocity level "
-        "in rad/(m s).",
+        "Gain of the null-space motion away from shapes; at velocity level in rad/(m s).",
         NOT_NEGATIVE,
         default=0.0,
         unit="rad/(m s^2)",
     )
-    away_range: float = parameter("From what distance on, beyond the margin.", POSITIVE, default=0.1, unit="m")
+    away_range: float = parameter(
+        "Distance beyond the margin below which away_gain acts.", POSITIVE, default=0.1, unit="m"
+    )
 
     def _finish(self) -> None:
         _require("capsules", self.capsules, (Capsule,), "a Capsule")
@@ -65,7 +65,7 @@ class Clearance(Data):
         names = [each.name for each in obstacles]
         for i, each in enumerate(obstacles):
             if each.name in names[:i]:
-                raise ParameterError("obstacles", i, each, f"obstacles[{i}].name = {each.name!r}: is there twice")
+                raise ParameterError("obstacles", i, each, f"obstacles[{i}].name = {each.name!r}: must be unique")
             if isinstance(each, Capsule) and each.link != 0:
                 raise ParameterError("obstacles", i, each, f"obstacles[{i}].link = {each.link}: must be 0, the base")
         names = sorted({*names, *(each.name for each in capsules)})
@@ -74,17 +74,17 @@ class Clearance(Data):
                 raise ParameterError("allowed", i, pair, f"allowed[{i}] = {pair!r:.80}: must be two names")
             for name in pair:
                 if name not in names:
-                    problem = f"allowed[{i}]: no shape is called {name!r}{suggestion(name, names)}"
+                    problem = f"allowed[{i}]: no shape has the name {name!r}{suggestion(name, names)}"
                     raise ParameterError("allowed", i, name, problem)
         for name, values in {"capsules": capsules, "obstacles": obstacles, "allowed": allowed}.items():
             object.__setattr__(self, name, values)
 
     @classmethod
     def preset(cls, name: str, *, obstacles: Sequence[Obstacle] = (), margin: float = MARGIN) -> Clearance:
-        """Clearance of SerialArm.preset(name) or Robot.preset(name), by capsules that contain the maker's meshes.
+        """Clearance of SerialArm.preset(name) or Robot.preset(name), with capsules that contain the maker's meshes.
 
-        Tools are not among them. Links that the joints' bounds keep apart anyway are allowed to meet. Raises
-        ParameterError where there is none.
+        Tools have no capsules. Pairs of links that cannot meet within the joint bounds are allowed pairs. Raises
+        ParameterError if the preset does not exist.
         """
         links, allowed = preset_capsules(name)
         capsules = [Capsule(link, a, b, radius, title) for link, a, b, radius, title in links]
@@ -101,18 +101,19 @@ class Clearance(Data):
         margin: float = MARGIN,
         allowed: Sequence[tuple[str, str]] = (),
     ) -> Clearance:
-        """Clearance of Robot.from_arms(arms, placements), by the capsules of a clearance of each arm.
+        """Clearance of Robot.from_arms(arms, placements), with the capsules of a clearance of each arm.
 
-        Capsule 'panda_link5' of arm 'left' is 'left_panda_link5'. Pairs that a clearance allows are allowed, beside
-        those in `allowed`. An arm without a clearance has no capsules.
+        Capsule 'panda_link5' of arm 'left' becomes 'left_panda_link5'. The allowed pairs are those of the clearances
+        and those in `allowed`. An arm without a clearance has no capsules.
 
-        Raises ParameterError where a clearance is of no arm, or has obstacles: give those in the robot's base frame.
+        Raises ParameterError if a clearance belongs to no arm or has obstacles: give obstacles in the robot's base
+        frame.
         """
         for name, clearance in clearances.items():
             if name not in arms:
                 raise wrong("clearances", name, f" has {name!r}: must be names of arms{suggestion(name, arms)}")
             if clearance.obstacles:
-                problem = f"[{name!r}] has obstacles: give those to from_arms(obstacles=), in the robot's base frame"
+                problem = f"[{name!r}] has obstacles: give them to from_arms(obstacles=), in the robot's base frame"
                 raise wrong("clearances", clearance, problem)
         capsules: list[Capsule] = []
         pairs: list[tuple[str, str]] = []
@@ -146,29 +147,29 @@ class Clearance(Data):
         per_link: int = 2,
         postures: ArrayLike | None = None,
     ) -> Clearance:
-        """Clearance of a URDF file's robot, by capsules that contain the file's collision geometry.
+        """Clearance of the robot in a URDF file, with capsules that contain the collision geometry of the file.
 
-        The robot is SerialArm.from_urdf(path, tip, base). Without tip, it is Robot.from_urdf(path, base=base,
-        locked=locked, tips=tips): give the same arguments to both. Joints that do not move are held where the robot
-        holds them.
+        The robot is SerialArm.from_urdf(path, tip, base). Without tip, the robot is Robot.from_urdf(path, base=base,
+        locked=locked, tips=tips). Give the same arguments to both functions. Joints that do not move are at the
+        positions at which the robot fixes them.
 
-        Each link gets one capsule, or up to per_link where these take less room, and one more, unless per_link is 1,
-        where capsules of two links would often be closer than the margin though the links are not. srdf is a file of
-        MoveIt's, whose disabled pairs are allowed to meet, beside those in `allowed`. Needs the extra 'clearance',
-        meshes a part of it alone.
+        Each link gets one capsule, or up to per_link capsules if their volume is smaller. Unless per_link is 1, a link
+        gets one more capsule if capsules of two links would often be closer than the margin and the links are not.
+        srdf is an SRDF file of MoveIt, whose disabled pairs are allowed pairs, in addition to `allowed`. Needs the
+        extra 'clearance', of which trimesh and pycollada are for meshes only.
 
-        postures: of shape (n,) or (k, n) [rad] or [m], in which the robot shall be accepted. There, links that are
-        closer than the margin by their capsules get up to 8 capsules each, unless their meshes are closer as well.
-        Unless given, they are the group states of the SRDF file that have all of the robot's joints and no other, a
-        planar base at zero; none where per_link is 1.
+        postures, of shape (n,) or (k, n) [rad] or [m], are postures in which the clearance must accept the robot. If
+        capsules of two links are closer than the margin there, the links get up to 8 capsules each, unless their meshes
+        are closer than the margin too. Default: the group states of the SRDF file that have all joints of the robot and
+        no others, with a planar base at zero; none if per_link is 1.
 
-        Raises ParameterError where postures have another shape or are not finite, or an argument is for another kind of
-        robot, ValueError where a file is not sound, OSError where one cannot be read.
+        Raises ParameterError if postures have a wrong shape or are not finite, or an argument is for another kind of
+        robot; ValueError if a file is not valid; OSError if a file cannot be read.
         """
         from .io.capsules import capsules_of
         from .io.srdf import read_disabled_pairs
 
-        cls([], obstacles, margin=margin)  # Whether these are sound is said before the fit, which takes long.
+        cls([], obstacles, margin=margin)  # Check these arguments before the slow fit.
         pairs = [] if srdf is None else read_disabled_pairs(srdf)
         if tips is not None:
             tips = [tips] if isinstance(tips, str) else list(tips)
@@ -192,22 +193,22 @@ class Clearance(Data):
         return cls(capsules, obstacles, margin=margin, allowed=[*disabled, *allowed])
 
     def nearest(self, arm: Arm | Robot, q: ArrayLike) -> Nearest | None:
-        """The pair that is nearest to one another in a posture q, shape (n,) [rad]; None where no pair is kept apart.
+        """The nearest checked pair of shapes in a posture q, shape (n,) [rad]; None if no pair is checked.
 
-        Raises ParameterError where q is no posture of the arm or the robot, or a capsule's link is none of it.
+        Raises ParameterError if q is not a posture of the arm or the robot, or a capsule is on a link that it lacks.
         """
         return self._of(arm).nearest(q)
 
     def pairs(self, arm: Arm | Robot) -> list[tuple[str, str]]:
-        """Names of the pairs that are kept apart; one for each pair of capsules, so some may be there twice."""
+        """Names of the checked pairs, one entry for each pair of capsules; a pair of names may occur several times."""
         return self._of(arm).pairs()
 
     def left_out(self, arm: Arm | Robot) -> list[tuple[str, str]]:
-        """Names of the pairs that no motion can keep apart, since they overlap in every posture."""
+        """Names of the pairs that are not checked because they overlap in every posture."""
         return self._of(arm).left_out()
 
     def _of(self, arm: Arm | Robot) -> CoreClearance:
-        """The compiled part for an arm or a robot, which is kept for the next call."""
+        """The compiled part for an arm or a robot, cached for the next call."""
         known: tuple[Arm | Robot, CoreClearance] | None = self.__dict__.get("_known")
         if known is None or known[0] is not arm:
             self.__dict__["_known"] = known = arm, CoreClearance(arm, self)
@@ -215,7 +216,7 @@ class Clearance(Data):
 
 
 def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.PathLike[str] | None) -> Array | None:
-    """Positions (k, N) of all joints in postures that are given, or that an SRDF file has; None without any."""
+    """Positions (k, N) of all joints in the given postures or in those of an SRDF file; None if there are none."""
     from .io.capsule_gaps import follow
     from .io.srdf import read_group_states
 
@@ -240,7 +241,7 @@ def _postures(joints: Sequence[Joint], given: ArrayLike | None, srdf: str | os.P
 
 
 def _is_whole(state: Mapping[str, float], names: Sequence[str]) -> bool:
-    """Whether a group state has all joints of a robot, but for those of its base, and no other."""
+    """Whether a group state has all joints of a robot, except those of its planar base, and no others."""
     return set(names) - PLANAR_BASE <= set(state) <= set(names)
 
 
@@ -279,5 +280,5 @@ def _from_urdf(
     )
 
 
-# What makes a clearance, by the kind that a table has.
+# Constructors of clearances, by the kind in a table.
 CLEARANCES: dict[str, Callable[..., Clearance]] = {Clearance.kind: Clearance, "urdf": _from_urdf}

@@ -1,4 +1,4 @@
-"""What the package raises."""
+"""Exceptions of the package."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class ParameterError(ValueError):
     """An argument is out of range, of the wrong shape or type, or unknown.
 
-    name: the argument, 'radius' say, or 'path.radius' in a table. index: the entry of an array that is wrong, or None.
-    value: what was given, where it is known. problem: the message after the name.
+    name: the argument, for example 'radius', or 'path.radius' in a table. index: index of the wrong entry of an array,
+    or None. value: the given value, if known. problem: the message after the name.
     """
 
     def __init__(self, name: str, index: int | None, value: object, message: str) -> None:
@@ -31,30 +31,30 @@ class ParameterError(ValueError):
         return f"{self.name}{self.problem}"
 
     def within(self, table: str) -> ParameterError:
-        """The same error of an argument in that table."""
+        """The error of the argument with this name in a table: 'radius' becomes 'path.radius'."""
         name = f"{table}.{self.name}"
         return ParameterError(name, self.index, self.value, name + self.problem)
 
 
 def wrong(name: str, value: object, problem: str) -> ParameterError:
-    """The error of an argument and its problem, which follows the name: ' = -1: must be positive'."""
+    """ParameterError for an argument; problem follows the name in the message: ' = -1: must be positive'."""
     return ParameterError(name, None, value, name + problem)
 
 
 def not_one_of(name: str, value: object, choices: Iterable[str]) -> ParameterError:
-    """The error of a word that is none of these; it suggests the one that was probably meant."""
+    """ParameterError for a word that is not one of the choices, with the closest choice as a suggestion."""
     words = list(choices)
     return wrong(name, value, f" = {value!r}: must be one of {', '.join(words)}{suggestion(value, words)}")
 
 
 def suggestion(word: object, words: Iterable[str]) -> str:
-    """A question after the word that this one is close to; empty where it is close to none."""
+    """The text '; did you mean ...?' with the closest of the words; empty if no word is close."""
     close = difflib.get_close_matches(str(word).lower().replace("-", "_"), list(words), 1)
     return f"; did you mean {close[0]!r}?" if close else ""
 
 
 def extra(library: str, user: str, name: str) -> Any:
-    """The library of an extra. Raises ImportError, with what to install for its user, where it is missing."""
+    """The library of an extra. If the library is missing, raises ImportError with the extra that user needs."""
     try:
         return import_module(library)
     except ImportError:
@@ -62,9 +62,9 @@ def extra(library: str, user: str, name: str) -> Any:
 
 
 class ResolutionError(RuntimeError):
-    """The motion cannot be resolved: a singular posture, a target out of reach, a number that is not finite.
+    """The motion cannot be resolved: singular posture, unreachable target, or a number that is not finite.
 
-    status: why. run: the motion up to there, where a simulation stopped.
+    status: the cause. run: the motion before the error, if a simulation stopped.
     """
 
     def __init__(self, status: Status, text: str | None = None, run: Run | None = None) -> None:
@@ -74,7 +74,7 @@ class ResolutionError(RuntimeError):
 
 
 class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C. sweep: what was finished until then; sweep.done says which motions."""
+    """A sweep was stopped by Ctrl-C. sweep: the result with the finished motions, which sweep.done marks."""
 
     def __init__(self, sweep: Sweep) -> None:
         super().__init__(f"interrupted after {int(sweep.done.sum())} of {sweep.done.size} motions")
@@ -82,7 +82,7 @@ class SweepInterrupted(KeyboardInterrupt):
 
 
 class TuneInterrupted(KeyboardInterrupt):
-    """A tuning was stopped by Ctrl-C. tuning: what was found until then; None where no feasible scheme was."""
+    """A tuning was stopped by Ctrl-C. tuning: the result so far; None if no feasible scheme was found."""
 
     def __init__(self, tuning: Tuning | None, tried: int) -> None:
         super().__init__(f"interrupted after {tried} schemes")

@@ -1,4 +1,4 @@
-"""Shapes of the world that an arm is to keep clear of; a Capsule may be one, too."""
+"""Obstacles: half-spaces, cuboids and capsules."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from .arms import FRAME
 from .capsule import Capsule
 from .parameter import NOT_NEGATIVE, Data, data, parameter
 
-NAME = "What errors and Nearest call it; 'obstacle_1' and so on where empty."
+NAME = "Name in errors and in Nearest; if empty, 'obstacle_1', 'obstacle_2' and so on."
 
 
 @data
 class HalfSpace(Data, Shape):
-    """A floor or a wall: all points x with n'x <= offset, for the normal n at length 1.
+    """A floor or a wall: all points x with n'x <= offset, where n is the unit normal.
 
-    Raises ParameterError where the normal is zero.
+    Raises ParameterError if the normal is zero.
     """
 
     kind: ClassVar[str] = "half_space"
-    normal: ArrayField = parameter("Out of what is solid; its length does not matter.", shape="(3,)")
-    offset: float = parameter("How far along the normal its surface is from the base frame's origin.", unit="m")
+    normal: ArrayField = parameter("Normal that points out of the solid; its length is ignored.", shape="(3,)")
+    offset: float = parameter("Distance of the surface from the base frame's origin, along the normal.", unit="m")
     _: KW_ONLY
     name: str = parameter(NAME, default="")
 
@@ -34,13 +34,13 @@ class HalfSpace(Data, Shape):
 
 @data
 class Cuboid(Data, Shape):
-    """A box: all points whose coordinates in its own frame are at most half its edges, either way.
+    """A box: all points x with |x_i| <= half_i in the frame of the box.
 
-    Raises ParameterError where the pose is no frame.
+    Raises ParameterError if the pose is not a frame.
     """
 
     kind: ClassVar[str] = "cuboid"
-    pose: ArrayField = parameter("Its frame, whose origin is its centre, in the base frame.", FRAME)
+    pose: ArrayField = parameter("Frame of the box in the base frame; its origin is the centre of the box.", FRAME)
     half: ArrayField = parameter("Half the length of each edge.", NOT_NEGATIVE, shape="(3,)", unit="m")
     _: KW_ONLY
     name: str = parameter(NAME, default="")

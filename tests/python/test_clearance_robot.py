@@ -337,7 +337,7 @@ RAIL = fp.Robot([fp.TreeJoint(fp.Joint()), fp.TreeJoint(fp.Joint("prismatic", na
         ),
         (
             lambda file: fp.Clearance.from_urdf(file, allowed=[("chest", "camera")], per_link=1),
-            "allowed[0]: no shape is",
+            "allowed[0]: no shape has the name",
         ),
         (
             lambda _: fp.Clearance.from_arms(ARMS, {"lift": BOTH["left"]}),
@@ -345,7 +345,7 @@ RAIL = fp.Robot([fp.TreeJoint(fp.Joint()), fp.TreeJoint(fp.Joint("prismatic", na
         ),
         (
             lambda _: fp.Clearance.from_arms(ARMS, {"left": fp.Clearance([], [TABLE])}),
-            "clearances['left'] has obstacles: give those to from_arms(obstacles=)",
+            "clearances['left'] has obstacles: give them to from_arms(obstacles=)",
         ),
         (
             lambda _: fp.Clearance(ONE).pairs(RAIL),
