@@ -1,6 +1,6 @@
 #pragma once
 
-/// Redundancy resolution for robot arms: include this, or the headers you need.
+/// Redundancy resolution for robot arms: all public headers. Include this header, or only the headers that you need.
 
 #include "fpbm/any/any_arm.hpp"
 #include "fpbm/any/any_frame_task.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// A control loop: Tracker with SerialArm, the presets, the schemes and simple paths. Takes a compiler less time and
-/// memory than <fpbm/fpbm.hpp>.
+/// Headers for a control loop: Tracker with SerialArm, the presets, the schemes and simple paths. Compiles in less time
+/// and memory than <fpbm/fpbm.hpp>.
 
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/serial_arm.hpp"

@@ -10,8 +10,7 @@
 
 namespace fpbm::validation {
 
-// A number or a text as messages show it, after what they say before. Never inlined: messages are for arguments that
-// are rejected.
+// Append a text or a number to an error message. Not inlined, because only rejected arguments need a message.
 [[gnu::noinline, gnu::cold]] inline void append_text(std::string& message, std::string_view text) {
   message += text;
 }
@@ -25,9 +24,10 @@ template <typename Whole>
   message += std::to_string(value);
 }
 
-/// An argument of a constructor, or a part of it, for messages: element("joints", 2) + ".axis" is "joints[2].axis".
+/// Name of a constructor argument, or of a part of an argument, for error messages: element("joints", 2) + ".axis" is
+/// "joints[2].axis".
 ///
-/// Refers to the texts that it is made of. They are joined only for a message, so that checks take no memory.
+/// Refers to its texts without a copy, and joins them only for a message: checks allocate no memory.
 class Argument {
  public:
   Argument(const char* name) : Argument(std::string_view(name)) {}
@@ -35,7 +35,7 @@ class Argument {
   [[gnu::noinline]] Argument(std::string_view name) { append({name}); }
   Argument(std::string&& name) = delete;
 
-  /// A part of it, by name.
+  /// Part of an argument, by name.
   [[nodiscard, gnu::noinline]] friend Argument operator+(Argument argument, std::string_view part) {
     argument.append({part});
     return argument;
@@ -45,20 +45,20 @@ class Argument {
 
   [[nodiscard]] std::string text() const { return joined(count_); }
 
-  /// What the last index is an index of; all of it where there is none.
+  /// Text before the last index, or the whole text if there is no index.
   [[nodiscard]] std::string name() const {
     const std::size_t last = last_index();
     return joined(last < count_ ? last : count_);
   }
 
-  /// The last index; -1 where there is none.
+  /// Last index, or -1 if there is no index.
   [[nodiscard]] int index() const {
     const std::size_t last = last_index();
     return last < count_ ? static_cast<int>(parts_[last].i) : -1;
   }
 
  private:
-  /// A name, or else an index.
+  /// A name, or an index if i ≥ 0.
   struct Part {
     std::string_view name;
     Eigen::Index i = -1;
@@ -69,7 +69,7 @@ class Argument {
     if (count_ < parts_.size()) parts_[count_++] = part;
   }
 
-  /// The place of the last index, or the number of parts.
+  /// Position of the last index in parts_, or count_ if there is no index.
   [[nodiscard]] std::size_t last_index() const noexcept {
     for (std::size_t k = count_; k-- > 0;) {
       if (parts_[k].i >= 0) return k;
@@ -87,11 +87,11 @@ class Argument {
     return text;
   }
 
-  std::array<Part, 8> parts_ = {};  ///< The deepest, joint 'elbow'.placement.p[1], has six.
+  std::array<Part, 8> parts_ = {};  ///< The longest name, joint 'elbow'.placement.p[1], has six parts.
   std::size_t count_ = 0;
 };
 
-/// Entry i of an argument; of a matrix, entry (i, j).
+/// Entry i of a vector, or entry (i, j) of a matrix.
 [[nodiscard, gnu::noinline]] inline Argument element(Argument argument, Eigen::Index i, Eigen::Index j = -1) {
   argument.append({{}, i, j});
   return argument;

@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// Task space of directions: unit vectors, which turn with an angular velocity in the base frame's axes [rad].
+/// Task space of directions: unit vectors. Displacements are rotation vectors along the axes of the base frame [rad].
 struct Direction {
   static constexpr int kRows = 3;
   static constexpr int kTurns = 3;
@@ -24,15 +24,16 @@ struct Direction {
     return {Scalar(0), Scalar(0), Scalar(1)};
   }
 
-  /// x ⊖ y: the rotation vector of the smallest rotation from y to x, at right angles to both. Of opposite directions,
-  /// a rotation by π about some axis at right angles to y.
+  /// x ⊖ y: the rotation vector of the smallest rotation from y to x, perpendicular to x and y [rad]. If x = −y, a
+  /// rotation by π about an axis perpendicular to y.
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::atan2;
     Vector<3, Scalar> axis = cross(y, x);
     const Scalar square = squared_norm(axis);
     const Scalar cosine = dot(x, y);
-    // Small angles of unit vectors, without root or division. 16 epsilon is the round-off of sin² + cos².
+    // Small angles between unit vectors need no square root and no division. 16 epsilon allows for the round-off error
+    // of sin² + cos².
     const bool unit =
         std::abs(cosine * cosine + square - Scalar(1)) < Scalar(16) * std::numeric_limits<Scalar>::epsilon();
     if (unit && cosine > Scalar(0) && square < Scalar(kLargestSquare)) {
@@ -55,13 +56,13 @@ struct Direction {
     return entrywise(axis, [&](Eigen::Index i) { return share * axis.coeff(i); });
   }
 
-  /// y ⊕ d: y turned by the rotation vector d.
+  /// y ⊕ d: y rotated by the rotation vector d.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<3, Scalar>& d) noexcept {
     return times(rotation(d), y);
   }
 
-  /// y turned as the z axis turns to x.
+  /// y rotated by the smallest rotation from the z axis to x.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
     return displace<Scalar>(y, difference<Scalar>(x, origin<Scalar>()));

@@ -5,7 +5,7 @@
 
 namespace fpbm {
 
-/// Task space of M joint positions, which count as angles [rad].
+/// Task space of M joint positions. All rows count as angles [rad].
 template <int M>
 struct JointSpace {
   static constexpr int kRows = M;

@@ -6,7 +6,7 @@
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
-/// Single lanes of what holds several numbers in each Scalar.
+/// Access to single SIMD lanes of matrices and poses whose Scalar holds several numbers.
 namespace fpbm {
 
 template <int Rows, int Cols, typename Scalar>

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <experimental/simd>
 
-/// K numbers side by side in vector registers. With Scalar = Lanes<K> the same code computes K arms, or K motions of an
-/// arm, at once. core/mask.hpp says what takes the place of branches.
+/// K numbers in the lanes of SIMD registers. With Scalar = Lanes<K>, the same code computes K arms, or K motions of an
+/// arm, in parallel. core/mask.hpp describes the replacement for branches.
 namespace fpbm {
 
 template <int K, typename T = double>
@@ -32,7 +32,7 @@ struct Eigen::NumTraits<std::experimental::simd<T, Abi>> : Eigen::GenericNumTrai
   // NOLINTEND(readability-identifier-naming)
 };
 
-/// A number times a vector of lanes.
+/// Operations between a number and lanes, for example their product.
 template <typename T, typename Abi, typename Operation>
 struct Eigen::ScalarBinaryOpTraits<T, std::experimental::simd<T, Abi>, Operation> {
   using ReturnType = std::experimental::simd<T, Abi>;

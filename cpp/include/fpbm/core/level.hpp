@@ -2,7 +2,7 @@
 
 namespace fpbm {
 
-/// What a scheme returns: joint velocities or joint accelerations.
+/// Output of a scheme: joint velocities or joint accelerations.
 enum class Level : unsigned char { kVelocity, kAcceleration };
 
 }  // namespace fpbm

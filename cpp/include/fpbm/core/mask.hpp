@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-/// Result of a comparison: bool, or a mask of lanes, which cannot drive an `if`.
+/// Masks, the results of comparisons: a bool, or one bool for each lane, which cannot be the condition of an `if`.
 ///
 /// Code for any Scalar uses all_of(mask), or where(mask, x) = y as std::experimental::simd does.
 namespace fpbm {
@@ -13,11 +13,11 @@ namespace fpbm {
 template <typename Scalar>
 using Mask = decltype(std::declval<const Scalar&>() > std::declval<const Scalar&>());
 
-/// Whether a Scalar holds several numbers, one a lane. A lane may fail while the others go on.
+/// Whether a Scalar holds several numbers, one per lane. If a lane fails, the computation continues in the other lanes.
 template <typename Scalar>
 inline constexpr bool kInLanes = !std::is_same_v<Mask<Scalar>, bool>;
 
-/// Type of one lane of a Scalar; Scalar itself where it is a single number.
+/// Type of one lane of a Scalar, or Scalar itself if it is a single number.
 template <typename Scalar, typename = void>
 struct NumberOf {
   using type = Scalar;
@@ -37,7 +37,7 @@ using Number = typename NumberOf<Scalar>::type;
   return !truth;
 }
 
-/// Sets a lane of value to NaN where its mask is false. Does nothing to a single number, whose failure is a Status.
+/// Sets the lanes of value whose mask is false to NaN. Has no effect on a single number, whose failure is a Status.
 template <typename Masks, typename Scalar>
 void set_nan_unless([[maybe_unused]] const Masks& truth, [[maybe_unused]] Scalar& value) noexcept {
   if constexpr (kInLanes<Scalar>) {

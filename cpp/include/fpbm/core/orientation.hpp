@@ -6,7 +6,8 @@
 
 namespace fpbm {
 
-/// Task space of orientations: rotation matrices, with angular velocities in the base frame's axes [rad].
+/// Task space of orientations: rotation matrices. Displacements are rotation vectors, and velocities are angular
+/// velocities, along the axes of the base frame [rad].
 struct Orientation {
   static constexpr int kRows = 3;
   static constexpr int kTurns = 3;
@@ -26,7 +27,7 @@ struct Orientation {
     return rotation_between(x, y);
   }
 
-  /// y ⊕ d: y turned by the rotation vector d.
+  /// y ⊕ d: y rotated by the rotation vector d.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<3, Scalar>& d) noexcept {
     return times(rotation(d), y);
@@ -37,7 +38,7 @@ struct Orientation {
     return times(x, y);
   }
 
-  /// Row by row.
+  /// Writes the nine entries row by row.
   template <typename Scalar>
   static void store(const Point<Scalar>& x, Scalar* out) noexcept {
     for (int i = 0; i < 9; ++i) out[i] = x(i / 3, i % 3);

@@ -6,7 +6,7 @@
 
 namespace fpbm {
 
-/// Whether a task space is a product of others (ProductSpace).
+/// Whether a task space is a product of other task spaces (ProductSpace).
 template <typename Space, typename = void>
 inline constexpr bool kIsProduct = false;
 template <typename Space>
@@ -16,8 +16,8 @@ inline constexpr bool kIsProduct<Space, std::void_t<decltype(Space::kProduct)>> 
 template <typename Space>
 inline constexpr int kLevelsOf = 1;
 
-/// Calls f(space, row, first) for each space of a product, or for the space itself. row: index of the space's first
-/// row. first: the space belongs to a task of the first level.
+/// Calls f(space, row, first) for each space of a product, or for the space itself. row: index of the first row of the
+/// space. first: whether the space belongs to a task of the first level.
 template <typename Space, typename F>
 void each_part(F&& f) noexcept {
   if constexpr (kIsProduct<Space>) {
@@ -27,7 +27,7 @@ void each_part(F&& f) noexcept {
   }
 }
 
-/// A displacement with its lengths in units of a length [m].
+/// Divides the linear rows of a displacement by length [m]. The angular rows do not change.
 template <typename Space, int M, typename Scalar>
 [[nodiscard]] Vector<M, Scalar> in_lengths(Vector<M, Scalar> twist, Scalar length) noexcept {
   each_part<Space>([&](auto space, int row, bool) noexcept {

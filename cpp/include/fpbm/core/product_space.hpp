@@ -8,9 +8,10 @@
 
 namespace fpbm {
 
-/// Task space of several tasks: a point of each. Rows are those of the spaces one after another.
+/// Task space of several tasks: a point has one point of each space, and the rows of the spaces follow one after
+/// another.
 ///
-/// The first kFirst spaces are those of the first level.
+/// The first kFirst spaces belong to the first task level.
 template <int First, typename... Spaces>
 struct ProductSpace {
   static constexpr bool kProduct = true;
@@ -48,7 +49,8 @@ struct ProductSpace {
     return result;
   }
 
-  /// Calls f(space, i, row) for each space: i is its index as a type, row the index of its first row.
+  /// Calls f(space, i, row) for each space. i is the index of the space as a std::integral_constant, row the index of
+  /// its first row.
   template <typename F>
   static void each(F&& f) noexcept {
     each(f, std::index_sequence_for<Spaces...>{});

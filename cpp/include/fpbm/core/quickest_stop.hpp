@@ -12,29 +12,30 @@ struct AxisState {
   Scalar v;
   Scalar a;
 
-  /// Some seconds later, at constant jerk.
+  /// State after `seconds` [s] at constant jerk.
   [[nodiscard]] AxisState ahead(Scalar seconds, Scalar jerk) const noexcept {
     const Scalar t = seconds;
     return {q + t * (v + t * (a / Scalar(2) + t * jerk / Scalar(6))), v + t * (a + t * jerk / Scalar(2)), a + t * jerk};
   }
 };
 
-/// The quickest stop of one axis within bounds A on its acceleration and J on its jerk, in closed form: the jerk is
-/// −sJ, 0 and sJ in turn, with s the sign of v + a|a|/2J, the velocity that is left once a has been let go.
+/// Time-optimal stop of one axis within bounds A on the acceleration and J on the jerk, in closed form. The jerk is
+/// −sJ, 0 and sJ in turn. s is the sign of v + a|a|/2J, the velocity after the jerk ±J has reduced the acceleration to
+/// zero.
 ///
-/// A state with s > 0 lies on the curve of jerk −J through a state without acceleration, whose velocity is v + a²/2J
-/// and whose position is q + va/J + a³/3J²; from there the stop takes a way of way(v + a²/2J).
+/// A state with s > 0 is on the trajectory of jerk −J through a state with zero acceleration, whose velocity is v +
+/// a²/2J and whose position is q + va/J + a³/3J². From there, the stopping distance is way(v + a²/2J).
 template <typename Scalar>
 struct QuickestStop {
-  Scalar acceleration;  ///< A, positive; infinite for none.
+  Scalar acceleration;  ///< A, positive; infinite if there is no bound.
   Scalar jerk;          ///< J, positive and finite.
 
-  /// Sign of the velocity that the stop takes away.
+  /// s, the sign of the velocity that the stop removes.
   [[nodiscard]] Scalar sign(Scalar v, Scalar a) const noexcept {
     return v + a * std::abs(a) / (Scalar(2) * jerk) < Scalar(0) ? Scalar(-1) : Scalar(1);
   }
 
-  /// Way to rest from a velocity ≥ 0 without acceleration.
+  /// Stopping distance from a velocity ≥ 0 with zero acceleration.
   [[nodiscard]] Scalar way(Scalar velocity) const noexcept {
     using std::sqrt;
     const Scalar ramp = acceleration / jerk;
@@ -42,7 +43,7 @@ struct QuickestStop {
                                            : velocity * (velocity / acceleration + ramp) / Scalar(2);
   }
 
-  /// Position at rest.
+  /// Position at the end of the stop.
   [[nodiscard]] Scalar rest(const AxisState<Scalar>& state) const noexcept {
     const auto [q, v, a] = state;
     const Scalar s = sign(v, a);
@@ -51,7 +52,8 @@ struct QuickestStop {
     return q + s * v * lost + a * lost * lost / Scalar(3) + s * way(most);
   }
 
-  /// Some seconds along the stop, from |a| ≤ A; at rest exactly once it has ended.
+  /// State after `seconds` [s] of the stop, which starts with |a| ≤ A. After the end of the stop, the velocity and the
+  /// acceleration are exactly zero.
   [[nodiscard]] AxisState<Scalar> ahead(const AxisState<Scalar>& state, Scalar seconds) const noexcept {
     using std::sqrt;
     const auto [q, v, a] = state;
@@ -64,15 +66,16 @@ struct QuickestStop {
     const Scalar left = first + (even ? most / acceleration - ramp : Scalar(0)) + last - seconds;
     const AxisState<Scalar> end{rest(state), Scalar(0), Scalar(0)};
     if (!(left > Scalar(0))) return end;
-    // Back from the end, so that velocity and acceleration vanish together.
+    // The last phase is computed backward from its end, so that velocity and acceleration reach zero together.
     if (left <= last) return end.ahead(-left, s * jerk);
     if (seconds <= first) return state.ahead(seconds, -s * jerk);
     return state.ahead(first, -s * jerk).ahead(seconds - first, Scalar(0));
   }
 };
 
-/// Largest x in [low, high] where a rising function is not above zero, or low where it is above zero all the way. In
-/// rounds + 2 evaluations at most, by the Illinois method; what it returns is never above zero.
+/// Largest x in [low, high] at which an increasing function is ≤ 0, approximated from below by the Illinois method with
+/// at most rounds + 2 evaluations. If the function is positive at low, returns low. Otherwise, the function is not
+/// positive at the returned x.
 template <typename Scalar, typename Function>
 [[nodiscard]] Scalar largest_below_zero(Function&& function, Scalar low, Scalar high, int rounds = 6) noexcept {
   Scalar above = function(high);

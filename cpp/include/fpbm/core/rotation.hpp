@@ -12,8 +12,8 @@
 
 namespace fpbm {
 
-/// A B, of three rows, with the round-off of Eigen's lazyProduct(): rows that fill a pair of doubles are summed from
-/// the first term on.
+/// A B for A of three rows, with the same round-off error as Eigen's lazyProduct(): rows that fill a pair of doubles
+/// are summed as (x + y) + z, other rows as x + (y + z).
 template <int Cols, typename Scalar>
 [[nodiscard]] Matrix<3, Cols, Scalar> times(const Matrix<3, 3, Scalar>& A, const Matrix<3, Cols, Scalar>& B) noexcept {
   constexpr bool kInPairs = std::is_same_v<Scalar, double>;
@@ -47,7 +47,7 @@ struct Transform {
   }
 };
 
-/// A vector of length 1, unless the length is 0.
+/// a/|a|, or a if |a| = 0.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> normalized(const Vector<3, Scalar>& a) noexcept {
   using std::sqrt;
@@ -67,7 +67,7 @@ template <typename Scalar>
   return entrywise(R, [&](Eigen::Index i) { return R.coeff(i / 3, i % 3); });
 }
 
-/// Pose of the frame a in the frame b.
+/// Inverse of a pose of b in a: the pose of a in b.
 template <typename Scalar>
 [[nodiscard]] Transform<Scalar> inverse(const Transform<Scalar>& a) noexcept {
   const Matrix<3, 3, Scalar> back = transposed(a.R);
@@ -83,7 +83,7 @@ template <typename Scalar>
 /// Unit quaternion (w, v) of a rotation vector r [rad], w = cos(|r|/2).
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Vector<3, Scalar>& r) noexcept {
-  // With half angles both factors are accurate near |r| = 0, where sin(a)/a is 1 to round-off.
+  // With the half angle, both factors are accurate near |r| = 0, where sin(a)/a is 1 up to round-off.
   const Scalar half = norm(r) / Scalar(2);
   const SinCos<Scalar> angle = sincos(half);
   const Scalar sinc = half > Scalar(0) ? angle.sin / half : Scalar(1);
@@ -93,8 +93,8 @@ template <typename Scalar>
 
 /// Unit quaternion (w, v) of a rotation matrix, w ≥ 0.
 ///
-/// Computes the largest entry from the diagonal first (S. W. Shepperd, Quaternion from rotation matrix, 1978), which is
-/// accurate at every angle, 0 and π included.
+/// The largest entry is computed first, from the diagonal (S. W. Shepperd, Quaternion from rotation matrix, 1978). This
+/// is accurate at every angle, including 0 and π.
 template <typename Scalar>
 [[nodiscard]] Vector<4, Scalar> quaternion(const Matrix<3, 3, Scalar>& R) noexcept {
   using std::sqrt;
@@ -122,7 +122,7 @@ template <typename Scalar>
   return q;
 }
 
-/// Vector part of a b*, where b* is the conjugate of b. For q̇ q* it is half the angular velocity.
+/// Vector part of a b*, where b* is the conjugate of b. The vector part of q̇ q* is half the angular velocity.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> vector_of_quotient(const Vector<4, Scalar>& a, const Vector<4, Scalar>& b) noexcept {
   const Vector<3, Scalar> v(a(1), a(2), a(3));
@@ -158,7 +158,8 @@ template <typename Scalar>
   return rotation(quaternion(r));
 }
 
-/// The rotation next to a matrix that is one but for small errors.
+/// Rotation near a matrix that deviates from a rotation by small errors only: the rotation of its normalised
+/// quaternion.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> orthonormal(const Matrix<3, 3, Scalar>& R) noexcept {
   const Vector<4, Scalar> q = quaternion(R);
@@ -167,10 +168,10 @@ template <typename Scalar>
 }
 
 /// The rotation nearest to a matrix (its orthogonal polar factor), accurate to round-off if no entry of RᵀR deviates
-/// from the identity by more than 1e-4. A matrix that is orthonormal to round-off is returned unchanged.
+/// from the identity by more than 1e-4. A matrix that is orthonormal up to round-off is returned unchanged.
 ///
-/// Two of Newton's steps X ← (X + X⁻ᵀ)/2: each squares and halves the singular values' deviation from 1 (N. J. Higham,
-/// Computing the polar decomposition, 1986).
+/// Two Newton steps X ← (X + X⁻ᵀ)/2: each step squares and halves the deviation of the singular values from 1 (N. J.
+/// Higham, Computing the polar decomposition, 1986).
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> nearest_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
   const Matrix<3, 3, Scalar> excess = R.transpose().lazyProduct(R) - Matrix<3, 3, Scalar>::Identity();

@@ -13,15 +13,14 @@
 
 namespace fpbm {
 
-/// Squares of sines up to which angle_over_sine() is exact to round-off.
+/// Largest sin²θ up to which angle_over_sine() is exact to round-off.
 inline constexpr double kLargestSquare = 1.0 / 64.0;
 
 /// θ/sin θ for z = sin²θ, by the arcsine series.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Scalar angle_over_sine(const Scalar& z) noexcept {
-  // Even and odd powers apart: a processor computes the two short dependency chains in parallel.
-  // Written out, so that each coefficient is a Scalar where the program is compiled: float converts nothing from
-  // double.
+  // Even and odd powers are summed separately, so that a processor computes two short dependency chains in parallel.
+  // The coefficients are written as Scalar constants, so that float needs no conversion from double at run time.
   const Scalar y = z * z;
   Scalar even = Scalar(6435.0 / 557056.0) * y + Scalar(231.0 / 13312.0);
   even = (even * y + Scalar(35.0 / 1152.0)) * y + Scalar(3.0 / 40.0);
@@ -33,7 +32,7 @@ template <typename Scalar>
 
 namespace rotation_detail {
 
-/// Rotation vector of a rotation matrix by way of its quaternion, which is good at every angle.
+/// Rotation vector of a rotation matrix from its quaternion, which is accurate at every angle.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> large_rotation_vector(const Matrix<3, 3, Scalar>& R) noexcept {
   if constexpr (kInLanes<Scalar>) {
@@ -54,9 +53,10 @@ template <typename Scalar>
   }
 }
 
-/// Rotation vector r of a rotation matrix R by its trace and s, the vector of R − Rᵀ: s = 2 sin|r| r/|r|. whole() is R.
+/// Rotation vector r of a rotation matrix R from its trace and s, the vector of R − Rᵀ: s = 2 sin|r| r/|r|. whole()
+/// returns R.
 ///
-/// Small angles, as errors have, without root or division.
+/// Small angles, which are the typical errors, need no square root and no division.
 template <typename Scalar, typename Whole>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Scalar> rotation_vector(const Vector<3, Scalar>& s,
                                                                            const Scalar& trace,
@@ -84,7 +84,7 @@ template <typename Scalar>
   return rotation_detail::rotation_vector<Scalar>(s, trace_of(R), [&R] { return R; });
 }
 
-/// Rotation vector of R_x R_yᵀ, |r| ≤ π [rad]. Where it is small that product is never in memory.
+/// Rotation vector of R_x R_yᵀ, |r| ≤ π [rad]. If the angle is small, the product is not stored in memory.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Scalar> rotation_between(const Matrix<3, 3, Scalar>& x,
                                                                             const Matrix<3, 3, Scalar>& y) noexcept {

@@ -12,32 +12,34 @@
 
 namespace fpbm {
 
-/// sin and cos of one angle |x| ≤ kReach [rad], to 2e-16, without a branch, so that a loop over it vectorises.
+/// sin and cos of one angle |x| ≤ kReach [rad], with an error of up to 2e-16. Without branches, so that a loop of calls
+/// vectorises.
 ///
-/// Cody-Waite reduction by multiples of π/2 in two parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative
-/// error below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
+/// Cody-Waite reduction by multiples of π/2 in two parts, then minimax polynomials on |r| ≤ π/4 (Remez; relative error
+/// below 2⁻⁵⁷): W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980.
 struct ReducedSinCos {
-  static constexpr double kReach = 5e5;  ///< k · π/2 stays exact in its first part up to here.
+  static constexpr double kReach = 5e5;  ///< Up to here, k times the first part of π/2 is exact.
 
   static void evaluate(double x, double& sine, double& cosine) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Or k is no integer under -fassociative-math, which clang does not tell of.
+#pragma clang fp reassociate(off)  // Otherwise, k is not an integer with -fassociative-math, which clang hides.
 #endif
-    constexpr double kRound = 6755399441055744.0;  // 1.5 · 2⁵²: adding it leaves the nearest integer in the low bits.
+    constexpr double kRound = 6755399441055744.0;  // 1.5 · 2⁵²: the low bits of the sum are the nearest integer.
     const double shifted = x * kPerQuadrant + kRound;
     const double k = kHasExcessDigits ? nearest_integer(x * kPerQuadrant) : shifted - kRound;
     const Reduced<double> reduced = reduce(x, k);
     const std::uint64_t sin_r = bits(reduced.sine);
     const std::uint64_t cos_r = bits(reduced.cosine);
 
-    // Quadrant k mod 4: an odd one swaps sine and cosine, the upper bit of k and of k + 1 sets their signs.
+    // Quadrant k mod 4: an odd quadrant swaps sine and cosine. Bit 1 of k is the sign of the sine, bit 1 of k + 1 the
+    // sign of the cosine.
     const std::uint64_t quadrant = bits(kHasExcessDigits ? k + kRound : shifted);
     const std::uint64_t swap = std::uint64_t{0} - (quadrant & 1U);
     sine = real(((sin_r & ~swap) | (cos_r & swap)) ^ ((quadrant & 2U) << 62));
     cosine = real(((cos_r & ~swap) | (sin_r & swap)) ^ (((quadrant + 1U) & 2U) << 62));
   }
 
-  /// The same in lanes. A lane beyond kReach becomes NaN.
+  /// evaluate() for lanes. A lane with |x| > kReach becomes NaN.
   template <typename Scalar>
   static void evaluate(const Scalar& x, Scalar& sine, Scalar& cosine) noexcept {
     const Scalar k = round(x * Scalar(kPerQuadrant));
@@ -58,7 +60,8 @@ struct ReducedSinCos {
  private:
   static constexpr double kPerQuadrant = 6.36619772367581343e-01;
 
-  /// Of one that has more digits than a double, with which kRound leaves more than the integer.
+  /// Nearest integer of x with excess precision (kHasExcessDigits). For such x, adding and subtracting kRound leaves a
+  /// fraction.
   static double nearest_integer(double x) noexcept {
     return static_cast<double>(static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)));
   }
@@ -73,7 +76,7 @@ struct ReducedSinCos {
   template <typename Scalar>
   static Reduced<Scalar> reduce(const Scalar& x, const Scalar& k) noexcept {
 #if defined(__clang__) && __clang_major__ >= 12
-#pragma clang fp reassociate(off)  // Or both parts become one, of 2e-11.
+#pragma clang fp reassociate(off)  // Otherwise, both parts are combined into one, with an error of 2e-11.
 #endif
     Scalar r = x - k * Scalar(1.57079632673412561e+00);
     r -= k * Scalar(6.07710050650619225e-11);
@@ -90,7 +93,8 @@ struct ReducedSinCos {
     return {r + r * z * sin_tail, head + (((Scalar(1) - head) - Scalar(0.5) * z) + z2 * cos_tail)};
   }
 
-  /// The highest power first. By Horner's rule in z² on sums of two terms: half as long a chain as in z.
+  /// Polynomial, with the coefficient of the highest power first. Horner's rule in z² on sums of two terms has half the
+  /// dependency chain of Horner's rule in z.
   template <typename Scalar>
   static Scalar polynomial(const Scalar& z, const Scalar& z2, const double (&coefficients)[6]) noexcept {
     const auto two = [&](int i) { return Scalar(coefficients[i]) * z + Scalar(coefficients[i + 1]); };
@@ -116,7 +120,8 @@ struct SinCos {
   Scalar cos;
 };
 
-/// sin and cos of one angle [rad]. Scalars other than double and float use their own sin and cos.
+/// sin and cos of one angle [rad]. double and float beyond kReach, and other Scalars, use their own sin and cos. A lane
+/// beyond kReach is NaN.
 template <typename Scalar>
 [[nodiscard]] SinCos<Scalar> sincos(Scalar angle) noexcept {
   using std::cos;
@@ -141,12 +146,11 @@ template <typename Scalar>
   return {sin(angle), cos(angle)};
 }
 
-/// N angles whose sines are wanted, and one more where that makes an even number of doubles, since two are computed at
-/// once.
+/// Vector of N angles, with one more entry if N doubles are an odd number: two sines are computed in parallel.
 template <int N, typename Scalar>
 using Angles = Vector<(N != Eigen::Dynamic && std::is_same_v<Scalar, double>) ? N + N % 2 : N, Scalar>;
 
-/// Room for the angles of n joints.
+/// Vector for the angles of n joints. The entries are not set.
 template <int N, typename Scalar>
 [[nodiscard]] Angles<N, Scalar> angles_of(Eigen::Index n) noexcept {
   Angles<N, Scalar> angles;
@@ -154,7 +158,7 @@ template <int N, typename Scalar>
   return angles;
 }
 
-/// sin and cos of every angle [rad] at once.
+/// sin and cos of each angle [rad].
 template <int N, typename Scalar>
 void sincos(const Vector<N, Scalar>& angles, Vector<N, Scalar>& sines, Vector<N, Scalar>& cosines) noexcept {
   const Eigen::Index n = angles.size();

@@ -15,11 +15,11 @@ inline constexpr double kTwoPi = 6.28318530717958647692;
 
 /// A task space defines a Point, the number of rows of its velocities (kRows), and
 ///
-///   difference(x, y)   x ⊖ y: the displacement from y to x, along the base frame's axes
-///   displace(y, d)     y ⊕ d: applies displacement d to point y
-///   compose(y, x)      applies displacement x, given as a point seen from the origin, to point y
-///   kTurns             the number of rows that are angles, the last ones; the others are lengths
-///   store(x, out)      writes a point as kSize plain numbers
+///   difference(x, y)   x ⊖ y: the displacement from y to x, along the axes of the base frame
+///   displace(y, d)     y ⊕ d: the point y after the displacement d
+///   compose(y, x)      the point y after the displacement from origin() to the point x
+///   kTurns             the number of angular rows, which are the last rows; the other rows are linear
+///   store(x, out)      writes a point as kSize numbers
 
 /// Task space of tip positions: M = 2 in the plane, M = 3 in space [m].
 template <int M>
@@ -61,11 +61,12 @@ struct Position {
   }
 };
 
-/// Task space of tip poses in the plane: x, y [m] and the angle from the base frame's x axis to the tip's [rad].
+/// Task space of tip poses in the plane: x, y [m] and the angle from the x axis of the base frame to the x axis of the
+/// tip [rad].
 struct PlanarPose : Position<3> {
   static constexpr int kTurns = 1;
 
-  /// x ⊖ y, the angle by the shorter way.
+  /// x ⊖ y, with the angle in [−π, π].
   template <typename Scalar>
   [[nodiscard]] static Vector<3, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     using std::round;
@@ -76,7 +77,7 @@ struct PlanarPose : Position<3> {
   }
 };
 
-/// Task space of tip poses: linear rows first, then angular, in the base frame's axes at the tip.
+/// Task space of tip poses: linear rows above angular rows, at the tip and along the axes of the base frame.
 struct Pose {
   static constexpr int kRows = 6;
   static constexpr int kTurns = 3;
@@ -90,7 +91,7 @@ struct Pose {
     return {};
   }
 
-  /// x ⊖ y: from y's origin to x's [m], then the rotation vector of R_x R_yᵀ [rad].
+  /// x ⊖ y: the vector from the origin of y to the origin of x [m], then the rotation vector of R_x R_yᵀ [rad].
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     Vector<6, Scalar> result;
@@ -102,7 +103,7 @@ struct Pose {
     return result;
   }
 
-  /// y ⊕ d: y moved by d's first three rows and turned by the rotation vector in its last three.
+  /// y ⊕ d: y translated by the first three rows of d, and rotated by the rotation vector in the last three rows.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> displace(const Point<Scalar>& y, const Vector<6, Scalar>& d) noexcept {
     const Vector<3, Scalar> turned(d.coeff(3), d.coeff(4), d.coeff(5));
@@ -112,13 +113,13 @@ struct Pose {
     return {p, times(rotation(turned), y.R)};
   }
 
-  /// y moved by x.p and turned by x.R, both along the base frame's axes.
+  /// y translated by x.p and rotated by x.R, both along the axes of the base frame.
   template <typename Scalar>
   [[nodiscard]] static Point<Scalar> compose(const Point<Scalar>& y, const Point<Scalar>& x) noexcept {
     return {entrywise(y.p, [&](Eigen::Index i) { return y.p.coeff(i) + x.p.coeff(i); }), times(x.R, y.R)};
   }
 
-  /// As a homogeneous 4×4 matrix, row by row.
+  /// Writes a homogeneous 4 × 4 matrix row by row.
   template <typename Scalar>
   static void store(const Point<Scalar>& x, Scalar* out) noexcept {
     for (int i = 0; i < 3; ++i) {
@@ -130,7 +131,7 @@ struct Pose {
   }
 };
 
-/// The pose space that belongs to a space of positions.
+/// The pose space whose positions are in Space.
 template <typename Space>
 struct PoseOver;
 template <>

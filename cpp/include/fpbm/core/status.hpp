@@ -2,19 +2,19 @@
 
 namespace fpbm {
 
-/// What became of one evaluation, step, tick or rollout. The loop returns it and never throws.
-/// Up to kStalled there is a result; from kSingular on there is none.
+/// Result of one evaluation, step, tick or rollout. The control loop returns a Status and never throws.
+/// Up to kStalled, a motion was computed. From kSingular on, there is no result.
 enum class Status : unsigned char {
   kOk = 0,
-  kCoarse,      ///< The steps are too long: they, and not the scheme, made a tip error that counts.
-  kDamped,      ///< Near a singular posture: motion in the directions that the tip loses there is damped.
-  kSlowed,      ///< Joint limits scale the task down, or a lower level has stopped (Tick::scales).
-  kBlocked,     ///< Shapes that the arm keeps clear of, or bounds of tasks, admit a share of the task only.
-  kRecovering,  ///< The arm came no nearer to its target: it moves to a posture from which it can reach the target.
-  kStalled,     ///< The arm comes no nearer to its target: it rests until this moves, or a shape near it, or resume().
-  kSingular,    ///< The task Jacobian has lost rank, to round-off.
-  kTaskLost,    ///< The tip left the motion that the scheme prescribes within one step.
-  kNotFinite,   ///< The state, the reference or the result is infinite or not a number.
+  kCoarse,      ///< The step is too long: the step length, and not the scheme, causes a significant tip error.
+  kDamped,      ///< Near a singular posture: motion in the task directions that are lost there is damped.
+  kSlowed,      ///< Joint limits reduce the task scale, or a lower level has stopped (Tick::scales).
+  kBlocked,     ///< Clearances, or bounds of tasks, reduce the task scale.
+  kRecovering,  ///< No progress toward the target: the arm moves to a posture from which it can reach the target.
+  kStalled,     ///< No progress toward the target: the arm rests until the target or a near shape moves, or resume().
+  kSingular,    ///< The task Jacobian is rank-deficient up to round-off.
+  kTaskLost,    ///< Within one step, the tip has left the motion that the scheme prescribes.
+  kNotFinite,   ///< The state, the reference or the result is infinite or NaN.
 };
 
 /// Whether there is no result.
@@ -22,12 +22,12 @@ enum class Status : unsigned char {
   return status >= Status::kSingular;
 }
 
-/// The worse of two.
+/// The more severe of two statuses.
 [[nodiscard]] constexpr Status worse(Status a, Status b) noexcept {
   return a > b ? a : b;
 }
 
-/// One plain sentence: what happened.
+/// Description of the status in one sentence.
 [[nodiscard]] constexpr const char* message(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "all is well";
@@ -46,7 +46,7 @@ enum class Status : unsigned char {
   return "unknown status";
 }
 
-/// One plain sentence: what the caller can do about it. Empty when nothing is wrong.
+/// Advice to the caller. Empty for kOk.
 [[nodiscard]] constexpr const char* advice(Status status) noexcept {
   switch (status) {
     case Status::kOk: return "";

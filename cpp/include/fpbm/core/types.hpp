@@ -7,33 +7,33 @@
 
 namespace fpbm {
 
-/// Largest number of joints of an arm whose size is known at run time (N = Eigen::Dynamic).
+/// Largest number of joints of an arm whose number of joints is known at run time (N = Eigen::Dynamic).
 inline constexpr int kMaxDof = 64;
 
-/// Rows or columns that memory is reserved for: N, or kMaxDof where N is known at run time.
+/// Number of rows or columns for which memory is reserved: N, or kMaxDof if N is Eigen::Dynamic.
 template <int N>
 inline constexpr int kCapacity = (N == Eigen::Dynamic) ? kMaxDof : N;
 
-/// A bit for each joint: bit i is joint i's.
+/// One bit per joint: bit i belongs to joint i.
 using JointBits = std::uint64_t;
 [[nodiscard]] constexpr JointBits joint_bit(Eigen::Index i) noexcept {
   return JointBits(1) << i;
 }
 
-/// Matrix that never touches the heap, whatever its size.
-/// Unaligned, so that objects that hold one may be embedded, copied and passed between translation units built with
-/// different vector flags. Today's processors load unaligned memory at full speed.
+/// Matrix without heap allocation, whatever its size.
+/// Unaligned, so that objects with matrices may be embedded, copied and passed between translation units that are
+/// compiled with different SIMD flags. Current processors load unaligned memory at full speed.
 template <int Rows, int Cols, typename Scalar = double>
 using Matrix =
     Eigen::Matrix<Scalar, Rows, Cols, (Rows == 1 && Cols != 1 ? Eigen::RowMajor : Eigen::ColMajor) | Eigen::DontAlign,
                   kCapacity<Rows>, kCapacity<Cols>>;
 
-/// Column vector that never touches the heap, whatever its size.
+/// Column vector without heap allocation, whatever its size.
 template <int N, typename Scalar = double>
 using Vector = Matrix<N, 1, Scalar>;
 
-/// A matrix of equal entries, square if its number of columns is known at run time, and the identity. Eigen's
-/// Constant(), Zero() and Identity() are expressions, each with a type of its own for a compiler to make.
+/// Matrix of equal entries, and identity matrix. If the number of columns is known at run time only, the matrix is
+/// square. Eigen's Constant(), Zero() and Identity() are expressions, whose types cost compile time.
 template <typename Whole>
 [[nodiscard]] Whole filled(Eigen::Index rows, typename Whole::Scalar value = typename Whole::Scalar(0)) noexcept {
   Whole result;

@@ -20,10 +20,10 @@ template <Eigen::Index I>
   return i + 1;
 }
 
-/// Largest size whose loops are written out.
+/// Largest size for which loops are unrolled.
 inline constexpr int kUnrolled = 8;
 
-/// Size known at compile time if N is small, else at run time.
+/// Size as a Constant if N is at most kUnrolled, else as a number at run time.
 template <int N>
 [[nodiscard]] constexpr auto extent([[maybe_unused]] Eigen::Index size) noexcept {
   if constexpr (N != Eigen::Dynamic && N <= kUnrolled) {
@@ -33,7 +33,7 @@ template <int N>
   }
 }
 
-/// Number of pairs that hold a number of things, the last one perhaps half.
+/// Number of pairs for i entries. If i is odd, the last pair has one entry.
 template <Eigen::Index I>
 [[nodiscard]] constexpr Constant<(I + 1) / 2> pairs_of(Constant<I>) noexcept {
   return {};
@@ -42,7 +42,7 @@ template <Eigen::Index I>
   return (i + 1) / 2;
 }
 
-/// f(i) for i from first up to, but not including, last.
+/// Calls f(i) for i from first to last − 1.
 template <typename F>
 void each(Eigen::Index first, Eigen::Index last, const F& f) noexcept {
   for (Eigen::Index i = first; i < last; ++i) f(i);
@@ -54,7 +54,7 @@ template <Eigen::Index First, typename F, Eigen::Index... I>
   (f(Constant<First + I>{}), ...);
 }
 
-/// The same with each call written out and i a Constant: nothing is left of the loop.
+/// each() as an unrolled loop: every call is written out, with i as a Constant.
 template <Eigen::Index First, Eigen::Index Last, typename F>
 [[gnu::always_inline]] inline void each(Constant<First>, Constant<Last>, const F& f) noexcept {
   each_of<First>(std::make_integer_sequence<Eigen::Index, (First < Last ? Last - First : 0)>{}, f);

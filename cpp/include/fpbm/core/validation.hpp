@@ -14,17 +14,17 @@
 
 namespace fpbm {
 
-/// An argument that is out of range or of the wrong size.
+/// Error for an argument that is out of range or has the wrong size.
 class ParameterError : public std::invalid_argument {
  public:
   ParameterError(std::string name, int index, double value, const std::string& message)
       : std::invalid_argument(message), name_(std::move(name)), index_(index), value_(value) {}
 
-  /// The argument.
+  /// Name of the argument.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  /// Its entry, or -1 where the argument as a whole is wrong.
+  /// Index of the wrong entry, or -1 if the argument as a whole is wrong.
   [[nodiscard]] int index() const noexcept { return index_; }
-  /// What it is: a number, a number of entries, or NaN where it is no number.
+  /// Rejected value: a number or a number of entries, or NaN if the argument is not a number.
   [[nodiscard]] double value() const noexcept { return value_; }
 
  private:
@@ -35,20 +35,20 @@ class ParameterError : public std::invalid_argument {
 
 }  // namespace fpbm
 
-/// What constructors require of their arguments. Each failure is a ParameterError, whose message names the argument,
-/// the index and the value. Without exceptions it ends the program with that message; under EIGEN_NO_IO, where there is
-/// nothing to print on, without.
+/// Checks of constructor arguments. A failed check throws a ParameterError, whose message has the name of the argument,
+/// the index and the value. Without exceptions, a failed check prints this message and aborts the program. With
+/// EIGEN_NO_IO in addition, it aborts without a message.
 namespace fpbm::validation {
 
-/// Whether an error message has a reader: a handler of exceptions, or a stream. Without a reader no message is built,
-/// since std::string would link the heap into a firmware.
+/// Whether error messages can be reported: by an exception or on a stream. Otherwise, no message is built, since
+/// std::string would link the heap into firmware.
 #if defined(__cpp_exceptions) || !defined(EIGEN_NO_IO)
 inline constexpr bool kHasMessages = true;
 #else
 inline constexpr bool kHasMessages = false;
 #endif
 
-/// Throws a ParameterError of that value, with a message.
+/// Throws a ParameterError with this value and message.
 [[noreturn, gnu::noinline, gnu::cold]] inline void reject_with([[maybe_unused]] const Argument& argument,
                                                                [[maybe_unused]] double value,
                                                                [[maybe_unused]] const std::string& message) {
@@ -60,7 +60,7 @@ inline constexpr bool kHasMessages = false;
 #endif
 }
 
-/// Throws a ParameterError of that value, which says "<argument><words>".
+/// Throws a ParameterError with this value and the message "<argument><words>".
 template <typename Scalar, typename... Words>
 [[noreturn, gnu::noinline, gnu::cold]] void reject_value(const Argument& argument, Scalar value, Words... words) {
   if constexpr (kHasMessages) {
@@ -72,19 +72,19 @@ template <typename Scalar, typename... Words>
   }
 }
 
-/// The same of an argument that is no number.
+/// reject_value() for an argument that is not a number.
 template <typename... Words>
 [[noreturn]] void reject(const Argument& argument, Words... words) {
   reject_value(argument, std::numeric_limits<float>::quiet_NaN(), words...);
 }
 
-/// Throws a ParameterError that says "<argument> = <value>: must be <demand>".
+/// Throws a ParameterError with the message "<argument> = <value>: must be <demand>".
 template <typename Scalar, typename... Demand>
 [[noreturn]] void fail(const Argument& argument, Scalar value, Demand... demand) {
   reject_value(argument, value, " = ", value, ": must be ", demand...);
 }
 
-/// demand(number) for the number, or each of the numbers, that a Scalar is.
+/// Calls demand(number) for a single number, or for the number in each lane.
 template <typename Scalar, typename Demand>
 void each_number(const Scalar& value, Demand&& demand) {
   if constexpr (kInLanes<Scalar>) {
@@ -115,7 +115,7 @@ void require_finite(const Argument& argument, const Scalar& values) {
   });
 }
 
-/// Balance between two schemes: 0 ≤ value ≤ 1.
+/// Balance between two schemes: requires 0 ≤ value ≤ 1.
 template <typename Scalar, typename = Mask<Scalar>>
 void require_fraction(const Argument& argument, const Scalar& values) {
   each_number(values, [&](auto value) {
@@ -139,14 +139,14 @@ inline void require_size(const Argument& argument, Eigen::Index size, Eigen::Ind
   }
 }
 
-/// A joint vector: one finite entry per joint.
+/// Joint vector: requires one finite entry per joint.
 template <typename Derived>
 void require_joint_vector(const Argument& argument, const Eigen::MatrixBase<Derived>& values, Eigen::Index dof) {
   require_size(argument, values.size(), dof);
   require_finite(argument, values);
 }
 
-/// Number of joints: at least one for each task row, at most kMaxDof.
+/// Number of joints: requires at least one joint per task row, and at most kMaxDof.
 inline void require_dof(const Argument& argument, Eigen::Index dof, int task_rows) {
   if (dof < task_rows || dof > kMaxDof) {
     reject_value(argument, dof, " has ", dof, " entries: must have ", task_rows, " to ", kMaxDof,
