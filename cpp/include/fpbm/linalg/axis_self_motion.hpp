@@ -6,17 +6,18 @@
 
 namespace fpbm {
 
-/// SelfMotion of a position and an axis, by blocks as SpatialSelfMotion: with J = [B; A], B its three linear rows and A
-/// its two angular ones, two joints T (the hand) keep the axis from turning, and the four others, R, move the tip:
+/// SelfMotion of a position and an axis, by block elimination (docs/equations.md, Degree of redundancy 1). J = [B; A]
+/// has three linear rows B above two angular rows A. Two joints T (the hand) keep the direction of the axis while the
+/// four other joints R move the tip:
 ///
 ///   K = A_T⁻¹ (2 × 2),   X = K A_R (2 × 4),   S = B_R − B_T X (3 × 4)
 ///   J y = b:   S y_R = b_v − B_T K b_w,   y_T = K b_w − X y_R;      J v = 0:   S ṽ = 0,   v = (−X ṽ, ṽ).
 ///
-/// The rows may be any others too, of any unit.
+/// The rows may also have any other meaning and unit.
 template <typename Scalar>
 class AxisSelfMotion {
  public:
-  static constexpr int kKinds = 15;  ///< Of hands: any two joints. Those of the wrist are tried first.
+  static constexpr int kKinds = 15;  ///< Number of hands: all pairs of joints. Pairs with wrist joints are tried first.
   using Twice = Pair<Scalar>;
 
   [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<5, 6, Scalar>& J, int kind,
@@ -76,7 +77,7 @@ class AxisSelfMotion {
     return result;
   }
 
-  /// gᵀs for J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
+  /// gᵀs for a solution s of J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
   [[nodiscard, gnu::noinline]] Scalar along(const Vector<5, Scalar>& t, const Vector<6, Scalar>& g) const noexcept {
     const auto at = [&](int i) -> const Scalar& { return g.coeffRef(joint_[i]); };
     const Scalar x[2] = {hand(0, t), hand(1, t)};
@@ -86,7 +87,7 @@ class AxisSelfMotion {
            (at(0) * x[0] + at(1) * x[1]);
   }
 
-  /// SpatialSelfMotion::rough_inverse_square().
+  /// See SpatialSelfMotion::rough_inverse_square().
   [[nodiscard, gnu::always_inline]] Scalar rough_inverse_square(const Scalar& length) const noexcept {
     const auto squares = [](const Twice(&a)[2], const Twice(&b)[2]) {
       return sum((a[0] * a[0] + b[0] * b[0]) + (a[1] * a[1] + b[1] * b[1]));
@@ -98,7 +99,7 @@ class AxisSelfMotion {
   }
   [[nodiscard]] Scalar inverse_square(const Scalar& length) const noexcept { return rough_inverse_square(length); }
 
-  /// SpatialSelfMotion::inverse_trace().
+  /// See SpatialSelfMotion::inverse_trace().
   [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
     Twice s12[3], s34[3];
     rest_.inverse(s12, s34);
@@ -132,21 +133,21 @@ class AxisSelfMotion {
   }
 
  private:
-  /// The hand, then the rest.
+  /// Joints of the hand T, then the other joints R.
   static constexpr int kJoints[kKinds][6] = {
       {3, 4, 0, 1, 2, 5}, {2, 4, 0, 1, 3, 5}, {1, 4, 0, 2, 3, 5}, {0, 4, 1, 2, 3, 5}, {4, 5, 0, 1, 2, 3},
       {3, 5, 0, 1, 2, 4}, {2, 3, 0, 1, 4, 5}, {1, 3, 0, 2, 4, 5}, {0, 3, 1, 2, 4, 5}, {2, 5, 0, 1, 3, 4},
       {1, 5, 0, 2, 3, 4}, {0, 5, 1, 2, 3, 4}, {1, 2, 0, 3, 4, 5}, {0, 2, 1, 3, 4, 5}, {0, 1, 2, 3, 4, 5}};
   /// A pair is a hand if det² A_T is more than 1/kSpans of det AAᵀ, the sum of det² of all 15 pairs. At least one pair
-  /// has 1/15 of the sum (docs/equations.md). 20 leaves a margin for round-off.
+  /// has 1/15 of the sum (docs/equations.md, Degree of redundancy 1). 20 leaves a margin for round-off.
   static constexpr auto kSpans = 20.0F;
 
-  /// K b_w: what a joint of the hand does about a turn b_w.
+  /// Entry i of K b_w: motion of joint i of the hand that produces the angular rows b_w.
   template <typename Value>
   [[nodiscard, gnu::always_inline]] Value hand(int i, const Vector<5, Value>& b) const noexcept {
     return Value(K_[i].first()) * b.coeff(3) + Value(K_[i].second()) * b.coeff(4);
   }
-  /// b − B_T x: what of b the hand leaves.
+  /// b − B_T x: the linear rows b minus the effect of the motion x of the hand.
   template <typename Value>
   [[nodiscard, gnu::always_inline]] Three<Value> left(const Three<Value>& b, const Value (&x)[2]) const noexcept {
     return {b.x - (Value(B_[0].x) * x[0] + Value(B_[1].x) * x[1]),

@@ -13,16 +13,16 @@ namespace fpbm {
 
 /// Square-root-free Cholesky factorisation A = L D Lᵀ of a small symmetric positive definite matrix.
 ///
-/// Unrolled where M is fixed and small. Takes M divisions and no square root.
-/// Value = Pair<Scalar> factorises two matrices at once.
+/// Unrolled if M is fixed and small. Needs M divisions and no square root. With Value = Pair<Scalar>, factorises two
+/// matrices in parallel.
 template <int M, typename Value = double>
 class Cholesky {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
   /// Factorises A. Reads only the lower triangle.
-  /// Returns kSingular where a pivot is lost in round-off (A is singular or indefinite), kNotFinite where A is not
-  /// finite. In lanes it returns kOk, and the solutions of a lane without a factor are NaN.
+  /// Returns kSingular if a pivot is not larger than round-off error (A is singular or indefinite), and kNotFinite if A
+  /// is not finite. With lanes, returns kOk, and the solutions of a lane without a factorisation are NaN.
   [[nodiscard]] Status factor(const Matrix<M, M, Value>& A) noexcept {
     size_ = A.rows();
     const auto m = extent<M>(size_);
@@ -52,10 +52,10 @@ class Cholesky {
     }
   }
 
-  /// Sets all solutions of a lane to NaN where its mask is false.
+  /// Sets all solutions of a lane to NaN if the mask of the lane is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept { fpbm::set_nan_unless(truth, reciprocal_[0]); }
 
-  /// Row where factor() lost its pivot. The rows before it are positive definite.
+  /// Row whose pivot factor() rejected. The rows before this row are positive definite.
   [[nodiscard]] Eigen::Index lost_pivot() const noexcept { return lost_pivot_; }
 
   /// Solution x of A x = b.
@@ -65,12 +65,12 @@ class Cholesky {
     each(kFirst, m, [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { x.coeffRef(i) -= L_[i][j] * x.coeff(j); }); });
     for (Eigen::Index i = m - 1; i >= 0; --i) {
       x(i) *= reciprocal_[i];
-      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
+      for (Eigen::Index j = m - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Descending: x(i + 1) is computed last.
     }
     return x;
   }
 
-  /// L⁻ᵀD^(−1/2) a: a root of A⁻¹, which times its transpose is A⁻¹.
+  /// R a, where R = L⁻ᵀD^(−1/2) is a square root of A⁻¹: R Rᵀ = A⁻¹.
   [[nodiscard]] Vector<M, Value> inverse_root(const Vector<M, Value>& a) const noexcept {
     using std::sqrt;
     Vector<M, Value> x = a;
@@ -81,7 +81,7 @@ class Cholesky {
     return x;
   }
 
-  /// B and b become D^(−1/2)L⁻¹B and D^(−1/2)L⁻¹b: with A = B Bᵀ, the rows of B are orthonormal then.
+  /// B and b become D^(−1/2)L⁻¹B and D^(−1/2)L⁻¹b. If A = B Bᵀ, the new rows of B are orthonormal.
   template <int N>
   void orthonormalize(Matrix<M, N, Value>& B, Vector<M, Value>& b) const noexcept {
     using std::sqrt;
@@ -96,7 +96,7 @@ class Cholesky {
     apply(b.data());
   }
 
-  /// Trace of A⁻¹. Its reciprocal is a lower bound on the least eigenvalue of A, tight within a factor M.
+  /// Trace of A⁻¹. Its reciprocal is a lower bound on the smallest eigenvalue of A, tight within a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, extent<M>(size_)); }
 
  private:
@@ -114,7 +114,7 @@ class Cholesky {
     return Status::kSingular;
   }
 
-  /// Least pivot, relative to the largest diagonal entry, that still carries a digit or two.
+  /// Smallest pivot, relative to the largest diagonal entry, that still has one or two significant digits.
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
 

@@ -9,13 +9,13 @@
 
 namespace fpbm {
 
-/// Rows of a level that is a posture of all joints: J = diag(entries), without zeros there.
+/// Rows of a task level that is a posture of all joints: J = diag(entries), without zeros on the diagonal.
 template <int N, typename Scalar>
 struct DiagonalLevel {
-  Vector<N, Scalar> entries;  ///< Of the diagonal, n.
+  Vector<N, Scalar> entries;  ///< Diagonal of J, n entries.
 
   [[nodiscard]] Eigen::Index rows() const noexcept { return entries.size(); }
-  /// Least magnitude of an entry: a lower bound on the singular values of J Z, Z orthonormal.
+  /// Smallest magnitude of an entry: a lower bound on the singular values of J Z for any Z with orthonormal columns.
   [[nodiscard]] Scalar least() const noexcept {
     return std::abs(*std::min_element(entries.data(), entries.data() + entries.size(),
                                       [](Scalar a, Scalar b) { return std::abs(a) < std::abs(b); }));
@@ -33,8 +33,8 @@ template <int N, typename Scalar>
   return entrywise(v, [&](Eigen::Index i) { return J.entries.coeff(i) * v.coeff(i); });
 }
 
-/// Whether A is square and diagonal, without zeros there: a posture of all joints determines all motion that the higher
-/// levels leave, without a factorisation of A.
+/// Whether A is square and diagonal, without zeros on the diagonal. Such rows are a posture of all joints: they
+/// determine all null-space motion of the higher levels, and need no factorisation of A.
 template <typename Matrix>
 [[nodiscard]] bool is_diagonal(const Matrix& A) noexcept {
   if (A.rows() != A.cols()) return false;
@@ -46,9 +46,11 @@ template <typename Matrix>
   return true;
 }
 
-/// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the columns of Z: orthonormal, and at most n of them.
+/// y = Z (ZᵀD²Z)⁻¹ ZᵀD r, which minimises |D y − r| over the span of the columns of Z. Z has at most n columns, which
+/// are orthonormal.
 ///
-/// Gram and Schmidt's modified process makes the columns of D Z orthogonal, and so those of Z conjugate: zᵢᵀD²zⱼ = 0.
+/// The modified Gram-Schmidt method makes the columns of D Z orthogonal. The columns of Z are then conjugate: zᵢᵀD²zⱼ =
+/// 0.
 template <int N, typename Scalar, typename Basis>
 [[nodiscard]] Vector<N, Scalar> solve_diagonal(Basis Z, const Vector<N, Scalar>& D, Vector<N, Scalar> r) noexcept {
   const Eigen::Index n = Z.rows();

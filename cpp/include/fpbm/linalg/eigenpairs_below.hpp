@@ -12,18 +12,18 @@
 
 namespace fpbm {
 
-/// The eigenvalues of a small symmetric matrix below a bound, unordered, and their orthonormal eigenvectors.
+/// Eigenvalues of a small symmetric matrix A below a bound, unordered, and their orthonormal eigenvectors.
 ///
-/// Reflections make A tridiagonal (Golub and Van Loan, Matrix Computations, 8.3). A Sturm sequence counts the
-/// eigenvalues below the bound. QL steps isolate one eigenvalue after the other until so many are found: the first step
-/// with shift 0, which favours the eigenvalue nearest to zero, the others with Wilkinson's. At most 30 steps for
-/// each eigenvalue, usually three. Accurate to round-off in ‖A‖.
+/// Householder reflections make A tridiagonal (Golub and Van Loan, Matrix Computations, 8.3). A Sturm sequence counts
+/// the eigenvalues below the bound. QL steps isolate one eigenvalue after another until this number is found. The first
+/// step has the shift 0, which favours the eigenvalue nearest to zero; the other steps have Wilkinson's shift. Each
+/// eigenvalue needs at most 30 steps, usually three. Accurate to round-off in ‖A‖.
 template <int M, typename Scalar = double>
 class EigenpairsBelow {
  public:
   using Column = Vector<M, Scalar>;
 
-  /// A: its lower triangle is read. Where A is not finite, one eigenvalue is NaN.
+  /// Reads the lower triangle of A. If A is not finite, one eigenvalue is NaN.
   EigenpairsBelow(const Matrix<M, M, Scalar>& A, Scalar bound) noexcept
       : T_(A), tridiagonal_(A.rows()), shares_(filled<Column>(A.rows())) {
     const auto m = extent<M>(A.rows());
@@ -39,7 +39,8 @@ class EigenpairsBelow {
       found_ = 1;
       return;
     }
-    // Squares of round-off errors must be in range. A scale adds a round-off error, hence none if they are.
+    // Squares of round-off errors must be in the range of the Scalar. Scaling adds a round-off error and is therefore
+    // omitted if the squares are in range.
     const bool in_range = tridiagonal_.size > kLeast && tridiagonal_.size < Scalar(1) / kLeast;
     if (!in_range && tridiagonal_.size > Scalar(0)) scale_ = tridiagonal_.size;
     const Scalar inverse = Scalar(1) / scale_;
@@ -57,7 +58,7 @@ class EigenpairsBelow {
     }
   }
 
-  /// Number of eigenvalues that were isolated: all below the bound, and perhaps others.
+  /// Number of isolated eigenvalues: all below the bound, and perhaps others.
   [[nodiscard]] Eigen::Index count() const noexcept { return found_; }
   [[nodiscard]] Scalar value(Eigen::Index k) const noexcept { return tridiagonal_.values(k) * scale_; }
 
@@ -73,11 +74,12 @@ class EigenpairsBelow {
   }
 
  private:
-  /// More than 100 √(min/ε)/ε of the Scalar: round-off errors of such a matrix still have squares with all digits.
+  /// Larger than 100 √(min/ε)/ε of the Scalar. If the largest entry is above this value, the squares of round-off
+  /// errors keep all digits.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-128) : Scalar(1e-6);
 
-  /// T ← HᵀTH, tridiagonal, H a product of reflections I − share v vᵀ: values on the diagonal, beside(i) between i and
-  /// i + 1. Column k of T becomes v of reflection k.
+  /// T ← HᵀTH makes T tridiagonal, where H is a product of reflections I − share v vᵀ. values: the diagonal; beside(i):
+  /// the entry between i and i + 1. Column k of T becomes v of reflection k.
   void make_tridiagonal() noexcept {
     const auto m = extent<M>(T_.rows());
     const auto column = [&](Eigen::Index j) noexcept { return T_.data() + j * m; };
@@ -104,8 +106,8 @@ class EigenpairsBelow {
     if (m > 1) tridiagonal_.beside(m - 2) = T_(m - 1, m - 2);
   }
 
-  Matrix<M, M, Scalar> T_;              ///< A/scale, then the reflections.
-  Tridiagonal<M, Scalar> tridiagonal_;  ///< Of A/scale.
+  Matrix<M, M, Scalar> T_;              ///< A/scale, then the vectors v of the reflections.
+  Tridiagonal<M, Scalar> tridiagonal_;  ///< Tridiagonal form of A/scale.
   Column shares_;
   Scalar scale_{1};
   Eigen::Index found_ = 0;

@@ -4,10 +4,10 @@
 
 namespace fpbm {
 
-/// The matrix, of the size of another one, whose entry i is f(i), counted along the columns.
+/// Matrix with the entries f(i), of the same size as `size`. i counts the entries along the columns.
 ///
-/// For sums and products entry by entry. An expression of Eigen's has the same entries, but a type of its own, of which
-/// a compiler makes some thirty classes and functions.
+/// For entrywise sums and products. An Eigen expression has the same entries, but its own type, for which a compiler
+/// instantiates about thirty classes and functions.
 /// Result: type of an entry.
 template <typename Result, int Rows, int Cols, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Matrix<Rows, Cols, Result> entrywise_as(const Matrix<Rows, Cols, Scalar>& size,

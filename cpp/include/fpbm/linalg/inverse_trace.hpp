@@ -4,8 +4,8 @@
 
 namespace fpbm {
 
-/// Trace of (L D Lᵀ)⁻¹ = Σ (1 + Σ_j (L⁻¹)²_ij) / D_i, of m rows. L has ones on its
-/// diagonal, which are not read; reciprocal is 1/D.
+/// Trace of (L D Lᵀ)⁻¹ = Σ_i (1 + Σ_{j<i} (L⁻¹)²_ij) / D_i over m rows. The diagonal of L is 1 and is not read.
+/// reciprocal is 1/D.
 template <int kMost, typename Value, typename Size>
 [[nodiscard, gnu::always_inline]] inline Value inverse_trace(const Value (&L)[kMost][kMost],
                                                              const Value (&reciprocal)[kMost], Size m) noexcept {

@@ -16,10 +16,10 @@
 
 namespace fpbm {
 
-/// Null space of task levels, each a matrix of rows, added in the order of their priority.
+/// Null space of task levels. Each level is a matrix of rows. Levels are added in the order of their priority.
 ///
-/// Aᵀ = QR of the rows A of all levels so far, where Q is a product of reflections, one block for each level. The
-/// columns of Q from rank() on are an orthonormal basis Z of the null space of A.
+/// QR factorisation Aᵀ = QR of the rows A of all levels so far, where Q is a product of reflections, one block for each
+/// level. The columns of Q from rank() on are an orthonormal basis Z of the null space of A.
 template <int N, typename Scalar = double>
 class LevelSpace {
  public:
@@ -27,16 +27,16 @@ class LevelSpace {
   using Basis =
       Eigen::Matrix<Scalar, N, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kCapacity<N>, kCapacity<N>>;
 
-  /// No levels: the null space is ℝⁿ.
+  /// Starts without levels: the null space is ℝⁿ.
   explicit LevelSpace(Eigen::Index n) noexcept : Q_(n) {}
 
   [[nodiscard]] Eigen::Index size() const noexcept { return Q_.size(); }
   [[nodiscard]] Eigen::Index rank() const noexcept { return Q_.count(); }
 
-  /// Adds the level A. Returns y = Z (A Z)⁺ r with the basis Z of the higher levels: the y of least norm that changes
-  /// no higher level and minimises |A y − r|.
+  /// Adds the level A. Returns y = Z (A Z)⁺ r with the null-space basis Z of the higher levels: of all y that do not
+  /// change the higher levels and minimise |A y − r|, the y of least norm.
   ///
-  /// A row whose projection on that null space is nearly zero counts as dependent (Remainders).
+  /// A row counts as linearly dependent if its projection on this null space is nearly zero (Remainders).
   template <int M>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r) noexcept {
     return add_with(A, r,
@@ -45,10 +45,10 @@ class LevelSpace {
                     });
   }
 
-  /// Adds the level A. With A Z = L Qᵀ, L lower triangular (trapezoidal if rows are dependent) and QᵀQ = I, calls
-  /// solver(L, r, rank of A Z). If the solver replaces r by some w and returns true, returns y = Z Q w; otherwise the y
-  /// of add(A, r). The solver gets the rows of L and r in the order of their pivots. Columns of L beyond the rank of A
-  /// Z are zero. If A is diagonal, solver.loses(σ) returns whether the solver damps a singular value σ [unit of A].
+  /// Adds the level A. With A Z = L Qᵀ, where L is lower triangular (trapezoidal if rows are dependent) and QᵀQ = I,
+  /// calls solver(L, r, rank of A Z). If the solver replaces r by w and returns true, returns y = Z Q w; otherwise the
+  /// y of add(A, r). The rows of L and r are in the order of their pivots. Columns of L beyond the rank of A Z are
+  /// zero. If A is diagonal, solver.loses(σ) returns whether the solver damps a singular value σ [unit of A].
   template <int M, typename Solver>
   [[nodiscard]] Column add(const Matrix<M, N, Scalar>& A, const Vector<M, Scalar>& r, Solver& solver) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
@@ -80,7 +80,7 @@ class LevelSpace {
     return y;
   }
 
-  /// Adds the level A, without a solution.
+  /// Adds the level A, and computes no solution.
   template <int M>
   void add(const Matrix<M, N, Scalar>& A) noexcept {
     if constexpr (M == N || M == Eigen::Dynamic) {
@@ -114,9 +114,10 @@ class LevelSpace {
   }
 
  private:
-  /// A = D, of which no direction is lost: the singular values of D Z are at least the least entry of D.
+  /// Adds the level A = D, of which no direction is lost: the singular values of D Z are at least the smallest
+  /// magnitude of an entry of D.
   ///
-  ///   y = Z (ZᵀD²Z)⁻¹ ZᵀD r,   and Z Zᵀ r/c where D = c I.
+  ///   y = Z (ZᵀD²Z)⁻¹ ZᵀD r,   which is Z Zᵀ r/c if D = c I.
   [[nodiscard]] Column add_diagonal(const DiagonalLevel<N, Scalar>& A, const Column& r) noexcept {
     const Column& entries = A.entries;
     Column y = entrywise(r, [&](Eigen::Index i) { return r.coeff(i) / entries.coeff(i); });
@@ -130,7 +131,8 @@ class LevelSpace {
     Q_.fill();
     return y;
   }
-  /// Adds the level A and returns y = Q w, where solved(T, first, count, r) replaces the first entries of r by w.
+  /// Adds the level A and returns y = Q (0, w, 0), where solved(T, first, count, r) replaces the first `count` entries
+  /// of r by w.
   template <int M, typename Solved>
   [[nodiscard]] Column add_with(const Matrix<M, N, Scalar>& A, Vector<M, Scalar> r, const Solved& solved) noexcept {
     const Eigen::Index first = rank();
@@ -143,7 +145,8 @@ class LevelSpace {
     return y;
   }
 
-  /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots, as r afterwards.
+  /// Adds the level A and returns QᵀAᵀ: one column for each row of A, in the order of the pivots. Permutes r into this
+  /// order.
   template <int M>
   [[nodiscard]] Matrix<N, M, Scalar> triangular(const Matrix<M, N, Scalar>& A, Vector<M, Scalar>& r) noexcept {
     const Eigen::Index n = size();

@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// JJᵀ, two rows at once: its lower triangle; what is above it is not set.
+/// Lower triangle of JJᵀ, computed two rows at a time. Entries above the diagonal are not all set.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Matrix<M, M, Scalar> lower_gram(const Matrix<M, N, Scalar>& J) noexcept {
   if constexpr (M == Eigen::Dynamic) {
@@ -18,7 +18,7 @@ template <int M, int N, typename Scalar>
     using Two = Pair<Scalar>;
     constexpr Constant<0> kFirst{};
     constexpr Constant<(M + 1) / 2> kPairs{};
-    Two sums[kPairs][M];  // Of rows 2i and 2i + 1.
+    Two sums[kPairs][M];  // Entries of rows 2i and 2i + 1.
     const auto each_sum = [&](auto i, const auto& f) {
       each(kFirst, Constant<std::min<Eigen::Index>(2 * decltype(i)::kIndex + 2, M)>{}, f);
     };

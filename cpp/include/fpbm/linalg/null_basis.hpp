@@ -9,26 +9,30 @@
 
 namespace fpbm {
 
-/// Columns of the basis of a null space at full rank: N − M.
+/// Number of columns of a null-space basis at full rank: N − M.
 template <int M, int N>
 inline constexpr int kNullity = N == Eigen::Dynamic ? Eigen::Dynamic : N - M;
 
-/// Aᵀ = QR of a task Jacobian A (M × N, N ≥ M), by Householder reflections, the largest remaining row of A first. The
-/// columns of Q from rank() on are an orthonormal basis of the null space of A, to round-off.
+/// Aᵀ = QR of a task Jacobian A (M × N, N ≥ M), by Householder reflections with row pivoting: each step eliminates the
+/// row of A with the largest remainder. The columns of Q from rank() on are an orthonormal basis of the null space of
+/// A, up to round-off.
 ///
-/// A row that is round-off once those before it are taken off does not count for the rank. Eigen's HouseholderQR, which
-/// does not find the rank, takes 1.4 to 3.3 times as long (3 × 7 and 2 × 4).
+/// The remainder of a row is the row minus its projection on the rows that are already eliminated. A row whose
+/// remainder is round-off error does not count for the rank. Eigen's HouseholderQR, which does not determine the rank,
+/// takes 1.4 to 3.3 times as long (3 × 7 and 2 × 4).
 template <int M, int N, typename Scalar>
 class RowSpace {
  public:
   explicit RowSpace(const Matrix<M, N, Scalar>& A) noexcept : V_(A.cols(), A.rows()), beta_(A.rows()) {
     const auto n = extent<kN>(V_.rows());
     const auto m = extent<kM>(V_.cols());
-    // By entries: g++ warns of Eigen's own look at a whole matrix that is yet to be set.
+    // V_ = Aᵀ, entry by entry: if the whole matrix is assigned, g++ warns that V_ is used before it is initialised.
     each(Constant<0>{}, m,
          [&](auto j) { each(Constant<0>{}, n, [&](Eigen::Index i) { V_.coeffRef(i, j) = A.coeff(j, i); }); });
+    // Squared length up to which a remainder counts as zero.
     Scalar round_off = kLeast;
     each(Constant<0>{}, m, [&](auto k) {
+      // Step k: the row with the largest remainder, in entries k to n − 1, becomes row k of the factorisation.
       using std::sqrt;
       if (rank_ != k) return;
       Eigen::Index largest = k;
@@ -68,18 +72,18 @@ class RowSpace {
   }
 
  private:
-  // Unrolled up to three rows of seven: six would make two hundred loops.
+  // Unrolled for up to three rows of seven entries. Six rows would be unrolled into about two hundred loops.
   static constexpr bool kUnrolls = M * N <= 21;
   static constexpr int kM = kUnrolls ? M : Eigen::Dynamic;
   static constexpr int kN = kUnrolls ? N : Eigen::Dynamic;
 
-  // A smaller square underflows and has no finite inverse.
+  // Remainders with a smaller square count as zero, since the square may underflow and have no finite inverse.
   static constexpr Scalar kLeast = std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
-  /// Square of a row that counts as round-off, for a largest row of 1.
+  /// Squared length of a remainder that counts as round-off error, if the longest row has the length 1.
   static constexpr Scalar kRoundOff =
       Scalar(1024) * std::numeric_limits<Scalar>::epsilon() * std::numeric_limits<Scalar>::epsilon();
 
-  /// Applies the k-th reflection.
+  /// x becomes H_k x, where H_k = I − β_k v vᵀ is the k-th reflection.
   template <typename Index, typename Column>
   void reflect(Index k, Column&& x) const noexcept {
     const auto n = extent<kN>(V_.rows());
@@ -89,13 +93,14 @@ class RowSpace {
     each(k, n, [&](Eigen::Index i) { x.coeffRef(i) -= along * V_.coeff(i, k); });
   }
 
-  Matrix<N, M, Scalar> V_;  ///< Column k becomes the k-th reflection's vector, below row k − 1.
+  Matrix<N, M, Scalar> V_;  ///< Column k becomes the vector v of the k-th reflection, from row k on.
   Vector<M, Scalar> beta_;
   Eigen::Index rank_ = 0;
 };
 
-/// Orthonormal basis Z of the null space of A (M × N, N ≥ M): AZ = 0, ZᵀZ = I, to round-off at every rank. Where A has
-/// lost rank its N − M columns span a part of the null space, which is larger then.
+/// Orthonormal basis Z of the null space of A (M × N, N ≥ M): AZ = 0 and ZᵀZ = I, up to round-off, for any rank of A.
+/// If A is rank-deficient, its null space has more than N − M dimensions, and the N − M columns of Z span a part of the
+/// null space.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Matrix<N, kNullity<M, N>, Scalar> null_basis(const Matrix<M, N, Scalar>& A) noexcept {
   const RowSpace<M, N, Scalar> rows(A);
@@ -104,7 +109,7 @@ template <int M, int N, typename Scalar>
   return Z;
 }
 
-/// Z Zᵀ v with the null_basis() Z of J.
+/// Z Zᵀ v, the projection of v on the null space of J, where Z = null_basis(J).
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> null_space_motion(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& v) noexcept {
   const auto Z = null_basis<M, N, Scalar>(J);

@@ -11,7 +11,7 @@
 
 namespace fpbm {
 
-/// Two Scalars with the four operations, entry by entry.
+/// Two Scalars with entrywise arithmetic.
 template <typename Scalar>
 struct PlainPair {
   Scalar a;
@@ -24,20 +24,20 @@ struct PlainPair {
   friend PlainPair operator/(const PlainPair& x, const PlainPair& y) noexcept { return {x.a / y.a, x.b / y.b}; }
 };
 
-/// How a Pair stores its Scalars: in one vector register where the compiler has such a type, else as a PlainPair.
+/// Storage of a Pair: one SIMD vector if the compiler has such a type, else a PlainPair.
 template <typename Scalar, typename = void>
 struct PairStorage {
   using type = PlainPair<Scalar>;
 };
-#if defined(__GNUC__)  // And compilers that claim to be GNU's.
+#if defined(__GNUC__)  // Also defined by compilers compatible with GNU C++.
 template <typename Scalar>
 struct PairStorage<Scalar, std::enable_if_t<std::is_arithmetic_v<Scalar> && sizeof(Scalar) <= sizeof(double)>> {
   using type [[gnu::vector_size(2 * sizeof(Scalar))]] = Scalar;
 };
 #endif
 
-/// Two Scalars side by side: a small algorithm written for a Value solves two problems at once with
-/// Value = Pair<Scalar>. A comparison is true where it is true for both.
+/// Two Scalars with entrywise arithmetic. With Value = Pair<Scalar>, a small algorithm for a Value solves two problems
+/// in parallel. A comparison is true if it is true for both entries.
 template <typename Scalar>
 class Pair {
  public:
@@ -45,7 +45,7 @@ class Pair {
   Pair(const Scalar& a, const Scalar& b) noexcept : both_{a, b} {}
   explicit Pair(const Scalar& a) noexcept : both_{a, a} {}
 
-  /// Of two neighbours in memory, read at once.
+  /// Loads two adjacent entries in one operation.
   [[nodiscard]] static Pair load(const Scalar* from) noexcept {
     if constexpr (kIsVector) {
       Pair result;
@@ -55,7 +55,8 @@ class Pair {
       return {from[0], from[1]};
     }
   }
-  /// To two neighbours in memory, written at once: a processor waits where it reads at once what was written in parts.
+  /// Stores two adjacent entries in one operation. If they were stored separately, a later load of both would stall the
+  /// processor.
   void store(Scalar* to) const noexcept {
     if constexpr (kIsVector) {
       std::memcpy(to, &both_, sizeof both_);
@@ -96,7 +97,7 @@ class Pair {
   Both both_;
 };
 
-/// Scalar of a Pair<Scalar>, or the Value itself.
+/// Scalar if Value is Pair<Scalar>, else Value.
 template <typename Value>
 struct ScalarOf {
   using type = Value;
@@ -115,7 +116,7 @@ template <typename Scalar>
   return a.first();
 }
 
-/// The first, and the second, of a and of b.
+/// The first entries of a and b, and the second entries of a and b.
 template <typename Scalar>
 [[nodiscard]] Pair<Scalar> firsts(const Pair<Scalar>& a, const Pair<Scalar>& b) noexcept {
   return {a.first(), b.first()};
@@ -125,12 +126,12 @@ template <typename Scalar>
   return {a.second(), b.second()};
 }
 
-/// Entries i and i + 1 of a vector, zero where there is none.
+/// Entries i and i + 1 of a vector. The second is zero if entry i + 1 does not exist.
 template <int N, typename Scalar>
 [[nodiscard]] Pair<Scalar> two_of(const Vector<N, Scalar>& vector, Eigen::Index i) noexcept {
   return i + 1 < vector.size() ? Pair<Scalar>::load(vector.data() + i) : Pair<Scalar>(vector.coeff(i), Scalar(0));
 }
-/// Writes a pair there, or its first alone where there is no second.
+/// Sets entries i and i + 1, or entry i only if entry i + 1 does not exist.
 template <int N, typename Scalar>
 void set_two_of(Vector<N, Scalar>& vector, Eigen::Index i, const Pair<Scalar>& two) noexcept {
   if (i + 1 < vector.size()) {
@@ -145,7 +146,7 @@ template <typename Scalar>
   return std::isfinite(a);
 }
 
-/// Sets both of a lane to NaN where its mask is false.
+/// Sets both entries of a lane to NaN if the mask of the lane is false.
 template <typename Masks, typename Scalar>
 void set_nan_unless(const Masks& truth, Pair<Scalar>& value) noexcept {
   Scalar a = value.first();
@@ -155,7 +156,7 @@ void set_nan_unless(const Masks& truth, Pair<Scalar>& value) noexcept {
   value = {a, b};
 }
 
-/// Matrix of pairs (a, b), entry by entry.
+/// Matrix of the pairs (a(i, j), b(i, j)).
 template <int Rows, int Cols, typename Scalar>
 [[nodiscard]] Matrix<Rows, Cols, Pair<Scalar>> side_by_side(const Matrix<Rows, Cols, Scalar>& a,
                                                             const Matrix<Rows, Cols, Scalar>& b) noexcept {
@@ -175,7 +176,8 @@ template <int Rows, int Cols, typename Scalar>
   return entrywise_as<Scalar>(a, [&](Eigen::Index i) { return a.coeff(i).second(); });
 }
 
-/// a plus the first of each pair, stored in pairs: a later load of two entries waits if they were stored apart.
+/// a plus the first entry of each pair. The sums are stored in pairs, since a later load of two entries stalls if they
+/// were stored separately.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> plus_first(Vector<N, Scalar> a, const Vector<N, Pair<Scalar>>& pairs) noexcept {
   const Eigen::Index n = a.size();
@@ -187,7 +189,7 @@ template <int N, typename Scalar>
 
 }  // namespace fpbm
 
-/// Lets Eigen's matrices hold pairs.
+/// Allows Eigen matrices of pairs.
 template <typename Scalar>
 struct Eigen::NumTraits<fpbm::Pair<Scalar>> : Eigen::GenericNumTraits<fpbm::Pair<Scalar>> {
   enum { RequireInitialization = 0 };  // NOLINT(readability-identifier-naming): Eigen's name.

@@ -3,8 +3,8 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/product.hpp"
 
-/// Loops over columns in pairs of entries: g++ computes no sum in vector registers by itself, since the order of the
-/// additions changes its round-off.
+/// Loops over columns in pairs of entries. g++ does not vectorise sums by itself, since the order of the additions
+/// changes the round-off error.
 namespace fpbm {
 
 /// Σ a_i b_i over n entries.

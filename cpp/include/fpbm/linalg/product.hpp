@@ -12,18 +12,18 @@
 /// classes and functions for each pair of types.
 namespace fpbm {
 
-/// Whether rows are computed in pairs: doubles fill a SIMD register in pairs. A Cortex-M has no SIMD registers for
-/// floats, and needs 1.7 times the instructions with pairs of floats (make firmware, where limits are met).
+/// Whether rows are computed in pairs: two doubles fill a SIMD register. A Cortex-M has no SIMD registers for floats,
+/// and needs 1.7 times the instructions with pairs of floats (make firmware, ticks with active limits).
 template <typename Scalar>
 inline constexpr bool kRowsInPairs = std::is_same_v<Scalar, double>;
 
-/// The vector whose rows f computes. f is called for one row, or for a pair of rows (kRowsInPairs), with a function
-/// rows(column) that reads the same rows of a column in memory.
+/// Vector whose rows f computes. f is called for one row, or for a pair of rows (kRowsInPairs). Its argument is a
+/// function rows(column), which reads these rows of a column in memory.
 template <int M, typename Scalar, typename F>
 [[nodiscard, gnu::always_inline]] inline Vector<M, Scalar> by_rows(const F& f) noexcept {
   Vector<M, Scalar> result;
   constexpr int kPaired = kRowsInPairs<Scalar> ? M - M % 2 : 0;
-  // The loop stores no pair before all are computed: the compiler must assume that f reads the memory of the result.
+  // All pairs are computed before the first store: the compiler must assume that f reads the memory of the result.
   Pair<Scalar> pairs[kPaired / 2 + 1];
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC unroll 8
@@ -39,7 +39,7 @@ template <int M, typename Scalar, typename F>
   return result;
 }
 
-/// The rows of A b that `rows` reads, for by_rows().
+/// Rows of A b, for by_rows(): `rows` selects the rows.
 template <int M, int N, typename Scalar, typename Rows>
 [[nodiscard, gnu::always_inline]] inline auto rows_of_product(const Rows& rows, const Matrix<M, N, Scalar>& A,
                                                               const Vector<N, Scalar>& b) noexcept {

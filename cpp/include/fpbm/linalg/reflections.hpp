@@ -8,13 +8,13 @@
 
 namespace fpbm {
 
-/// A product Q = H₀ H₁ … of Householder reflections of N entries,
+/// Product Q = H₀ H₁ … of Householder reflections of size N,
 ///
-///   H_k = I − β v vᵀ,   β = 1/|v_k|,   v = x/|x| ± e_k,   x zero above entry k.
+///   H_k = I − β v vᵀ,   β = 1/|v_k|,   v = x/|x| ± e_k,   where x is zero above entry k.
 template <int N, typename Scalar>
 class Reflections {
  public:
-  /// None: Q = I.
+  /// Starts without reflections: Q = I.
   explicit Reflections(Eigen::Index n) noexcept {
     V_.resize(n, n);
     for (Eigen::Index i = 0; i < V_.size(); ++i) V_.coeffRef(i) = Scalar(0);
@@ -24,8 +24,8 @@ class Reflections {
   [[nodiscard]] Eigen::Index size() const noexcept { return V_.rows(); }
   [[nodiscard]] Eigen::Index count() const noexcept { return count_; }
 
-  /// Adds the reflection H_k, k = count(), that makes the entries below entry k of a column zero, and reflects the
-  /// column. These entries and entry k must not all be zero.
+  /// Adds the reflection H_k, k = count(), that makes the entries of a column below entry k zero, and applies H_k to
+  /// the column. The entries from entry k on must not all be zero.
   void add(Scalar* column) noexcept {
     Scalar* const x = column + count_;
     Scalar* const v = V_.data() + count_ * size() + count_;
@@ -43,7 +43,7 @@ class Reflections {
     ++count_;
   }
 
-  /// Adds identities until there are N.
+  /// Adds identities until count() is N.
   void fill() noexcept {
     for (; count_ < size(); ++count_) beta_.coeffRef(count_) = Scalar(0);
   }
@@ -51,7 +51,7 @@ class Reflections {
   /// x becomes H_k x.
   void reflect(Eigen::Index k, Scalar* x) const noexcept {
     const Scalar* const v = V_.data() + k * size();
-    // Of a fixed size, all entries: the zeros above row k cost less than a loop of run-time length.
+    // With fixed N, loops over all entries: the zeros above row k cost less than a loop of run-time length.
     const Eigen::Index begin = N == Eigen::Dynamic ? k : 0;
     const Eigen::Index end = N == Eigen::Dynamic ? size() : N;
     const Scalar along = beta_.coeff(k) * paired_dot(v + begin, x + begin, end - begin);

@@ -8,8 +8,9 @@
 
 namespace fpbm {
 
-/// Squared lengths of what reflections leave of M rows, for the choice of the next pivot (Businger and Golub, "Linear
-/// least squares solutions by Householder transformations", 1965).
+/// Squared lengths of the remainders of M rows, for the choice of the next pivot (Businger and Golub, "Linear least
+/// squares solutions by Householder transformations", 1965). The remainder of a row is the row minus its projection on
+/// all pivot rows so far.
 template <int M, typename Scalar>
 class Remainders {
  public:
@@ -19,13 +20,13 @@ class Remainders {
     inverse_least_.resize(rows);
   }
 
-  /// Row j: its squared length, and that of its remainder.
+  /// Sets the squared length of row j and the squared length of its remainder.
   void set(Eigen::Index j, Scalar whole, Scalar remainder) noexcept {
     inverse_least_.coeffRef(j) = Scalar(1) / (kDependent * kDependent * whole);
     square_.coeffRef(j) = computed_.coeffRef(j) = remainder;
   }
 
-  /// The row from row `first` on whose remainder is the largest share of the row; −1 if all of them are dependent.
+  /// Row j ≥ first with the largest ratio of remainder to whole row, or −1 if all these rows are dependent.
   [[nodiscard]] Eigen::Index largest(Eigen::Index first) const noexcept {
     Eigen::Index row = -1;
     Scalar most(1);
@@ -44,7 +45,7 @@ class Remainders {
     std::swap(inverse_least_.coeffRef(i), inverse_least_.coeffRef(j));
   }
 
-  /// Removes an entry from the remainder of row j. measured() computes the squared length of what is left.
+  /// Removes an entry from the remainder of row j. measured() computes the squared length of the new remainder.
   template <typename Measured>
   void remove(Eigen::Index j, Scalar entry, const Measured& measured) noexcept {
     square_.coeffRef(j) -= entry * entry;
@@ -52,15 +53,16 @@ class Remainders {
   }
 
  private:
-  /// Remainder of a dependent row, as a share of its length. It is round-off error, 1e-16 times the condition number of
-  /// the higher levels; a motion along a remainder of 1e-9 already amplifies that error to 1e-7.
+  /// Largest remainder of a dependent row, as a fraction of the length of the row. The remainder of a dependent row is
+  /// round-off error, 1e-16 times the condition number of the higher levels. A motion along a remainder of 1e-9 already
+  /// amplifies this error to 1e-7.
   static constexpr Scalar kDependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-4);
 
-  /// Share of a squared length below which its differences have lost 3 of 16 digits.
+  /// Fraction of a squared length below which a difference of squares has lost 3 of 16 digits.
   static constexpr Scalar kCancelled = Scalar(1e-3);
 
   Vector<M, Scalar> square_;
-  Vector<M, Scalar> computed_;  ///< The square when it was last computed from the entries.
+  Vector<M, Scalar> computed_;  ///< Value of square_ when it was last computed from the entries.
   Vector<M, Scalar> inverse_least_;
 };
 

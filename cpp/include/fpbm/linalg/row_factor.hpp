@@ -13,25 +13,26 @@
 
 namespace fpbm {
 
-/// Factor A = L Qᵀ of a matrix of M rows, M ≤ N, by Gram and Schmidt's method, modified: L has ones on its diagonal,
-/// the columns of Q are at right angles, and AAᵀ = L D Lᵀ with the squares D of their lengths.
+/// Factorisation A = L Qᵀ of a matrix of M rows, M ≤ N, by the modified Gram-Schmidt method (docs/equations.md, Other
+/// degrees of redundancy). L is lower triangular with ones on its diagonal. The columns q_i of Q are orthogonal, with
+/// the squared lengths D: AAᵀ = L D Lᵀ.
 ///
-/// L and Q are those of a matrix that is A to round-off, but for the condition of A times round-off in Q (Björck,
-/// "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967). So that condition enters the
-/// solutions once, and not squared as with a factor of AAᵀ. No root; M divisions. Value = Pair<Scalar> factorises two
-/// matrices at once.
+/// L and Q are the factors of a matrix that equals A up to round-off, except that the error of Q is the round-off times
+/// the condition number of A (Björck, "Solving linear least squares problems by Gram-Schmidt orthogonalization", 1967).
+/// The condition number of A therefore enters the solutions once, and not squared as with a factorisation of AAᵀ. Needs
+/// M divisions and no square root. With Value = Pair<Scalar>, factorises two matrices in parallel.
 template <int M, int N, typename Value>
 class RowFactor {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
-  /// Factorises A, given Aᵀ. Returns kSingular where a row is lost in round-off, kNotFinite where A is not finite. In
-  /// lanes it returns kOk, and the solutions of a lane without a factor are NaN.
+  /// Factorises A, given Aᵀ. Returns kSingular if a row is dependent up to round-off, and kNotFinite if A is not
+  /// finite. With lanes, returns kOk, and the solutions of a lane without a factorisation are NaN.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& At) noexcept {
     Q_ = At;
     const auto n = extent<N>(At.rows());
     const auto m = rows();
-    Value whole(Scalar(0));  // Σ|a_j|², by Pythagoras.
+    Value whole(Scalar(0));  // Σ_j |a_j|² over the rows of A, where |a_j|² = |q_j|² + Σ_{k<j} L_jk² |q_k|².
     Value squares[kCapacity<M>];
     each(kFirst, m, [&](auto j) {
       Value* const column = Q_.data() + j * n;
@@ -58,13 +59,14 @@ class RowFactor {
     }
   }
 
-  /// Sets all solutions of a lane to NaN where its mask is false.
+  /// Sets all solutions of a lane to NaN if the mask of the lane is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept {
+    // NaN in the first entry makes sum() and without() NaN, NaN in the last entry makes back() NaN.
     fpbm::set_nan_unless(truth, reciprocal_[0]);
     fpbm::set_nan_unless(truth, reciprocal_[rows() - 1]);
   }
 
-  /// D⁻¹L⁻¹b: what A⁺b takes of each column of Q.
+  /// Coefficients s = D⁻¹L⁻¹b of A⁺b in the columns of Q: A⁺b = Q s.
   [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
     Vector<M, Value> s = b;
     const auto m = rows();
@@ -73,8 +75,10 @@ class RowFactor {
     return s;
   }
 
-  /// a without its part in the span of A's rows: without the share of each column of Q in turn, of what those before
-  /// it have left.
+  /// P a, the projection of a on the null space of A: P = Π_i (I − q_i q_iᵀ/q_iᵀq_i).
+  ///
+  /// Each factor is applied to the result of the previous factor. This is slightly more accurate than I − Q D⁻¹ Qᵀ,
+  /// because the computed columns of Q are not exactly orthogonal.
   [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
     Vector<N, Value> left = a;
@@ -85,7 +89,7 @@ class RowFactor {
     return left;
   }
 
-  /// Q s.
+  /// Q s. If s = shares(b), this is A⁺b.
   [[nodiscard]] Vector<N, Value> sum(const Vector<M, Value>& s) const noexcept {
     Vector<N, Value> y;
     y.resize(Q_.rows());
@@ -102,17 +106,17 @@ class RowFactor {
     return y;
   }
 
-  /// (AAᵀ)⁻¹b = L⁻ᵀs, given these shares of b.
+  /// (AAᵀ)⁻¹b = L⁻ᵀs, for s = shares(b).
   [[nodiscard]] Vector<M, Value> back(const Vector<M, Value>& s) const noexcept {
     Vector<M, Value> x = s;
     for (Eigen::Index i = x.size() - 2; i >= 0; --i) {
-      for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Backwards: x(i + 1) is known last.
+      for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Descending: x(i + 1) is known last.
     }
     return x;
   }
 
-  /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the least singular value of A, tight within a
-  /// factor M.
+  /// Trace of (AAᵀ)⁻¹. Its reciprocal is a lower bound on the square of the smallest singular value of A, tight within
+  /// a factor M.
   [[nodiscard]] Value inverse_trace() const noexcept { return fpbm::inverse_trace(L_, reciprocal_, rows()); }
 
  private:
@@ -134,7 +138,7 @@ class RowFactor {
   template <typename Count>
   [[gnu::always_inline]] static void subtract(Count n, Value* a, const Value& s, const Value* b) noexcept {
     if constexpr (kLong) {
-      if (s != Value(Scalar(0))) subtract_multiple(a, s, b, N);  // Rows of different arms have no joints in common.
+      if (s != Value(Scalar(0))) subtract_multiple(a, s, b, N);  // Zero for rows of different arms.
     } else {
       each(kFirst, n, [&](Eigen::Index k) { a[k] -= s * b[k]; });
     }
@@ -149,8 +153,8 @@ class RowFactor {
     return Status::kSingular;
   }
 
-  /// Least square of a column of Q, relative to the mean of those of the rows of A, that is taken for more than
-  /// round-off.
+  /// Smallest squared length of a column of Q, relative to the mean squared length of the rows of A, that counts as
+  /// more than round-off error.
   static constexpr auto kPivotTolerance = 64 * std::numeric_limits<Number<Scalar>>::epsilon();
   static constexpr Constant<0> kFirst{};
   /// Whether the columns of Q are long enough for loops over pairs of entries.
@@ -160,7 +164,7 @@ class RowFactor {
   [[nodiscard]] auto rows() const noexcept { return extent<M>(Q_.cols()); }
 
   Matrix<N, M, Value> Q_;
-  Value L_[kCapacity<M>][kCapacity<M>];  ///< Below the diagonal.
+  Value L_[kCapacity<M>][kCapacity<M>];  ///< L below its diagonal.
   Value reciprocal_[kCapacity<M>];       ///< 1 / D.
 };
 

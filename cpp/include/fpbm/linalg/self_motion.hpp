@@ -8,24 +8,27 @@
 
 namespace fpbm {
 
-/// J (M × N) of an arm with one self-motion, N = M + 1, taken apart without JJᵀ: J v = 0, and any y with J y = b.
+/// Factorisation of the task Jacobian J (M × N) of an arm with one self-motion, N = M + 1, without JJᵀ. It gives the
+/// self-motion v with J v = 0, and a solution y of J y = b for any b (docs/equations.md, Degree of redundancy 1).
 ///
-/// Its condition enters the round-off once, and not squared. Each has the same functions:
-///   factor(J, kind, share)    false where this kind of factor is not certain, or |v| less than √share of the most
+/// The condition number of J enters the round-off error once, and not squared. All specialisations have the same
+/// functions:
+///   factor(J, kind, share)    false if the factorisation number kind < kKinds is not accurate, or if |v|² is not more
+///                             than share times its largest possible value
 ///   null()                    v
-///   solve(b)                  y, of two b side by side too
+///   solve(b)                  y; b may be a vector of pairs
 ///   along(t, g)               μᵀt, where Jᵀμ = g
-///   inverse_square(length)    a bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
-///   rough_inverse_square(length)   the same bound or a larger one, for less
-///   inverse_trace()       tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
+///   inverse_square(length)    an upper bound on 1/σ²_min(DJ), where D multiplies the angular rows by length [m]
+///   rough_inverse_square(length)   the same or a larger upper bound, at lower cost
+///   inverse_trace()           tr((JJᵀ)⁻¹), whose reciprocal bounds σ²_min(J) from below, tight within a factor M
 template <int M, int N, typename Scalar>
 class SelfMotion;
 
-/// Whether there is one.
+/// Whether SelfMotion is defined for M rows and N joints.
 template <int M, int N>
 inline constexpr bool kHasSelfMotion = N == M + 1 && (M == 2 || M == 3 || M == 5 || M == 6);
 
-/// A position in the plane, by the cross product of J's rows a and b:
+/// Position in the plane, by the cross product of the rows a and b of J:
 ///
 ///   v = a × b,   J⁺c = (c₁ b × v − c₂ a × v) / vᵀv.
 template <typename Scalar>
@@ -68,7 +71,7 @@ class SelfMotion<2, 3, Scalar> {
   Three<Scalar> second_;
 };
 
-/// A pose in the plane: J is three by four itself.
+/// Pose in the plane: J is a 3 × 4 matrix.
 template <typename Scalar>
 class SelfMotion<3, 4, Scalar> {
  public:
@@ -108,11 +111,11 @@ class SelfMotion<3, 4, Scalar> {
   ThreeByFour<Scalar> S_;  ///< J
 };
 
-/// A position and an axis.
+/// Position and axis.
 template <typename Scalar>
 class SelfMotion<5, 6, Scalar> : public AxisSelfMotion<Scalar> {};
 
-/// A pose in space.
+/// Pose in space.
 template <typename Scalar>
 class SelfMotion<6, 7, Scalar> : public SpatialSelfMotion<Scalar> {};
 

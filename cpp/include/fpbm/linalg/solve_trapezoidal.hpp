@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Length of some entries in memory.
+/// Euclidean norm of `count` entries in memory.
 template <typename Scalar>
 [[nodiscard]] Scalar length_of(const Scalar* entries, Eigen::Index count) noexcept {
   Scalar square(0);
@@ -15,8 +15,9 @@ template <typename Scalar>
   return std::sqrt(square);
 }
 
-/// Solves L w = r, by least squares if L has more rows than columns; w replaces the first entries of r. Row j of L
-/// starts at entry `first` of column j of T. The upper square block of L is lower triangular.
+/// Solves L w = r, by least squares if L has more rows than columns. w replaces the first `count` entries of r. Row j
+/// of L starts at entry `first` of column j of T and has `count` entries. The upper square block of L is lower
+/// triangular.
 template <int M, int N, typename Scalar>
 void solve_trapezoidal(const Matrix<N, M, Scalar>& T, Eigen::Index first, Eigen::Index count,
                        Vector<M, Scalar>& r) noexcept {
@@ -32,7 +33,7 @@ void solve_trapezoidal(const Matrix<N, M, Scalar>& T, Eigen::Index first, Eigen:
     }
     return;
   }
-  // L = Q₂ R₂ by the modified Gram-Schmidt method, with each column orthogonalised twice for round-off.
+  // L = Q R by the modified Gram-Schmidt method. Each column is orthogonalised twice to reduce the round-off error.
   Matrix<M, M, Scalar> Q;
   Matrix<M, M, Scalar> R;
   Q.resize(m, m);

@@ -11,15 +11,16 @@
 
 namespace fpbm {
 
-/// SelfMotion of a pose in space, by 3 × 3 blocks: with J = [B; A], B its linear rows and A its angular ones, three
-/// joints T whose axes span space (the hand) keep the tip from turning, and the four others, R, move it:
+/// SelfMotion of a pose in space, by elimination of 3 × 3 blocks (docs/equations.md, Degree of redundancy 1). J = [B;
+/// A] has linear rows B above angular rows A. Three joints T whose axes span space (the hand) keep the orientation of
+/// the tip while the four other joints R move the tip:
 ///
 ///   K = A_T⁻¹,   X = K A_R,   S = B_R − B_T X   (3 × 4)
 ///   J y = b:   S y_R = b_v − B_T K b_w,   y_T = K b_w − X y_R;      J v = 0:   S ṽ = 0,   v = (−X ṽ, ṽ).
 template <typename Scalar>
 class SpatialSelfMotion {
  public:
-  static constexpr int kKinds = 5;  ///< Of hands: any three consecutive joints. The wrist is tried first.
+  static constexpr int kKinds = 5;  ///< Number of hands: all triples of consecutive joints. The wrist is tried first.
   using Twice = Pair<Scalar>;
 
   [[nodiscard, gnu::noinline]] Mask<Scalar> factor(const Matrix<6, 7, Scalar>& J, int kind,
@@ -71,7 +72,7 @@ class SpatialSelfMotion {
     return result;
   }
 
-  /// gᵀs for J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
+  /// gᵀs for a solution s of J s = t: g_T·K t_w + (g_R − Xᵀg_T)·S⁺(t_v − B_T K t_w).
   [[nodiscard, gnu::noinline]] Scalar along(const Vector<6, Scalar>& t, const Vector<7, Scalar>& g) const noexcept {
     const auto at = [&](int i) -> const Scalar& { return g.coeffRef(joint_[i]); };
     const Three<Scalar> hands = {at(0), at(1), at(2)};
@@ -82,8 +83,9 @@ class SpatialSelfMotion {
            dot(hands, x);
   }
 
-  /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², in the norm of Frobenius: of [P, (K − P G)/length], a right inverse of DJ, where
-  /// P = (−X S⁺, S⁺) and G = B_T K.
+  /// ‖P‖² + (‖P‖ ‖G‖ + ‖K‖)²/length², with Frobenius norms. This is an upper bound on the squared norm of H = [P, ((K,
+  /// 0) − P G)/length], a right inverse of DJ, where P = (−X S⁺, S⁺) and G = B_T K. Hence 1/σ²_min(DJ) ≤ ‖H‖²
+  /// (docs/equations.md, Degree of redundancy 1, Damping).
   [[nodiscard, gnu::noinline]] Scalar inverse_square(const Scalar& length) const noexcept {
     using std::sqrt;
     Twice s12[3], s34[3];
@@ -94,8 +96,8 @@ class SpatialSelfMotion {
     return P + (P * G + K + Scalar(2) * sqrt(P * G * K)) / (length * length);
   }
 
-  /// tr((JJᵀ)⁻¹) = ‖J⁺‖² = ‖R‖² − |Rᵀv|²/vᵀv, in the norm of Frobenius, where R = [P, (K, 0) − P G] is a right inverse
-  /// of J, and J⁺ is R without its part along v.
+  /// tr((JJᵀ)⁻¹) = ‖J⁺‖² = ‖R‖² − |Rᵀv|²/vᵀv, with Frobenius norms. R = [P, (K, 0) − P G] is a right inverse of J, and
+  /// J⁺ is R without its component along v (docs/equations.md, Degree of redundancy 1, Singular-value bound of a tick).
   [[nodiscard, gnu::noinline]] Scalar inverse_trace() const noexcept {
     Twice s12[3], s34[3];
     rest_.inverse(s12, s34);
@@ -124,7 +126,7 @@ class SpatialSelfMotion {
     return square - (dot(along_p, along_p) + dot(along_r, along_r)) / (rest_.null_square() + dot(v, v));
   }
 
-  /// The same with ‖P‖² ≤ ‖S⁺‖² (1 + ‖X‖²), ‖G‖ ≤ ‖B_T‖ ‖K‖ and (a + b)² ≤ 2 (a² + b²).
+  /// inverse_square() with the bounds ‖P‖² ≤ ‖S⁺‖² (1 + ‖X‖²), ‖G‖ ≤ ‖B_T‖ ‖K‖ and (a + b)² ≤ 2 (a² + b²).
   [[nodiscard, gnu::always_inline]] Scalar rough_inverse_square(const Scalar& length) const noexcept {
     const Scalar X = sum(dot(X12_, X12_) + dot(X34_, X34_));
     const Scalar P = rest_.inverse_square() * (Scalar(1) + X);
@@ -132,13 +134,13 @@ class SpatialSelfMotion {
   }
 
  private:
-  /// The hand, then the rest.
+  /// Joints of the hand T, then the other joints R.
   static constexpr int kJoints[kKinds][7] = {{4, 5, 6, 0, 1, 2, 3},
                                              {2, 3, 4, 0, 1, 5, 6},
                                              {3, 4, 5, 0, 1, 2, 6},
                                              {1, 2, 3, 0, 4, 5, 6},
                                              {0, 1, 2, 3, 4, 5, 6}};
-  /// Least |det A_T| with which a hand spans space.
+  /// Joints are a hand if |det A_T| is larger than this value (docs/equations.md, Degree of redundancy 1).
   static constexpr auto kSpans = 0.3F;
 
   using Rows = std::array<Three<Scalar>, 3>;
@@ -146,13 +148,13 @@ class SpatialSelfMotion {
   [[nodiscard]] static Scalar squares(const Rows& rows) noexcept {
     return dot(rows[0], rows[0]) + dot(rows[1], rows[1]) + dot(rows[2], rows[2]);
   }
-  /// −X ṽ
+  /// −X ṽ, the self-motion of the hand.
   [[nodiscard, gnu::always_inline]] Three<Scalar> turns_of_null() const noexcept {
     const Twice &v12 = rest_.null12(), &v34 = rest_.null34();
     const auto row = [&](const Twice& x12, const Twice& x34) { return -sum(x12 * v12 + x34 * v34); };
     return {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z)};
   }
-  /// −X S⁺, by S⁺ as ThreeByFour::inverse() gives it.
+  /// −X S⁺, with S⁺ from ThreeByFour::inverse().
   [[nodiscard]] Rows hand(const Twice (&s12)[3], const Twice (&s34)[3]) const noexcept {
     const auto row = [&](const Twice& x12, const Twice& x34) {
       const auto entry = [&](int j) {
@@ -163,19 +165,19 @@ class SpatialSelfMotion {
     };
     return {row(X12_.x, X34_.x), row(X12_.y, X34_.y), row(X12_.z, X34_.z)};
   }
-  /// G = B_T K
+  /// G = B_T K.
   [[nodiscard]] Rows lever() const noexcept {
     const auto row = [&](const Scalar& a, const Scalar& b, const Scalar& c) {
       return (a * K_[0] + b * K_[1]) + c * K_[2];
     };
     return {row(B_[0].x, B_[1].x, B_[2].x), row(B_[0].y, B_[1].y, B_[2].y), row(B_[0].z, B_[1].z, B_[2].z)};
   }
-  /// K a: what the hand does about a turn a.
+  /// K a: motion of the hand that produces the angular velocity a.
   template <typename Value>
   [[nodiscard, gnu::always_inline]] Three<Value> hand(const Three<Value>& a) const noexcept {
     return {dot(repeated<Value>(K_[0]), a), dot(repeated<Value>(K_[1]), a), dot(repeated<Value>(K_[2]), a)};
   }
-  /// b − B_T x: what of b the hand leaves.
+  /// b − B_T x: the linear rows b minus the effect of the motion x of the hand.
   template <typename Value>
   [[nodiscard, gnu::always_inline]] Three<Value> left(const Three<Value>& b, const Three<Value>& x) const noexcept {
     return {(b.x - Value(B_[0].x) * x.x) - (Value(B_[1].x) * x.y + Value(B_[2].x) * x.z),

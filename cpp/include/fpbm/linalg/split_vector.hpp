@@ -5,7 +5,7 @@
 
 namespace fpbm {
 
-/// A vector in space, x and y side by side.
+/// Vector in space, with x and y in a Pair.
 template <typename Scalar>
 struct SplitVector {
   Pair<Scalar> xy{Scalar(0)};
@@ -14,7 +14,7 @@ struct SplitVector {
   SplitVector() = default;
   SplitVector(const Pair<Scalar>& first_two, const Scalar& third) noexcept : xy(first_two), z(third) {}
 
-  /// Of three neighbours in memory.
+  /// Loads three adjacent entries.
   [[nodiscard]] static SplitVector load(const Scalar* from) noexcept { return {Pair<Scalar>::load(from), from[2]}; }
   void store(Scalar* to) const noexcept {
     xy.store(to);
@@ -23,7 +23,7 @@ struct SplitVector {
 
   friend SplitVector operator+(const SplitVector& a, const SplitVector& b) noexcept { return {a.xy + b.xy, a.z + b.z}; }
   friend SplitVector operator-(const SplitVector& a, const SplitVector& b) noexcept { return {a.xy - b.xy, a.z - b.z}; }
-  /// By a number, which the pair holds twice.
+  /// Product with a number s, which is in both entries of the pair.
   friend SplitVector operator*(const Pair<Scalar>& s, const SplitVector& a) noexcept {
     return {s * a.xy, s.first() * a.z};
   }

@@ -13,7 +13,8 @@
 /// expression type, and another function for each entry of a fixed-size matrix.
 namespace fpbm {
 
-/// Σ f(i) over the entries of a matrix. Up to four terms are written out, so that a compiler keeps them in registers.
+/// Σ f(i) over the entries of a matrix. Sums of up to four terms are written out, so that a compiler keeps them in
+/// registers.
 template <typename Plain, typename F>
 [[nodiscard]] auto sum_over(const Eigen::PlainObjectBase<Plain>& size, const F& f) noexcept {
   constexpr int kFew = 4;
@@ -43,7 +44,7 @@ template <typename Plain>
   return sum_over(a, [&](Eigen::Index i) { return a.coeff(i) * b.coeff(i); });
 }
 
-/// The largest |entry|.
+/// Largest magnitude of an entry.
 template <typename Plain>
 [[nodiscard]] typename Plain::Scalar largest_magnitude(const Eigen::PlainObjectBase<Plain>& A) noexcept {
   using std::abs;
@@ -52,14 +53,14 @@ template <typename Plain>
   return largest;
 }
 
-/// Whether all entries are finite; always true in lanes, where a failed lane does not disturb the others.
+/// Whether all entries are finite. Always true with lanes, where a failed lane does not disturb the other lanes.
 template <typename Derived>
 [[nodiscard]] bool is_finite([[maybe_unused]] const Eigen::MatrixBase<Derived>& values) noexcept {
   if constexpr (kInLanes<typename Derived::Scalar>) {
     return true;
   } else {
     using Scalar = typename Derived::Scalar;
-    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make NaN of it.
+    return (values * Scalar(0)).sum() == Scalar(0);  // Inf and NaN make the sum NaN.
   }
 }
 

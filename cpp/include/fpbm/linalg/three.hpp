@@ -4,7 +4,8 @@
 
 namespace fpbm {
 
-/// A vector of space by its three entries, of pairs too: what stays in registers where a matrix would go to memory.
+/// Vector in space as three separate entries, which may be pairs. A compiler keeps the entries in registers, whereas it
+/// stores a matrix in memory.
 template <typename Value>
 struct Three {
   Value x;
@@ -26,19 +27,19 @@ template <typename Value>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Three numbers in a row from here on.
+/// Vector of three adjacent numbers.
 template <typename Value>
 [[nodiscard]] Three<Value> three(const Value* from) noexcept {
   return {from[0], from[1], from[2]};
 }
 
-/// Two vectors side by side.
+/// Two vectors as one vector of pairs.
 template <typename Scalar>
 [[nodiscard]] Three<Pair<Scalar>> three(const Scalar* first, const Scalar* second) noexcept {
   return {{first[0], second[0]}, {first[1], second[1]}, {first[2], second[2]}};
 }
 
-/// As many of it as a Value has.
+/// a with every entry repeated in all entries of a Value.
 template <typename Value, typename Scalar>
 [[nodiscard]] Three<Value> repeated(const Three<Scalar>& a) noexcept {
   return {Value(a.x), Value(a.y), Value(a.z)};
@@ -53,7 +54,7 @@ template <typename Scalar>
   return {a.x.second(), a.y.second(), a.z.second()};
 }
 
-/// The first of each, and the second of each.
+/// The first entries of a and b, and the second entries of a and b.
 template <typename Scalar>
 [[nodiscard]] Three<Pair<Scalar>> firsts(const Three<Pair<Scalar>>& a, const Three<Pair<Scalar>>& b) noexcept {
   return {firsts(a.x, b.x), firsts(a.y, b.y), firsts(a.z, b.z)};

@@ -4,22 +4,27 @@
 
 namespace fpbm {
 
-/// The least share with which v is known to six digits or more, and half of them in float.
+/// Least ratio of |ṽ|² to its largest value (is_regular) at which ṽ is known to six digits or more, and in float to
+/// half as many.
 template <typename Scalar>
 inline constexpr auto kCertain = 4096 * std::numeric_limits<Number<Scalar>>::epsilon();
 
-/// A matrix S of three rows and four columns s₁ … s₄, solved by its minors: with c_kl = s_k × s_l,
+/// Null vector ṽ and pseudoinverse of a matrix S of three rows and four columns s₁ … s₄, from its minors
+/// (docs/equations.md, Degree of redundancy 1, Block elimination). With c_kl = s_k × s_l:
 ///
-///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂)      S ṽ = 0,   |ṽ|² = det SSᵀ,
-///   S⁺a = D ṽ / |ṽ|²,   D skew, of the c_kl·a   (Cramer's rule on [S; ṽᵀ] y = [a; 0]).
+///   ṽ = (s₂·c₃₄, −s₁·c₃₄, s₄·c₁₂, −s₃·c₁₂),   S ṽ = 0,   |ṽ|² = det SSᵀ,
+///   S⁺a = D ṽ / |ṽ|²,   where D is skew-symmetric with the entries ± c_kl·a (combine).
 ///
-/// No pivot, no root, one division. The condition of S enters the round-off once, and not squared as in SSᵀ.
+/// This is Cramer's rule for [S; ṽᵀ] y = [a; 0]. It needs one division, no pivoting and no square root. The condition
+/// number of S enters the round-off error once, and not squared as with SSᵀ.
+///
+/// A Twice holds the values of two columns or minors: s12 is (s₁, s₂), c13_24 is (c₁₃, c₂₄), v34 is (ṽ₃, ṽ₄).
 template <typename Scalar>
 class ThreeByFour {
  public:
   using Twice = Pair<Scalar>;
 
-  /// Columns s₁ and s₂, s₃ and s₄. What follows is finite where |ṽ|² is not zero.
+  /// Sets S by its columns: s12 is (s₁, s₂), s34 is (s₃, s₄). If |ṽ|² > 0, all other results are finite.
   [[gnu::always_inline]] void factor(const Three<Twice>& s12, const Three<Twice>& s34) noexcept {
     const Three<Twice> s13 = firsts(s12, s34);
     const Three<Twice> s24 = seconds(s12, s34);
@@ -37,8 +42,9 @@ class ThreeByFour {
     largest_ = row(s12.x, s34.x) * row(s12.y, s34.y) * row(s12.z, s34.z);
   }
 
-  /// Whether |ṽ|² is more than this share of what it is where the rows of S are at right angles. The round-off in ṽ is
-  /// that of the product of their lengths.
+  /// Whether |ṽ|² is more than share times its largest value, the product of the squared lengths of the rows of S. |ṽ|²
+  /// has this value if the rows are orthogonal. The round-off error of ṽ is proportional to the product of the lengths
+  /// of the rows.
   [[nodiscard]] Mask<Scalar> is_regular(const Scalar& share) const noexcept { return square_ > share * largest_; }
 
   /// |ṽ|²
@@ -53,7 +59,7 @@ class ThreeByFour {
     combine(minors(a), y);
   }
 
-  /// S⁺ by columns: rows 1 and 2, rows 3 and 4, with rows 2 and 4 negated.
+  /// S⁺ by columns: s12[j] has rows 1 and 2 of column j, s34[j] has rows 3 and 4. Rows 2 and 4 have the opposite sign.
   void inverse(Twice (&s12)[3], Twice (&s34)[3]) const noexcept {
     const Twice over(over_);
     const Twice v12 = over * v12_, v34 = over * v34_;
@@ -80,7 +86,8 @@ class ThreeByFour {
                     ((h2 * v4 - h4 * v2) * d13 + (h4 * v3 - h3 * v4) * d12));
   }
 
-  /// Squares of the lengths of the columns of S⁺: the diagonal of (SSᵀ)⁻¹, by the minors of its two other rows.
+  /// Squared lengths of the columns of S⁺, which are the diagonal of (SSᵀ)⁻¹. Entry i is Σ m²/|ṽ|² over the 2 × 2
+  /// minors m of the two other rows of S. These minors are component i of the c_kl.
   [[nodiscard]] Three<Scalar> inverse_squares() const noexcept {
     const auto squares = [this](const Twice& a, const Twice& b, const Twice& c) {
       return over_ * sum(a * a + b * b + c * c);
@@ -88,13 +95,13 @@ class ThreeByFour {
     return {squares(c12_34_.x, c13_24_.x, c14_23_.x), squares(c12_34_.y, c13_24_.y, c14_23_.y),
             squares(c12_34_.z, c13_24_.z, c14_23_.z)};
   }
-  /// ‖S⁺‖², the sum of these squares.
+  /// ‖S⁺‖² (Frobenius norm), the sum of inverse_squares().
   [[nodiscard]] Scalar inverse_square() const noexcept {
     return over_ * sum(dot(c12_34_, c12_34_) + dot(c13_24_, c13_24_) + dot(c14_23_, c14_23_));
   }
 
  private:
-  /// The c_kl·a.
+  /// d_kl = c_kl·a.
   template <typename Value>
   struct Minors {
     Value d12, d13, d14, d23, d24, d34;
@@ -117,7 +124,9 @@ class ThreeByFour {
             seconds(d14_23, e14_23), seconds(d13_24, e13_24), seconds(d12_34, e12_34)};
   }
 
-  /// D ṽ / |ṽ|².
+  /// y = D ṽ / |ṽ|², where
+  ///
+  ///   D = [0, −d₃₄, d₂₄, −d₂₃;  d₃₄, 0, −d₁₄, d₁₃;  −d₂₄, d₁₄, 0, −d₁₂;  d₂₃, −d₁₃, d₁₂, 0].
   template <typename Value>
   void combine(const Minors<Value>& d, Value (&y)[4]) const noexcept {
     const Value v1(over_ * v12_.first());
@@ -136,8 +145,8 @@ class ThreeByFour {
   Twice v12_;
   Twice v34_;
   Scalar square_;   ///< |ṽ|²
-  Scalar over_;     ///< Its reciprocal.
-  Scalar largest_;  ///< Product of the squares of the rows.
+  Scalar over_;     ///< 1/|ṽ|²
+  Scalar largest_;  ///< Product of the squared lengths of the rows of S.
 };
 
 }  // namespace fpbm

@@ -4,8 +4,8 @@
 
 namespace fpbm {
 
-/// f(i) summed over Count indices from First on, halves apart: the additions wait for each other log₂ Count times, and
-/// not Count times. Two to four are written out, which saves a compiler most of the calls.
+/// Σ f(i) over Count indices from First on, by pairwise summation: the longest chain of dependent additions has length
+/// log₂ Count instead of Count. Sums of two to four terms are written out, which saves a compiler most of the calls.
 template <Eigen::Index First, Eigen::Index Count, typename F>
 [[nodiscard, gnu::always_inline]] inline auto total(const F& f) noexcept {
   const Constant<First> i{};

@@ -8,8 +8,9 @@
 
 namespace fpbm {
 
-/// A symmetric tridiagonal matrix, which QL steps make diagonal: values on the diagonal, beside(i) between i and i + 1.
-/// The first matrix is V T Vᵀ, V the orthonormal vectors (Golub and Van Loan, Matrix Computations, 8.3).
+/// Symmetric tridiagonal matrix T, which QL steps make diagonal. values: the diagonal; beside(i): the entry between i
+/// and i + 1. The initial matrix is V T Vᵀ with the orthonormal vectors V (Golub and Van Loan, Matrix Computations,
+/// 8.3).
 template <int M, typename Scalar>
 struct Tridiagonal {
   using Column = Vector<M, Scalar>;
@@ -20,9 +21,10 @@ struct Tridiagonal {
   Column values;
   Column beside;
   Matrix<M, M, Scalar> vectors;
-  Scalar size{0};  ///< Largest entry of the first matrix.
+  Scalar size{0};  ///< Largest magnitude of an entry of the initial matrix.
 
-  /// Number of eigenvalues below a bound: of negative pivots, by Sylvester's law.
+  /// Number of eigenvalues below a bound, which is the number of negative pivots of T − bound I (Sylvester's law of
+  /// inertia).
   [[nodiscard]] int count_below(Scalar bound) const noexcept {
     int count = 0;
     Scalar pivot(1);
@@ -35,7 +37,7 @@ struct Tridiagonal {
     return count;
   }
 
-  /// QL steps until beside(first) is negligible.
+  /// Applies QL steps until beside(first) is negligible.
   void isolate(Eigen::Index first) noexcept {
     using std::abs;
     using std::sqrt;
@@ -78,7 +80,7 @@ struct Tridiagonal {
       const Scalar b = c * beside(i);
       const Scalar length = std::sqrt(f * f + g * g);
       beside(i + 1) = length;
-      if (!(length > Scalar(0))) {  // The matrix falls apart here.
+      if (!(length > Scalar(0))) {  // The matrix decouples here.
         values(i + 1) -= change;
         beside(last) = Scalar(0);
         return;
