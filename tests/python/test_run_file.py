@@ -248,7 +248,7 @@ def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
     here = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.WMVN(pandas.Series([1.0, 2, 3, 1 / 3])), q0, dt=0.01)
     there = fp.simulate(FLAT, fp.Circle(0.2, 1.0), through_file(here, tmp_path).scheme, q0, dt=0.01)
     assert bits(here) == bits(there)
-    with pytest.raises(TypeError, match="must be a thing of this package"):
+    with pytest.raises(TypeError, match="must be an object of this package"):
         replace(run, options={"dt": {1, 2}}).save(tmp_path / "run.npz")
 
 
@@ -259,7 +259,7 @@ NO_PATHS = {
     "unhashable": ({"kind": ["circle"]}, "holds no run"),
     "wrong numbers": ({"kind": "circle", "radius": -1.0, "duration": 1.0}, "path.radius = -1: must be positive"),
     "wrong kinds": ({"kind": "circle", "radius": "x", "duration": 1.0}, "path.radius = 'x': must be a number"),
-    "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: circle has no such key"),
+    "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: is not a key of circle"),
     "too few": ({"kind": "circle", "radius": 1.0}, "path.duration: is missing"),
     "no table": (7, "path = 7: must be a table"),
     "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1}, "path.points = .*: must be real"),

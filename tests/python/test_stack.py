@@ -289,10 +289,10 @@ def test_stacks_are_values():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: fp.Stack(), "must be one at least"),
+        (lambda: fp.Stack(), "must have at least one level"),
         (lambda: fp.Stack([]), "levels.0. is empty"),
         (lambda: fp.Stack(3), "must be a task"),
-        (lambda: fp.Stack(fp.PoseTask(), fp.PoseTask()), "a second task of the name 'pose'"),
+        (lambda: fp.Stack(fp.PoseTask(), fp.PoseTask()), "a second task with the name 'pose'"),
         (lambda: fp.PositionTask(rows=("x", "q")), "rows = 'q': must be one of"),
         (lambda: fp.PositionTask(rows="xy"), "must be some of"),
         (lambda: fp.PositionTask(rows=("x", "x")), "twice"),

@@ -100,7 +100,7 @@ def job_errors() -> Iterator[None]:
 
 def require_sound(job: Table) -> None:
     """Raise JobError with all keys and values that are wrong, whatever is made of them."""
-    no_key = f": a job has no such key: must be one of {', '.join(SECTIONS)}"
+    no_key = f": is not a key of a job: must be one of {', '.join(SECTIONS)}"
     errors = [wrong(key, job[key], no_key + suggestion(key, SECTIONS)) for key in job if key not in SECTIONS]
     if "arm" not in job:
         errors.append(wrong("arm", None, ": is missing"))
