@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Throws std::invalid_argument where a robot has no mass.
+/// Throws std::invalid_argument if a robot has no mass.
 template <typename Robot>
 void require_mass(const Robot& robot) {
   for (int link = 0; link <= robot.joints(); ++link) {
@@ -16,22 +16,22 @@ void require_mass(const Robot& robot) {
   validation::reject("robot", ": has no mass, must have masses of links");
 }
 
-/// Centre of mass of a robot with its base [m], the velocity of the centre [m/s], and J and J̇ of the centre, in the
-/// base frame.
+/// Centre of mass of a robot with its base [m], the velocity of the centre [m/s], and J and J̇ of the centre, along the
+/// axes of the base frame.
 ///
-/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. Over the links that joint j moves, m_j = Σ mᵢ and s_j = Σ mᵢ cᵢ.
-/// Column j of J is z × (s_j − m_j p_j)/m if the joint turns about z through p_j, and z m_j/m if it slides along z. J̇
-/// is the derivative of J, with ż = w × z (docs/equations.md).
+/// The links have masses mᵢ at cᵢ, and m = Σ mᵢ. For the links that joint j moves, m_j = Σ mᵢ and s_j = Σ mᵢ cᵢ. Column
+/// j of J is z × (s_j − m_j p_j)/m for a revolute joint with the axis z through p_j, and z m_j/m for a prismatic joint
+/// along z. J̇ is the derivative of J, with ż = w × z (docs/equations.md, Time derivative of J).
 template <int N, typename Scalar, int Joints>
 void center_of_mass(const Robot<N, Scalar, Joints>& robot, const RobotState<N, Scalar, Joints>& state,
                     Vector<3, Scalar>& centre, Vector<3, Scalar>& velocity, Matrix<3, N, Scalar>& J,
                     Matrix<3, N, Scalar>& Jd) noexcept {
   using Vector3 = Vector<3, Scalar>;
   struct Sums {
-    Scalar mass;       ///< Of a link and all links that it carries [kg].
+    Scalar mass;       ///< Mass of a link and of all links that it carries [kg].
     Vector3 moment;    ///< Σ m c [kg m]
     Vector3 momentum;  ///< Σ m ċ [kg m/s]
-    Vector3 v;         ///< Velocity of the origin of the link's placement [m/s].
+    Vector3 v;         ///< Velocity of the origin of the placement of the link [m/s].
   };
   const auto plus = [](const Vector3& a, Scalar factor, const Vector3& b) noexcept {
     return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) + factor * b.coeff(i); });

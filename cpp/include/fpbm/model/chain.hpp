@@ -15,14 +15,14 @@
 
 namespace fpbm {
 
-/// Joints from base to tip: an arm is built from it. With a length known at compile time it takes no memory from a
-/// heap.
+/// Joints from base to tip, from which an arm is built. If Length is known at compile time, there is no heap
+/// allocation.
 template <typename Scalar = double, int Length = Eigen::Dynamic>
 struct Chain {
   std::array<Joint<Scalar, std::string_view>, Length> joints = {};
-  Transform<Scalar> tip = {};  ///< The tip's frame in that of the last joint.
+  Transform<Scalar> tip = {};  ///< Frame of the tip in the frame of the last joint.
 
-  /// The same with a length known at run time.
+  /// Conversion to a chain whose length is known at run time.
   operator Chain<Scalar>() const {
     Chain<Scalar> chain{{}, tip};
     for (const auto& [type, placement, axis, bounds, name, mimic] : joints) {
@@ -46,14 +46,14 @@ template <typename Scalar, int Length>
 
 namespace chain_check {
 
-/// How messages name joint i of a chain or a tree.
+/// Name of joint i of a chain or a tree in messages.
 template <typename Source>
 validation::Argument name_of(const Source& source, Eigen::Index i) {
   const std::string_view name = joint_of(source, i).name;
   return name.empty() ? validation::element("joints", i) : validation::Argument("joint '") + name + "'";
 }
 
-/// Whether a matrix is a rotation, to half of the digits.
+/// Whether a matrix is a rotation, up to errors in the second half of the digits.
 template <typename Scalar>
 [[nodiscard]] bool is_rotation(const Matrix<3, 3, Scalar>& R) noexcept {
   const auto tolerance = std::sqrt(std::numeric_limits<Scalar>::epsilon());
@@ -100,10 +100,11 @@ void require_joint(const validation::Argument& name, const Joint<Scalar, Name>& 
 
 }  // namespace chain_check
 
-/// Number of joints of a chain, checked.
+/// Checks a chain and returns its number of joints.
 ///
-/// Throws std::invalid_argument, with the joint's name where it has one, where that number exceeds kMaxDof, an axis is
-/// zero, a number is not finite, a placement's R is no rotation, or a joint's bounds leave it no room.
+/// Throws std::invalid_argument if the number of joints exceeds kMaxDof, an axis is zero, a number is not finite, R of
+/// a placement is not a rotation, or the bounds leave no range for a joint. The message has the name of the joint, if
+/// any.
 template <typename Scalar, int Length>
 Eigen::Index require_joints(const Chain<Scalar, Length>& chain) {
   const auto dof = static_cast<Eigen::Index>(chain.joints.size());
@@ -113,7 +114,7 @@ Eigen::Index require_joints(const Chain<Scalar, Length>& chain) {
   return dof;
 }
 
-/// The same for an arm of n joints (Eigen::Dynamic: any number) without joints that follow others.
+/// require_joints() for an arm of n joints (Eigen::Dynamic: any number) without joints that follow other joints.
 template <typename Scalar, int Length>
 Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dynamic) {
   if (n != Eigen::Dynamic) validation::require_size("joints", static_cast<Eigen::Index>(chain.joints.size()), n);

@@ -5,20 +5,20 @@
 
 namespace fpbm {
 
-/// A serial chain in which some joints follow others (gears, belts, URDF's mimic), as an arm: N joints have drives of
-/// their own, any number follow. Immutable.
+/// Serial chain in which some joints follow others (gears, belts, URDF's mimic), as an arm. N joints have a drive, and
+/// any number of joints follow. Immutable.
 template <int N, typename Scalar_ = double>
 class CoupledArm {
  public:
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// Throws std::invalid_argument as Robot does.
+  /// Throws std::invalid_argument under the conditions of Robot.
   template <int Length = Eigen::Dynamic>
   explicit CoupledArm(const Chain<Scalar, Length>& chain) : robot_(chain), tip_(robot_.in_joint(kTip, {})) {}
 
   [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
-  /// Bounds within which all joints of the chain keep theirs, those that follow included.
+  /// Bounds on the drives within which all joints of the chain, including followers, keep their bounds.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return robot_.limits(); }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
@@ -30,7 +30,7 @@ class CoupledArm {
     set(state, out, out.Jd);
   }
 
-  /// Tip and J at q; does not touch Jd.
+  /// Tip and J at q. Jd does not change.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     typename Tree::State state;

@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// One row of a table of Denavit-Hartenberg parameters. The joint position is added to theta, or to d where the joint
-/// is prismatic.
+/// One row of a table of Denavit-Hartenberg parameters. The joint position is added to theta, or to d if the joint is
+/// prismatic.
 template <typename Scalar = double>
 struct DHRow {
   Scalar a = 0;      ///< [m], along x.
@@ -21,13 +21,13 @@ struct DHRow {
 
 namespace dh {
 
-/// Tx(a) Rx(alpha): the two commute.
+/// Tx(a) Rx(alpha), which commute.
 template <typename Scalar>
 [[nodiscard]] Transform<Scalar> along_x(const DHRow<Scalar>& row) noexcept {
   return {{row.a, Scalar(0), Scalar(0)}, rotation(Vector<3, Scalar>(row.alpha, Scalar(0), Scalar(0)))};
 }
 
-/// Tz(d) Rz(theta): the two commute with each other and with the joint.
+/// Tz(d) Rz(theta), which commute with each other and with the joint motion.
 template <typename Scalar>
 [[nodiscard]] Transform<Scalar> along_z(const DHRow<Scalar>& row) noexcept {
   return {{Scalar(0), Scalar(0), row.d}, rotation(Vector<3, Scalar>(Scalar(0), Scalar(0), row.theta))};
@@ -35,7 +35,7 @@ template <typename Scalar>
 
 }  // namespace dh
 
-/// The chain of a table of classic Denavit-Hartenberg parameters, from base to tip, where the pose of frame i in frame
+/// Chain, from base to tip, of a table of classic Denavit-Hartenberg parameters, in which the pose of frame i in frame
 /// i − 1 is
 ///   Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i)
 /// (J. Denavit, R. S. Hartenberg, 1955). The tip is the last frame.
@@ -49,11 +49,11 @@ template <typename Scalar>
   return chain;
 }
 
-/// The chain of a table of modified Denavit-Hartenberg parameters, from base to tip, where the pose of frame i in frame
+/// Chain, from base to tip, of a table of modified Denavit-Hartenberg parameters, in which the pose of frame i in frame
 /// i − 1 is
 ///   Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i);
-/// a and alpha are those of the link before joint i, which some tables number i − 1 (J. J. Craig, Introduction to
-/// Robotics). The tip is the last joint's frame.
+/// a and alpha belong to the link before joint i, which some tables number i − 1 (J. J. Craig, Introduction to
+/// Robotics). The tip is the frame of the last joint.
 template <typename Scalar>
 [[nodiscard]] Chain<Scalar> modified_dh(const std::vector<DHRow<Scalar>>& table) {
   Chain<Scalar> chain;

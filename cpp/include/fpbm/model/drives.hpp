@@ -9,17 +9,17 @@
 
 namespace fpbm {
 
-/// The joints of a robot that have a drive, and those that follow one (gears, belts, URDF's mimic): position of joint i
-/// = ratio(i) · position of drive(i) + offset(i). N drives, any number of joints up to Joints.
+/// Joints of a robot that have a drive, and joints that follow a drive (gears, belts, URDF's mimic): position of joint
+/// i = ratio(i) · position of drive(i) + offset(i). There are N drives and any number of joints up to Joints.
 template <int N, int Joints, typename Scalar>
 class Drives {
  public:
   using JointVector = Vector<Joints, Scalar>;
-  /// Whether a joint can follow another: else joints are drives, and nothing is stored.
+  /// Whether a joint can follow another joint. Otherwise, all joints have a drive, and nothing is stored.
   static constexpr bool kMayFollow = Joints != N || N == Eigen::Dynamic;
 
-  /// Throws std::invalid_argument where a mimic is out of range, the number of joints with a drive is not N, or a drive
-  /// cannot move without a follower that leaves its bounds.
+  /// Throws std::invalid_argument if a mimic is out of range, the number of joints with a drive is not N, or a drive
+  /// has no range in which its followers keep their bounds.
   template <typename Source>
   explicit Drives(const Source& source) : limits_(JointLimits<N, Scalar>::none(count_drives(source))) {
     const auto count = static_cast<Eigen::Index>(source.joints.size());
@@ -42,16 +42,16 @@ class Drives {
   }
 
   [[nodiscard]] Eigen::Index count() const noexcept { return limits_.lower.size(); }
-  /// Whether any joint follows another.
+  /// Whether any joint follows another joint.
   [[nodiscard]] bool follows() const noexcept { return kMayFollow && follows_; }
-  /// Bounds within which all joints keep theirs, those that follow included.
+  /// Bounds on the drives within which all joints, including followers, keep their bounds.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Positions of the joints for those of the drives.
+  /// Positions of the joints from the positions of the drives.
   [[nodiscard]] JointVector positions(const Vector<N, Scalar>& q) const noexcept {
     return entrywise(ratio_, [&](Eigen::Index i) { return ratio_.coeff(i) * q.coeff(drive(i)) + offset_.coeff(i); });
   }
-  /// Rates of the joints for those of the drives.
+  /// Velocities of the joints from the velocities of the drives.
   [[nodiscard]] JointVector rates(const Vector<N, Scalar>& qd) const noexcept {
     if constexpr (kMayFollow) {
       return entrywise(ratio_, [&](Eigen::Index i) { return ratio_.coeff(i) * qd.coeff(drive(i)); });
@@ -59,7 +59,7 @@ class Drives {
       return qd;
     }
   }
-  /// Least rates of the joints for drives anywhere between low and high.
+  /// Smallest velocities of the joints if the velocities of the drives are between low and high.
   [[nodiscard]] JointVector least(const Vector<N, Scalar>& low, const Vector<N, Scalar>& high) const noexcept {
     if constexpr (kMayFollow) {
       return entrywise(ratio_, [&](Eigen::Index i) {
@@ -70,7 +70,7 @@ class Drives {
       return low;
     }
   }
-  /// Entries for the drives of a gradient by the joints.
+  /// Gradient with respect to the drives, from the gradient with respect to the joints.
   [[nodiscard]] Vector<N, Scalar> by_drive(const JointVector& gradient) const noexcept {
     if constexpr (kMayFollow) {
       Vector<N, Scalar> result = filled<Vector<N, Scalar>>(count());
@@ -82,7 +82,7 @@ class Drives {
       return gradient;
     }
   }
-  /// Columns for the drives from columns for the joints.
+  /// Columns of the drives from columns of the joints.
   template <int M>
   [[nodiscard]] Matrix<M, N, Scalar> by_drive(const Matrix<M, Joints, Scalar>& columns) const noexcept {
     Matrix<M, N, Scalar> result;
@@ -96,7 +96,7 @@ class Drives {
     return result;
   }
 
-  /// The drive of joint i.
+  /// Index of the drive of joint i.
   [[nodiscard]] Eigen::Index drive(Eigen::Index i) const noexcept { return drive_[index(i)]; }
 
  private:
@@ -131,7 +131,7 @@ class Drives {
     }
   }
 
-  /// Narrows the bounds of drive k so that a joint that follows it keeps its own.
+  /// Narrows the bounds of drive k so that a joint that follows the drive keeps its own bounds.
   template <typename Name>
   void narrow(const Joint<Scalar, Name>& joint, const validation::Argument& name, const validation::Argument& leader,
               Eigen::Index k) {

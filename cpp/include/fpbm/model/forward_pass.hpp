@@ -14,10 +14,11 @@
 
 namespace fpbm {
 
-/// The constants of N joints, and the pass of a frame from joint to joint, which finds their axes.
+/// Constants of N joints, and the forward pass of a frame from joint to joint, which computes the axes of the joints.
 ///
-/// The frame of joint i has the joint's axis as z. The pass goes from one joint to the next by a step and a tilt
-/// (DecomposedLink); rotations about z before and after the tilt are added to the angles of the joints on either side.
+/// The frame of joint i has the axis of the joint as z. The pass moves from one joint to the next by a translation and
+/// a tilt (DecomposedLink). The rotations about z before and after the tilt are offsets of the angles of the two
+/// joints.
 template <int N, typename Scalar>
 class ForwardPass {
  public:
@@ -36,9 +37,9 @@ class ForwardPass {
   }
 
   [[nodiscard]] Eigen::Index dof() const noexcept { return dof_; }
-  /// Whether a joint is prismatic.
+  /// Whether any joint is prismatic.
   [[nodiscard]] bool slides() const noexcept { return slides_ != 0; }
-  /// 1 for each joint that turns, 0 for a prismatic one.
+  /// 1 for each revolute joint, 0 for each prismatic joint.
   [[nodiscard]] const Vector<N, Scalar>& turns() const noexcept { return turns_; }
 
   void set_prismatic(Eigen::Index i) noexcept {
@@ -46,8 +47,9 @@ class ForwardPass {
     slides_ |= joint_bit(i);
   }
 
-  /// Sets the step from the frame of joint i to that of joint i + 1 at zero. Returns its parts: the frame of joint i is
-  /// ahead of its own by `before`, that of joint i + 1 by `after`.
+  /// Sets the transform from the frame of joint i to the frame of joint i + 1, both at position zero. Returns its
+  /// parts: in the pass, the frame of joint i is rotated about z by `before` relative to the frame of the joint, and
+  /// the frame of joint i + 1 by `after`.
   DecomposedLink<Scalar> connect(Eigen::Index i, const Transform<Scalar>& step) {
     const DecomposedLink<Scalar> between(step);
     links_[static_cast<std::size_t>(i)] = LinkPassage<Scalar>(between.link);
@@ -56,9 +58,9 @@ class ForwardPass {
     return between;
   }
 
-  /// Finds the joints' axes at (q, qd), from the frame of the first joint at zero on. `along` is told of each joint:
-  /// enter(i, frame, w) before its motion, where it may set the frame and the angular velocity, and leave(i, frame)
-  /// after. Returns the frame at the end of the last link.
+  /// Computes the axes of the joints at (q, qd), starting from the frame of the first joint at position zero. For each
+  /// joint, calls along.enter(i, frame, w) before the motion of the joint, where `along` may set the frame and the
+  /// angular velocity, and along.leave(i, frame) after the motion. Returns the frame at the end of the last link.
   template <bool kWithRate, bool kSlides, typename Along>
   [[gnu::always_inline]] Frame<Scalar> operator()(const Transform<Scalar>& first, const Vector<N, Scalar>& q,
                                                   [[maybe_unused]] const Vector<N, Scalar>& qd, Screws<N, Scalar>& axes,
@@ -78,7 +80,7 @@ class ForwardPass {
     sincos(angles, sines, cosines);
 
     Frame<Scalar> frame(first);
-    SplitVector<Scalar> w;  // Angular velocity of the frame.
+    SplitVector<Scalar> w;  // Angular velocity of the frame [rad/s].
     each(Constant<0>{}, pairs, [&](auto k) {
       Joint joints[2];
       const Eigen::Index i = 2 * Eigen::Index(k);
@@ -99,8 +101,8 @@ class ForwardPass {
     return frame;
   }
 
-  /// Number of joints, known at compile time where loops are unrolled. Of joints that slide in a loop: unrolled, it
-  /// would take as long to compile as that of all others.
+  /// Number of joints, known at compile time if loops are unrolled. Loops over chains with prismatic joints are not
+  /// unrolled: they would take as long to compile as the loops over all other chains.
   template <bool kSlides>
   [[nodiscard]] auto joints() const noexcept {
     return extent < kSlides ? Eigen::Dynamic : N > (dof_);
@@ -113,13 +115,13 @@ class ForwardPass {
   [[nodiscard]] bool slides(Eigen::Index i) const noexcept { return (slides_ >> i & 1U) != 0; }
 
   Eigen::Index dof_;
-  std::array<LinkPassage<Scalar>, kCapacity<N>> links_;  ///< From each joint's frame to the next.
-  Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: a frame's angle is turns q + offset.
+  std::array<LinkPassage<Scalar>, kCapacity<N>> links_;  ///< From the frame of each joint to the next frame.
+  Vector<N, Scalar> turns_;  ///< 1, or 0 for a prismatic joint: the angle of a frame is turns q + offset.
   Vector<N, Scalar> offsets_;
-  JointBits slides_ = 0;  ///< Of prismatic joints.
+  JointBits slides_ = 0;  ///< Bits of the prismatic joints.
 };
 
-/// All joints carried by the joint before.
+/// For chains: the link of each joint carries the next joint, and no placement is stored.
 struct AlongChain {
   template <typename Frame, typename Vector>
   static void enter(Eigen::Index, Frame&, Vector&) noexcept {}

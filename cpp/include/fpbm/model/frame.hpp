@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// A constant that is kept twice, so that both of a pair are read at once.
+/// Constant that is stored twice, so that one load reads both entries of a Pair.
 template <typename Scalar>
 class Twice {
  public:
@@ -26,7 +26,7 @@ class Twice {
   Scalar both_[2];
 };
 
-/// Cosine and sine of an angle that never changes.
+/// Cosine and sine of a constant angle.
 template <typename Scalar>
 struct FixedTurn {
   Twice<Scalar> cosine;
@@ -38,7 +38,7 @@ struct FixedTurn {
   }
 };
 
-/// A link as a frame passes along it.
+/// Constants of a link for Frame::pass().
 template <typename Scalar>
 struct LinkPassage {
   Twice<Scalar> step[3];
@@ -58,7 +58,7 @@ struct LinkPassage {
   }
 };
 
-/// A frame that passes along a chain, in base axes.
+/// Frame that moves along a chain, along the axes of the base frame.
 template <typename Scalar>
 struct Frame {
   using Split = SplitVector<Scalar>;
@@ -74,7 +74,7 @@ struct Frame {
         y(Split::load(at.R.data() + 3)),
         z(Split::load(at.R.data() + 6)) {}
 
-  /// Turns about z. The pairs hold one number twice.
+  /// Rotates the frame about z. Both entries of a pair have the same value.
   void turn(const Pair<Scalar>& cosine, const Pair<Scalar>& sine) noexcept { rotate(x, y, cosine, sine); }
 
   void pass(const LinkPassage<Scalar>& link) noexcept {
@@ -82,7 +82,7 @@ struct Frame {
     rotate(y, z, link.tilt.cosine.pair(), link.tilt.sine.pair());
   }
 
-  /// Origin and axes, the columns.
+  /// Stores the origin, and the axes as columns.
   void store(Vector<3, Scalar>& origin, Matrix<3, 3, Scalar>& axes) const noexcept {
     p.store(origin.data());
     x.store(axes.data());
@@ -91,7 +91,7 @@ struct Frame {
   }
 
  private:
-  /// By an angle from a to b.
+  /// Rotates a and b by an angle in the direction from a to b.
   static void rotate(Split& a, Split& b, const Pair<Scalar>& cosine, const Pair<Scalar>& sine) noexcept {
     const Split from = a;
     a = cosine * from + sine * b;

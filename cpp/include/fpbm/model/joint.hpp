@@ -9,46 +9,48 @@
 namespace fpbm {
 
 enum class JointType : unsigned char {
-  kRevolute,    ///< Turns, within bounds [rad].
-  kContinuous,  ///< Turns, unbounded.
-  kPrismatic,   ///< Slides [m].
+  kRevolute,    ///< Rotates within bounds [rad].
+  kContinuous,  ///< Rotates without bounds [rad].
+  kPrismatic,   ///< Translates [m].
 };
 
-/// Bounds on the motion of one joint; infinite where there is none.
+/// Bounds on the motion of one joint, infinite if there is no bound.
 template <typename Scalar = double>
 struct JointBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
 
   Scalar lower = -kNone;        ///< [rad] or [m]
   Scalar upper = kNone;         ///< [rad] or [m]
-  Scalar velocity = kNone;      ///< Either way [rad/s] or [m/s].
-  Scalar acceleration = kNone;  ///< Either way [rad/s²] or [m/s²].
-  Scalar jerk = kNone;          ///< Either way [rad/s³] or [m/s³].
-  /// Toward an end, the velocity is at most −velocity_offset + √(2 deceleration · distance to it).
+  Scalar velocity = kNone;      ///< In both directions [rad/s] or [m/s].
+  Scalar acceleration = kNone;  ///< In both directions [rad/s²] or [m/s²].
+  Scalar jerk = kNone;          ///< In both directions [rad/s³] or [m/s³].
+  /// Braking envelope: toward an end, the velocity is at most −velocity_offset + √(2 deceleration · distance to the
+  /// end).
   Scalar velocity_offset = 0;   ///< [rad/s] or [m/s]
   Scalar deceleration = kNone;  ///< [rad/s²] or [m/s²]
 };
 
-/// Coupling of a joint to another, its leader: position = ratio · leader's position + offset.
+/// Coupling of a joint to another joint, the leader: position = ratio · position of the leader + offset.
 template <typename Scalar = double>
 struct Mimic {
-  int joint = -1;  ///< The leader's index in the chain, or −1: a joint with a drive of its own.
+  int joint = -1;  ///< Index of the leader in the chain, or −1 for a joint with a drive.
   Scalar ratio = 1;
   Scalar offset = 0;  ///< [rad] or [m]
 };
 
-/// One joint of a chain. Its name, for messages, is a std::string, or a std::string_view of a text that outlives it.
+/// One joint of a chain. The name, for messages, is a std::string, or a std::string_view of a text that must outlive
+/// the joint.
 template <typename Scalar = double, typename Name = std::string>
 struct Joint {
   JointType type = JointType::kRevolute;
-  Transform<Scalar> placement = {};  ///< The joint's frame in that of the joint before, both at zero.
-  Vector<3, Scalar> axis = {Scalar(0), Scalar(0), Scalar(1)};  ///< In the joint's frame; its length does not matter.
+  Transform<Scalar> placement = {};  ///< Frame of the joint in the frame of the joint before, both at position zero.
+  Vector<3, Scalar> axis = {Scalar(0), Scalar(0), Scalar(1)};  ///< In the frame of the joint, of any length.
   JointBounds<Scalar> bounds = {};
   Name name = {};
   Mimic<Scalar> mimic = {};
 };
 
-/// Bounds on the motion of all joints of an arm; infinite where there is none.
+/// Bounds on the motion of all joints of an arm, infinite if there is no bound.
 template <int N, typename Scalar = double>
 struct JointLimits {
   Vector<N, Scalar> lower;                                  ///< [rad] or [m]
@@ -56,11 +58,11 @@ struct JointLimits {
   Vector<N, Scalar> velocity;                               ///< [rad/s] or [m/s]
   Vector<N, Scalar> acceleration;                           ///< [rad/s²] or [m/s²]
   Vector<N, Scalar> jerk = unbounded(acceleration.size());  ///< [rad/s³] or [m/s³]
-  /// As in JointBounds [rad/s, rad/s²] or [m/s, m/s²].
+  /// See JointBounds. [rad/s, rad/s²] or [m/s, m/s²]
   Vector<N, Scalar> velocity_offset = filled<Vector<N, Scalar>>(acceleration.size());
   Vector<N, Scalar> deceleration = unbounded(acceleration.size());
 
-  /// No bounds at all, for dof joints.
+  /// Limits of dof joints without bounds.
   [[nodiscard]] static JointLimits none(Eigen::Index dof) {
     const Vector<N, Scalar> infinite = unbounded(dof);
     return {filled<Vector<N, Scalar>>(dof, -JointBounds<Scalar>::kNone), infinite, infinite, infinite};
@@ -89,7 +91,7 @@ struct JointLimits {
     return {lower(i), upper(i), velocity(i), acceleration(i), jerk(i), velocity_offset(i), deceleration(i)};
   }
 
-  /// The same, with no bound where the last three have not been given a size.
+  /// These limits, without bounds for jerk, velocity_offset and deceleration if these vectors have no entries.
   [[nodiscard]] JointLimits complete() const {
     const JointLimits given{lower, upper, velocity, acceleration};
     JointLimits all = *this;
@@ -99,7 +101,7 @@ struct JointLimits {
     return all;
   }
 
-  /// No bound, for dof joints.
+  /// Infinite entries for dof joints.
   [[nodiscard]] static Vector<N, Scalar> unbounded(Eigen::Index dof) {
     return filled<Vector<N, Scalar>>(dof, JointBounds<Scalar>::kNone);
   }

@@ -4,9 +4,9 @@
 
 namespace fpbm {
 
-/// Kinematics of an arm in one state: all that a scheme knows about the robot.
+/// Kinematics of an arm in one state. A scheme has no other data about the robot.
 ///
-/// Filled by an arm of model/, or by any other library that computes the first three.
+/// Filled by an arm of model/, or by any other library that computes tip, J and Jd.
 template <typename Space, int N, typename Scalar = double>
 struct Kinematics {
   static constexpr int kRows = Space::kRows;
@@ -14,21 +14,22 @@ struct Kinematics {
   typename Space::template Point<Scalar> tip;  ///< f(q), in the base frame [m, rad].
   Matrix<kRows, N, Scalar> J;                  ///< Task Jacobian: tip velocity is J qd.
   Matrix<kRows, N, Scalar> Jd;                 ///< dJ/dt along qd: tip acceleration is J qdd + Jd qd.
-  /// The arm's characteristic length [m]: what one radian counts for beside it. Makes every threshold the same for a
-  /// small arm and a large one.
+  /// Characteristic length of the arm [m], which converts radians to metres. Thresholds then do not depend on the size
+  /// of the arm.
   Scalar length = Scalar(1);
 };
 
-/// Number of rows of J as the limits' template argument. If N is a run-time number, the number of rows is one too, so
-/// that one instantiation of the limits serves all task spaces.
+/// Number of rows of J as template argument of the limits. If N is Eigen::Dynamic, this number is Eigen::Dynamic too,
+/// so that one instantiation of the limits serves all task spaces.
 template <typename Space, int N>
 inline constexpr int kLimitedRows = N == Eigen::Dynamic ? Eigen::Dynamic : Space::kRows;
 
-/// Number of the last rows of J that the schemes multiply by a length [m]: the angular ones. If N is a run-time number,
-/// positions in space and poses in the plane share one instantiation: the last row of a position is multiplied by 1.
+/// Number of the last rows of J that the schemes multiply by a length [m]: the angular rows. If N is Eigen::Dynamic,
+/// positions in space and poses in the plane share one instantiation, and the last row of a position is multiplied by
+/// 1.
 template <typename Space, int N>
 inline constexpr int kScaledRows = (N == Eigen::Dynamic && Space::kRows == 3) ? 1 : Space::kTurns;
-/// The length [m] that the schemes multiply those rows by.
+/// Length [m] by which the schemes multiply these rows.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Scalar scale_of_rows(const Kinematics<Space, N, Scalar>& kinematics) noexcept {
   return kScaledRows<Space, N> == Space::kTurns ? kinematics.length : Scalar(1);
@@ -53,14 +54,14 @@ template <typename Arm>
   return false;
 }
 
-/// x ⊖ f(q), the error of the task [m, rad]. x: the target.
+/// x ⊖ f(q), the error of the task [m, rad] for the target x.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<Space::kRows, Scalar> task_error(const Kinematics<Space, N, Scalar>& kinematics,
                                                       const typename Space::template Point<Scalar>& x) noexcept {
   return Space::template difference<Scalar>(x, kinematics.tip);
 }
 
-/// J with all rows in metres: angles count by the arm's length.
+/// J with all rows in metres: the angular rows are multiplied by the characteristic length.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Matrix<kLimitedRows<Space, N>, N, Scalar> jacobian_in_metres(
     const Kinematics<Space, N, Scalar>& kinematics) noexcept {

@@ -8,7 +8,8 @@
 
 namespace fpbm {
 
-/// From one joint's frame to the next, both with the joint's axis as z: a step [m], then a rotation about x (tilt).
+/// Transform from the frame of a joint to the frame of the next joint, both with the joint axis as z: a translation
+/// (step) [m], then a rotation about x (tilt).
 template <typename Scalar>
 struct Link {
   Vector<3, Scalar> step;
@@ -21,8 +22,8 @@ struct Link {
   }
 };
 
-/// Decomposition of a link's rotation: R = Rz(before) Rx(tilt) Rz(after). The joints on either side take up before and
-/// after.
+/// Decomposition of the rotation of a link: R = Rz(before) Rx(tilt) Rz(after). `before` and `after` are added to the
+/// angles of the joints at the two ends of the link.
 template <typename Scalar>
 struct DecomposedLink {
   Scalar before;  ///< [rad]
@@ -35,7 +36,7 @@ struct DecomposedLink {
     using std::sin;
     const auto& [p, R] = transform;
     const bool tilted = R(0, 2) != Scalar(0) || R(1, 2) != Scalar(0);
-    const bool backward = R(1, 2) > Scalar(0);  // Then by a negative tilt: |before| ≤ π/2.
+    const bool backward = R(1, 2) > Scalar(0);  // If true, the tilt is negative, so that |before| ≤ π/2.
     before = tilted ? (backward ? atan2(-R(0, 2), R(1, 2)) : atan2(R(0, 2), -R(1, 2))) : Scalar(0);
     const Scalar c = cos(before);
     const Scalar s = sin(before);
@@ -49,7 +50,7 @@ struct DecomposedLink {
   }
 };
 
-/// A rotation that takes z to the axis.
+/// A rotation that maps z to the direction of the axis.
 template <typename Scalar>
 [[nodiscard]] Matrix<3, 3, Scalar> z_to(const Vector<3, Scalar>& axis) {
   using Vector3 = Vector<3, Scalar>;

@@ -11,8 +11,8 @@
 
 namespace fpbm {
 
-/// The constants of a tree of joints: which link carries a joint, and where. Fills the placements of a RobotState, and
-/// computes columns of J and J̇ by joints.
+/// Constants of a tree of joints: the link that carries each joint, and the placement of the joint. Computes the
+/// placements of a RobotState, and the columns of J and J̇ for the joints.
 template <int Joints, typename Scalar>
 class LinkTree {
  public:
@@ -21,7 +21,7 @@ class LinkTree {
   using Axes = Screws<Joints, Scalar>;
   using Columns = typename Axes::ColumnPair;
 
-  /// source: a checked Tree or Chain. Throws std::invalid_argument unless it has as many joints as the type says.
+  /// source: a checked Tree or Chain. Throws std::invalid_argument if its number of joints is not Joints.
   template <typename Source>
   explicit LinkTree(const Source& source) : pass_(size_of(source)) {
     for (Eigen::Index i = 0; i < pass_.dof(); ++i) {
@@ -46,16 +46,16 @@ class LinkTree {
   }
 
   [[nodiscard]] int joints() const noexcept { return static_cast<int>(pass_.dof()); }
-  /// Whether joint i, counted from 0, turns: otherwise it is prismatic.
+  /// Whether joint i, counted from 0, is revolute. Otherwise, it is prismatic.
   [[nodiscard]] bool turns(Eigen::Index i) const noexcept { return pass_.turns().coeff(i) > Scalar(0); }
   /// Bits of the joints that move a link.
   [[nodiscard]] JointBits moved_by(int link) const noexcept { return moved_by_[index(link)]; }
-  /// Number of the link that carries the joint that moves a link.
+  /// Number of the parent link: the link that carries the joint of `link`.
   [[nodiscard]] int parent(int link) const noexcept { return parents_[index(link - 1)]; }
-  /// The frame of a link, in the placement of the link's joint.
+  /// Frame of a link, relative to the placement of its joint.
   [[nodiscard]] const Transform<Scalar>& end(int link) const noexcept { return ends_[index(link)]; }
 
-  /// Sets the placements and the screws of a state from positions q and rates qd of all joints.
+  /// Sets the placements and the screws of a state from the positions q and the velocities qd of all joints.
   template <typename State>
   void place(const JointVector& q, const JointVector& qd, State& state) const noexcept {
     state.p[0] = filled<Vector3>(3);
@@ -63,7 +63,7 @@ class LinkTree {
     branches_ == 0 ? place<Storing<State>>(q, qd, state) : place<StoringTree<State>>(q, qd, state);
   }
 
-  /// Calls f(i, columns, rates) with columns i and i + 1 of J and J̇ for all joints, of a point that a link moves.
+  /// Calls f(i, columns, rates) with columns i and i + 1 of J and J̇ of a point of a link, for all joints.
   template <typename State, typename F>
   [[gnu::always_inline]] void each_column(const State& state, int link, typename Axes::Point& point,
                                           const JointVector& qd, const F& f) const noexcept {
@@ -77,7 +77,7 @@ class LinkTree {
         [&](Eigen::Index i) noexcept { f(i, Columns::zero(), Columns::zero()); });
   }
 
-  /// The same of the angular rows alone.
+  /// each_column() for the angular rows only.
   template <typename State, typename F>
   [[gnu::always_inline]] void each_angular_column(const State& state, int link, const F& f) const noexcept {
     const bool slides = pass_.slides();
@@ -89,7 +89,7 @@ class LinkTree {
   }
 
  private:
-  /// Stores the placements in a state.
+  /// Callbacks of the forward pass that store the placements in a state.
   template <typename State>
   struct Storing {
     Storing(const LinkTree& tree_, State& state_) noexcept : tree(tree_), state(state_) {}
@@ -102,7 +102,7 @@ class LinkTree {
       frame.store(state.p[index(i + 1)], state.R[index(i + 1)]);
     }
   };
-  /// The same, and continues from the stored placement of the carrying link at joints that branch off.
+  /// Storing for trees: at a branch, the pass continues from the stored placement of the link that carries the joint.
   template <typename State>
   struct StoringTree : Storing<State> {
     using Storing<State>::Storing;
@@ -125,8 +125,8 @@ class LinkTree {
     (void)pass_.template operator()<true, kSlides>(starts_[0], q, qd, state.screws, Along(*this, state));
   }
 
-  /// Calls f(i, joints) with joints i and i + 1, the last first; a joint that does not move the link has no axis. Calls
-  /// still(i) where neither of both does.
+  /// Calls f(i, joints) with joints i and i + 1, from the last pair to the first. A joint that does not move the link
+  /// has a zero axis. If neither joint of a pair moves the link, calls still(i).
   template <typename State, typename F, typename Still>
   [[gnu::always_inline]] void each_pair(const State& state, int link, const F& f, const Still& still) const noexcept {
     const auto pairs = pairs_of(extent<Joints>(pass_.dof()));
@@ -154,16 +154,16 @@ class LinkTree {
   static constexpr std::size_t kLinks = static_cast<std::size_t>(kCapacity<Joints>) + 1;
   ForwardPass<Joints, Scalar> pass_;
   JointBits all_ = 0;
-  JointBits branches_ = 0;  ///< Of joints, but the first, that are not carried by the link of the joint before.
-  std::array<int, kLinks> parents_{};         ///< Of each joint, the link that carries it.
-  std::array<JointBits, kLinks> moved_by_{};  ///< Of each link, the joints that move it.
+  JointBits branches_ = 0;  ///< Bits of the joints, except the first, that the link of the joint before does not carry.
+  std::array<int, kLinks> parents_{};         ///< Number of the link that carries each joint.
+  std::array<JointBits, kLinks> moved_by_{};  ///< Bits of the joints that move each link.
   std::array<Transform<Scalar>, kLinks>
-      starts_;  ///< Of the first joint and branches at zero, in the carrier's placement.
-  std::array<Transform<Scalar>, kLinks> ends_;  ///< Of each link, the frame in the placement of the link's joint.
+      starts_;  ///< Frames of the first joint and of branches at zero, in the carrying placement.
+  std::array<Transform<Scalar>, kLinks> ends_;  ///< Frame of each link, relative to the placement of its joint.
 };
 
-/// Length of the chain from the first joint that moves a link to the link's own joint [m]. Finite ranges of prismatic
-/// joints are added. source: a Tree or a Chain.
+/// Length of the chain from the first joint that moves a link to the joint of the link [m], plus the finite ranges of
+/// prismatic joints. source: a Tree or a Chain.
 template <typename Scalar, typename Source>
 [[nodiscard]] Scalar chain_length(const Source& source, Eigen::Index link) {
   Scalar length(0);

@@ -11,10 +11,10 @@
 
 namespace fpbm {
 
-/// Manipulability w = √det(JJᵀ) of a task Jacobian (Yoshikawa 1985): the volume that its rows span, 0 at a singular
-/// posture. Unit: the product of the units of J's rows.
+/// Manipulability w = √det(JJᵀ) of a task Jacobian (Yoshikawa 1985): the volume that the rows span, 0 at a singular
+/// posture. Unit: the product of the units of the rows of J.
 ///
-/// Computed as base times height, row by row, which is accurate near singular postures.
+/// Computed as base times height, row by row. This is accurate near singular postures.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar manipulability(const Matrix<M, N, Scalar>& J) noexcept {
   using std::max;
@@ -25,7 +25,7 @@ template <int M, int N, typename Scalar>
   for (Eigen::Index i = 0; i < M; ++i) {
     const Scalar square = rows.row(i).squaredNorm();
     volume *= sqrt(square);
-    const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A row of zeros leaves the others as they are.
+    const Scalar reciprocal = Scalar(1) / max(square, tiny);  // A zero row does not change the other rows.
     for (Eigen::Index j = i + 1; j < M; ++j) {
       const Scalar along = rows.row(j).dot(rows.row(i)) * reciprocal;
       rows.row(j) -= along * rows.row(i);
@@ -34,8 +34,9 @@ template <int M, int N, typename Scalar>
   return volume;
 }
 
-/// Gradient of an arm's manipulability in a task space: ∂w/∂q_k = w tr(J⁺ ∂J/∂q_k), by n + 1 calls of its kinematics,
-/// since ∂J/∂q_k is dJ/dt along the k-th joint alone. Zero at a singular posture, where w has no gradient.
+/// Gradient of the manipulability of an arm in a task space: ∂w/∂q_k = w tr(J⁺ ∂J/∂q_k) (docs/equations.md, Secondary
+/// objectives). ∂J/∂q_k is dJ/dt for a unit velocity of joint k, so that n + 1 calls of the kinematics are needed. Zero
+/// at a singular posture, where w has no gradient.
 template <typename Space, typename Arm>
 [[nodiscard]] Vector<Arm::kDof, typename Arm::Scalar> manipulability_gradient(
     const Arm& arm, const Vector<Arm::kDof, typename Arm::Scalar>& q) noexcept {
@@ -48,7 +49,7 @@ template <typename Space, typename Arm>
   Cholesky<M, Scalar> gram;
   if (gram.factor(kinematics.J.lazyProduct(kinematics.J.transpose())) != Status::kOk) return gradient;
 
-  Matrix<M, N, Scalar> scaled = kinematics.J;  // w times the transpose of J⁺.
+  Matrix<M, N, Scalar> scaled = kinematics.J;  // w (J⁺)ᵀ
   const Scalar w = manipulability(kinematics.J);
   for (Eigen::Index j = 0; j < q.size(); ++j) scaled.col(j) = w * gram.solve(kinematics.J.col(j));
   Vector<N, Scalar> along = gradient;

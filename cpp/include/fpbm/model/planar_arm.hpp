@@ -14,8 +14,9 @@ namespace fpbm {
 
 /// Planar arm of N revolute joints: f(q) = Σᵢ lᵢ (cos θᵢ, sin θᵢ) with θᵢ = q₁ + … + qᵢ.
 ///
-/// Joint angles are relative [rad], the first from the base frame's x axis; lengths in metres. Immutable.
-/// N = Eigen::Dynamic takes the number of joints from the lengths, up to kMaxDof.
+/// Joint angles are relative to the previous link [rad], the first to the x axis of the base frame. Lengths are in
+/// metres. Immutable.
+/// With N = Eigen::Dynamic, the number of lengths is the number of joints, up to kMaxDof.
 template <int N, typename Scalar_ = double>
 class PlanarArm {
  public:
@@ -29,7 +30,7 @@ class PlanarArm {
     validation::require_positive("lengths", lengths);
   }
 
-  /// The same arm for another Scalar.
+  /// This arm with another Scalar.
   template <typename Other>
   [[nodiscard]] PlanarArm<N, Other> cast() const {
     return PlanarArm<N, Other>(lengths_.template cast<Other>());
@@ -38,13 +39,13 @@ class PlanarArm {
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(lengths_.size()); }
   [[nodiscard]] const Vector<N, Scalar>& lengths() const noexcept { return lengths_; }
 
-  /// Characteristic length: the reach [m].
+  /// Characteristic length: the sum of the lengths of the links [m].
   [[nodiscard]] Scalar length() const noexcept { return reach_; }
 
-  /// Unbounded.
+  /// Limits without bounds.
   [[nodiscard]] JointLimits<N, Scalar> limits() const { return JointLimits<N, Scalar>::none(lengths_.size()); }
 
-  /// Tip and J at q, for the task spaces Position<2> and PlanarPose; does not touch Jd.
+  /// Tip and J at q, for the task spaces Position<2> and PlanarPose. Jd does not change.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     forward_pass<false>(q, q, out);
@@ -60,9 +61,9 @@ class PlanarArm {
  private:
   using Two = Pair<Scalar>;
 
-  /// A pass to the tip for the links, a pass back for the sums over all links beyond a joint:
-  /// column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
-  /// The tip's angle is θₙ.
+  /// The pass from base to tip computes the angles of the links. The pass back computes the sums over all links beyond
+  /// a joint: column j of J is Σ_{i≥j} lᵢ (−sin θᵢ, cos θᵢ), column j of Jd is −Σ_{i≥j} θ̇ᵢ lᵢ (cos θᵢ, sin θᵢ).
+  /// The angle of the tip is θₙ.
   template <bool kWithRate, typename Space>
   [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
                                                     [[maybe_unused]] const Vector<N, Scalar>& qd,
@@ -117,7 +118,7 @@ class PlanarArm {
     }
   }
 
-  /// Sums of the entries up to each.
+  /// Cumulative sums of the entries.
   [[nodiscard]] static Angles<N, Scalar> running_sum(const Vector<N, Scalar>& of) noexcept {
     Angles<N, Scalar> result = angles_of<N, Scalar>(of.size());
     Scalar sum(0);

@@ -7,11 +7,12 @@
 #include "fpbm/model/dh.hpp"
 #include "fpbm/model/joint.hpp"
 
-/// Arms as their makers specify them, from the base frame to the flange frame.
+/// Arms as specified by their manufacturers, from the base frame to the flange frame.
 ///
-/// Each is a chain. Build a SerialArm<7> or SerialArm<6> from it, or change it first: chain.tip = chain.tip * tool adds
-/// a tool. All run in a Tracker as they come. Where the maker publishes no bound on acceleration, the figure here is
-/// another's, as said there: set chain.joints[i].bounds.acceleration to your own. Only Franka publish bounds on jerk.
+/// Each preset is a chain. Build a SerialArm<7> or SerialArm<6> from the chain, or change the chain first: chain.tip =
+/// chain.tip * tool adds a tool. All presets run in a Tracker without changes. If a manufacturer publishes no bounds on
+/// acceleration, the values are from the source in the comment of the preset: set chain.joints[i].bounds.acceleration
+/// to your own values. Only Franka publishes bounds on jerk.
 namespace fpbm::presets {
 
 namespace arms {
@@ -20,7 +21,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kRight = 90.0 * kDegree;
 constexpr double kHalfTurn = 180.0 * kDegree;
 
-/// The same both ways.
+/// Symmetric bounds of a joint.
 struct BothWays {
   double position;      ///< [deg]
   double velocity;      ///< [deg/s]
@@ -29,7 +30,7 @@ struct BothWays {
   operator JointBounds<>() const { return {-position * kDegree, position * kDegree, velocity * kDegree, acceleration}; }
 };
 
-/// The chain with bounds, and with joints named name1, name2, …
+/// The chain with these bounds, and with joints named name1, name2, …
 template <typename Bounds>
 [[nodiscard]] Chain<> driven(Chain<> chain, const std::string& name, const std::vector<Bounds>& bounds) {
   for (std::size_t i = 0; i < bounds.size(); ++i) {
@@ -43,8 +44,8 @@ template <typename Bounds>
 
 /// Franka Emika Panda, 7 joints, to its flange (link 8 in ROS).
 ///
-/// Franka Control Interface documentation of August 2025, "Robot and interface specifications": "Limits for Panda", and
-/// "Denavit–Hartenberg parameters", by Craig's convention; its successor has the same ones.
+/// Source: Franka Control Interface documentation of August 2025, "Robot and interface specifications": "Limits for
+/// Panda", and "Denavit–Hartenberg parameters" in Craig's convention, which also hold for the Franka Research 3.
 [[nodiscard]] inline Chain<> panda() {
   using arms::kRight;
   Chain<> chain = modified_dh<double>({
@@ -68,11 +69,11 @@ template <typename Bounds>
   return arms::driven(chain, "panda_joint", bounds);
 }
 
-/// Franka Research 3, 7 joints, to its flange: the Panda's links.
+/// Franka Research 3, 7 joints, to its flange. The links are the links of the Panda.
 ///
-/// Bounds on position and velocity, and those on velocity near the ends, from the robot's URDF in libfranka 0.21,
-/// test/fr3.urdf; accelerations and jerks from the Franka Control Interface documentation of August 2025, "Limits for
-/// Franka Research 3".
+/// Sources: bounds on position, on velocity, and on velocity near the ends from the URDF of the robot in libfranka
+/// 0.21, test/fr3.urdf; accelerations and jerks from the Franka Control Interface documentation of August 2025, "Limits
+/// for Franka Research 3".
 [[nodiscard]] inline Chain<> fr3() {
   constexpr double kAcceleration = 10.0;
   constexpr double kJerk = 5000.0;
@@ -91,11 +92,11 @@ template <typename Bounds>
 
 /// KUKA LBR iiwa 14 R820, 7 joints, to its flange.
 ///
-/// KUKA "LBR iiwa 7 R800, LBR iiwa 14 R820, Specification" V5 of January 2015: figure 4-4, "Working envelope", and
-/// section 4.3.2, "Axis data". It has no table of Denavit-Hartenberg parameters. The signs of alpha are such that
-/// positive A2 and A6, and negative A4, tilt the upright arm to +x, as on the robot. KUKA publish no accelerations:
-/// these were measured on an arm (C. Larsen, "Including a Collaborative Robot in Digital Twin Manufacturing Systems",
-/// Chalmers 2019, table 4; by way of Drake, pull requests 16377 and 20921).
+/// Source: KUKA "LBR iiwa 7 R800, LBR iiwa 14 R820, Specification" V5 of January 2015, figure 4-4, "Working envelope",
+/// and section 4.3.2, "Axis data". The document has no table of Denavit-Hartenberg parameters. The signs of alpha are
+/// chosen so that positive A2 and A6, and negative A4, tilt the upright arm to +x, as on the robot. KUKA publishes no
+/// accelerations. The values here were measured on an arm (C. Larsen, "Including a Collaborative Robot in Digital Twin
+/// Manufacturing Systems", Chalmers 2019, table 4; cited in Drake, pull requests 16377 and 20921).
 [[nodiscard]] inline Chain<> iiwa14() {
   using arms::kRight;
   const Chain<> chain = classic_dh<double>({
@@ -117,11 +118,11 @@ template <typename Bounds>
 
 /// Kinova Gen3 with a spherical wrist, 7 joints, to the frame of its interface module.
 ///
-/// Kinova "Gen3 Ultra lightweight robot, User Guide" R07 of 2022: table 94, "7 DoF spherical Classical DH parameters",
-/// whose row of the base is alpha of the first joint here; tables 39 and 40 for the bounds. The guide rounds lengths to
-/// 0.1 mm and leaves out the offset at joint 6; these here are from GEN3_URDF_V12 of Kinova's kortex_description, which
-/// has all digits. Bounds of acceleration depend on the mode of control; these are the hard ones of Kinova's
-/// ros_kortex, gen3_move_it_config/config/7dof/hard_joint_limits.yaml.
+/// Source: Kinova "Gen3 Ultra lightweight robot, User Guide" R07 of 2022, table 94, "7 DoF spherical Classical DH
+/// parameters", whose row of the base is alpha of the first joint here; tables 39 and 40 for the bounds. The guide
+/// rounds lengths to 0.1 mm and omits the offset at joint 6. The lengths here are from GEN3_URDF_V12 of Kinova's
+/// kortex_description, which has all digits. Bounds on acceleration depend on the control mode. The bounds here are the
+/// hard limits of Kinova's ros_kortex, gen3_move_it_config/config/7dof/hard_joint_limits.yaml.
 [[nodiscard]] inline Chain<> gen3() {
   using arms::kHalfTurn;
   using arms::kRight;
@@ -148,8 +149,8 @@ template <typename Bounds>
 
 namespace arms {
 
-/// An arm of Universal Robots, which have one shape. a of the two long links [m], d of joints 1, 4, 5 and 6 [m], speeds
-/// of the shoulder's two joints and of the four others [deg/s].
+/// Arm of Universal Robots; all models have the same structure. a: of the two long links [m]. d: of joints 1, 4, 5 and
+/// 6 [m]. speeds: of the two shoulder joints and of the four other joints [deg/s].
 [[nodiscard]] inline Chain<> universal_robot(const std::vector<double>& a, const std::vector<double>& d,
                                              const std::vector<double>& speeds) {
   Chain<> chain = classic_dh<double>({
@@ -173,22 +174,22 @@ namespace arms {
 }  // namespace arms
 
 /// Universal Robots UR5e, 6 joints, to its flange (tool0 in ROS), from the base frame of its controller (base in ROS,
-/// which is base_link turned half round).
+/// which is base_link rotated by 180°).
 ///
-/// Universal Robots, "DH Parameters for calculations of kinematics and dynamics", and the user manual of the e-Series
-/// 5.8 for the bounds of position and velocity; ROS halves the elbow's range for its planners. UR publish no
-/// accelerations, the drives being bounded by torque: 5 rad/s² is the cautious figure of their ROS driver,
-/// ur_moveit_config/config/joint_limits.yaml.
+/// Sources: Universal Robots, "DH Parameters for calculations of kinematics and dynamics", and the user manual of the
+/// e-Series 5.8 for the bounds on position and velocity. For its planners, ROS halves the range of the elbow. Universal
+/// Robots publishes no accelerations, since the drives are limited by torque. 5 rad/s² is the conservative value of its
+/// ROS driver, ur_moveit_config/config/joint_limits.yaml.
 [[nodiscard]] inline Chain<> ur5e() {
   return arms::universal_robot({-0.425, -0.3922}, {0.1625, 0.1333, 0.0997, 0.0996}, {180.0, 180.0});
 }
 
-/// Universal Robots UR10e, 6 joints, as the UR5e.
+/// Universal Robots UR10e, 6 joints, with the frames and sources of the UR5e.
 [[nodiscard]] inline Chain<> ur10e() {
   return arms::universal_robot({-0.6127, -0.57155}, {0.1807, 0.17415, 0.11985, 0.11655}, {120.0, 180.0});
 }
 
-/// A preset by name, for programs that learn it at run time.
+/// Preset with its name, for programs that read the name at run time.
 struct Preset {
   const char* name;
   Chain<> (*chain)();

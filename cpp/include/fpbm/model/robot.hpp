@@ -13,10 +13,11 @@
 
 namespace fpbm {
 
-/// A tree of joints, of which N have a drive and others follow them, and whose links tasks refer to. Immutable.
+/// Tree of joints, of which N have a drive and the others follow a drive. Tasks refer to the links of the robot.
+/// Immutable.
 ///
-/// Link 0 is the base, link i the link that joint i moves, counted from 1, with the joint's frame after its motion.
-/// kTip is the tip of a chain. Joints: their number, where it is not N.
+/// Link 0 is the base. Link i, counted from 1, is the link that joint i moves; its frame is the frame of the joint
+/// after the motion of the joint. kTip is the tip of a chain. Joints: number of joints, if it is not N.
 template <int N, typename Scalar_ = double, int Joints = N>
 class Robot {
  public:
@@ -27,7 +28,7 @@ class Robot {
   static constexpr int kDof = N;
   static constexpr int kTip = -1;
 
-  /// Throws std::invalid_argument as require_joints() and Drives do.
+  /// Throws std::invalid_argument under the conditions of require_joints() and Drives.
   template <int Length = Eigen::Dynamic>
   explicit Robot(const Chain<Scalar, Length>& chain) : tree_(checked(chain)), drives_(chain) {
     tip_link_ = joints();
@@ -35,7 +36,7 @@ class Robot {
     set_length(chain_length<Scalar>(chain, tip_link_) + norm(chain.tip.p));
   }
 
-  /// Throws std::invalid_argument as require_tree() and Drives do.
+  /// Throws std::invalid_argument under the conditions of require_tree() and Drives.
   template <int Length, int Frames>
   explicit Robot(const Tree<Scalar, Length, Frames>& tree) : tree_(checked(tree)), drives_(tree) {
     masses_[0] = tree.base;
@@ -52,24 +53,24 @@ class Robot {
   }
 
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(drives_.count()); }
-  /// Number of joints, those that follow others included.
+  /// Number of joints, including joints that follow others.
   [[nodiscard]] int joints() const noexcept { return tree_.joints(); }
-  /// Bounds within which all joints keep theirs.
+  /// Bounds on the drives within which all joints keep their bounds.
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return drives_.limits(); }
-  /// Characteristic length [m]: of a chain as SerialArm::length(); of a tree that of the longest chain to a frame or a
-  /// joint.
+  /// Characteristic length [m]. Of a chain: SerialArm::length(). Of a tree: the length of the longest chain to a frame
+  /// or a joint.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
   [[nodiscard]] const Drives<N, Joints, Scalar>& drives() const noexcept { return drives_; }
-  /// Whether joint i, counted from 0, turns: otherwise it is prismatic.
+  /// Whether joint i, counted from 0, is revolute. Otherwise, it is prismatic.
   [[nodiscard]] bool turns(Eigen::Index i) const noexcept { return tree_.turns(i); }
   /// Bits of the joints that move a link.
   [[nodiscard]] JointBits moved_by(int link) const noexcept { return tree_.moved_by(number_of(link)); }
-  /// Number of the link that carries the joint that moves a link.
+  /// Number of the parent link: the link that carries the joint of `link`.
   [[nodiscard]] int parent(int link) const noexcept { return tree_.parent(number_of(link)); }
-  /// Mass of a link, and its centre seen from the link's joint.
+  /// Mass of a link, with its centre relative to the placement of the joint.
   [[nodiscard]] const LinkMass<Scalar>& mass(int link) const noexcept { return masses_[index(link)]; }
 
-  /// Throws std::invalid_argument unless link is 0 to joints(), or kTip of a chain.
+  /// Throws std::invalid_argument unless link is 0 to joints(), or kTip for a chain.
   void require_link(const char* name, int link) const {
     if (link == kTip && tip_link_ == kTip) {
       validation::fail(name, link, "the number of a link: a tree has no tip, name one of its frames");
@@ -80,7 +81,7 @@ class Robot {
     }
   }
 
-  /// Placements of all joints at q, for tasks at velocity level: their J̇ is left as it is.
+  /// Placements of all joints at q, for tasks at velocity level, whose J̇ does not change.
   void update(const Vector<N, Scalar>& q, State& state) const noexcept {
     update(q, filled<Vector<N, Scalar>>(dof()), state);
     state.moves = false;
@@ -100,38 +101,39 @@ class Robot {
     if constexpr (N == Joints) tree_.place(q, qd, state);
   }
 
-  /// A frame fixed to a link, at offset in the link's frame, seen from the link's joint. Constant: for the constructor
-  /// of what asks for frame() at every tick.
+  /// Frame fixed to a link, relative to the placement of the joint of the link. offset: the frame relative to the frame
+  /// of the link. The result is constant: compute it once in the constructor of an object that calls frame() at every
+  /// tick.
   [[nodiscard]] Transform<Scalar> in_joint(int link, const Transform<Scalar>& offset) const noexcept {
     return (link == kTip ? tip_ : tree_.end(link)) * offset;
   }
-  /// That frame in the base frame. seen: in_joint().
+  /// A frame of a link in the base frame. seen: result of in_joint().
   [[nodiscard]] Transform<Scalar> frame(const State& state, int link, const Transform<Scalar>& seen) const noexcept {
     return state.placement(index(number_of(link))) * seen;
   }
 
-  /// Its axes, the columns. seen: those of in_joint().
+  /// Axes of a frame of a link in the base frame, as columns. seen: R of in_joint().
   [[nodiscard]] Matrix<3, 3, Scalar> axes(const State& state, int link,
                                           const Matrix<3, 3, Scalar>& seen) const noexcept {
     return times(state.R[index(number_of(link))], seen);
   }
-  /// Its origin. seen: in_joint().
+  /// Origin of a frame of a link in the base frame [m]. seen: p of in_joint().
   [[nodiscard]] Vector3 point(const State& state, int link, const Vector3& seen) const noexcept {
     const std::size_t joint = index(number_of(link));
     const Vector3 turned = times(state.R[joint], seen);
     return entrywise(turned, [&](Eigen::Index i) { return state.p[joint].coeff(i) + turned.coeff(i); });
   }
-  /// Angular velocity of a link, in the base frame's axes [rad/s].
+  /// Angular velocity of a link, along the axes of the base frame [rad/s].
   [[nodiscard]] Vector3 angular_velocity(const State& state, int link) const noexcept {
     return state.angular_velocity(number_of(link));
   }
 
-  /// Calls f(i, columns, rates) with columns i and i + 1 of J and of J̇, in the base frame's axes, of a point p of a
-  /// link: linear rows [m] and angular ones [rad]. Returns the velocity of the point [m/s].
+  /// Calls f(i, columns, rates) with columns i and i + 1 of J and of J̇ of a point p of a link, along the axes of the
+  /// base frame: linear rows [m] above angular rows [rad]. Returns the velocity of the point [m/s].
   ///
-  /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a joint that turns, [z; 0] for one that slides. That of J̇ is
-  /// [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md). Columns of joints beyond the link, and J̇
-  /// of a state without velocities, are 0.
+  /// Column i of J is [l; a] = [z × (p − pᵢ); z] for a revolute joint, and [z; 0] for a prismatic joint. Column i of J̇
+  /// is [wᵢ × l + a × uᵢ; wᵢ × a], where uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md, Time derivative of J). The columns of
+  /// joints beyond the link are 0. J̇ is 0 if the state has no velocities.
   template <typename F>
   [[gnu::always_inline]] Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {
@@ -142,7 +144,7 @@ class Robot {
     return point.velocity();
   }
 
-  /// The same of the angular rows alone.
+  /// columns() for the angular rows only.
   template <typename F>
   [[gnu::always_inline]] void angular_columns(const State& state, int link, const F& f) const noexcept {
     if constexpr (Drives_::kMayFollow) {
@@ -156,8 +158,8 @@ class Robot {
     tree_.each_angular_column(state, number_of(link), f);
   }
 
-  /// J and J̇ of a point p of a link, as columns(), as matrices: linear rows, or linear and then angular ones. Returns
-  /// the velocity of the point.
+  /// J and J̇ of columns() as matrices with 3 linear rows, or with 3 linear above 3 angular rows. Returns the velocity
+  /// of the point [m/s].
   template <int M>
   Vector3 jacobian(const State& state, int link, const Vector3& p, Matrix<M, N, Scalar>& J,
                    Matrix<M, N, Scalar>& Jd) const noexcept {
@@ -170,7 +172,7 @@ class Robot {
     });
   }
 
-  /// Rates of all joints in a state [rad/s] or [m/s].
+  /// Velocities of all joints in a state [rad/s] or [m/s].
   [[nodiscard]] const Vector<Joints, Scalar>& joint_rates(const State& state) const noexcept {
     if constexpr (N == Joints) {
       return drives_.follows() ? state.joint_qd : state.qd;
@@ -178,7 +180,7 @@ class Robot {
       return state.joint_qd;
     }
   }
-  /// Columns for the drives from those for all joints.
+  /// Sets columns of the drives from columns of all joints.
   template <int M>
   void set_by_drive(const Matrix<M, Joints, Scalar>& columns, Matrix<M, N, Scalar>& to) const noexcept {
     if constexpr (Drives_::kMayFollow) {
@@ -205,7 +207,7 @@ class Robot {
   [[nodiscard]] static std::size_t index(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] int number_of(int link) const noexcept { return link == kTip ? tip_link_ : link; }
 
-  /// As columns(), of a robot with joints that follow others: each column of a drive is a sum over joints.
+  /// columns() for a robot with joints that follow others: the column of a drive is a sum over joints.
   template <typename F>
   Vector3 columns_of_drives(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     Matrix<6, Joints, Scalar> J;
@@ -230,7 +232,7 @@ class Robot {
   Drives_ drives_;
   std::array<LinkMass<Scalar>, static_cast<std::size_t>(kCapacity<Joints>) + 1> masses_;
   int tip_link_ = kTip;
-  Transform<Scalar> tip_;  ///< From the last joint's placement.
+  Transform<Scalar> tip_;  ///< Relative to the placement of the last joint.
   Scalar length_{1};       ///< [m]
 };
 

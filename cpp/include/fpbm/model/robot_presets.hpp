@@ -8,11 +8,10 @@
 
 namespace fpbm::presets {
 
-/// Distance of each of the two Pandas from the middle between them, along y [m].
+/// Distance of the base of each of the two Pandas from the middle between them, along y [m].
 inline constexpr double kPandaOffset = 0.4;
 
-/// Two Pandas at a table, side by side, 0.8 m apart along y: "right" and "left", with the frames right_tip and
-/// left_tip.
+/// Two Pandas at a table, 0.8 m apart along y: "right" and "left", with the frames right_tip and left_tip.
 [[nodiscard]] inline Tree<> two_pandas() {
   Tree<> tree;
   Transform<> place;
@@ -25,11 +24,11 @@ inline constexpr double kPandaOffset = 0.4;
 
 namespace humanoids {
 
-/// A joint as a URDF file has it.
+/// Joint in the form of a URDF file.
 struct Row {
   const char* name;
   Vector<3> origin;  ///< [m]
-  Vector<3> turn;    ///< Roll, pitch, yaw [rad]
+  Vector<3> turn;    ///< Roll, pitch, yaw [rad].
   Vector<3> axis;
   double lower;     ///< [rad]
   double upper;     ///< [rad]
@@ -37,7 +36,7 @@ struct Row {
   LinkMass<> moved;
 };
 
-/// Adds a joint to a tree; a joint of the right arm is the mirror image of the left one.
+/// Adds a joint to a tree. A joint of the right arm is the mirror image of the joint of the left arm.
 inline void add(Tree<>& tree, const Row& row, int parent, const std::string& side = "") {
   const bool mirrored = side == "right_";
   const auto mirror = [&](Vector<3> point) {
@@ -45,7 +44,7 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
     return point;
   };
   const double sign = mirrored ? -1.0 : 1.0;
-  const bool opposite = mirrored && row.axis(1) == 0.0;  // Turns about x and z change their signs.
+  const bool opposite = mirrored && row.axis(1) == 0.0;  // Rotations about x and z change their sign.
   TreeJoint<> each;
   each.joint.name = side + row.name + "_joint";
   each.joint.placement.p = mirror(row.origin);
@@ -62,10 +61,10 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
 }  // namespace humanoids
 
 /// Upper body of a Unitree G1 (29 joints): waist and arms, 17 joints, with the frames left_wrist_yaw_link and
-/// right_wrist_yaw_link. The pelvis is the base, with the masses of the legs, which are held straight.
+/// right_wrist_yaw_link. The pelvis is the base. Its mass includes the legs, which are held straight.
 ///
-/// From g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause), whose velocities are those of the motors without
-/// load. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are rounded to 1 mg, and their
+/// Source: g1_29dof_rev_1_0.urdf of Unitree's unitree_ros (BSD-3-Clause). Its velocities are the no-load velocities of
+/// the motors. Bounds on acceleration are not published: 20 rad/s² is a choice. Masses are rounded to 1 mg, and their
 /// centres to 1 µm.
 [[nodiscard]] inline Tree<> g1_upper_body() {
   using humanoids::Row;
@@ -104,11 +103,11 @@ inline void add(Tree<>& tree, const Row& row, int parent, const std::string& sid
     }
     tree.frames.push_back({side + "wrist_yaw_link", link, {}});
   }
-  tree.joints[10].joint.placement.p(1) = -0.10021;  // Where the file is not symmetric.
+  tree.joints[10].joint.placement.p(1) = -0.10021;  // Not symmetric in the file.
   return tree;
 }
 
-/// A preset by name, for programs that learn it at run time.
+/// Preset with its name, for programs that read the name at run time.
 struct RobotPreset {
   const char* name;
   Tree<> (*tree)();

@@ -11,30 +11,30 @@
 
 namespace fpbm {
 
-/// The axes of a chain's joints, from which J and Jd follow.
+/// Axes of the joints of a chain, from which J and Jd are computed.
 ///
-/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a joint that turns about the axis zᵢ through pᵢ, with the tip at p, and
-/// [zᵢ; 0] for one that slides along it. Where it is [lᵢ; aᵢ], that of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], with
-/// wᵢ = Σ_{j≤i} q̇ⱼ aⱼ and uᵢ = Σ_{j>i} q̇ⱼ lⱼ: docs/equations.md proves it. Joints are taken two by two.
+/// Column i of J is [zᵢ × (p − pᵢ); zᵢ] for a revolute joint with the axis zᵢ through pᵢ and the tip at p, and [zᵢ; 0]
+/// for a prismatic joint along zᵢ. If this column is [lᵢ; aᵢ], column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], with wᵢ
+/// = Σ_{j≤i} q̇ⱼ aⱼ and uᵢ = Σ_{j>i} q̇ⱼ lⱼ (docs/equations.md, Time derivative of J). Joints are computed in pairs.
 template <int N, typename Scalar>
 class Screws {
  public:
   using Two = Pair<Scalar>;
-  using Two3 = Vector<3, Two>;  ///< Vectors of two joints, side by side.
+  using Two3 = Vector<3, Two>;  ///< Vectors of two joints, as a vector of pairs.
 
-  /// A joint's axis, a point of it, and the angular velocity of what the joint moves.
+  /// Axis of a joint, a point of the axis, and the angular velocity of the link that the joint moves.
   struct Joint {
     SplitVector<Scalar> axis;
     SplitVector<Scalar> point;
     SplitVector<Scalar> w;
   };
 
-  /// Joints i and i + 1, where there is none a Joint{}. i is even.
+  /// Sets joints i and i + 1, where i is even. A joint that does not exist is Joint{}.
   void set(Eigen::Index i, const Joint& a, const Joint& b) noexcept {
     joints_[static_cast<std::size_t>(i / 2)] = {both(a.axis, b.axis), both(a.point, b.point), both(a.w, b.w)};
   }
 
-  /// Columns of two joints, of J or of Jd.
+  /// Columns of J or Jd for two joints.
   struct ColumnPair {
     Two3 linear;
     Two3 angular;
@@ -45,7 +45,7 @@ class Screws {
               entrywise(a.linear, [&](Eigen::Index k) { return a.angular.coeff(k) - b.angular.coeff(k); })};
     }
 
-    /// As columns i and, where there is one, i + 1 of a matrix of six rows, or of the three linear ones.
+    /// Stores columns i and, if it exists, i + 1 of a matrix of six rows, or of three linear rows.
     template <typename To>
     [[gnu::always_inline]] void store(To& to, Eigen::Index i) const noexcept {
       constexpr int M = To::RowsAtCompileTime;
@@ -57,7 +57,7 @@ class Screws {
                    firsts<Scalar>(angular(1), angular(2)), &to.coeffRef(0, i));
     }
 
-    /// Columns i and i + 1 of a matrix of six rows; zeros where there is none.
+    /// Loads columns i and i + 1 of a matrix of six rows. A column that does not exist is zero.
     template <typename From>
     [[nodiscard]] static ColumnPair load(const From& from, Eigen::Index i) noexcept {
       const auto two = [&](Eigen::Index row) {
@@ -79,12 +79,12 @@ class Screws {
     }
   };
 
-  /// A point that the joints move [m], and uᵢ of the current pair of joints [m/s].
+  /// Point that the joints move [m], and uᵢ of the current pair of joints [m/s].
   class Point {
    public:
     explicit Point(const SplitVector<Scalar>& p) noexcept : p_(both(p, p)), u_(both({}, {})) {}
 
-    /// Velocity of the point [m/s]. Call after rates() was called for all joints that move the point.
+    /// Velocity of the point [m/s]. Call this function after rates() was called for all joints that move the point.
     [[nodiscard]] Vector<3, Scalar> velocity() const noexcept {
       return entrywise_as<Scalar>(u_, [&](Eigen::Index k) { return u_.coeff(k).first(); });
     }
@@ -93,16 +93,16 @@ class Screws {
     friend class Screws;
 
     Two3 p_;
-    Two3 u_;  ///< Of a pair of joints, then of the joint before the pair, twice.
+    Two3 u_;  ///< uᵢ of a pair of joints; after rates(), the value for the joint before the pair, in both entries.
   };
 
-  /// Two joints side by side.
+  /// Two joints as vectors of pairs.
   struct JointPair {
     Two3 axis;
     Two3 point;
     Two3 w;
 
-    /// Only those whose bits are set have an axis.
+    /// The pair, in which only joints whose bits are set have an axis.
     [[nodiscard]] JointPair only(JointBits bits) const noexcept {
       const Two mask(Scalar(bits & 1U), Scalar(bits >> 1 & 1U));
       return {entrywise(axis, [&](Eigen::Index k) { return mask * axis.coeff(k); }), point, w};
@@ -128,7 +128,8 @@ class Screws {
             entrywise(axis, [&](Eigen::Index k) { return turn * axis.coeff(k); })};
   }
 
-  /// Those of Jd along qd. Call once for each pair of joints that move the point, those nearer the point first.
+  /// Columns i and i + 1 of Jd along qd. Call once for each pair of joints that move the point, in the order from the
+  /// point to the base.
   [[nodiscard, gnu::always_inline]] static ColumnPair rates(Eigen::Index i, const JointPair& joints,
                                                             const ColumnPair& columns, Point& point,
                                                             const Vector<N, Scalar>& qd) noexcept {
@@ -143,7 +144,7 @@ class Screws {
     return {entrywise(turning, [&](Eigen::Index k) { return turning.coeff(k) + carried.coeff(k); }), cross<Two>(w, a)};
   }
 
-  /// The angular rows of columns(), and their rates.
+  /// Angular rows of columns(), and of rates().
   [[nodiscard, gnu::always_inline]] static Two3 angular_columns(Eigen::Index i, const JointPair& joints,
                                                                 const Vector<N, Scalar>& turns, bool slides) noexcept {
     const Two turn = slides ? two_of(turns, i) : Two(Scalar(1));

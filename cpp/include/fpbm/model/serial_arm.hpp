@@ -20,18 +20,18 @@
 
 namespace fpbm {
 
-/// Any chain of N revolute, continuous and prismatic joints, in space. Immutable.
+/// Chain of N revolute, continuous and prismatic joints in space. Immutable.
 ///
-/// Joint positions in radians or metres; the first joint's placement is given in the base frame.
-/// N = Eigen::Dynamic takes the number of joints from the chain, up to kMaxDof.
+/// Joint positions are in radians or metres. The placement of the first joint is given in the base frame.
+/// With N = Eigen::Dynamic, the chain determines the number of joints, up to kMaxDof.
 template <int N, typename Scalar_ = double>
 class SerialArm {
  public:
   using Scalar = Scalar_;
   static constexpr int kDof = N;
 
-  /// Throws std::invalid_argument where the number of joints is not N or exceeds kMaxDof, an axis is zero, a number is
-  /// not finite, a placement's R is no rotation, or a joint's lower bound is not below its upper.
+  /// Throws std::invalid_argument if the number of joints is not N or exceeds kMaxDof, an axis is zero, a number is not
+  /// finite, R of a placement is not a rotation, or a lower bound is not below the upper bound.
   template <int Length = Eigen::Dynamic>
   explicit SerialArm(const Chain<Scalar, Length>& chain)
       : pass_(require_chain(chain, N)), limits_(JointLimits<N, Scalar>::none(pass_.dof())) {
@@ -64,7 +64,7 @@ class SerialArm {
     tip_ = {Twice<Scalar>(cos(after)), Twice<Scalar>(sin(after))};
   }
 
-  /// The same arm for another Scalar.
+  /// This arm with another Scalar.
   template <typename Other>
   [[nodiscard]] SerialArm<N, Other> cast() const {
     return SerialArm<N, Other>(*this);
@@ -73,8 +73,8 @@ class SerialArm {
   [[nodiscard]] int dof() const noexcept { return static_cast<int>(pass_.dof()); }
   [[nodiscard]] const JointLimits<N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Characteristic length [m]: the way from the first joint to the tip, from joint to joint, with the finite ranges of
-  /// prismatic joints. 1 where that is zero.
+  /// Characteristic length [m]: the sum of the distances from joint to joint and to the tip, plus the finite ranges of
+  /// prismatic joints. If the sum is zero, 1.
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
   /// Tip, J and Jd at (q, qd), for the task spaces Position<3> and Pose.
@@ -84,7 +84,7 @@ class SerialArm {
     pass_.slides() ? forward_pass<true, true>(q, qd, out) : forward_pass<true, false>(q, qd, out);
   }
 
-  /// Tip and J at q; does not touch Jd.
+  /// Tip and J at q. Jd does not change.
   template <typename Space>
   void kinematics(const Vector<N, Scalar>& q, Kinematics<Space, N, Scalar>& out) const noexcept {
     pass_.slides() ? forward_pass<false, true>(q, q, out) : forward_pass<false, false>(q, q, out);
@@ -102,7 +102,7 @@ class SerialArm {
         length_(static_cast<Scalar>(arm.length_)),
         limits_(arm.limits_.template cast<Scalar>()) {}
 
-  /// Tip, J and Jd. One function serves chains without prismatic joints, another serves the others.
+  /// Tip, J and Jd. Chains with and without prismatic joints have separate instantiations.
   template <bool kWithRate, bool kSlides, typename Space>
   [[gnu::flatten, gnu::noinline]] void forward_pass(const Vector<N, Scalar>& q,
                                                     [[maybe_unused]] const Vector<N, Scalar>& qd,
@@ -111,8 +111,8 @@ class SerialArm {
     static_assert(kWithOrientation || std::is_same_v<Space, Position<3>>,
                   "a serial arm has tasks Position<3> and Pose");
     using Axes = Screws<N, Scalar>;
-    // One object: g++ keeps its members in memory. A separate tip would take registers that the columns need, 3 % of
-    // the kinematics' instructions (make count).
+    // As members of one object, g++ keeps axes and tip in memory. A separate tip would occupy registers that the
+    // columns need, which costs 3 % of the instructions of the kinematics (make count).
     struct Pass {
       Axes axes;
       typename Axes::Point tip{{}};
@@ -140,8 +140,8 @@ class SerialArm {
   }
 
   ForwardPass<N, Scalar> pass_;
-  Transform<Scalar> base_;  ///< The first joint's frame at zero.
-  FixedTurn<Scalar> tip_;   ///< About z, from the frame of the last link's end to the tip's.
+  Transform<Scalar> base_;  ///< Frame of the first joint at position zero.
+  FixedTurn<Scalar> tip_;   ///< Rotation about z from the frame at the end of the last link to the frame of the tip.
   Scalar length_{0};        ///< [m]
   JointLimits<N, Scalar> limits_;
 };

@@ -6,8 +6,8 @@
 
 namespace fpbm {
 
-/// Posture k of a sequence that fills the ranges of joints evenly, those without ends from −3 to 3: Weyl's, multiples
-/// of the roots of the primes, modulo 1.
+/// Posture k of a sequence that fills the ranges of the joints evenly: Weyl's sequence, with multiples of the square
+/// roots of the primes, modulo 1. A missing bound is replaced by −3 or 3 [rad or m].
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> spread_posture(const JointLimits<N, Scalar>& limits, int k) {
   constexpr int kPrimes[kMaxDof] = {2,   3,   5,   7,   11,  13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,

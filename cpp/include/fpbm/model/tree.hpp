@@ -9,19 +9,19 @@
 
 namespace fpbm {
 
-/// Mass of a link, and where its centre is in the link's frame.
+/// Mass of a link, and its centre in the frame of the link.
 template <typename Scalar = double>
 struct LinkMass {
   Scalar mass = 0;                                               ///< [kg]
   Vector<3, Scalar> centre = {Scalar(0), Scalar(0), Scalar(0)};  ///< [m]
 };
 
-/// A joint of a tree, the link that carries it, and the mass of the link that it moves. Link 0 is the base, link i + 1
-/// the one that joint i moves, with the joint's frame after its motion.
+/// Joint of a tree, the link that carries the joint, and the mass of the link that the joint moves. Link 0 is the base.
+/// Joint i moves link i + 1, whose frame is the frame of the joint after the motion of the joint.
 template <typename Scalar = double, typename Name = std::string>
 struct TreeJoint {
-  Joint<Scalar, Name> joint = {};  ///< Placed in the frame of the link that carries it.
-  int parent = 0;                  ///< Number of that link: at most the joint's index.
+  Joint<Scalar, Name> joint = {};  ///< Placed in the frame of the link that carries the joint.
+  int parent = 0;                  ///< Number of the link that carries the joint: at most the index of the joint.
   LinkMass<Scalar> moved = {};
 };
 
@@ -30,16 +30,16 @@ template <typename Scalar = double, typename Name = std::string>
 struct NamedFrame {
   Name name = {};
   int link = 0;
-  Transform<Scalar> offset = {};  ///< In the link's frame.
+  Transform<Scalar> offset = {};  ///< In the frame of the link.
 };
 
-/// Joints from the base on, each behind the one that carries it: a Robot is built from them. With numbers of joints and
-/// frames that are known at compile time it takes no memory from a heap.
+/// Joints in an order in which each joint comes after the joint of the link that carries it. A Robot is built from a
+/// tree. If the numbers of joints and frames are known at compile time, there is no heap allocation.
 template <typename Scalar = double, int Joints = Eigen::Dynamic, int Frames = Joints>
 struct Tree {
   std::array<TreeJoint<Scalar, std::string_view>, Joints> joints = {};
   std::array<NamedFrame<Scalar, std::string_view>, Frames> frames = {};
-  LinkMass<Scalar> base = {};  ///< Of link 0.
+  LinkMass<Scalar> base = {};  ///< Mass of link 0.
 };
 
 template <typename Scalar>
@@ -55,7 +55,7 @@ template <typename Scalar, int Joints, int Frames>
   return tree.joints[static_cast<std::size_t>(i)].joint;
 }
 
-/// Number of the link that carries joint i: of a chain, that of the joint before.
+/// Number of the link that carries joint i. In a chain, this is the link of the joint before.
 template <typename Scalar, int Joints, int Frames>
 [[nodiscard]] int parent_of(const Tree<Scalar, Joints, Frames>& tree, Eigen::Index i) noexcept {
   return tree.joints[static_cast<std::size_t>(i)].parent;
@@ -65,9 +65,9 @@ template <typename Scalar, int Length>
   return static_cast<int>(i);
 }
 
-/// Number of joints of a tree, checked. Throws std::invalid_argument where that number exceeds kMaxDof or is zero, a
-/// joint is carried by a link that does not come before it, a frame is of a link that does not exist, or a number is
-/// out of range.
+/// Checks a tree and returns its number of joints. Throws std::invalid_argument if this number exceeds kMaxDof or is
+/// zero, a link does not come before the joint that it carries, the link of a frame does not exist, or a number is out
+/// of range.
 template <typename Scalar, int Joints, int Frames>
 Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
   validation::require_dof("joints", static_cast<Eigen::Index>(tree.joints.size()), 1);
@@ -93,8 +93,8 @@ Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
   return static_cast<Eigen::Index>(tree.joints.size());
 }
 
-/// Adds an arm to a tree, placed in the frame of a link. Its joints' names begin with its own name, and its tip is the
-/// frame name_tip. Returns the number of its last link.
+/// Adds an arm to a tree, placed in the frame of a link. The names of its joints begin with the name of the arm, and
+/// its tip is the frame name_tip. Returns the number of its last link.
 template <typename Scalar>
 int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& name, int link = 0,
             const Transform<Scalar>& placement = {}) {
@@ -111,7 +111,7 @@ int add_arm(Tree<Scalar>& tree, const Chain<Scalar>& arm, const std::string& nam
   return link;
 }
 
-/// A chain as a tree, whose frame "tip" is the chain's tip.
+/// Converts a chain to a tree. The frame "tip" is the tip of the chain.
 template <typename Scalar, int Length>
 [[nodiscard]] Tree<Scalar> tree_of(const Chain<Scalar, Length>& chain) {
   Tree<Scalar> tree;
