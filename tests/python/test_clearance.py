@@ -539,4 +539,4 @@ def test_what_is_wrong_is_a_line(in_a_folder: Path, arguments: list[str], line: 
 def test_commands_that_keep_clear_of_nothing_say_so(in_a_folder: Path, name: str) -> None:
     result = call(name, "panda", "--job", "table.toml")
     assert result.exit_code == 1
-    assert result.stderr == f"Error: {name} does not take clearance: leave clearance out, or use track\n"
+    assert result.stderr == f"Error: {name} does not accept clearance: remove clearance, or use track\n"
