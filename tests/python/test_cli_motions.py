@@ -348,7 +348,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of velocity: must be given"),
         (["planar:1,1", "--in-plane", "xy"], "path: it lies in space, and the arm in a plane"),
         (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
-        (["--job", "bad.toml"], "bad.toml: no TOML: "),
+        (["--job", "bad.toml"], "bad.toml: must be valid TOML: "),
         (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),
         (["--job", "wrong.toml", "--radius", "-2"], "--radius = -2: must be positive and finite"),
         (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], "--path = 'cirle': must be one of "),

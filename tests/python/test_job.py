@@ -382,7 +382,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         read_job(tmp_path / "none.toml")
     for content in (b"[arm", b"a = ", b"\xff", b"[arm]\n[arm]\n"):
         (tmp_path / "bad.toml").write_bytes(content)
-        with pytest.raises(JobError, match="no TOML: "):
+        with pytest.raises(JobError, match="must be valid TOML: "):
             read_job(tmp_path / "bad.toml")
 
 

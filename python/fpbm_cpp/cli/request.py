@@ -67,7 +67,7 @@ BASE = "Base link of a URDF file. For a robot: fixed, or planar, which moves alo
 LOCKED = "Fix a joint of the robot in a URDF file at a position; can be repeated.  [rad, m]"
 TASK = (
     "Task of the tip: position or pose. For a job with tasks: name of the task that follows the path. For a robot: a "
-    "frame that follows the path; can be repeated.  [default: position]"
+    "frame that moves; can be repeated.  [default: position]"
 )
 CLEAR = (
     "Avoid self-collision, with the collision geometry of this URDF file, and the job's obstacles; keeps joint limits."
