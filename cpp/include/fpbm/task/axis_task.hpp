@@ -10,12 +10,13 @@
 
 namespace fpbm {
 
-/// Rates of ω⊥, the angular velocity at right angles to an axis a of the frame, for rows of two joints side by side:
+/// Rows of J̇ for ω⊥, the angular velocity perpendicular to an axis a of the frame, for two joints (docs/equations.md,
+/// Secondary objectives, Axis of a frame):
 ///
 ///   d/dt ω⊥ = (J q̈ + J̇ q̇)⊥ − (aᵀω)(ω × a),   ω = J q̇.
 ///
-/// Without the last term, rotation about a, which lower levels determine, would disturb the motion of a. columns,
-/// rates: of the angular rows of J and J̇. turning: ω × a.
+/// The last term is necessary: without it, the rotation about a, which lower levels determine, would disturb the motion
+/// of a. columns, rates: angular rows of J and J̇. turning: ω × a.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<3, Pair<Scalar>> without_spin(
     const Vector<3, Pair<Scalar>>& columns, const Vector<3, Pair<Scalar>>& rates, const Vector<3, Scalar>& a,
@@ -25,12 +26,13 @@ template <typename Scalar>
   return entrywise(rates, [&](Eigen::Index k) { return rates.coeff(k) - spin * Two(turning.coeff(k)); });
 }
 
-/// Alignment of an axis a of a frame with a direction d that may move: 2 rows. The rotation about the axis is free.
+/// Axis alignment: an axis a of a frame points along a direction d, which may move. The task has 2 rows, and the
+/// rotation about the axis is free.
 ///
 /// The error is the rotation vector of the smallest rotation from a to d. The rows are the components of the angular
-/// velocity along two unit vectors b₁, b₂ of the frame at right angles to a: S = [b₁ b₂]ᵀ. The angle θ between a and d
-/// obeys θ̇ + kθ = 0 at velocity level from everywhere but θ = π, and θ̈ + k₁θ̇ + k₂θ = 0 at acceleration level from
-/// rest, whatever the rotation about a: see without_spin().
+/// velocity along two unit vectors b₁, b₂ of the frame, which are perpendicular to a and to each other: S = [b₁ b₂]ᵀ.
+/// The angle θ between a and d obeys θ̇ + kθ = 0 at velocity level for all initial angles except θ = π, and θ̈ + k₁θ̇ +
+/// k₂θ = 0 at acceleration level from rest, for any rotation about a (without_spin()).
 template <typename Scalar_ = double>
 class AxisTask {
  public:
@@ -42,7 +44,7 @@ class AxisTask {
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;
 
-  /// axis: in the frame; its length does not matter. Throws std::invalid_argument where it is zero or not finite.
+  /// axis: in the frame, of any length. Throws std::invalid_argument if the axis is zero or not finite.
   AxisTask(const LinkFrame<Scalar>& frame_, const TaskGains<Scalar>& gains_,
            const Vector<3, Scalar>& axis = {Scalar(0), Scalar(0), Scalar(1)})
       : frame(frame_), gains(gains_), axes_(frame_) {
@@ -79,8 +81,8 @@ class AxisTask {
   }
 
  private:
-  Matrix<3, 3, Scalar> to_axis_;  ///< In the frame: b₁, b₂ and the axis.
-  LinkFrame<Scalar> axes_;        ///< Has these axes.
+  Matrix<3, 3, Scalar> to_axis_;  ///< Columns b₁, b₂ and a, in the frame.
+  LinkFrame<Scalar> axes_;        ///< Frame with these axes.
 };
 
 }  // namespace fpbm

@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// Position of a robot's centre of mass: M of its coordinates, along the base frame's axes.
+/// Position of the centre of mass of a robot: M of its coordinates, along the axes of the base frame.
 template <int M = 3, typename Scalar_ = double>
 struct CenterOfMassTask {
   using Scalar = Scalar_;
@@ -22,7 +22,7 @@ struct CenterOfMassTask {
   TaskGains<Scalar> gains;
   std::array<int, M> rows = PositionTask<M, Scalar>::first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
 
-  /// Throws std::invalid_argument where the robot has no mass, or rows are wrong.
+  /// Throws std::invalid_argument if the robot has no mass, or if rows are wrong.
   template <typename Robot>
   void bind(const Robot& robot) const {
     require_different("rows", rows, 3);

@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// Displacement from the start of a shape, and its first two derivatives with respect to the fraction s of it.
+/// Displacement d from the start of a shape, and its first two derivatives with respect to the fraction s of the shape.
 template <typename Space, typename Scalar>
 struct Curve {
   typename Space::template Point<Scalar> d;

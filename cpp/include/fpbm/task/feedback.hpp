@@ -9,7 +9,7 @@
 
 namespace fpbm {
 
-/// Commanded tip velocity: J qd = v = xd + k (x ⊖ f(q)).
+/// Commanded tip velocity of the schemes at velocity level: J qd = v = xd + k (x ⊖ f(q)) (docs/equations.md).
 template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_velocity(
     Scalar k, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference) noexcept {
@@ -21,7 +21,8 @@ template <typename Space, int N, typename Scalar>
   return v;
 }
 
-/// Commanded acceleration: J qdd = b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
+/// Commanded acceleration, the feedback of (13) in docs/equations.md: J qdd = b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x
+/// ⊖ f(q)).
 template <typename Space, int N, typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Vector<Space::kRows, Scalar> commanded_acceleration(
     Scalar k1, Scalar k2, const Kinematics<Space, N, Scalar>& kinematics, const Reference<Space, Scalar>& reference,

@@ -9,17 +9,18 @@
 
 namespace fpbm {
 
-/// Rotation about a fixed axis, by its largest angle: the other two angles, velocities and accelerations are shares of
-/// the largest angle's, of at most 1. So they keep any bound that the largest keeps.
+/// Rotation about a fixed axis, represented by its coordinate with the largest angle. The angles, velocities and
+/// accelerations of the other two coordinates are this coordinate times factors of magnitude ≤ 1. They therefore keep
+/// any bound that this coordinate keeps.
 template <typename Scalar>
 struct FixedAxis {
   Eigen::Index largest;      ///< Coordinate of the largest angle.
-  Vector<3, Scalar> angles;  ///< Shares of the angles that are left,
-  Vector<3, Scalar> motion;  ///< and of the velocity and acceleration, equal to them but for round-off.
+  Vector<3, Scalar> angles;  ///< Remaining angles, relative to the largest.
+  Vector<3, Scalar> motion;  ///< Velocity and acceleration, relative to coordinate `largest`: `angles` up to round-off.
 };
 
-/// The fixed axis of a motion whose velocity and acceleration are parallel to the rotation that is left [rad]; none if
-/// they are not, or nothing is left.
+/// Fixed axis of a rotation whose angular velocity w [rad/s] and acceleration wd [rad/s²] are parallel to the remaining
+/// rotation vector `left` [rad]. No value if they are not parallel, or if `left` is zero.
 template <typename Scalar>
 [[nodiscard]] std::optional<FixedAxis<Scalar>> fixed_axis(const Vector<3, Scalar>& left, const Vector<3, Scalar>& w,
                                                           const Vector<3, Scalar>& wd) noexcept {
@@ -28,8 +29,8 @@ template <typename Scalar>
   const Scalar angle = left.cwiseAbs().maxCoeff(&axis.largest);
   if (!(angle > Scalar(0))) return {};
   const Eigen::Index k = axis.largest;
-  // The rotation that is left is a difference of orientations, whose round-off is absolute; that of w and wd is
-  // relative.
+  // The remaining rotation is a difference of orientations, with an absolute round-off error. The round-off errors of w
+  // and wd are relative.
   const Scalar direction = Scalar(32) * kEpsilon * (Scalar(1) + angle) / angle;
   const Vector<3, Scalar>& moving = w(k) != Scalar(0) ? w : wd(k) != Scalar(0) ? wd : left;
   for (int i = 0; i < 3; ++i) {
@@ -40,7 +41,7 @@ template <typename Scalar>
     if (!(std::abs(w(i) - along * w(k)) <= Scalar(64) * kEpsilon * std::abs(w(k)))) return {};
     if (!(std::abs(wd(i) - along * wd(k)) <= Scalar(64) * kEpsilon * std::abs(wd(k)))) return {};
     axis.angles(i) = share;
-    // Round-off of the angles adds up; corrected by as little, it does not.
+    // The round-off errors of the angles would accumulate. A correction of the same magnitude prevents this.
     const Scalar corrected = along + std::clamp(away, -Scalar(8) * kEpsilon, Scalar(8) * kEpsilon);
     axis.motion(i) = std::clamp(corrected, Scalar(-1), Scalar(1));
   }

@@ -8,15 +8,15 @@
 
 namespace fpbm {
 
-/// A planar path in a plane of space: (x, y) becomes x u + y v.
+/// Planar path in a plane of space: (x, y) becomes x u + y v.
 template <typename Path>
 class InPlane {
  public:
   using Scalar = typename Path::Scalar;
   using Space = Position<3>;
 
-  /// u, v: directions of the path's axes in the base frame; their lengths do not matter.
-  /// Throws std::invalid_argument unless they are finite and at right angles.
+  /// u, v: directions of the axes of the path in the base frame, of any length.
+  /// Throws std::invalid_argument unless u and v are finite and perpendicular.
   InPlane(const Path& path, const Vector<3, Scalar>& u, const Vector<3, Scalar>& v) : path_(path) {
     validation::require_finite("u", u);
     validation::require_finite("v", v);

@@ -12,26 +12,27 @@
 
 namespace fpbm {
 
-/// Duration for which a path that lasts 1 s must be stretched to keep bounds on the tip's motion: velocities shrink
+/// Shortest duration to which a path of 1 s must be stretched so that the tip keeps its bounds. Velocities decrease
 /// with the duration, accelerations with its square.
 ///
-/// The largest share of a bound is searched by branch and bound. A sample at the middle of an interval and bounds on
-/// the derivatives within limit the share on the whole interval; the interval is halved until the limit is low enough.
-/// So no peak between samples is missed, however narrow.
+/// The maximum of the required duration over the path (share()) is found by branch and bound. The sample in the middle
+/// of an interval, and bounds on the derivatives in the interval, give an upper bound on the required duration of the
+/// whole interval. Intervals are halved until this upper bound is at most kSlack times the largest sample. Therefore,
+/// no peak between samples is missed, however narrow.
 template <typename Space, int M, typename Scalar>
 class LeastDuration {
   static constexpr bool kQuaternion = M > Space::kRows;
   static constexpr int kLinear = Space::kRows - Space::kTurns;
 
  public:
-  /// spline: the path's positions [m], and its angles [rad] or quaternions, which are scaled to unit length.
+  /// spline: the positions of the path [m], and its angles [rad] or quaternions, which are scaled to unit length.
   LeastDuration(const Spline<M, Scalar>& spline, const TipBounds<Scalar>& bounds) : spline_(spline), bounds_(bounds) {}
 
-  /// A duration between 1 / kSlack of the shortest and the shortest; 0 if no bound limits the tip.
-  /// sample(t) gives the velocity xd and acceleration xdd of the tip.
+  /// Returns a duration between 1/kSlack times the shortest duration and the shortest duration, or 0 if no bound limits
+  /// the tip. sample(t) gives the velocity xd and acceleration xdd of the tip.
   template <typename Sample>
   [[nodiscard]] Scalar of(const Sample& sample) const {
-    constexpr int kSamples = 64;  // For each piece; the search refines them.
+    constexpr int kSamples = 64;  // For each piece of the spline. search() refines them.
     const auto& times = spline_.times();
     Scalar longest(0);
     for (std::size_t i = 1; i < times.size(); ++i) {
@@ -53,7 +54,7 @@ class LeastDuration {
   static constexpr Scalar kSlack = Scalar(1.005);
 
  private:
-  static constexpr int kHalvings = 20;  ///< At most: 1e-8 of a piece.
+  static constexpr int kHalvings = 20;  ///< Largest number of halvings, to 1e-8 of a piece.
 
   /// Norms of velocities and accelerations.
   template <typename Reference>
@@ -62,14 +63,15 @@ class LeastDuration {
             at.xd.template tail<Space::kTurns>().norm(), at.xdd.template tail<Space::kTurns>().norm()};
   }
 
-  /// Duration for which motions of 1 s with these peaks keep the bounds.
+  /// Required duration: the duration for which motions of 1 s with these peaks keep the bounds.
   [[nodiscard]] Scalar share(const TipBounds<Scalar>& peak) const {
     return std::max(std::max(peak.velocity / bounds_.velocity, peak.angular_velocity / bounds_.angular_velocity),
                     std::max(std::sqrt(peak.acceleration / bounds_.acceleration),
                              std::sqrt(peak.angular_acceleration / bounds_.angular_acceleration)));
   }
 
-  /// Raises longest to the largest share within half seconds of the middle, unless that is within the slack.
+  /// Raises `longest` to the largest required duration within `half` [s] of the middle, unless the difference is within
+  /// the slack.
   template <typename Sample>
   void search(const Sample& sample, std::size_t i, Scalar middle, Scalar half, int halvings, Scalar& longest) const {
     constexpr Scalar kRaise = Scalar(1.004);  // Below the slack, so that the search ends.
@@ -80,7 +82,7 @@ class LeastDuration {
     search(sample, i, middle + half / Scalar(2), half / Scalar(2), halvings - 1, longest);
   }
 
-  /// Upper bounds of some rows' derivatives within half seconds, by their Taylor polynomials.
+  /// Upper bounds on the derivatives of some rows within `half` [s] of the middle, from their Taylor polynomials.
   class Rows {
    public:
     template <int First, int Count>
@@ -102,7 +104,7 @@ class LeastDuration {
     Scalar half_;
   };
 
-  /// Upper bounds within half seconds of a middle with these peaks.
+  /// Upper bounds on the peaks within `half` [s] of a middle with the peaks `here`.
   [[nodiscard]] static TipBounds<Scalar> limits(const TipBounds<Scalar>& here,
                                                 const std::array<Vector<M, Scalar>, 6>& derivatives, Scalar half) {
     constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
@@ -110,7 +112,9 @@ class LeastDuration {
     TipBounds<Scalar> result{here.velocity + half * linear.most(2), here.acceleration + half * linear.most(3),
                              Scalar(0), Scalar(0)};
     if constexpr (kQuaternion) {
-      // With Q the spline's quaternion, s = |Q|²: ω = 2 vec(Q̇Q*)/s, ω̇ = 2 (vec(Q̈Q*) − (Q·Q̇) ω)/s.
+      // Q is the quaternion of the spline, and s = |Q|²: ω = 2 vec(Q̇Q*)/s, ω̇ = 2 (vec(Q̈Q*) − (Q·Q̇) ω)/s. a, b and c
+      // are bounds on the first three derivatives of Q divided by |Q|; w, wd and wdd are bounds on ω and its
+      // derivatives.
       const Rows turns = Rows::template of<kLinear, M - kLinear>(derivatives, half);
       const Scalar least = std::max(turns.least_value(), Scalar(0));
       const Scalar a = turns.most(1) / least;
@@ -126,7 +130,7 @@ class LeastDuration {
       result.angular_velocity = here.angular_velocity + half * turns.most(2);
       result.angular_acceleration = here.angular_acceleration + half * turns.most(3);
     }
-    // Finite, also where |Q| may vanish: a bound may be infinite.
+    // Finite, even if |Q| may be zero: share() would divide infinity by an infinite bound.
     if (!(result.angular_velocity <= kMost)) result.angular_velocity = kMost;
     if (!(result.angular_acceleration <= kMost)) result.angular_acceleration = kMost;
     return result;

@@ -8,12 +8,12 @@
 
 namespace fpbm {
 
-/// A frame fixed to a link of a robot, which a task refers to.
+/// Frame fixed to a link of a robot, for tasks.
 template <typename Scalar = double>
 class LinkFrame {
  public:
-  /// link: as Robot counts links; Robot::kTip is the tip. offset: the frame in that of the link.
-  /// Throws std::invalid_argument where the offset is not finite or no rigid transformation.
+  /// link: number of the link as in Robot, or Robot::kTip for the tip. offset: the frame in the frame of the link.
+  /// Throws std::invalid_argument if the offset is not finite or not a rigid transformation.
   LinkFrame(int link, const Transform<Scalar>& offset = {}) : link_(link), offset_(offset) {
     chain_check::require_transform("offset", offset);
   }
@@ -21,24 +21,24 @@ class LinkFrame {
   [[nodiscard]] int link() const noexcept { return link_; }
   [[nodiscard]] const Transform<Scalar>& offset() const noexcept { return offset_; }
 
-  /// Call before at(). Throws std::invalid_argument where the robot has no such link.
+  /// Call before at(). Throws std::invalid_argument if the link does not exist in the robot.
   template <typename Robot>
   void bind(const Robot& robot) {
     robot.require_link("frame", link_);
     in_joint_ = robot.in_joint(link_, offset_);
   }
 
-  /// The frame in the base frame.
+  /// Pose of the frame in the base frame.
   template <typename Robot>
   [[nodiscard]] Transform<Scalar> at(const Robot& robot, const typename Robot::State& state) const noexcept {
     return robot.frame(state, link_, in_joint_);
   }
-  /// Its axes, the columns.
+  /// Axes of the frame in the base frame, as columns.
   template <typename Robot>
   [[nodiscard]] Matrix<3, 3, Scalar> axes(const Robot& robot, const typename Robot::State& state) const noexcept {
     return robot.axes(state, link_, in_joint_.R);
   }
-  /// Its origin.
+  /// Origin of the frame in the base frame [m].
   template <typename Robot>
   [[nodiscard]] Vector<3, Scalar> origin(const Robot& robot, const typename Robot::State& state) const noexcept {
     return robot.point(state, link_, in_joint_.p);
@@ -47,10 +47,10 @@ class LinkFrame {
  private:
   int link_;
   Transform<Scalar> offset_;
-  Transform<Scalar> in_joint_;  ///< The frame seen from the link's joint.
+  Transform<Scalar> in_joint_;  ///< The frame relative to the placement of the joint of the link.
 };
 
-/// The frame of a tree by name. Throws std::invalid_argument where there is none.
+/// Frame of a tree by name. Throws std::invalid_argument if the name does not exist.
 template <typename Scalar, int Joints, int Frames>
 [[nodiscard]] LinkFrame<Scalar> frame_of(const Tree<Scalar, Joints, Frames>& tree, std::string_view name) {
   for (const auto& [other, link, offset] : tree.frames) {

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Orientation of a frame. To leave one rotation free, use an AxisTask.
+/// Orientation of a frame. If one rotation is to be free, use an AxisTask.
 template <typename Scalar_ = double>
 struct OrientationTask {
   using Scalar = Scalar_;

@@ -10,11 +10,12 @@
 
 namespace fpbm {
 
-/// A path has a Scalar, a Space, a duration() [s], and a sample(t) for any t in any order: x, xd, xdd as displacements
-/// from the tip's start, at rest on the path's ends before 0 and after its duration.
+/// A path has a Scalar, a Space, a duration() [s], and a sample(t) for any t in any order. x, xd and xdd of the sample
+/// are displacements from the start of the tip. Before 0 and after the duration, the sample is at rest at the ends of
+/// the path.
 ///
-/// A path whose acceleration is discontinuous within also has sample(t, since): the sample at t of the piece that holds
-/// just after since, so that a step of an integrator stays within one piece.
+/// A path whose acceleration is discontinuous between its ends also has sample(t, since): the sample at t of the piece
+/// that is active just after `since`. A step of an integrator then stays within one piece.
 template <typename Path, typename = void>
 inline constexpr bool kHasPieces = false;
 template <typename Path>
@@ -22,7 +23,7 @@ inline constexpr bool kHasPieces<
     Path, std::void_t<decltype(std::declval<const Path&>().sample(typename Path::Scalar(), typename Path::Scalar()))>> =
     true;
 
-/// Sample of any path at t, from the piece that holds just after since.
+/// Sample of any path at t, from the piece that is active just after `since`.
 template <typename Path>
 [[nodiscard]] Reference<typename Path::Space, typename Path::Scalar> sample_within(
     const Path& path, typename Path::Scalar t, [[maybe_unused]] typename Path::Scalar since) noexcept {
@@ -33,11 +34,11 @@ template <typename Path>
   }
 }
 
-/// Follows a shape under a time law in T seconds, then holds its end.
+/// Follows a shape with a time law in T seconds, then stays at the end of the shape.
 ///
 /// With s(τ), τ = t/T, from the time law and d(s) from the shape:
 ///   x = d(s),  xd = d′ ṡ,  xdd = d″ ṡ² + d′ s̈,
-/// all as displacements from the tip's start.
+/// as displacements from the start of the tip.
 template <typename Shape, typename TimeLaw = SinSquared>
 class Path {
  public:
@@ -52,7 +53,7 @@ class Path {
 
   [[nodiscard]] Scalar duration() const noexcept { return duration_; }
 
-  /// Reference at t [s]: on the path for 0 ≤ t ≤ T, at rest on its ends outside.
+  /// Reference at t [s]: on the path for 0 ≤ t ≤ T, otherwise at rest at the nearest end.
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept {
     if (t < Scalar(0)) return Reference<Space, Scalar>::hold(shape_.at(Scalar(0)).d);
     if (t > duration_) return Reference<Space, Scalar>::hold(shape_.at(Scalar(1)).d);

@@ -5,11 +5,11 @@
 
 #include "fpbm/core/rotation.hpp"
 
-/// What to make of points that come from elsewhere.
+/// Checks and corrections of points that come from outside of the library.
 namespace fpbm {
 
-/// Whether a point is finite, and no entry of RᵀR deviates from the identity by more than 1e-4 (R with 5 decimals or
-/// more); a reflection is not a point.
+/// Whether a point is finite, and no entry of RᵀR deviates from the identity by more than 1e-4 (R with at least 5
+/// decimals). A reflection is not a point.
 template <typename Derived>
 [[nodiscard]] bool is_point(const Eigen::MatrixBase<Derived>& x) noexcept {
   return x.allFinite();
@@ -21,7 +21,7 @@ template <typename Scalar>
   return x.p.allFinite() && excess.cwiseAbs().maxCoeff() <= Scalar(1e-4) && handed > Scalar(0);
 }
 
-/// The same point with the rotation nearest to its R.
+/// The point with the rotation nearest to its R.
 template <typename Derived>
 [[nodiscard]] typename Derived::PlainObject orthonormalised(const Eigen::MatrixBase<Derived>& x) noexcept {
   return x;
@@ -31,7 +31,7 @@ template <typename Scalar>
   return {x.p, nearest_rotation(x.R)};
 }
 
-/// The same point, its R a rotation to round-off.
+/// The point with R corrected to a rotation up to round-off.
 template <typename Derived>
 [[nodiscard]] typename Derived::PlainObject straightened(const Eigen::MatrixBase<Derived>& x) noexcept {
   return x;
@@ -41,7 +41,7 @@ template <typename Scalar>
   return {x.p, orthonormal(x.R)};
 }
 
-/// Its largest entry, for round-off.
+/// Largest magnitude of a coordinate of a point, for bounds on the round-off error.
 template <typename Derived>
 [[nodiscard]] typename Derived::Scalar extent(const Eigen::MatrixBase<Derived>& x) noexcept {
   return x.cwiseAbs().maxCoeff();

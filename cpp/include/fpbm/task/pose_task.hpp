@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Pose of a frame. For fewer rows, put a PositionTask and an AxisTask side by side on a level.
+/// Pose of a frame. For fewer rows, combine a PositionTask and an AxisTask on one level.
 template <typename Scalar_ = double>
 struct PoseTask {
   using Scalar = Scalar_;

@@ -9,15 +9,15 @@
 
 namespace fpbm {
 
-/// Position of a frame's origin: M of its coordinates, along the base frame's axes or the frame's own.
+/// Position of the origin of a frame: M of its coordinates, along the axes of the base frame or of the frame itself.
 ///
-/// A task is data: which frame of the robot, which rows, which gains. RobotTasks calls bind() in its constructor, and
-/// evaluate() in every state, for the task's
+/// A task is data: the frame of the robot, the rows, and the gains. RobotTasks calls bind() in its constructor, and
+/// evaluate() in every state. evaluate() sets
 ///
-///   x      point of the Space, in the base frame, as references have it
-///   xd     its velocity J q̇, in the Space's rows, along the base frame's axes [m/s, rad/s]
-///   S      selection, in metres: angular columns are multiplied by the robot's length. If kWhole, S is diagonal.
-///   level  the task's rows S J and S J̇
+///   x      point of the Space, in the base frame, like the references
+///   xd     velocity J q̇ of the point, in the rows of the Space, along the axes of the base frame [m/s, rad/s]
+///   S      selection, in metres: angular columns are multiplied by the length of the robot. If kWhole, S is diagonal.
+///   level  rows S J and S J̇ of the task
 template <int M = 3, typename Scalar_ = double>
 struct PositionTask {
   using Scalar = Scalar_;
@@ -28,9 +28,9 @@ struct PositionTask {
   LinkFrame<Scalar> frame;
   TaskGains<Scalar> gains;
   std::array<int, M> rows = first_rows();  ///< Coordinates 0 (x), 1 (y) and 2 (z), each once.
-  bool in_frame = false;                   ///< Along the frame's axes; otherwise the base frame's.
+  bool in_frame = false;                   ///< Along the axes of the frame; otherwise, of the base frame.
 
-  /// Throws std::invalid_argument where the task does not suit a robot.
+  /// Throws std::invalid_argument if the frame does not exist in the robot, or if rows are wrong.
   template <typename Robot>
   void bind(const Robot& robot) {
     frame.bind(robot);
@@ -46,7 +46,8 @@ struct PositionTask {
     for (int i = 0; i < M; ++i) {
       for (int j = 0; j < 3; ++j) S.coeffRef(i, j) = axes.coeff(j, rows[static_cast<std::size_t>(i)]);
     }
-    // Row of each coordinate, -1 where there is none: columns.linear stays in registers where k below is constant.
+    // Row of each coordinate, or -1 if the coordinate has no row. columns.linear stays in registers if k below is
+    // constant.
     int row_of[3] = {-1, -1, -1};
     for (int i = 0; i < M; ++i) row_of[rows[static_cast<std::size_t>(i)]] = i;
     xd = robot.columns(state, frame.link(), x, [&](Eigen::Index j, const auto& columns, const auto& rates) noexcept {

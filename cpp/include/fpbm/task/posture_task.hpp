@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// Positions of M joints: all of them, or some.
+/// Positions of all joints or of some joints.
 template <int M, typename Scalar_ = double>
 struct PostureTask {
   using Scalar = Scalar_;
@@ -17,7 +17,7 @@ struct PostureTask {
   static constexpr bool kWhole = true;
 
   TaskGains<Scalar> gains;
-  std::array<int, M> joints = first_joints();  ///< Each once, from 0.
+  std::array<int, M> joints = first_joints();  ///< Indices of the joints, from 0, each once.
 
   template <typename Robot>
   void bind(const Robot& robot) const {

@@ -9,10 +9,10 @@ namespace fpbm {
 template <typename Space, typename Scalar = double>
 struct Reference {
   typename Space::template Point<Scalar> x;  ///< Desired point, in the base frame [m, rad].
-  Vector<Space::kRows, Scalar> xd;           ///< Desired velocity, linear rows first, then angular [m/s, rad/s].
+  Vector<Space::kRows, Scalar> xd;           ///< Desired velocity, linear rows above angular rows [m/s, rad/s].
   Vector<Space::kRows, Scalar> xdd;          ///< Desired acceleration [m/s², rad/s²].
 
-  /// At rest at x.
+  /// Reference at rest at x.
   [[nodiscard]] static Reference hold(const typename Space::template Point<Scalar>& x) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
     return {x, filled<Twist>(Space::kRows), filled<Twist>(Space::kRows)};
@@ -24,7 +24,7 @@ struct Reference {
   }
 };
 
-/// A reference some seconds later, at constant acceleration.
+/// The reference after `seconds` [s] at constant acceleration.
 template <typename Space, typename Scalar>
 [[nodiscard]] Reference<Space, Scalar> ahead(const Reference<Space, Scalar>& reference, Scalar seconds) noexcept {
   Reference<Space, Scalar> later = reference;

@@ -6,7 +6,8 @@
 
 namespace fpbm {
 
-/// A robot as seen from one of its frames: all that tasks of frames ask a Robot for, in that frame's axes.
+/// View of a robot from one of its frames: all functions of Robot that tasks of frames call, with results in this
+/// frame.
 template <typename Robot_>
 class SeenFrom {
  public:
@@ -38,9 +39,12 @@ class SeenFrom {
     return times(back_, subtract(robot_.angular_velocity(state, link), w_));
   }
 
-  /// As Robot::columns(): J is Rᵀ (J_link − J_reference), both of the point p. Its rate has
+  /// Robot::columns() in the reference frame: J = Rᵀ(J_b − J_a), where J_b is the Jacobian of the point p of the link,
+  /// and J_a the Jacobian of the point of the reference link that coincides with p. v = (J_b − J_a) q̇ is the velocity
+  /// of p relative to the reference link, w the angular velocity of the reference link, and aᵢ the angular part of
+  /// column i of J_a. Then (docs/equations.md, Time derivative of J, Between two frames)
   ///
-  ///   J̇_reference of p as a point of the reference's link, and a × ṗ since p moves in it,    −Rᵀ w × (…) of the axes.
+  ///   J̇ = Rᵀ(J̇_b − J̇_a − (aᵢ × v; 0)ᵢ − w × (J_b − J_a)).
   template <typename F>
   Vector3 columns(const State& state, int link, const Vector3& p, const F& f) const noexcept {
     using Columns = typename Robot_::Columns;
@@ -87,7 +91,7 @@ class SeenFrom {
   }
 
  private:
-  /// Rᵀ times two columns.
+  /// Rᵀ times a pair of columns.
   template <typename Columns>
   [[nodiscard]] Columns seen(const Columns& columns) const noexcept {
     const auto turned = [&](const auto& of) noexcept {
@@ -101,12 +105,12 @@ class SeenFrom {
 
   const Robot_& robot_;
   int link_;
-  Transform<Scalar> at_;  ///< The reference frame.
+  Transform<Scalar> at_;  ///< Pose of the reference frame in the base frame.
   Matrix<3, 3, Scalar> back_;
-  Vector3 w_;  ///< Of the reference frame, in base axes.
+  Vector3 w_;  ///< Angular velocity of the reference frame, along the axes of the base frame [rad/s].
 };
 
-/// Throws std::invalid_argument where no joint moves a frame relative to another.
+/// Throws std::invalid_argument if no joint moves a frame relative to the other frame.
 template <typename Robot, typename Scalar>
 void require_relative_motion(const Robot& robot, const LinkFrame<Scalar>& frame, const LinkFrame<Scalar>& reference) {
   if (robot.moved_by(frame.link()) == robot.moved_by(reference.link())) {
@@ -114,8 +118,8 @@ void require_relative_motion(const Robot& robot, const LinkFrame<Scalar>& frame,
   }
 }
 
-/// A task of a frame relative to another frame of the robot, as that one moves: PositionTask, OrientationTask, PoseTask
-/// or AxisTask, whose point, reference and rows are in the axes of the reference frame in place of the base frame's.
+/// Task of a frame relative to another frame of the robot, which may move: a PositionTask, OrientationTask, PoseTask or
+/// AxisTask, whose point, reference and rows are in the axes of the reference frame instead of the base frame.
 template <typename Task>
 struct RelativeTask {
   using Scalar = typename Task::Scalar;
@@ -127,7 +131,8 @@ struct RelativeTask {
   LinkFrame<Scalar> reference;
   TaskGains<Scalar> gains = task.gains;
 
-  /// Throws std::invalid_argument where a frame does not suit the robot, or both are of one link.
+  /// Throws std::invalid_argument if a frame does not exist in the robot, or if no joint moves the frames relative to
+  /// each other.
   template <typename Robot>
   void bind(const Robot& robot) {
     task.bind(robot);
@@ -145,7 +150,7 @@ struct RelativeTask {
 template <typename Task>
 RelativeTask(const Task&, const LinkFrame<typename Task::Scalar>&) -> RelativeTask<Task>;
 
-/// Pose of a frame in another frame of the robot: a grasp with two hands.
+/// Pose of a frame in another frame of the robot, for example of one hand relative to the other hand.
 template <typename Scalar = double>
 using RelativePoseTask = RelativeTask<PoseTask<Scalar>>;
 

@@ -11,7 +11,7 @@
 
 namespace fpbm {
 
-/// A robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
+/// Robot with a stack of tasks: the map from joint states to the points and rows of the tasks.
 template <typename Robot_, typename Stack_>
 class RobotTasks {
  public:
@@ -19,19 +19,19 @@ class RobotTasks {
   static constexpr int kDof = Robot_::kDof;
   using State = Kinematics<typename Stack_::Space, kDof, Scalar>;
 
-  /// Throws std::invalid_argument where a task does not suit the robot.
+  /// Throws std::invalid_argument if a task does not suit the robot (Stack::bind()).
   RobotTasks(const Robot_& robot, const Stack_& stack) : robot_(robot), stack_(stack) { stack_.bind(robot_); }
 
   [[nodiscard]] int dof() const noexcept { return robot_.dof(); }
   [[nodiscard]] const Robot_& robot() const noexcept { return robot_; }
   [[nodiscard]] const Stack_& stack() const noexcept { return stack_; }
-  /// As Stack::enable().
+  /// See Stack::enable().
   bool enable(int k, bool on) noexcept { return stack_.enable(k, on); }
-  /// As Stack::reorder().
+  /// See Stack::reorder().
   bool reorder(const std::array<int, Stack_::kLevels>& order) noexcept { return stack_.reorder(order); }
   [[nodiscard]] const auto& limits() const noexcept { return robot_.limits(); }
 
-  /// The points of the tasks at q, and their selections.
+  /// Points and selections of the tasks at q.
   void points(const Vector<kDof, Scalar>& q, State& out) const noexcept {
     typename Robot_::State state;
     robot_.update(q, state);
@@ -43,14 +43,14 @@ class RobotTasks {
     });
   }
 
-  /// At (q, qd).
+  /// Points and rows of the tasks at (q, qd).
   void kinematics(const Vector<kDof, Scalar>& q, const Vector<kDof, Scalar>& qd, State& out) const noexcept {
     typename Robot_::State state;
     robot_.update(q, qd, state);
     evaluate(state, out);
   }
 
-  /// At q, for velocity level: does not touch J̇.
+  /// Points and rows of the tasks at q, for velocity level. J̇ does not change.
   void kinematics(const Vector<kDof, Scalar>& q, State& out) const noexcept {
     typename Robot_::State state;
     robot_.update(q, state);
@@ -67,7 +67,7 @@ class RobotTasks {
 
   void evaluate(const typename Robot_::State& state, State& out) const noexcept {
     begin(out);
-    int row = 0;  // Of the task on its level.
+    int row = 0;  // First row of the task in its level.
     stack_.each([&](const auto& task, auto i) noexcept {
       constexpr int kIndex = decltype(i)::value;
       if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;

@@ -7,27 +7,28 @@
 
 namespace fpbm {
 
-/// Rounding compensation of a point that is displaced tick by tick: the sum of what the displacements lose when the
-/// point is rounded [m, rad], as in Kahan's summation. Without it a displacement of less than the point's last bit per
-/// tick would be lost.
+/// Rounding compensation of a point that is displaced tick by tick: the sum of the parts of the displacements that are
+/// lost when the point is rounded [m, rad], as in Kahan summation. Without compensation, a displacement per tick below
+/// the last bit of the point would have no effect.
 template <typename Space, typename Scalar>
 class RoundingCompensation {
  public:
   using Point = typename Space::template Point<Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// Displacement from a point, without its rounding error, to another.
+  /// Displacement from `from` to x, without the rounding error of `from`.
   [[nodiscard]] Twist difference(const Point& x, const Point& from) const noexcept {
     return Space::template difference<Scalar>(x, from) - lost_;
   }
 
-  /// The point after a displacement, rounded.
+  /// The point `from` after a displacement, rounded.
   [[nodiscard]] Point displace(const Point& from, const Twist& displacement) const noexcept {
     if (displacement.isZero(Scalar(0))) return from;
     return straightened(Space::template displace<Scalar>(from, displacement + lost_));
   }
 
-  /// Adds what a displacement between two points lost; at most a few last bits, since a point may also be set.
+  /// Adds the part of a displacement from `from` to `to` that was lost in rounding. The sum is limited to a few last
+  /// bits, since a point may also be set.
   void add(const Twist& displacement, const Point& to, const Point& from) noexcept {
     lost_ += displacement - Space::template difference<Scalar>(to, from);
     const Scalar most = Scalar(4) * std::numeric_limits<Scalar>::epsilon() * extent(to);

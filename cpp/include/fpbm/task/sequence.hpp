@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// One path after another: the second starts where the first ends. For more than two, nest sequences.
+/// One path after another: the second path starts at the end of the first. For more than two paths, nest sequences.
 template <typename First, typename Second>
 class Sequence {
  public:
@@ -25,7 +25,7 @@ class Sequence {
 
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t, Scalar since) const noexcept {
     const Scalar T = first_.duration();
-    // An integrator's step ends at a multiple of its length, which round-off puts just before or after T.
+    // A step of an integrator ends at a multiple of its length, which round-off may put just before or after T.
     if (since < T * (Scalar(1) - kRounding)) return sample_within(first_, t < T ? t : T, since);
     const Scalar begun = t > T ? t - T : Scalar(0);
     Reference<Space, Scalar> reference = sample_within(second_, begun, since > T ? since - T : Scalar(0));

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Circle of radius r [m], counter-clockwise from its rightmost point: r (cos φ − 1, sin φ), φ = 2πs.
+/// Circle of radius r [m], counterclockwise from its rightmost point: r (cos φ − 1, sin φ), φ = 2πs.
 template <typename Scalar_ = double>
 class Circle {
  public:
@@ -29,7 +29,7 @@ class Circle {
 };
 
 /// Lissajous figure: (a_x (cos(f_x φ + δ) − cos δ), a_y (sin(f_y φ + δ) − sin δ)), φ = 2πs.
-/// Amplitudes a [m], whole frequencies f (so that the figure closes), phase δ [rad].
+/// Amplitudes a [m], integer frequencies f (so that the figure closes), phase δ [rad].
 template <typename Scalar_ = double>
 class Lissajous {
  public:

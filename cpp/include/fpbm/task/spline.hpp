@@ -10,7 +10,7 @@
 namespace fpbm {
 
 /// Quintic spline through points at given times, at rest (velocity and acceleration zero) at both ends, with four
-/// continuous derivatives: the curve of least ∫|jerk|² dt through the points.
+/// continuous derivatives: of all curves through the points, the curve with the least ∫|jerk|² dt.
 ///
 /// Allocates at construction and when copied, never in at().
 template <int M, typename Scalar = double>
@@ -33,7 +33,7 @@ class Spline {
 
   [[nodiscard]] const std::vector<Scalar>& times() const noexcept { return times_; }
 
-  /// Sample at t [s]; the nearest end outside the times.
+  /// Sample at t [s]. Outside of the times, the sample of the nearest end.
   [[nodiscard]] Sample at(Scalar t) const noexcept {
     const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
     const auto i = static_cast<std::size_t>(after - times_.begin()) - 1;
@@ -43,7 +43,7 @@ class Spline {
     const Scalar u = std::clamp((t - times_[i]) / h, Scalar(0), Scalar(1));
     const Scalar s = u * h;
     Sample sample;
-    for (int j = 0; j < M; ++j) {  // Number by number, which compiles in a third of the time that vectors take.
+    for (int j = 0; j < M; ++j) {  // Scalars compile in a third of the time of vectors.
       const auto [c3, c4, c5] = higher(a, b, h, j);
       sample.x(j) = a.x(j) + s * (a.xd(j) + s / 2 * a.xdd(j)) + u * u * u * (c3 + u * (c4 + u * c5));
       sample.xd(j) = a.xd(j) + s * a.xdd(j) + u * u / h * (3 * c3 + u * (4 * c4 + u * (5 * c5)));
@@ -52,7 +52,7 @@ class Spline {
     return sample;
   }
 
-  /// Value and all five derivatives at t [s] of the piece between times i and i + 1.
+  /// Value and all five derivatives at t [s], of the piece between times i and i + 1.
   [[nodiscard]] std::array<Point, 6> derivatives(std::size_t i, Scalar t) const noexcept {
     const Scalar h = times_[i + 1] - times_[i];
     const Scalar u = (t - times_[i]) / h;
@@ -74,7 +74,7 @@ class Spline {
     Point xdd = Point::Zero();
   };
 
-  /// Coefficients of u³, u⁴ and u⁵ in coordinate j of the piece between two knots, h seconds apart.
+  /// Coefficients of u³, u⁴ and u⁵ in coordinate j of the piece between two knots with the time difference h [s].
   static std::array<Scalar, 3> higher(const Knot& a, const Knot& b, Scalar h, int j) noexcept {
     // Differences at b from the Taylor polynomial at a.
     const Scalar x = b.x(j) - (a.x(j) + h * (a.xd(j) + h / 2 * a.xdd(j)));
@@ -86,8 +86,9 @@ class Spline {
   using Block = Matrix<2, 2, Scalar>;
   using Rates = Matrix<2, M, Scalar>;  // Velocity and acceleration of a knot.
 
-  /// The inner knots' velocities and accelerations make snap and jerk continuous: a block tridiagonal system, which is
-  /// positive definite, since it is that of the least ∫|jerk|² dt, and so is solved without pivoting.
+  /// Computes the velocities and accelerations of the inner knots that make jerk and snap continuous. These are the
+  /// normal equations of the least ∫|jerk|² dt: a block tridiagonal system, which is positive definite and therefore
+  /// needs no pivoting.
   void solve() {
     const std::size_t inner = knots_.size() - 2;
     std::vector<Block> upper(inner);
@@ -117,7 +118,7 @@ class Spline {
     }
   }
 
-  /// Contribution of a knot's own rates to −snap and jerk at the end, and at the start, of a piece of h seconds.
+  /// Contribution of the rates of a knot to −snap and jerk at the end, and at the start, of a piece of h seconds.
   static Block ends(Scalar h) {
     Block block;
     block << 192 / (h * h * h), -36 / (h * h), -36 / (h * h), 9 / h;
@@ -128,7 +129,7 @@ class Spline {
     block << 192 / (h * h * h), 36 / (h * h), 36 / (h * h), 9 / h;
     return block;
   }
-  /// Contribution of the next knot's rates.
+  /// Contribution of the rates of the next knot.
   static Block across(Scalar h) {
     Block block;
     block << 168 / (h * h * h), -24 / (h * h), 24 / (h * h), -3 / h;

@@ -20,7 +20,7 @@ template <typename Task>
   }
 }
 
-/// Tasks side by side on one level.
+/// Tasks on one level, with equal priority.
 template <typename... Tasks>
 struct TaskLevel {
   static constexpr int kRows = ((Tasks::kRows == Eigen::Dynamic) || ...) ? Eigen::Dynamic : (Tasks::kRows + ...);
@@ -64,7 +64,7 @@ struct SpaceOf<First, std::tuple<Tasks...>> {
 
 }  // namespace stack_detail
 
-/// Task space of a stack: points of all tasks, those of higher levels first.
+/// Task space of a stack: points of all tasks, in the order of the levels.
 template <typename First, typename... Lower>
 struct StackSpace
     : stack_detail::SpaceOf<stack_detail::kSize<decltype(First::tasks)>, stack_detail::TasksOf<First, Lower...>>::type {
@@ -73,11 +73,11 @@ struct StackSpace
 template <typename... Levels>
 inline constexpr int kLevelsOf<StackSpace<Levels...>> = static_cast<int>(sizeof...(Levels));
 
-/// Tasks on levels in strict priority: Stack(TaskLevel(a, b), c) has a and b side by side, and c below both. A level of
-/// one task needs no TaskLevel.
+/// Tasks on levels in strict priority. In Stack(TaskLevel(a, b), c), a and b have equal priority, and c has a lower
+/// priority. A level with one task needs no TaskLevel.
 ///
-/// Lower levels may be disabled from tick to tick, and levels of one type reordered. All sizes are known at compile
-/// time.
+/// Lower levels may be disabled from tick to tick, and levels of one type may be reordered. All sizes are known at
+/// compile time.
 template <typename... Levels>
 class Stack {
  public:
@@ -93,7 +93,7 @@ class Stack {
 
   [[nodiscard]] const Tasks& tasks() const noexcept { return tasks_; }
 
-  /// Rows of each level, or Eigen::Dynamic.
+  /// Number of rows of each level, or Eigen::Dynamic.
   static constexpr std::array<int, kLevels> kRows{Levels::kRows...};
 
   /// Level of task i.
@@ -110,13 +110,13 @@ class Stack {
     return rows;
   }
 
-  /// Number of tasks with rows.
+  /// Number of tasks that have rows.
   [[nodiscard]] int count() const noexcept {
     return std::apply([](const auto&... task) { return ((rows_of(task) > 0 ? 1 : 0) + ...); }, tasks());
   }
 
-  /// Enables or disables level k, counted from 0. The first level is always enabled. False if there is no lower level
-  /// k.
+  /// Enables or disables level k, counted from 0. The first level is always enabled. Returns false if k is not a lower
+  /// level.
   bool enable(int k, bool on) noexcept {
     if (k < 1 || k >= kLevels) return false;
     enabled_[static_cast<std::size_t>(k)] = on;
@@ -124,8 +124,8 @@ class Stack {
   }
   [[nodiscard]] const std::array<bool, kLevels>& enabled() const noexcept { return enabled_; }
 
-  /// Reorders levels of one type, as those of an AnyStack: level k becomes what was level order[k]. False, without an
-  /// effect, unless order has each level once, and its first level is enabled and has a task.
+  /// Reorders levels of one type, for example of an AnyStack: the previous level order[k] becomes level k. Returns
+  /// false, without effect, unless `order` has each level once, and its first level is enabled and has a task.
   bool reorder(const std::array<int, kLevels>& order) noexcept {
     static_assert((std::is_same_v<Levels, std::tuple_element_t<0, std::tuple<Levels...>>> && ...),
                   "only levels of one type can be reordered");
@@ -150,8 +150,8 @@ class Stack {
     return true;
   }
 
-  /// Binds the tasks to a robot. Throws std::invalid_argument where a task does not suit the robot, a level has more
-  /// rows than the robot has joints, or the first level has no rows.
+  /// Binds the tasks to a robot. Throws std::invalid_argument if a task does not suit the robot, a level has more rows
+  /// than the robot has joints, or the first level has no rows.
   template <typename Robot>
   void bind(const Robot& robot) {
     if (rows(0) == 0) validation::reject("stack", ": its first level has no task: must have one");
@@ -164,7 +164,7 @@ class Stack {
     std::apply([&](auto&... task) { (task.bind(robot), ...); }, tasks_);
   }
 
-  /// Calls f(task, i) for each task, with its index as a type.
+  /// Calls f(task, i) for each task, where i is its index as a std::integral_constant.
   template <typename F>
   void each(F&& f) const noexcept {
     each(f, std::make_index_sequence<kTasks>{});

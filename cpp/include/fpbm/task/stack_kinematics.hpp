@@ -14,21 +14,21 @@
 
 namespace fpbm {
 
-/// What a task adds to its rows: its feedback, its selection S, in metres, and its velocity J qd in the rows of its
-/// space.
+/// State of a task in addition to its rows: its feedback, its selection S in metres, and its velocity J qd in the rows
+/// of its space.
 template <typename Task>
 struct TaskState {
   using Scalar = typename Task::Scalar;
   TickFeedback<Scalar> feedback;
   Matrix<Task::kRows, Task::Space::kRows, Scalar> S;
-  Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only its first S.rows() entries.
+  Vector<Task::Space::kRows, Scalar> xd;  ///< If kWhole, only the first S.rows() entries.
 
   TaskState() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 };
 
 namespace stack_detail {
 
-/// Rows of a lower level.
+/// Type of the rows of a lower level.
 template <int N, typename Scalar, typename Level>
 struct LowerRowsOf {
   using type = LevelRows<Level::kRows, N, Scalar>;
@@ -72,21 +72,21 @@ struct StackKinematics {
     return enabled[static_cast<std::size_t>(Stack_::level(static_cast<int>(i)))];
   }
 
-  std::array<bool, Stack_::kLevels> enabled;  ///< Whether a level is to be resolved. The first one always is.
-  Scalar length = Scalar(1);                  ///< The robot's characteristic length [m].
+  std::array<bool, Stack_::kLevels> enabled;  ///< Whether each level is resolved. The first level is always resolved.
+  Scalar length = Scalar(1);                  ///< Characteristic length of the robot [m].
 
-  /// Of the middle of a tick with one acceleration (continue_tick): twice the change of the errors from its start,
-  /// divided by its length h [m/s, rad/s].
+  /// Set by continue_tick(), in the middle of a tick with one acceleration: 2 (e' − e)/h, twice the change of the
+  /// errors since the start of the tick divided by its length h [m/s, rad/s].
   Vector<Stack_::Space::kRows, Scalar> error_rate;
-  Scalar tick = Scalar(0);  ///< h [s]; 0 otherwise.
+  Scalar tick = Scalar(0);  ///< h [s], or 0 without continue_tick().
 
-  /// In the middle of a tick that continues the tick before: the feedback and the rows become those of TickFeedback.
-  /// change: of the errors since the tick's start.
+  /// Prepares the middle of a tick that continues the acceleration of the previous tick: sets the feedback and the rows
+  /// according to TickFeedback. change: e' − e, the change of the errors since the start of the tick.
   void continue_tick(Scalar h, const Vector<Stack_::Space::kRows, Scalar>& change,
                      const TickBefore<N, Scalar>& before) noexcept {
     tick = h;
     error_rate = entrywise(change, [&](Eigen::Index i) { return Scalar(2) / h * change.coeff(i); });
-    int row = 0;  // Of the task on its level.
+    int row = 0;  // First row of the task in its level.
     Stack_::Space::each([&](auto, auto i, int) noexcept {
       constexpr int kIndex = decltype(i)::value;
       if (kIndex > 0 && Stack_::level(kIndex) != Stack_::level(kIndex - 1)) row = 0;
@@ -112,8 +112,8 @@ template <typename... Levels, int N, typename Scalar>
   return std::apply([](const auto&, const auto&... lower) { return ((lower.rows() > 0) || ...); }, kinematics.levels);
 }
 
-/// The errors of all tasks. Of a task with a selection S of rows, the part S⁺S (x ⊖ f(q)): the coordinates that are not
-/// selected have no error. x: the targets.
+/// Errors of all tasks for the targets x. For a task with a selection S of rows, the error is S⁺S (x ⊖ f(q)): the
+/// coordinates that are not selected have no error.
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] auto task_error(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics,
                               const typename StackSpace<Levels...>::template Point<Scalar>& x) noexcept {
@@ -126,7 +126,7 @@ template <typename... Levels, int N, typename Scalar>
       const Vector<Part::kRows, Scalar> whole = error.template segment<Part::kRows>(row);
       const auto selected = product(S, whole);
       for (int j = 0; j < Part::kRows; ++j) {
-        // The rows of S are orthonormal, times the length if the row is an angle.
+        // The rows of S are orthonormal, times the length if the row is angular.
         const Scalar unit = j < Part::kRows - Part::kTurns ? Scalar(1) : kinematics.length;
         Scalar sum(0);
         for (Eigen::Index r = 0; r < S.rows(); ++r) sum += S.coeff(r, j) * selected.coeff(r);

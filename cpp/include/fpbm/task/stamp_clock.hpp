@@ -9,21 +9,23 @@
 
 namespace fpbm {
 
-/// Age of the newest stamp, tick by tick, on the clock that the stamps are of.
+/// Age of the newest stamp at each tick, on the clock of the stamps.
 ///
-/// The clock is learnt. The least delayed stamp of a window of 5 to 10 s counts as not delayed, so that a drift causes
-/// an error of at most 10 s times the drift. Within the window the learnt clock runs slow by 1e-4: stamps of a clock
-/// that drifts by less never lie ahead of it for long. Corrections of less than a tick forward, and all backward, are
-/// made smoothly. A clock whose time at the first tick is known is not learnt.
+/// This clock is estimated. The stamp with the smallest delay in a window of 5 to 10 s counts as not delayed, so that a
+/// drift of the clock causes an error of at most 10 s times the drift. Within the window, the estimated clock is slow
+/// by 1e-4: stamps of a clock with a smaller drift are not ahead of the estimate for long. Forward corrections of less
+/// than a tick, and all backward corrections, are smooth. A clock whose time at the first tick is known is not
+/// estimated.
 ///
-/// A stamp is rejected if it is not newer than the newest, or too far ahead (follows()). If stamps are rejected for a
-/// whole timeout, three at least, and follow each other, then the sender's clock was set: it is learnt anew. After a
-/// silence of 10 s, any stamp is of a clock that was set.
+/// A stamp is rejected if it is not newer than the newest stamp, or too far ahead (follows()). If stamps are rejected
+/// for a whole timeout, at least three, and follow each other, the clock of the sender was reset, and the estimate
+/// starts again. After a silence of 10 s, any stamp that does not follow the newest stamp counts as a stamp of a reset
+/// clock.
 template <typename Scalar>
 class StampClock {
  public:
-  /// timeout: time constant of the corrections; shortest run of rejected stamps; how far a stamp may be ahead of a
-  /// known clock [s].
+  /// timeout [s]: time constant of the corrections, shortest duration of rejected stamps for a reset, and largest time
+  /// by which a stamp may be ahead of a known clock.
   StampClock(Scalar dt, Scalar timeout, std::optional<double> start) noexcept
       : dt_(dt),
         timeout_(timeout),
@@ -32,13 +34,14 @@ class StampClock {
         learns_(!start),
         newest_(start.value_or(0.0)) {}
 
-  /// Seconds since the newest stamp.
+  /// Time since the newest stamp [s].
   [[nodiscard]] Scalar age() const noexcept { return age_; }
 
-  /// Seconds of the stamps' clock per second of the coming tick.
+  /// Rate of the clock of the stamps in the coming tick [s/s].
   [[nodiscard]] Scalar rate() const noexcept { return Scalar(1) - slow_ - correction() / dt_; }
 
-  /// Seconds from the newest stamp to this one, which is the newest from now on; none if it is rejected.
+  /// Processes a stamp. Returns the time from the newest stamp to this stamp [s], which becomes the newest, or no value
+  /// if the stamp is rejected.
   [[nodiscard]] std::optional<Scalar> hear(double stamp) noexcept {
     if (!std::isfinite(stamp)) return {};
     if (!learns_) return hear_known(stamp);
@@ -52,7 +55,7 @@ class StampClock {
     return elapsed;
   }
 
-  /// The same for a stamp of now.
+  /// hear() for a stamp with the current time.
   [[nodiscard]] Scalar hear_now() noexcept {
     const Scalar elapsed = std::max(age_, Scalar(0));
     newest_ += static_cast<double>(elapsed);
@@ -72,7 +75,7 @@ class StampClock {
     least_ = kNone;
   }
 
-  /// Learns anew, unless the clock is known.
+  /// Starts the estimate again, unless the clock is known.
   void forget() noexcept {
     if (!learns_) return;
     known_ = false;
@@ -83,12 +86,13 @@ class StampClock {
 
  private:
   static constexpr Scalar kHalf{
-      5};  ///< Half the window [s]: 150 stamps at 30 Hz, the least of 20 ms jitter is 0.13 ms.
+      5};  ///< Half the window [s]: of 150 stamps at 30 Hz with 20 ms jitter, the smallest delay is 0.13 ms.
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
-  static constexpr int kRun = 3;  ///< Fewest rejected stamps that stand for a clock that was set.
+  static constexpr int kRun = 3;  ///< Smallest number of rejected stamps for a reset.
 
-  /// Whether a stamp some seconds after another is plausible so long after it: newer, by twice the time and half a
-  /// timeout at most. A simulation may run at twice the speed, and an earlier stamp may have been delayed.
+  /// Whether a stamp is plausible that is `elapsed` [s] newer than another stamp of `since` [s] ago: it is newer, by at
+  /// most twice the time and half a timeout. A simulation may run at twice the speed, and the earlier stamp may have
+  /// been delayed.
   [[nodiscard]] bool follows(double elapsed, Scalar since) const noexcept {
     return elapsed > 0.0 && elapsed <= static_cast<double>(Scalar(2) * since + timeout_ / Scalar(2));
   }
@@ -103,8 +107,8 @@ class StampClock {
     return elapsed;
   }
 
-  /// Counts a stamp that does not fit; true if the run of them, or a silence before it, shows that the clock was set,
-  /// which is then forgotten.
+  /// Counts a stamp that does not follow. Returns true, and starts the estimate again, if the run of such stamps, or
+  /// the silence before the stamp, shows that the clock was reset.
   [[nodiscard]] bool set_anew(double stamp) noexcept {
     if (rejected_ > 0 && stamp > last_rejected_ && follows(stamp - first_rejected_, rejected_for_)) {
       last_rejected_ = stamp;
@@ -121,7 +125,7 @@ class StampClock {
     return true;
   }
 
-  /// Takes the newest stamp's delay, age_, into the window.
+  /// Adds the delay of the newest stamp, age_, to the window.
   void learn() noexcept {
     const bool first = std::min(least_, least_before_) == kNone;
     if (first || age_ < -dt_) {
@@ -131,13 +135,13 @@ class StampClock {
     least_ = std::min(least_, age_);
   }
 
-  /// By how much the coming tick sets the clock back: a share of the least delay, half a tick at most [s].
+  /// Backward correction of the clock in the coming tick [s]: a fraction of the smallest delay, at most half a tick.
   [[nodiscard]] Scalar correction() const noexcept {
     const Scalar least = std::min(least_, least_before_);
     return least == kNone ? Scalar(0) : std::min(share_ * least, dt_ / Scalar(2));
   }
 
-  /// Delays are relative to the learnt clock.
+  /// Shifts the stored delays, which are relative to the estimated clock.
   void shift(Scalar forward) noexcept {
     least_ += forward;
     least_before_ += forward;
@@ -145,19 +149,19 @@ class StampClock {
 
   Scalar dt_;
   Scalar timeout_;
-  Scalar share_;  ///< Of a correction, made by a tick.
+  Scalar share_;  ///< Fraction of a correction that a tick makes.
   Scalar slow_;
   bool learns_;
-  bool known_ = false;  ///< Whether a stamp was heard.
-  double newest_;       ///< A float would not tell milliseconds apart after some hours.
+  bool known_ = false;  ///< Whether a stamp was accepted.
+  double newest_;       ///< [s] A float does not resolve milliseconds after some hours.
   Scalar age_{0};
-  Scalar half_{0};               ///< Time in the half of the window that is filled [s].
-  Scalar least_{kNone};          ///< Least delay in that half,
-  Scalar least_before_{kNone};   ///< and in the half before.
-  int rejected_ = 0;             ///< Stamps in the run of rejected ones,
-  double first_rejected_ = 0.0;  ///< from here
-  double last_rejected_ = 0.0;   ///< to here,
-  Scalar rejected_for_{0};       ///< and how long ago it began [s].
+  Scalar half_{0};               ///< Time in the current half of the window [s].
+  Scalar least_{kNone};          ///< Smallest delay in this half [s].
+  Scalar least_before_{kNone};   ///< Smallest delay in the half before [s].
+  int rejected_ = 0;             ///< Number of stamps in the run of rejected stamps.
+  double first_rejected_ = 0.0;  ///< First stamp of the run [s].
+  double last_rejected_ = 0.0;   ///< Last stamp of the run [s].
+  Scalar rejected_for_{0};       ///< Time since the run began [s].
 };
 
 }  // namespace fpbm

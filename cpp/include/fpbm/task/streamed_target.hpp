@@ -8,31 +8,32 @@
 
 namespace fpbm {
 
-/// A target that comes as points, and its velocity, estimated from them.
+/// Target that is received as points, with a velocity that is estimated from the points.
 ///
-/// The velocity is, axis by axis, the smaller of the last two difference quotients, and zero where their signs differ
-/// (minmod): a target that moves evenly has its own after three points, and one that jumps has none.
+/// The velocity of each axis is the smaller of the last two difference quotients, or zero if their signs differ
+/// (minmod). For a target with constant velocity, the estimate is exact after three points. For a target that jumps, it
+/// is zero.
 template <typename Space, typename Scalar>
 class StreamedTarget {
  public:
   using Point = typename Space::template Point<Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// At rest at x, until points come. No quotient is of points nearer in time than least, or farther than most [s]; no
-  /// velocity exceeds the fastest.
+  /// At rest at x until the first point. Difference quotients are of points at least `least` and less than `most` apart
+  /// in time [s]. No velocity exceeds `fastest`.
   StreamedTarget(const Point& x, Scalar least, Scalar most, Twist fastest) noexcept
       : least_(least), most_(most), fastest_(std::move(fastest)) {
     rest_at(x);
   }
 
-  /// Seconds after the newest point.
+  /// Point `seconds` [s] after the newest point.
   [[nodiscard]] Point at(Scalar seconds) const noexcept { return Space::template displace<Scalar>(x_, seconds * v_); }
   [[nodiscard]] const Twist& velocity() const noexcept { return v_; }
 
-  /// Whether a point has come since it was at rest.
+  /// Whether a point was received since the target was at rest.
   [[nodiscard]] bool streams() const noexcept { return streams_; }
 
-  /// A point some seconds after the one before.
+  /// Adds a point, `elapsed` [s] after the point before.
   void push(const Point& x, Scalar elapsed) noexcept {
     since_ += elapsed;
     if (!streams_ || !(since_ < most_)) {
@@ -54,7 +55,7 @@ class StreamedTarget {
     since_ = Scalar(0);
   }
 
-  /// Is at rest from now on, and forgets the points that came.
+  /// Sets the target to rest at x, and forgets the received points.
   void rest_at(const Point& x) noexcept {
     x_ = x;
     v_.setZero();
@@ -69,9 +70,9 @@ class StreamedTarget {
   Twist fastest_;
   Point x_;
   Twist v_;
-  Point base_;       ///< Where the last quotient ends,
-  Twist quotient_;   ///< what it is,
-  Scalar since_{0};  ///< and how long before the newest point that was.
+  Point base_;       ///< Point at the end of the last quotient.
+  Twist quotient_;   ///< The last quotient.
+  Scalar since_{0};  ///< Time from base_ to the newest point [s].
   bool streams_ = false;
 };
 

@@ -10,15 +10,15 @@
 
 namespace fpbm {
 
-/// Motion of all axes of the base frame within bounds: each axis in the least time, and an orientation about a fixed
-/// axis where that is possible.
+/// Motion along all axes of the base frame within bounds: time-optimal for each axis, and about a fixed axis for an
+/// orientation if possible.
 template <typename Space, typename Scalar>
 class TargetAxes {
  public:
   using Axis = TimeOptimalAxis<Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// Displacement [m, rad], velocity and acceleration after some seconds.
+  /// Displacement [m, rad], velocity and acceleration after a time.
   struct Motion {
     Twist displacement;
     Twist xd;
@@ -32,7 +32,7 @@ class TargetAxes {
     }
   };
 
-  /// Throws std::invalid_argument where a bound is not positive and finite.
+  /// Throws std::invalid_argument if a bound is not positive and finite.
   explicit TargetAxes(const TargetBounds<Scalar>& bounds)
       : lengths_(bounds.lengths()), angles_(Space::kTurns > 0 ? bounds.angles() : bounds.lengths()) {}
 
@@ -47,7 +47,7 @@ class TargetAxes {
     return v.cwiseMax(-fastest()).cwiseMin(fastest());
   }
 
-  /// From a motion xd, xdd to a velocity.
+  /// Motion after `seconds` [s] from xd, xdd toward a velocity.
   [[nodiscard]] Motion change(const Twist& xd, const Twist& xdd, const Twist& velocity, Scalar seconds) const noexcept {
     Motion motion;
     for (int i = 0; i < Space::kRows; ++i) {
@@ -56,8 +56,8 @@ class TargetAxes {
     return motion;
   }
 
-  /// From a motion xd, xdd to a target at a displacement, error, which moves at a velocity. size: of the numbers that
-  /// the target comes from. h: length of a tick.
+  /// Motion after `seconds` [s] from xd, xdd toward a target at the displacement `error`, which moves at `velocity`.
+  /// size: largest coordinate of the target, for the round-off error. h: length of a tick [s].
   [[nodiscard]] Motion approach(const Twist& xd, const Twist& xdd, const Twist& error, const Twist& velocity,
                                 Scalar size, Scalar seconds, Scalar h) const noexcept {
     Motion motion;
@@ -88,7 +88,7 @@ class TargetAxes {
  private:
   static constexpr int kLengths = Space::kRows - Space::kTurns;
 
-  /// The fixed axis about which an orientation may turn to a target that does not turn.
+  /// Fixed axis about which an orientation rotates to a target without angular velocity, if possible.
   [[nodiscard]] static std::optional<FixedAxis<Scalar>> turns_about(const Twist& xd, const Twist& xdd,
                                                                     const Twist& error,
                                                                     const Twist& velocity) noexcept {

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Bounds on a reference's motion, for each axis of the base frame; angular ones where the task has angles.
+/// Bounds on the motion of a reference, for each axis of the base frame. Angular bounds apply if the task has angles.
 template <typename Scalar = double>
 struct TargetBounds {
   Scalar velocity{0};              ///< [m/s]
@@ -17,7 +17,7 @@ struct TargetBounds {
   Scalar angular_acceleration{0};  ///< [rad/s²]
   Scalar angular_jerk{0};          ///< [rad/s³]
 
-  /// An axis within the bounds. Throws std::invalid_argument where one is not positive and finite.
+  /// Axis with the linear or the angular bounds. Throws std::invalid_argument if a bound is not positive and finite.
   [[nodiscard]] TimeOptimalAxis<Scalar> lengths() const {
     validation::require_positive("velocity", velocity);
     validation::require_positive("acceleration", acceleration);
@@ -35,10 +35,10 @@ struct TargetBounds {
 template <typename Scalar = double>
 struct TargetFilterOptions {
   Scalar dt = Scalar(1e-3);      ///< Length of a tick [s].
-  Scalar timeout = Scalar(0.2);  ///< How long a target moves on, and a twist holds, without news [s].
-  std::optional<double> start;   ///< Time at the first tick on the stamps' clock; learnt unless given [s].
+  Scalar timeout = Scalar(0.2);  ///< Time for which a target moves on, and a twist holds, without a message [s].
+  std::optional<double> start;   ///< Time at the first tick on the clock of the stamps [s]; estimated if not given.
 
-  /// Throws std::invalid_argument where one is out of range.
+  /// Throws std::invalid_argument if an option is out of range.
   void require_good() const {
     validation::require_positive("dt", dt);
     validation::require_positive("timeout", timeout);

@@ -15,22 +15,24 @@
 
 namespace fpbm {
 
-/// Makes a smooth reference of targets that come at any rate, late, twice, out of order or not at all.
+/// Smooth reference from targets that arrive at any rate, late, duplicate, out of order or not at all.
 ///
-/// Each axis of the base frame goes to the target in the least time within its bounds (TimeOptimalAxis), in the frame
-/// of a target that moves: it does not overshoot one at rest, and does not lag behind one that moves evenly. The axes
-/// of an orientation are those of the rotation vector to the target. From rest, or from a rotation about that vector,
-/// the orientation turns about it (FixedAxis): its largest angle in the least time, the other two in proportion. A
-/// target without news for a timeout stops as quickly as the bounds allow.
+/// Each axis of the base frame moves to the target in minimum time within its bounds (TimeOptimalAxis), in the frame of
+/// the moving target. The reference does not overshoot a target at rest, and has no lag behind a target with constant
+/// velocity. The axes of an orientation are the axes of the rotation vector to the target. From rest, or from a
+/// rotation about this vector, the orientation rotates about this vector (FixedAxis): the largest angle in minimum
+/// time, the two others in proportion. A target without a message for a timeout stops in minimum time within the
+/// bounds.
 ///
-/// After construction nothing allocates, throws or loops without a bound, whatever is pushed, and no bound is exceeded.
+/// After construction, no function allocates, throws or has an unbounded loop, whatever is pushed, and no bound is
+/// exceeded.
 template <typename Space, typename Scalar = double>
 class TargetFilter {
  public:
   using Point = typename Space::template Point<Scalar>;
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// At rest at x0 [m, rad]. Throws std::invalid_argument where it is no point, or a number is out of range.
+  /// Starts at rest at x0 [m, rad]. Throws std::invalid_argument if x0 is not a point, or a number is out of range.
   TargetFilter(const Point& x0, const TargetBounds<Scalar>& bounds, const TargetFilterOptions<Scalar>& options = {})
       : dt_(options.dt),
         timeout_(options.timeout),
@@ -42,9 +44,9 @@ class TargetFilter {
     if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
   }
 
-  /// A target [m, rad], seen at a time [s] on any clock. Its R becomes the nearest rotation. Returns false for a
-  /// rejected message, which changes nothing: x is not a point (is_point), or the stamp is not finite, not newer than
-  /// all before, or too far ahead (StampClock).
+  /// Target [m, rad], observed at a time `stamp` [s] on any clock. Its R is replaced by the nearest rotation. Returns
+  /// false for a rejected message, which has no effect: x is not a point (is_point), or the stamp is not finite, not
+  /// newer than all stamps before, or too far ahead (StampClock).
   bool push(const Point& x, double stamp) noexcept {
     if (!is_point(x)) return false;
     const std::optional<Scalar> elapsed = clock_.hear(stamp);
@@ -52,14 +54,14 @@ class TargetFilter {
     return elapsed.has_value();
   }
 
-  /// A target seen now.
+  /// Target observed at the current time.
   bool push(const Point& x) noexcept {
     if (!is_point(x)) return false;
     take(orthonormalised(x), clock_.hear_now());
     return true;
   }
 
-  /// A velocity to go at [m/s, rad/s], as far as the bounds allow, until the timeout.
+  /// Desired velocity [m/s, rad/s], limited by the bounds, until the timeout. Returns false for a rejected message.
   bool push_twist(const Twist& v, double stamp) noexcept {
     if (!v.allFinite() || !clock_.hear(stamp)) return false;
     take(v);
@@ -75,14 +77,14 @@ class TargetFilter {
   /// The reference at the start of the coming tick.
   [[nodiscard]] const Reference<Space, Scalar>& reference() const noexcept { return reference_; }
 
-  /// Some seconds into the coming tick.
+  /// The reference `seconds` [s] after the start of the coming tick.
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     return seconds == Scalar(0) ? reference_ : step(seconds).to;
   }
 
   [[nodiscard]] Scalar dt() const noexcept { return dt_; }
 
-  /// Goes one tick on.
+  /// Advances by one tick.
   void advance() noexcept {
     const Step next = step(dt_);
     compensation_.add(next.displacement, next.to.x, reference_.x);
@@ -91,7 +93,7 @@ class TargetFilter {
     settle();
   }
 
-  /// Starts anew, at rest at a point; a clock that was learnt is forgotten. Leaves all as it is where x is no point.
+  /// Restarts at rest at x, and forgets an estimated clock. Returns false, without effect, if x is not a point.
   bool reset(const Point& x) noexcept {
     if (!is_point(x)) return false;
     reference_ = Reference<Space, Scalar>::hold(orthonormalised(x));
@@ -103,7 +105,7 @@ class TargetFilter {
   }
 
  private:
-  /// The reference after some seconds, and the displacement to it [m, rad] before it is rounded.
+  /// The reference after a time, and the displacement to it [m, rad] before rounding.
   struct Step {
     Reference<Space, Scalar> to;
     Twist displacement;
@@ -118,7 +120,7 @@ class TargetFilter {
     const Twist error = compensation_.difference(target_.at(age()), x);
     const Twist velocity = axes_.within_bounds(clock_.rate() * target_.velocity());
     const auto motion = axes_.approach(xd, xdd, error, velocity, extent(x), seconds, dt_);
-    // To the last bit, but for an angle in the plane, which may be whole turns away.
+    // Exactly the target, except for an angle in the plane, which may differ by full turns.
     const bool exact = motion.arrived && Space::kTurns != 1;
     return {{exact ? target_.at(age() + clock_.rate() * seconds) : compensation_.displace(x, motion.displacement),
              motion.xd, motion.xdd},
@@ -137,10 +139,10 @@ class TargetFilter {
     settle();
   }
 
-  /// Age of the target; one that was late already when it came is no older than one that has just become so.
+  /// Age of the target [s]. A target that was too old on arrival is treated like a target that has just become too old.
   [[nodiscard]] Scalar age() const noexcept { return std::min(clock_.age(), timeout_ + dt_); }
 
-  /// Lets a target come to rest that had no news for too long.
+  /// Stops a target without a message for a timeout.
   void settle() noexcept {
     if (clock_.age() < timeout_) return;
     wanted_.setZero();
@@ -159,7 +161,7 @@ class TargetFilter {
       in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= near;
     }
     target_.rest_at(Space::template displace<Scalar>(x, way));
-    free_ = free_ || in_step;  // Simply stops: turns about several axes at once would end a little elsewhere.
+    free_ = free_ || in_step;  // Stop directly: rotations about several axes do not end exactly at the target.
   }
 
   Scalar dt_;
@@ -169,7 +171,7 @@ class TargetFilter {
   RoundingCompensation<Space, Scalar> compensation_;
   StampClock<Scalar> clock_;
   StreamedTarget<Space, Scalar> target_;
-  bool free_ = false;  ///< Whether it goes at a velocity, to no point.
+  bool free_ = false;  ///< Whether the reference follows a velocity and not a point.
   Twist wanted_ = Twist::Zero();
 };
 

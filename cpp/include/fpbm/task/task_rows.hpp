@@ -12,22 +12,24 @@
 
 namespace fpbm {
 
-/// Joint velocities in the middle of a tick that continues the acceleration of the tick before, and what they follow.
+/// Joint velocities in the middle of a tick that continues the acceleration of the previous tick, and the accelerations
+/// before this tick (docs/equations.md, A tick with one acceleration).
 template <int N, typename Scalar>
 struct TickBefore {
-  Vector<N, Scalar> qd;             ///< In the middle [rad/s].
-  const Vector<N, Scalar>& qdd;     ///< a', accelerations of the tick before [rad/s²].
-  const Vector<N, Scalar>& change;  ///< a' − a'', from those of the tick before that [rad/s²].
+  Vector<N, Scalar> qd;             ///< q̇ in the middle of the tick [rad/s].
+  const Vector<N, Scalar>& qdd;     ///< a', acceleration of the previous tick [rad/s²].
+  const Vector<N, Scalar>& change;  ///< δ' = a' − a'', change of acceleration from the tick before [rad/s²].
 };
 
-/// Rows of a level: J and J̇, in metres.
+/// Rows J and J̇ of a level, in metres.
 template <int M, int N, typename Scalar>
 struct LevelRows {
   Matrix<M, N, Scalar> J;
   Matrix<M, N, Scalar> Jd;
-  Vector<M, Scalar> drift;  ///< See continue_tick(), which alone sets it [m/s²].
+  Vector<M, Scalar> drift;  ///< Set by continue_tick() only [m/s²].
 
-  // Not "= default": braces and std::tuple() would set all bytes to 0, 16 kB if the sizes are known at run time.
+  // Not "= default": braces and std::tuple() would set all bytes to 0, which are 16 kB if the sizes are known at run
+  // time.
   LevelRows() noexcept {}  // NOLINT(modernize-use-equals-default)
 
   void resize(Eigen::Index rows, Eigen::Index dof) noexcept {
@@ -38,8 +40,8 @@ struct LevelRows {
   [[nodiscard]] Eigen::Index rows() const noexcept { return J.rows(); }
   [[nodiscard]] const Matrix<M, N, Scalar>& matrix() const noexcept { return J; }
 
-  /// Linearises rows first … first + rows − 1 about a tick that continues the tick before (docs/equations.md, "A tick
-  /// with one acceleration"): J ← J + h'J̇, drift ← J̇ (qd − h'a' + correction (a' − a'')) − s ẍ', ẍ' = J a' + J̇ qd.
+  /// Linearises rows first … first + rows − 1 about a tick that continues the previous tick (docs/equations.md, A tick
+  /// with one acceleration): J ← J + h'J̇, drift ← J̇ (qd − h'a' + correction (a' − a'')) − s ẍ', ẍ' = J a' + J̇ qd.
   void continue_tick(const TickFeedback<Scalar>& feedback, int first, Eigen::Index rows,
                      const TickBefore<N, Scalar>& before) noexcept {
     for (Eigen::Index i = first; i < first + rows; ++i) drift.coeffRef(i) = Scalar(0);
@@ -55,20 +57,21 @@ struct LevelRows {
   }
 };
 
-/// Rows of a level that is a posture of all N joints: row i of J is 1 for joints[i] and 0 for the others, and J̇ is 0.
+/// Rows of a level that is a posture of all N joints: row i of J is 1 for joints[i] and 0 for the other joints, and J̇
+/// is 0.
 template <int N, typename Scalar>
 struct PostureRows {
   std::array<int, static_cast<std::size_t>(kCapacity<N>)> joints;
-  Vector<N, Scalar> drift;  ///< As of LevelRows: −s a' of each row [rad/s²].
+  Vector<N, Scalar> drift;  ///< −s a' of each row [rad/s²].
 
   PostureRows() noexcept {}  // NOLINT(modernize-use-equals-default): as LevelRows.
 
   void resize(Eigen::Index rows, Eigen::Index) noexcept { drift.resize(rows); }
   [[nodiscard]] static constexpr Eigen::Index rows() noexcept { return N; }
-  /// I: the order of the rows does not matter to the limits.
+  /// The identity: the limits do not depend on the order of the rows.
   [[nodiscard]] static DiagonalLevel<N, Scalar> matrix() noexcept { return {filled<Vector<N, Scalar>>(N, Scalar(1))}; }
 
-  /// As of LevelRows.
+  /// See LevelRows::continue_tick().
   void continue_tick(const TickFeedback<Scalar>& feedback, int, Eigen::Index,
                      const TickBefore<N, Scalar>& before) noexcept {
     for (int i = 0; i < N; ++i) {
@@ -77,20 +80,19 @@ struct PostureRows {
   }
 };
 
-/// The rows of one task on its level, which Task::evaluate() sets: S J and S J̇ of its first rows, from row `first` of
-/// the level on.
+/// Rows S J and S J̇ of one task, which Task::evaluate() sets, from row `first` of the level on.
 template <int M, int N, typename Scalar>
 class TaskRows {
  public:
   TaskRows(LevelRows<M, N, Scalar>& level, int first) noexcept : level_(level), first_(first) {}
 
-  /// Columns j and, where there is one, j + 1 of row i.
+  /// Sets columns j and, if it exists, j + 1 of row i.
   void set(Eigen::Index i, Eigen::Index j, const Pair<Scalar>& J, const Pair<Scalar>& Jd) noexcept {
     set_two(level_.J, first_ + i, j, J);
     set_two(level_.Jd, first_ + i, j, Jd);
   }
 
-  /// Row i: 1 for a joint and 0 for the others. J̇ is 0.
+  /// Sets row i to 1 for a joint and 0 for the other joints, with J̇ = 0.
   void set_unit(Eigen::Index i, Eigen::Index joint) noexcept {
     for (Eigen::Index j = 0; j < level_.J.cols(); ++j) {
       level_.J.coeffRef(first_ + i, j) = j == joint ? Scalar(1) : Scalar(0);
@@ -98,7 +100,7 @@ class TaskRows {
     }
   }
 
-  /// All rows of a task that has whole matrices.
+  /// Sets all rows of a task from matrices.
   template <int Rows>
   void set(const Matrix<Rows, N, Scalar>& J, const Matrix<Rows, N, Scalar>& Jd) noexcept {
     for (Eigen::Index j = 0; j < J.cols(); ++j) {
@@ -119,7 +121,7 @@ class TaskRows {
   int first_;
 };
 
-/// The rows of a posture of all joints, as TaskRows.
+/// TaskRows for a posture of all joints.
 template <int N, typename Scalar>
 class TaskRowsOfPosture {
  public:
@@ -130,7 +132,7 @@ class TaskRowsOfPosture {
   PostureRows<N, Scalar>& level_;
 };
 
-/// No rows: only the points of tasks are evaluated.
+/// TaskRows without rows, if only the points of the tasks are evaluated.
 struct NoRows {
   template <typename... Arguments>
   void set(const Arguments&...) const noexcept {}
@@ -138,7 +140,7 @@ struct NoRows {
   void set_unit(const Arguments&...) const noexcept {}
 };
 
-/// The rows of a task from row `first` of its level on.
+/// Rows of a task from row `first` of its level on.
 template <int M, int N, typename Scalar>
 [[nodiscard]] TaskRows<M, N, Scalar> rows_from(LevelRows<M, N, Scalar>& level, int first) noexcept {
   return {level, first};
@@ -148,13 +150,13 @@ template <int N, typename Scalar>
   return TaskRowsOfPosture<N, Scalar>(level);
 }
 
-/// Entries j and, where there is one, j + 1 of a row of a matrix.
+/// Entries j and, if it exists, j + 1 of a row of a matrix.
 template <typename Whole, typename Scalar = typename Whole::Scalar>
 [[nodiscard]] Pair<Scalar> two_of_row(const Whole& matrix, Eigen::Index row, Eigen::Index j) noexcept {
   return {matrix.coeff(row, j), j + 1 < matrix.cols() ? matrix.coeff(row, j + 1) : Scalar(0)};
 }
 
-/// aᵀv of two vectors v side by side.
+/// aᵀv for a pair of vectors v.
 template <typename Scalar>
 [[nodiscard, gnu::always_inline]] inline Pair<Scalar> along(const Vector<3, Scalar>& a,
                                                             const Vector<3, Pair<Scalar>>& v) noexcept {

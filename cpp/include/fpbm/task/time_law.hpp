@@ -12,7 +12,7 @@ struct Phase {
   Scalar sdd;
 };
 
-/// The paper's law, s(τ) = sin²(πτ/2): at rest at both ends, where the acceleration steps.
+/// Time law of the paper, s(τ) = sin²(πτ/2): at rest at both ends, where the acceleration is discontinuous.
 struct SinSquared {
   template <typename Scalar>
   [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {
@@ -32,7 +32,7 @@ struct Quintic {
   }
 };
 
-/// s(τ) = τ: constant speed of the parameter; velocity jumps at both ends.
+/// s(τ) = τ: constant speed of the parameter. The velocity is discontinuous at both ends.
 struct ConstantSpeed {
   template <typename Scalar>
   [[nodiscard]] static Phase<Scalar> at(Scalar tau) noexcept {

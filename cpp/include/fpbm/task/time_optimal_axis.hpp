@@ -8,18 +8,18 @@
 
 namespace fpbm {
 
-/// One axis that goes to a target at rest in the least time, within bounds V, A and J on its velocity, acceleration and
-/// jerk.
+/// Time-optimal motion of one axis to a target at rest, within bounds V, A and J on velocity, acceleration and jerk.
 ///
-/// With d the sign of the way from where the quickest stop would end to the target, the axis changes its velocity to
-/// d V as fast as it can until the quickest stop ends at the target, and then stops. While it goes, the stop's end
-/// never recedes from the target, so the moment is the root of a monotone function.
+/// Let d be the sign of the displacement from the end of the quickest stop to the target. The axis changes its velocity
+/// to d V in minimum time until the quickest stop ends at the target, and then stops. During the change of velocity,
+/// the end of the quickest stop never moves away from the target. The switching time is therefore the root of a
+/// monotonic function.
 template <typename Scalar>
 struct TimeOptimalAxis {
   Scalar velocity;  ///< V, positive and finite.
   QuickestStop<Scalar> stop;
 
-  /// Some seconds later where the velocity changes to a wanted one as fast as it can.
+  /// State after `seconds` [s] of a time-optimal change to the velocity `wanted`.
   [[nodiscard]] AxisState<Scalar> change(const AxisState<Scalar>& state, Scalar wanted, Scalar seconds) const noexcept {
     AxisState<Scalar> next = stop.ahead({state.q, state.v - wanted, state.a}, seconds);
     next.q += seconds * wanted;
@@ -27,8 +27,9 @@ struct TimeOptimalAxis {
     return next;
   }
 
-  /// Some seconds later on the way to a target, in its frame, which moves at a velocity within the bound.
-  /// A stop that ends nearer than the tolerance is followed, and ends at the target exactly: no round-off becomes jerk.
+  /// State after `seconds` [s] of the motion to a target. The state is relative to the target, whose velocity is within
+  /// the bound. If the quickest stop ends within the tolerance of the target, the axis follows this stop and ends
+  /// exactly at the target: round-off errors cause no jerk.
   [[nodiscard]] AxisState<Scalar> approach(const AxisState<Scalar>& state, Scalar target, Scalar target_velocity,
                                            Scalar seconds, Scalar tolerance) const noexcept {
     const Scalar left = target - stop.rest(state);
@@ -46,15 +47,15 @@ struct TimeOptimalAxis {
     return next;
   }
 
-  /// A tolerance for ticks of length h: round-off, and a millionth of a tick's way at the bound on jerk.
-  /// size: of the numbers that the target comes from.
+  /// Tolerance for ticks of length h [s]: the larger of the round-off error and a millionth of J h³, the displacement
+  /// of a tick at the bound on jerk. size: largest coordinate of the target, for the round-off error.
   [[nodiscard]] Scalar tolerance(const AxisState<Scalar>& state, Scalar size, Scalar h) const noexcept {
     const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
     return std::max(Scalar(1e-6) * stop.jerk * h * h * h, round_off * (size + std::abs(stop.rest(state))));
   }
 
  private:
-  static constexpr int kRounds = 16;  ///< After which the end is off by 2e-8 J h³ at most.
+  static constexpr int kRounds = 16;  ///< Then the error of the end is at most 2e-8 J h³.
 };
 
 }  // namespace fpbm

@@ -4,7 +4,7 @@
 
 namespace fpbm {
 
-/// Bounds on the tip's motion; infinite where there is none.
+/// Bounds on the motion of the tip, infinite if there is no bound.
 template <typename Scalar = double>
 struct TipBounds {
   Scalar velocity = std::numeric_limits<Scalar>::infinity();              ///< [m/s]

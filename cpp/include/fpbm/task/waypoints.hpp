@@ -17,11 +17,11 @@
 
 namespace fpbm {
 
-/// A smooth path through points of a task space, from rest to rest, with continuous acceleration everywhere.
+/// Smooth path through points of a task space, from rest to rest, with continuous acceleration.
 ///
-/// Positions lie on a quintic spline. Orientations lie on a quintic spline of quaternions, scaled to unit length; the
+/// Positions are on a quintic spline. Orientations are on a quintic spline of quaternions, scaled to unit length; the
 /// angular velocity and its derivative are exact. Only differences from the first point matter, since a path is a
-/// displacement from the tip's start. Between two orientations it rotates by the shorter way.
+/// displacement from the start of the tip. Between two orientations, the path rotates by the smaller angle.
 template <typename Space_, typename Scalar_ = double>
 class Waypoints {
  public:
@@ -29,14 +29,14 @@ class Waypoints {
   using Space = Space_;
   using Point = typename Space::template Point<Scalar>;
 
-  /// Passes points[i] at times[i] [s]; times[0] is 0.
-  /// Throws std::invalid_argument unless there are as many times as points, at least two, strictly increasing, and all
-  /// are finite.
+  /// Path that passes points[i] at times[i] [s], with times[0] = 0.
+  /// Throws std::invalid_argument unless there are as many times as points, at least two, the times increase strictly,
+  /// and all numbers are finite.
   Waypoints(const std::vector<Point>& points, const std::vector<Scalar>& times)
       : spline_(rows(points), required(times, points.size())) {}
 
-  /// Takes duration [s], shared among the pieces by their lengths and angles.
-  /// Throws std::invalid_argument where duration is not positive and finite, there are fewer than two points, or two
+  /// Path with this duration [s], which is divided among the pieces in proportion to their lengths and angles.
+  /// Throws std::invalid_argument if duration is not positive and finite, there are fewer than two points, or two
   /// successive points are equal.
   [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
     validation::require_positive("duration", duration);
@@ -46,9 +46,9 @@ class Waypoints {
     return Waypoints(points, times);
   }
 
-  /// As fast as the bounds allow, which are never exceeded: at most 0.5 % longer than the shortest duration, rounded up
-  /// to 0.01 s, so that usual steps divide it; shared among the pieces as in lasting(). Also throws
-  /// std::invalid_argument where no bound limits the tip.
+  /// Fastest path within the bounds, which are never exceeded. The duration is at most 0.5 % longer than the shortest
+  /// duration, rounded up to a multiple of 0.01 s, so that usual steps divide it. It is divided among the pieces as in
+  /// lasting(). Also throws std::invalid_argument if no bound limits the tip.
   [[nodiscard]] static Waypoints within(const std::vector<Point>& points, const TipBounds<Scalar>& bounds) {
     require_bound("velocity", bounds.velocity);
     require_bound("acceleration", bounds.acceleration);
@@ -64,7 +64,7 @@ class Waypoints {
 
   [[nodiscard]] Scalar duration() const noexcept { return spline_.times().back(); }
 
-  /// Reference at t [s], as a displacement from the first point; at rest on the ends outside 0 ≤ t ≤ T.
+  /// Reference at t [s], as a displacement from the first point. Outside of 0 ≤ t ≤ T, at rest at the nearest end.
   [[nodiscard]] Reference<Space, Scalar> sample(Scalar t) const noexcept {
     const auto at = spline_.at(t);
     if constexpr (!kTurns) {
@@ -74,7 +74,8 @@ class Waypoints {
       const Quaternion Q = at.x.template tail<4>();
       const Quaternion Qd = at.xd.template tail<4>();
       const Quaternion Qdd = at.xdd.template tail<4>();
-      // With q = Q/|Q|, ω = 2 q̇q*; the part of Q̇ along Q does not show in the vector part.
+      // The orientation is q = Q/|Q|, and ω = 2 vec(q̇q*). Since vec(QQ*) = 0, the component of Q̇ along Q has no
+      // effect on the vector part: ω = 2 vec(Q̇Q*)/|Q|². The derivative is ω̇ = 2 (vec(Q̈Q*) − (Q·Q̇) ω)/|Q|².
       const Scalar square = Q.squaredNorm();
       const Vector<3, Scalar> w = Scalar(2) / square * vector_of_quotient(Qd, Q);
       Reference<Space, Scalar> result;
@@ -91,7 +92,8 @@ class Waypoints {
   static constexpr int kCoordinates = kTurns ? 7 : Space::kRows;
   using Coordinates = Vector<kCoordinates, Scalar>;
 
-  /// Points of the spline: displacements from the first point, orientations by the shorter way.
+  /// Points of the spline: displacements from the first point. The sign of each quaternion is chosen for the smaller
+  /// angle from the quaternion before.
   static std::vector<Coordinates> rows(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Coordinates> result(points.size());
@@ -142,7 +144,7 @@ class Waypoints {
     if (!(bound > Scalar(0))) validation::fail(name, bound, "positive");
   }
 
-  /// Time of each point as a fraction of the whole.
+  /// Time of each point as a fraction of the duration.
   static std::vector<Scalar> shares(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Scalar> lengths(points.size(), Scalar(0));

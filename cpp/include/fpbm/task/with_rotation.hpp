@@ -7,11 +7,11 @@
 
 namespace fpbm {
 
-/// A path of positions with the tip's orientation held, or rotated from rest to rest over the path's whole duration.
+/// Path of positions at constant orientation of the tip, or with a rotation from rest to rest over the whole duration.
 ///
-/// The rotation is a rotation vector r along the base frame's axes [rad] (in the plane: an angle), relative to the
-/// tip's start: R(t) = rotation(s r) R(0), so that the angular velocity is ṡ r and its derivative s̈ r, exactly. To end
-/// in an orientation R, r = rotation_vector(R R(0)ᵀ).
+/// The rotation is a rotation vector r along the axes of the base frame [rad] (in the plane: an angle), relative to the
+/// start of the tip: R(t) = rotation(s r) R(0). The angular velocity is exactly ṡ r, and its derivative s̈ r. To end in
+/// an orientation R, set r = rotation_vector(R R(0)ᵀ).
 template <typename Path, typename TimeLaw = Quintic>
 class WithRotation {
   using Positions = typename Path::Space;
@@ -21,7 +21,7 @@ class WithRotation {
   using Space = typename PoseOver<Positions>::type;
   using Rotation = Vector<Space::kRows - Positions::kRows, Scalar>;
 
-  /// Orientation held.
+  /// Constant orientation.
   explicit WithRotation(const Path& path) : WithRotation(path, filled<Rotation>(Rotation::RowsAtCompileTime)) {}
 
   /// Throws std::invalid_argument unless rotation is finite.
@@ -44,7 +44,7 @@ class WithRotation {
   }
 
  private:
-  /// Linear rows, and a share of the rotation.
+  /// Linear rows, and the rotation vector times `share`.
   [[nodiscard]] Vector<Space::kRows, Scalar> join(const Vector<Positions::kRows, Scalar>& linear,
                                                   Scalar share) const noexcept {
     constexpr int kLinear = Positions::kRows;
