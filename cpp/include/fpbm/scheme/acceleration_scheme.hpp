@@ -15,26 +15,27 @@
 
 namespace fpbm {
 
-/// Every acceleration-level scheme of the paper, (5), (8), (9), (13) and (16), is this one law:
+/// All acceleration-level schemes of the paper, (5), (8), (9), (13) and (16), are this law (docs/equations.md, Unified
+/// law):
 ///
 ///   qdd = (1−α) J⁺b + α (J_W⁺b + N_W W⁻¹Jdᵀμ) + N_W z,   μ = (JW⁻¹Jᵀ)⁻¹xd,
 ///   b = xdd − Jd qd + k₁ (xd − J qd) + k₂ (x ⊖ f(q)).
 ///
-/// With k₁, k₂ > 0 the tip error e obeys ë + k₁ė + k₂e = 0 whatever α and W. MAN(), WMVNAcceleration(), Balanced() and
-/// FPBM() in scheme/schemes.hpp make the paper's schemes.
+/// With k₁, k₂ > 0, the tip error e obeys ë + k₁ė + k₂e = 0 for all α and W. MAN(), WMVNAcceleration(), Balanced() and
+/// FPBM() in scheme/schemes.hpp return the schemes of the paper.
 template <int N, typename Scalar = double, typename Weights = DiagonalWeights<N, Scalar>>
 struct AccelerationScheme {
   static constexpr Level kLevel = Level::kAcceleration;
   static constexpr int kDof = N;
 
-  Scalar alpha;  ///< Share of WMVN (9), in [0, 1]; MAN (8) has the rest.
+  Scalar alpha;  ///< Balance in [0, 1]: weight of WMVN (9). MAN (8) has the weight 1 − α.
   Weights weights;
   Scalar k1;                         ///< Velocity feedback gain [1/s].
   Scalar k2;                         ///< Position feedback gain [1/s²].
   NullSpace<N, Scalar> null_space;   ///< Secondary acceleration z.
   SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  /// Throws std::invalid_argument where alpha is not in [0, 1], or a gain is negative or not finite.
+  /// Throws std::invalid_argument if alpha is not in [0, 1], or a gain is negative or not finite.
   AccelerationScheme(Scalar alpha_, const Weights& weights_, Scalar k1_, Scalar k2_,
                      const NullSpace<N, Scalar>& null_space_ = {},
                      const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
@@ -44,15 +45,16 @@ struct AccelerationScheme {
     validation::require_non_negative("k2", k2);
   }
 
-  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     weights.require_dof(dof);
     null_space.require_dof(dof);
   }
 
-  /// Joint accelerations qdd [rad/s²] that give the tip its reference acceleration, corrected by the feedback. Leaves
-  /// qdd unchanged where it fails.
-  /// sigma, unless null, gets the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) where the factorisation of the answer has it.
+  /// Joint accelerations qdd [rad/s²] that give the tip its reference acceleration, corrected by the feedback. If the
+  /// status is a failure, qdd does not change.
+  /// sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), if the factorisation for qdd provides
+  /// this bound.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
@@ -62,8 +64,8 @@ struct AccelerationScheme {
                                         qdd, sigma);
   }
 
-  /// Joint accelerations that give any rows, all in metres, J qdd = b: the law without feedback, b with J̇ qd
-  /// subtracted.
+  /// Joint accelerations with J qdd = b for any rows, all in metres: the law without feedback. J̇ qd is already
+  /// subtracted from b.
   template <int M>
   [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>& xd,
                                     const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
@@ -73,7 +75,8 @@ struct AccelerationScheme {
   }
 
  private:
-  /// resolve() for a commanded b. Compiled once per number of rows and of angles, not per task space.
+  /// resolve() for a commanded b. Instantiated once for each number of rows and of angular rows, not for each task
+  /// space.
   template <int kTurns, int M>
   [[nodiscard]] Status solve(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Matrix<M, N, Scalar>& Jd,
                              const Vector<M, Scalar>& xd, const Scalar& length, const State<N, Scalar>& state,
@@ -101,25 +104,34 @@ struct AccelerationScheme {
     }
   }
 
-  /// solve() by one or two Gram matrices.
+  /// solve() by factorisation of the rows of J, or of JC with C Cᵀ = W⁻¹, or of both (docs/equations.md, Other degrees
+  /// of redundancy). Near singular postures, the damped Gram matrices of these rows are factorised (DampedGram). The
+  /// law determines which factorisations are necessary:
+  ///
+  ///   UnitWeights                                  J, since J_W⁺ = J⁺
+  ///   α = 0, and W = I or no secondary motion z    J, since qdd = J⁺b + N_W z with W = I or z = 0
+  ///   α = 1                                        JC
+  ///   otherwise, and always with lanes             J and JC (solve_pair)
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status by_gram(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd, const Scalar& length,
                                const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
                                Scalar* sigma) const noexcept {
     constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
-    if constexpr (kInLanes<Scalar>) {  // Lanes differ in alpha.
+    if constexpr (kInLanes<Scalar>) {  // Each lane may have its own alpha.
       return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
     } else {
       if constexpr (kUnit) {
-        // With one self-motion, only postures near a singularity come here. One instantiation serves every alpha.
+        // With one self-motion, by_gram() is called only near singular postures, and one instantiation for all alpha is
+        // sufficient.
         if constexpr (!kHasSelfMotion<M, N>) {
           if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd, sigma);
         }
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
         const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result, sigma);
-        // Near a singular posture the brake is a motion for N_W to project: fall through to both factorisations.
+        // Near a singular posture, the brake adds −brake qd to z, which N_W must project: continue with both
+        // factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
           if (!failed(status)) qdd = std::move(result);
           return status;
@@ -137,7 +149,7 @@ struct AccelerationScheme {
     }
   }
 
-  /// The law with α = 0 and W = I: one factorisation.
+  /// The law with α = 0 and W = I, which needs one factorisation.
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
                                   const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
@@ -146,7 +158,8 @@ struct AccelerationScheme {
                                       qdd, sigma);
   }
 
-  /// Two factors, of J and of JC with C Cᵀ = W⁻¹, made side by side:
+  /// The law with two factorisations in parallel, of J and of JC with C Cᵀ = W⁻¹ (docs/equations.md, Other degrees of
+  /// redundancy):
   ///
   ///   qdd = (1−α) J⁺b + C [α (JC)⁺b + (I − (JC)⁺JC) y],   y = α CᵀJdᵀμ + C⁻¹z,   μ = (JW⁻¹Jᵀ)⁻¹xd.
   template <int kTurns, int M, typename Known>
@@ -155,7 +168,7 @@ struct AccelerationScheme {
                                                 const Scalar& length, const State<N, Scalar>& state,
                                                 const Known& foreseen, Vector<N, Scalar>& qdd,
                                                 Scalar* sigma) const noexcept {
-    DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // Of J and JC.
+    DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // J and JC.
     const Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);      // Jᵀ and (JC)ᵀ.
     const Status status = gram.factor(rows, Scalar(1), sigma);
     if (foreseen.answers(gram, qdd)) return Status::kOk;
@@ -166,7 +179,7 @@ struct AccelerationScheme {
           second<M, 1, Scalar>(solutions.force(solutions.shares(side_by_side<M, 1, Scalar>(xd, xd))));
       const Vector<N, Scalar> whole = transpose_times(Jd, mu);
       const Vector<N, Scalar> force = entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
-      Vector<N, Scalar> y = weights.root_transpose(force);  // C⁻¹u
+      Vector<N, Scalar> y = weights.root_transpose(force);  // α CᵀJdᵀμ, the first term of y.
       const bool braked = status == Status::kDamped;
       if (braked || null_space.template active<kLevel>()) {
         Vector<N, Scalar> z = null_space.template at<kLevel>(state);

@@ -16,15 +16,15 @@
 
 namespace fpbm {
 
-/// A scheme for a stack of tasks. The scheme's law resolves the first level. Each level below acts in the null space of
-/// the levels above (Siciliano and Slotine 1991):
+/// Scheme for a stack of tasks. The law of `scheme` resolves the first level. Each lower level acts in the null space
+/// of the higher levels (Siciliano and Slotine 1991):
 ///
 ///   u_k = u_{k−1} + Z (J_k Z)⁺ (b_k − J_k u_{k−1}),   Z a basis of the null space of J₁ … J_{k−1},
 ///
 /// with b_k = S (xdd + k₁(xd − ẋ) + k₂(x ⊖ f(q))) − J̇_k qd for each task, or b_k = S (xd + k (x ⊖ f(q))) at velocity
-/// level, all rows in metres. In a tick with one acceleration, b_k and J_k are those of TickFeedback. Directions that
-/// the posture or higher levels take away from a level are damped (DampedLevel). What no task determines is the
-/// null-space motion of the scheme's answer.
+/// level, all rows in metres. In a tick with one acceleration, b_k and J_k are those of TickFeedback. Directions of a
+/// level that are lost because of the posture or of higher levels are damped (DampedLevel). The null-space motion of
+/// `scheme` determines the motion that no task determines.
 template <typename Scheme, typename Stack_>
 struct ByLevels {
   using Scalar = typename Stack_::Scalar;
@@ -34,9 +34,9 @@ struct ByLevels {
   using Space = typename Stack_::Space;
 
   Scheme scheme;
-  Scalar radius;  ///< ε of the damping of the lower levels, for the rows of ScaledLevel.
+  Scalar radius;  ///< ε of the damping of lower levels, for the rows of ScaledLevel.
 
-  /// scheme: without feedback gains, which the tasks have. Throws std::invalid_argument where the radius is not in
+  /// scheme: without feedback gains, since the tasks have gains. Throws std::invalid_argument if the radius is not in
   /// [0, 1].
   explicit ByLevels(const Scheme& scheme_, Scalar radius_ = kLevelRadius<Scalar>) : scheme(scheme_), radius(radius_) {
     validation::require_fraction("radius", radius);
@@ -44,8 +44,8 @@ struct ByLevels {
 
   void require_dof(Eigen::Index dof) const { scheme.require_dof(dof); }
 
-  /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is left out. Leaves u
-  /// unchanged where the first level fails. sigma: of the first level, as of AccelerationScheme::resolve().
+  /// Joint accelerations [rad/s²], or velocities [rad/s]. A level whose references are not finite is ignored. If the
+  /// first level fails, u does not change. sigma: for the first level, as in AccelerationScheme::resolve().
   [[nodiscard]] Status resolve(const Kinematics<Space, kDof, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<kDof, Scalar>& state,
                                JointVector& u, Scalar* sigma = nullptr) const noexcept {
@@ -87,7 +87,7 @@ struct ByLevels {
     (f(std::integral_constant<int, static_cast<int>(k)>{}), ...);
   }
 
-  /// r −= J̇ qd, or drift in a tick with one acceleration.
+  /// r −= J̇ qd, or r −= drift in a tick with one acceleration.
   template <int M>
   static void subtract_drift(Scalar tick, const LevelRows<M, kDof, Scalar>& level, const JointVector& qd,
                              Vector<M, Scalar>& r) noexcept {
@@ -102,7 +102,8 @@ struct ByLevels {
     if (tick > Scalar(0)) r -= level.drift;
   }
 
-  /// u_k − u_{k−1} of a lower level, which is added to the space; zero where its rows are not finite. r: b_k.
+  /// Returns u_k − u_{k−1} of a lower level, and adds the level to the space. Returns zero if the rows are not finite.
+  /// r: b_k.
   template <int M>
   [[nodiscard]] JointVector added(const LevelRows<M, kDof, Scalar>& level, Vector<M, Scalar> r, const JointVector& u,
                                   LevelSpace<kDof, Scalar>& space) const noexcept {
@@ -112,7 +113,7 @@ struct ByLevels {
     DampedLevel<M, Scalar> damped(radius * radius);
     return space.add(scaled.J, scaled.r, damped);
   }
-  /// Of a posture of all joints: J Z has orthonormal columns.
+  /// added() for a posture of all joints: J Z has orthonormal columns.
   [[nodiscard]] JointVector added(const PostureRows<kDof, Scalar>& level, const JointVector& r, const JointVector& u,
                                   LevelSpace<kDof, Scalar>& space) const noexcept {
     if (!r.allFinite()) return filled<JointVector>(u.size());
@@ -124,7 +125,7 @@ struct ByLevels {
     return space.add_unit(y);
   }
 
-  /// Commands of a level's tasks: xd, and b_k without the drift.
+  /// Commands of the tasks of level k: xd, and b_k without the drift.
   template <int k, int M>
   void command_level(const Kinematics<Space, kDof, Scalar>& kinematics, const Reference<Space, Scalar>& reference,
                      Vector<M, Scalar>& to_xd, Vector<M, Scalar>& to_b) const noexcept {

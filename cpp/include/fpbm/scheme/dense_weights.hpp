@@ -12,7 +12,7 @@
 
 namespace fpbm {
 
-/// W dense.
+/// Dense W.
 template <int N, typename Scalar = double>
 class DenseWeights {
  public:
@@ -26,7 +26,7 @@ class DenseWeights {
       validation::fail(validation::element("weights", i, i), W(i, i), "larger: W is not positive definite");
     }
     root_.resize(W.rows(), W.cols());
-    auto diagonal = filled<Vector<N, Scalar>>(W.rows());  // Of W⁻¹.
+    auto diagonal = filled<Vector<N, Scalar>>(W.rows());  // Diagonal of W⁻¹.
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
       auto axis = filled<Vector<N, Scalar>>(W.rows());
       axis(j) = Scalar(1);

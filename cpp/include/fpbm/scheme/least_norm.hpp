@@ -14,17 +14,18 @@
 
 namespace fpbm {
 
-/// f of a law that has none.
+/// Argument `force` of a law without f.
 struct NoForce {};
 
-/// The joint motion u nearest to u₀ in the norm of W among those with J u = v:
+/// Joint motion u that is nearest to u₀ in the norm of W, among all u with J u = v (docs/equations.md, Unified law):
 ///
 ///   u = u₀ + J_W⁺(v − J u₀) = C ((JC)⁺v + (I − (JC)⁺JC) y₀),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
 ///
-/// u: velocities or accelerations by level. force(gram) is f, which needs the factorised Gram matrix JW⁻¹Jᵀ, or
-/// NoForce. foreseen: what one_self_motion.hpp knows. The last kTurns rows of J are angular; length: the arm's [m].
-/// sigma: as of DampedGram::factor(). Returns kDamped where damping acts. Leaves u unchanged where it fails. Flattened,
-/// since a large translation unit may not inline small calls.
+/// u: velocities or accelerations, by level. force(gram) returns f, which needs the factorised Gram matrix JW⁻¹Jᵀ; or
+/// force is NoForce. foreseen: result of foresee(), or Unforeseen. The last kTurns rows of J are angular. length:
+/// characteristic length of the arm [m]. sigma: as in DampedGram::factor(). Returns kDamped if damping acts. If the
+/// status is a failure, u does not change. Flattened, since a compiler may not inline small calls in a large
+/// translation unit.
 template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
                                               const NullSpace<N, Scalar>& null_space,

@@ -12,17 +12,18 @@
 #include "fpbm/objective/null_space.hpp"
 #include "fpbm/singular/damped_gram.hpp"
 
-/// Where an arm has one joint more than its task has rows, there is one self-motion, J v = 0, and every law is
-/// u = p + γ v with any p that does the task: J is solved itself, and the condition of JJᵀ does not enter.
+/// Laws for degree of redundancy 1 (docs/equations.md): an arm with one joint more than its task has rows has one
+/// self-motion v, J v = 0. Every law then is u = p + γ v, where p is any solution of J p = b. p is computed from J and
+/// not from JJᵀ, so that the condition number of JJᵀ has no effect.
 namespace fpbm {
 
-/// Sets u to the law with one self-motion. With any solutions of J p = b, J r = xd and J s = Jd v,
+/// Sets u to the law for degree of redundancy 1. p, r and s are any solutions of J p = b, J r = xd and J s = Jd v:
 ///
 ///   u = p + γ v,   γ = [α sᵀg + vᵀW(z − α p)] / vᵀWv − (1−α) vᵀp / vᵀv,
 ///   g = W(r − ρ v) = W J_W⁺xd,   ρ = vᵀWr / vᵀWv,   sᵀg = vᵀJdᵀμ, since Jᵀμ = g.
 ///
-/// rhs: b beside xd; or b alone, for a law without the drift W⁻¹Jdᵀμ, whose α is a balance only.
-/// docs/equations.md has the proof.
+/// docs/equations.md (Degree of redundancy 1) has the proof. rhs has pairs (b, xd). If rhs is b alone, the law has no
+/// drift W⁻¹Jdᵀμ, and α only balances J⁺b and J_W⁺b.
 template <Level kLevel, int M, int N, typename Scalar, typename Weights, typename Value>
 [[gnu::always_inline]] inline void with_one_self_motion(const SelfMotion<M, N, Scalar>& motion, const Weights& weights,
                                                         const Scalar& alpha, const Vector<M, Value>& rhs,
@@ -54,7 +55,7 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
   each(Constant<0>{}, Constant<N>{}, [&](Eigen::Index i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
 }
 
-/// What is known of a state before a Gram matrix is factorised: nothing, where an arm has more self-motions or none.
+/// Replaces Foreseen if the degree of redundancy is not 1: no result is known before the rows are factorised.
 struct Unforeseen {
   template <typename Gram, typename Result>
   [[nodiscard]] static constexpr bool answers(const Gram&, Result&) noexcept {
@@ -64,14 +65,16 @@ struct Unforeseen {
   static void settle(Result&) noexcept {}
 };
 
-/// The answer with one self-motion, which holds where damping does not act: with damping and without it the same bits.
+/// Result of the law for degree of redundancy 1, which is computed before the damping is known. If damping does not
+/// act, this result is returned in all cases, so that a scheme with damping returns the same bits as a scheme without
+/// damping.
 template <int N, typename Scalar>
 struct Foreseen {
-  Mask<Scalar> answered{false};  ///< u is the answer without damping.
-  Mask<Scalar> regular{false};   ///< And damping surely does not act.
+  Mask<Scalar> answered{false};  ///< u is the result without damping.
+  Mask<Scalar> regular{false};   ///< In addition, a bound on σ_min proves that damping does not act.
   Vector<N, Scalar> u;
 
-  /// Whether u is the answer, once the Gram matrix has told whether damping acts; it goes to result then.
+  /// Whether u is the result, after `gram` has determined whether damping acts. If true, sets result to u.
   template <typename Gram>
   [[nodiscard]] bool answers([[maybe_unused]] const Gram& gram,
                              [[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
@@ -84,7 +87,7 @@ struct Foreseen {
     }
   }
 
-  /// The same for each lane, where the Gram matrix's result is NaN unless damping surely does not act.
+  /// answers() for each lane. In `result` of the Gram matrix, a lane is NaN unless damping certainly does not act.
   void settle([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
     if constexpr (kInLanes<Scalar>) {
       const Mask<Scalar> holds = regular || (answered && !isnan(result(0)));
@@ -93,8 +96,9 @@ struct Foreseen {
   }
 };
 
-/// The answer of law(motion, u). The last kTurns rows of J are angular; length: the arm's [m]. sigma, unless null, gets
-/// the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) with the answer.
+/// Evaluates law(motion, u) with the first factorisation of J that is accurate, and determines by a bound on σ_min(J)
+/// whether damping certainly does not act. The last kTurns rows of J are angular. length: characteristic length of the
+/// arm [m]. sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) if there is a result.
 template <int kTurns, int M, int N, typename Scalar, typename Law>
 [[nodiscard, gnu::always_inline]] inline Foreseen<N, Scalar> foresee(const SingularDamping<Scalar>& damping,
                                                                      const Matrix<M, N, Scalar>& J,

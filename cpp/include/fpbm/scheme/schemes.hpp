@@ -6,16 +6,16 @@
 #include "fpbm/scheme/dense_weights.hpp"
 #include "fpbm/scheme/velocity_scheme.hpp"
 
-/// The paper's schemes by name, with its equation numbers: FPBM<7>(0.6, weights, 10, 25).
+/// Schemes of the paper by name, with equation numbers of the paper (docs/equations.md): FPBM<7>(0.6, weights, 10, 25).
 ///
 /// weights is a vector (the diagonal of W), a matrix (W itself), or DiagonalWeights, DenseWeights, UnitWeights.
-/// null_space is the secondary motion z; singular is the damping near singular postures, none by default.
-/// Each throws std::invalid_argument where a parameter is out of range.
+/// null_space is the secondary motion z. singular is the damping near singular postures, none by default.
+/// Each function throws std::invalid_argument if a parameter is out of range.
 namespace fpbm {
 
 namespace named {
 
-/// T, which no argument deduces: k1 = 10 is no reason for a Scalar int.
+/// T in a non-deduced context, so that k1 = 10 does not make Scalar int.
 template <typename T>
 struct Same {
   using type = T;
@@ -45,7 +45,7 @@ template <typename Scalar>
 
 // NOLINTBEGIN(readability-identifier-naming): the paper's names.
 
-/// Minimum velocity norm, (6): qd = J⁺xd. With z it is the general solution (3), qd = J⁺xd + (I − J⁺J) z.
+/// Minimum velocity norm, (6): qd = J⁺xd. With z, the general solution (3), qd = J⁺xd + (I − J⁺J) z.
 template <int N, typename Scalar = double>
 [[nodiscard]] VelocityScheme<N, Scalar, UnitWeights> MVN(
     named::NotDeduced<Scalar> k = Scalar(0), const NullSpace<N, Scalar>& null_space = {},
@@ -53,7 +53,7 @@ template <int N, typename Scalar = double>
   return VelocityScheme<N, Scalar, UnitWeights>(UnitWeights{}, k, null_space, singular);
 }
 
-/// Weighted minimum velocity norm, (7): qd = J_W⁺xd, the qd of least qdᵀW qd.
+/// Weighted minimum velocity norm, (7): qd = J_W⁺xd, the qd with the least qdᵀW qd.
 template <int N, typename Scalar = double, typename Weights>
 [[nodiscard]] VelocityScheme<N, Scalar, named::WeightsOf<N, Scalar, Weights>> WMVN(
     const Weights& weights, named::NotDeduced<Scalar> k = Scalar(0), const NullSpace<N, Scalar>& null_space = {},
@@ -62,7 +62,7 @@ template <int N, typename Scalar = double, typename Weights>
                                                                          null_space, singular);
 }
 
-/// Minimum acceleration norm, (8): qdd = J⁺(xdd − Jd qd). With z it is the general solution (5).
+/// Minimum acceleration norm, (8): qdd = J⁺(xdd − Jd qd). With z, the general solution (5).
 template <int N, typename Scalar = double>
 [[nodiscard]] AccelerationScheme<N, Scalar, UnitWeights> MAN(
     const NullSpace<N, Scalar>& null_space = {}, const SingularDamping<Scalar>& singular = named::undamped<Scalar>()) {
@@ -85,7 +85,7 @@ template <int N, typename Scalar = double, typename Weights>
   return FPBM<N, Scalar>(alpha, weights, Scalar(0), Scalar(0), null_space, singular);
 }
 
-/// Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated (Theorem 1):
+/// Weighted minimum velocity norm at acceleration level, (9), the time derivative of (7) (Theorem 1):
 /// qdd = J_W⁺(xdd − Jd qd) + N_W W⁻¹Jdᵀ(JW⁻¹Jᵀ)⁻¹xd.
 template <int N, typename Scalar = double, typename Weights>
 [[nodiscard]] auto WMVNAcceleration(const Weights& weights, const NullSpace<N, Scalar>& null_space = {},

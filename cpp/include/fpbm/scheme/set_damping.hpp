@@ -9,14 +9,15 @@
 
 namespace fpbm {
 
-/// Damping for a scheme that has none of its own.
+/// Damping for a scheme without its own damping.
 template <typename Scalar = double>
 struct DefaultDamping {
-  SingularDamping<Scalar> singular;  ///< Near singular postures.
-  Scalar null_space;                 ///< kₙ of the null space, at acceleration level only [1/s]; 0: none.
+  SingularDamping<Scalar> singular;  ///< Damping near singular postures.
+  Scalar null_space;                 ///< Null-space damping kₙ, at acceleration level only [1/s]. 0: none.
 };
 
-/// Whether a scheme has the library's members for its damping: `singular`, and at acceleration level `null_space`.
+/// Whether a scheme has the members of this library for its damping: `singular`, and at acceleration level
+/// `null_space`.
 template <typename Scheme, Level = Scheme::kLevel, typename = void>
 inline constexpr bool kHasDamping = false;
 template <typename Scheme>
@@ -26,10 +27,12 @@ inline constexpr bool
     kHasDamping<Scheme, Level::kAcceleration, std::void_t<decltype(Scheme::singular), decltype(Scheme::null_space)>> =
         true;
 
-/// Gives a scheme the damping that the scheme lacks: near singular postures if its own radius is 0, of the null space
-/// if its own damping is 0. A scheme with both keeps both. In lanes, call set_damping() for each lane's scheme.
+/// Sets the damping that a scheme does not have: near singular postures if its own radius is 0, and in the null space
+/// if its own null-space damping is 0. A scheme with both keeps both. With lanes, call set_damping() for the scheme of
+/// each lane.
 ///
-/// A scheme type without these members needs an overload in its own namespace to be used in a Tracker or an AnyScheme:
+/// A scheme type without these members needs an overload in its own namespace before it can be used in a Tracker or an
+/// AnyScheme:
 ///
 ///   void set_damping(MyScheme& scheme, const fpbm::DefaultDamping<>& damping);
 ///
@@ -45,14 +48,14 @@ std::enable_if_t<kHasDamping<Scheme>> set_damping(Scheme& scheme, const DefaultD
   }
 }
 
-/// The same for a wrapper, such as ManipulabilityAscent: a scheme with another one, its member `scheme`.
+/// set_damping() for a wrapper with a member `scheme`, for example ManipulabilityAscent.
 template <typename Scheme, typename Scalar>
 auto set_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping)
     -> decltype(set_damping(scheme.scheme, damping)) {
   set_damping(scheme.scheme, damping);
 }
 
-/// Whether there is a set_damping() for a scheme.
+/// Whether set_damping() is defined for a scheme.
 template <typename Scheme, typename Scalar, typename = void>
 inline constexpr bool kTakesDamping = false;
 template <typename Scheme, typename Scalar>
@@ -60,7 +63,7 @@ inline constexpr bool kTakesDamping<
     Scheme, Scalar,
     std::void_t<decltype(set_damping(std::declval<Scheme&>(), std::declval<const DefaultDamping<Scalar>&>()))>> = true;
 
-/// set_damping(), with a message for a scheme that has none.
+/// set_damping(), with a message if it is not defined for the scheme.
 template <typename Scheme, typename Scalar>
 void give_damping(Scheme& scheme, const DefaultDamping<Scalar>& damping) {
   static_assert(

@@ -12,11 +12,11 @@
 
 namespace fpbm {
 
-/// Every velocity-level scheme of the paper, (3), (6) and (7):
+/// All velocity-level schemes of the paper, (3), (6) and (7), are this law (docs/equations.md):
 ///
 ///   qd = J_W⁺v + N_W z,   v = xd + k (x ⊖ f(q)).
 ///
-/// MVN() and WMVN() in scheme/schemes.hpp make the paper's.
+/// MVN() and WMVN() in scheme/schemes.hpp return the schemes of the paper.
 template <int N, typename Scalar = double, typename Weights = DiagonalWeights<N, Scalar>>
 struct VelocityScheme {
   static constexpr Level kLevel = Level::kVelocity;
@@ -27,21 +27,23 @@ struct VelocityScheme {
   NullSpace<N, Scalar> null_space;   ///< Secondary velocity z.
   SingularDamping<Scalar> singular;  ///< Damping near singular postures, or none.
 
-  /// Throws std::invalid_argument where k is negative or not finite.
+  /// Throws std::invalid_argument if k is negative or not finite.
   explicit VelocityScheme(const Weights& weights_, Scalar k_ = Scalar(0), const NullSpace<N, Scalar>& null_space_ = {},
                           const SingularDamping<Scalar>& singular_ = SingularDamping<Scalar>::off())
       : weights(weights_), k(k_), null_space(null_space_), singular(singular_) {
     validation::require_non_negative("k", k);
   }
 
-  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     weights.require_dof(dof);
     null_space.require_dof(dof);
   }
 
-  /// Joint velocities qd [rad/s] that give the tip its reference velocity. Leaves qd unchanged where it fails.
-  /// sigma, unless null, gets the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) where the factorisation of the answer has it.
+  /// Joint velocities qd [rad/s] that give the tip its reference velocity, corrected by the feedback. If the status is
+  /// a failure, qd does not change.
+  /// sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J), if the factorisation for qd provides
+  /// this bound.
   template <typename Space>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,
@@ -50,7 +52,7 @@ struct VelocityScheme {
     return solve<kScaledRows<Space, N>>(v, kinematics.J, kinematics.Jd, scale_of_rows(kinematics), state, qd, sigma);
   }
 
-  /// Joint velocities that give any rows, all in metres, J qd = b: the law without feedback.
+  /// Joint velocities with J qd = b for any rows, all in metres: the law without feedback.
   template <int M>
   [[nodiscard]] Status resolve_rows(const Vector<M, Scalar>& b, const Vector<M, Scalar>&, const Matrix<M, N, Scalar>& J,
                                     const Matrix<M, N, Scalar>& Jd, const State<N, Scalar>& state,

@@ -8,19 +8,19 @@
 #include "fpbm/linalg/pair.hpp"
 #include "fpbm/linalg/product.hpp"
 
-/// W, the symmetric positive definite weight of each joint's motion, in three kinds of rising cost; dense_weights.hpp
-/// has the third.
+/// Weights W of the joint motion, symmetric and positive definite, as three types with increasing cost. The third type
+/// is in dense_weights.hpp.
 ///
-/// Only the ratios of W matter, so each kind keeps W scaled so that W⁻¹ has a largest diagonal entry of 1: no W is too
-/// large or too small. Each has the same functions:
+/// Only the ratios of W matter (docs/equations.md, Tests of the statements). Each type scales W so that the largest
+/// diagonal entry of W⁻¹ is 1: W may have any magnitude. All types have the same functions:
 ///   times(a)            W a
 ///   root(a)             C a, where C Cᵀ = W⁻¹
 ///   unroot(a)           C⁻¹a
-///   root_transpose(A)   CᵀA of a vector, or of Jᵀ
-///   with_unit(J)        Jᵀ and CᵀJᵀ side by side
-///   inverse_bound()     a bound on the largest eigenvalue of W⁻¹
+///   root_transpose(A)   CᵀA for a vector, or for Jᵀ
+///   with_unit(J)        pairs of the entries of Jᵀ and CᵀJᵀ
+///   inverse_bound()     an upper bound on the largest eigenvalue of W⁻¹
 ///   is_unit()           whether W = I
-///   require_dof(n)      throws std::invalid_argument where W is for another number of joints
+///   require_dof(n)      throws std::invalid_argument if W is for another number of joints
 namespace fpbm {
 
 /// W = I.
@@ -76,7 +76,7 @@ class DiagonalWeights {
     root_ = entrywise(weights, [&](Eigen::Index i) { return sqrt(least / weights(i)); });
   }
 
-  /// In lanes: get(lane) is the weights of one lane.
+  /// Weights with lanes: get(lane) returns the weights of one lane.
   template <typename Get>
   [[nodiscard]] static DiagonalWeights side_by_side(const Get& get) {
     DiagonalWeights result;

@@ -16,8 +16,8 @@
 
 namespace fpbm {
 
-/// Lower bound on σ_min(J), tight within a factor √M: 1/√tr((JJᵀ)⁻¹). At a singular posture it is 0 or round-off, of
-/// the order of √epsilon ‖J‖_F.
+/// Lower bound on σ_min(J), tight within a factor √M: 1/√tr((JJᵀ)⁻¹). At a singular posture, the bound is 0 or
+/// round-off error of the order of √epsilon ‖J‖_F.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar least_singular_value_bound(const Matrix<M, N, Scalar>& J) noexcept {
   using std::sqrt;
@@ -52,24 +52,25 @@ template <int kTurns, int M, int N, typename Scalar>
   }
 }
 
-/// J C with C Cᵀ = W⁻¹, and the Gram matrix JW⁻¹Jᵀ, solved; damped where J is nearly singular. With Value =
-/// Pair<Scalar>, of two with different W side by side. Rows of J count in metres: D multiplies the last kTurns rows,
-/// which are angular, by length [m].
+/// Solutions with J C, where C Cᵀ = W⁻¹, and with the Gram matrix JW⁻¹Jᵀ. If J is nearly singular, damping Δ is added
+/// to the Gram matrix (SingularDamping). With Value = Pair<Scalar>, solves for two different W in parallel. All rows of
+/// J count in metres: D multiplies the last kTurns rows, which are angular, by length [m].
 template <int M, int N, typename Value, int kTurns = 0>
 class DampedGram {
  public:
   using Scalar = typename ScalarOf<Value>::type;
 
-  /// J must outlive it.
+  /// J must outlive the DampedGram.
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
              const Scalar& length = Scalar(1)) noexcept
       : damping_(damping), J_(J), length_(length) {}
   DampedGram(const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>&& J,
              const Scalar& length = Scalar(1)) = delete;
 
-  /// Factorises, given rows = (JC)ᵀ and a bound on the largest eigenvalue of W⁻¹ (of a pair: of the first).
-  /// Returns kDamped where Δ is not zero, or why there is no factor. sigma, unless null, gets the lower bound
-  /// 1/√tr((JJᵀ)⁻¹) on σ_min(J) of a pair or of W = I, if J has a factor and no angular rows, and damping is on.
+  /// Factorises JC, given rows = (JC)ᵀ and an upper bound on the largest eigenvalue of W⁻¹ (for a pair: of the first
+  /// W). Returns kDamped if Δ is not zero, or the reason for a missing factorisation. sigma, unless null, is set to the
+  /// lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) for a pair or W = I, if J has a factorisation and no angular rows, and
+  /// damping is on.
   [[nodiscard]] Status factor(const Matrix<N, M, Value>& rows, Scalar inverse_bound,
                               [[maybe_unused]] Scalar* sigma = nullptr) noexcept {
     if constexpr (kTurns > 0) {
@@ -81,7 +82,7 @@ class DampedGram {
     const Status status = factor_.factor(kTurns > 0 ? rows_ : rows);
     if (all_of(damping_.radius() == Scalar(0)) || status == Status::kNotFinite) return status;
 
-    // Most postures are far from singular, as the factor shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
+    // Most postures are far from singular, which the factorisation shows: λ_min(JJᵀ) ≥ λ_min(JW⁻¹Jᵀ) / ‖W⁻¹‖.
     const Scalar threshold = damping_.radius() * damping_.radius() * squared_norm_in_metres<kTurns>(J_, length_);
     const Scalar bound = threshold * inverse_bound;
     const Scalar trace = first(factor_.inverse_trace());
@@ -99,7 +100,8 @@ class DampedGram {
     }
   }
 
-  /// The solutions: (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, without Δ (JC)⁺b, is motion(shares(b)); (JW⁻¹Jᵀ + Δ)⁻¹b is force(shares(b)).
+  /// Solutions after factor(): motion(shares(b)) = (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, which is (JC)⁺b if Δ = 0, and force(shares(b))
+  /// = (JW⁻¹Jᵀ + Δ)⁻¹b.
   template <bool kDamped>
   struct Solutions {
     const DampedGram& of;
@@ -109,7 +111,7 @@ class DampedGram {
       if constexpr (kDamped) return of.damped_.solve(scaled);
       return of.factor_.shares(scaled);
     }
-    /// a − motion(shares(J C a)), of a motion itself.
+    /// a − motion(shares(J C a)). If Δ = 0, this is the projection of a on the null space of JC.
     [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
         const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
@@ -127,7 +129,8 @@ class DampedGram {
     }
   };
 
-  /// f(solutions): compiled for both kinds, so that the usual one has no branches in it.
+  /// Calls f(solutions), which is compiled for solutions with and without damping, so that the usual case without
+  /// damping has no branches.
   template <typename F>
   [[nodiscard, gnu::always_inline]] auto solved(const F& f) const noexcept {
     if constexpr (!kInLanes<Scalar>) {
@@ -145,11 +148,11 @@ class DampedGram {
     }
   }
 
-  /// Additional damping of the null space [1/s].
+  /// Additional null-space damping [1/s].
   [[nodiscard]] Scalar brake() const noexcept { return damping_.brake() * lost_; }
 
  private:
-  /// Number of rows of J that are lengths.
+  /// Number of linear rows of J.
   [[nodiscard]] Eigen::Index lengths() const noexcept { return J_.rows() - kTurns; }
 
   /// D b.
@@ -171,7 +174,7 @@ class DampedGram {
     const LostDirections<M, Scalar> lost(even, threshold);
     lost_ = lost.count;
     if (!(lost_ > Scalar(0))) return undamped;
-    Matrix<M, M, Value> gram;  // Its lower triangle.
+    Matrix<M, M, Value> gram;  // Lower triangle.
     gram.resize(m, m);
     for (Eigen::Index i = 0; i < m; ++i) {
       const Vector<N, Value> row = column(rows_, i);
@@ -187,10 +190,10 @@ class DampedGram {
   SingularDamping<Scalar> damping_;
   const Matrix<M, N, Scalar>& J_;
   Scalar length_;
-  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set in regular postures if there are no angular rows.
-  RowFactor<M, N, Value> factor_;  ///< Of DJC.
-  Cholesky<M, Value> damped_;      ///< Of D(JW⁻¹Jᵀ)D + Δ, where that is not zero.
-  Scalar lost_{0};                 ///< tr Δ/ε²: about the number of lost directions.
+  Matrix<N, M, Value> rows_;       ///< (DJC)ᵀ. Not set in regular postures without angular rows.
+  RowFactor<M, N, Value> factor_;  ///< Factorisation of DJC.
+  Cholesky<M, Value> damped_;      ///< Factorisation of D(JW⁻¹Jᵀ)D + Δ, if Δ ≠ 0.
+  Scalar lost_{0};                 ///< tr Δ/ε², about the number of lost directions.
 };
 
 }  // namespace fpbm

@@ -8,33 +8,34 @@
 
 namespace fpbm {
 
-/// Radius ε of the damping of lower levels, whose rows are those of ScaledLevel. A circle of 0.1 m at 0.1 m/s on the
-/// second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by 0.73 mm.
+/// Radius ε of the damping of lower levels, whose rows are scaled (ScaledLevel). Effect: with 0.1, a circle of 0.1 m at
+/// 0.1 m/s on the second level of two Pandas that hold an object lags by 0.5 µm; with 0.2, by 0.73 mm.
 template <typename Scalar>
 inline constexpr Scalar kLevelRadius = Scalar(0.1);
 
-/// Solves a task level that is nearly singular, or nearly contradicts higher levels. With A = L Qᵀ (LevelSpace::add),
+/// Solves a task level that is nearly singular, or nearly in conflict with higher levels. With A = L Qᵀ
+/// (LevelSpace::add),
 ///
 ///   w = Lᵀ (L Lᵀ + Δ)⁻¹ r,
 ///
-/// where Δ is the spectral function of LostDirections for ε. Δ is zero for the directions of which the posture and the
+/// where Δ is the spectral function of LostDirections for ε. Δ is zero in directions in which the posture and the
 /// higher levels leave a singular value σ ≥ ε of A. |w| ≤ 1.17 |r|/ε. w is continuous in L and r.
 ///
 /// If rows are dependent, L has fewer columns than rows, and w = (LᵀL + Δ)⁻¹ Lᵀ r. Both forms are equal, since L Lᵀ and
-/// LᵀL have the same eigenvalues but for zeros.
+/// LᵀL have the same non-zero eigenvalues.
 template <int M, typename Scalar>
 class DampedLevel {
  public:
-  /// epsilon_squared: ε², in the squared unit of A.
+  /// epsilon_squared: ε², in the unit of A squared.
   explicit DampedLevel(Scalar epsilon_squared) noexcept : epsilon_squared_(epsilon_squared) {}
 
-  /// Replaces r by w and returns true. If no direction is lost but by dependent rows, leaves r as given and returns
-  /// false. columns: number of columns of L; the others are zero.
+  /// Replaces r by w and returns true. If no direction is lost except by dependent rows, returns false, and r does not
+  /// change. columns: number of columns of L; the other columns are zero.
   [[nodiscard]] bool operator()(const Matrix<M, M, Scalar>& L, Vector<M, Scalar>& r, Eigen::Index columns) noexcept {
     const Eigen::Index m = L.rows();
     const bool dependent = columns < m;
     lost_ = static_cast<Scalar>(m - columns);
-    // σ_min ≥ 1/‖L⁻¹‖_F settles most levels.
+    // σ_min ≥ 1/‖L⁻¹‖_F shows for most levels that no direction is lost.
     if (!dependent && epsilon_squared_ * squared_norm_of_inverse(L) <= Scalar(1)) return false;
     const Matrix<M, M, Scalar> gram = dependent ? gram_of_columns(L, columns) : lower_gram(L);
     Cholesky<M, Scalar> cholesky;
@@ -46,10 +47,10 @@ class DampedLevel {
     return true;
   }
 
-  /// Whether a direction of the singular value sigma is lost.
+  /// Whether a direction with the singular value sigma is lost.
   [[nodiscard]] bool loses(Scalar sigma) const noexcept { return epsilon_squared_ > sigma * sigma; }
 
-  /// tr Δ/ε², about the number of lost directions, and the number of dependent rows.
+  /// tr Δ/ε², about the number of lost directions, plus the number of dependent rows.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
  private:
@@ -72,7 +73,7 @@ class DampedLevel {
     return sum;
   }
 
-  /// LᵀL. Each column of L that is zero gets an eigenvalue that is large, so that it does not count as lost.
+  /// LᵀL. Each zero column of L has a large eigenvalue instead of 0, so that it does not count as lost.
   [[nodiscard]] Matrix<M, M, Scalar> gram_of_columns(const Matrix<M, M, Scalar>& L,
                                                      Eigen::Index columns) const noexcept {
     auto gram = filled<Matrix<M, M, Scalar>>(L.rows());
@@ -87,7 +88,7 @@ class DampedLevel {
     return gram;
   }
 
-  /// That eigenvalue as a share of tr(LᵀL) + ε²: its inverse adds at most 1 % to tr((LᵀL)⁻¹) with ten such columns.
+  /// This eigenvalue, relative to tr(LᵀL) + ε². Its inverse adds at most 1 % to tr((LᵀL)⁻¹) for ten zero columns.
   static constexpr Scalar kApart = Scalar(1e3);
 
   Scalar epsilon_squared_;

@@ -5,20 +5,21 @@
 
 namespace fpbm {
 
-/// The task directions that an arm is about to lose, and the damping Δ for them.
+/// Nearly lost task directions of an arm, and the damping Δ in these directions (docs/singularities.md, The law).
 ///
 /// For G = JJᵀ with eigenvalues σᵢ² and eigenvectors uᵢ,
 ///
-///   Δ = Σ δ(σᵢ) uᵢuᵢᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, 0 beyond
+///   Δ = Σ δ(σᵢ) uᵢuᵢᵀ,   δ(σ) = ε² (1 − σ²/ε²)³ for σ < ε, otherwise 0
 ///
-/// (numerical filtering: Maciejewski and Klein 1988; Chiaverini 1997). A spectral function of G with two continuous
-/// derivatives, hence smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε.
+/// (numerical filtering: Maciejewski and Klein 1988; Chiaverini 1997). Δ is a spectral function of G with two
+/// continuous derivatives, and therefore smooth in q. G + Δ has no eigenvalue below 0.61 ε², and ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤
+/// 1.17/ε.
 template <int M, typename Scalar>
 struct LostDirections {
-  Scalar count{0};             ///< tr Δ/ε²: about the number of lost directions.
+  Scalar count{0};             ///< tr Δ/ε², about the number of lost directions.
   Matrix<M, M, Scalar> delta;  ///< Δ
 
-  /// gram: G, of which only the lower triangle is read.
+  /// gram: G. Only the lower triangle is read.
   LostDirections(const Matrix<M, M, Scalar>& gram, Scalar epsilon_squared) noexcept
       : delta(filled<Matrix<M, M, Scalar>>(gram.rows())) {
     if (none_is_lost(gram, epsilon_squared)) return;
@@ -26,7 +27,7 @@ struct LostDirections {
     for (Eigen::Index i = 0; i < lost.count(); ++i) {
       if (!(lost.value(i) < epsilon_squared)) continue;
       const Vector<M, Scalar> u = lost.vector(i);
-      // uᵀGu has a smaller round-off error than the eigenvalue of QL steps.
+      // uᵀGu has a smaller round-off error than the eigenvalue from QL steps.
       const Scalar gap = Scalar(1) - quadratic_form(gram, u) / epsilon_squared;
       if (!(gap > Scalar(0))) continue;
       const Scalar share = gap < Scalar(1) ? gap * gap * gap : Scalar(1);
@@ -49,7 +50,8 @@ struct LostDirections {
     return sum;
   }
 
-  /// Whether G − ε²I is positive definite: all σᵢ are above ε. Takes a small part of the time of the eigenvectors.
+  /// Whether G − ε²I is positive definite, so that all σᵢ are above ε. Takes a small fraction of the time for the
+  /// eigenvectors.
   [[nodiscard]] static bool none_is_lost(Matrix<M, M, Scalar> gram, Scalar epsilon_squared) noexcept {
     for (Eigen::Index i = 0; i < gram.rows(); ++i) gram.coeffRef(i, i) -= epsilon_squared;
     Cholesky<M, Scalar> cholesky;

@@ -11,21 +11,21 @@
 
 namespace fpbm {
 
-/// Rows J u = r of a task level in units in which a singular value of J Z says what the higher levels leave of a task
-/// direction, where Z is a basis of their null space:
+/// Rows J u = r of a task level, scaled so that a singular value of J Z is the part of a task direction that the higher
+/// levels leave free. Z is an orthonormal basis of the null space of the higher levels:
 ///
 ///   C⁻¹J u = C⁻¹r,   C Cᵀ = J Jᵀ + (ρ ‖J‖_F)² I,   C lower triangular.
 ///
-/// Without ρ, the rows C⁻¹J are orthonormal, and the singular values of C⁻¹J Z are the cosines of the principal angles
-/// between the row space of J and the null space: 1 where the higher levels leave a direction free, 0 where they
-/// determine it, in any unit of the rows. With ρ, a direction in which J has the singular value σ counts at most
-/// σ/√(σ² + ρ²‖J‖²_F): it is lost in singular postures too.
+/// With ρ = 0, the rows C⁻¹J are orthonormal, and the singular values of C⁻¹J Z are the cosines of the principal angles
+/// between the row space of J and the null space: 1 if the higher levels leave a direction free, 0 if they determine
+/// the direction, for any unit of the rows. With ρ > 0, a direction in which J has the singular value σ has at most the
+/// value σ/√(σ² + ρ²‖J‖²_F), so that singular postures lose directions too.
 template <int M, int N, typename Scalar>
 struct ScaledLevel {
   Matrix<M, N, Scalar> J;
   Vector<M, Scalar> r;
 
-  /// The rows stay as they are where J is zero or not finite.
+  /// If J is zero or not finite, the rows are not scaled.
   ScaledLevel(const Matrix<M, N, Scalar>& rows, const Vector<M, Scalar>& right) noexcept : J(rows), r(right) {
     if constexpr (M == N || M == Eigen::Dynamic || N == Eigen::Dynamic) {
       if (is_diagonal(J)) {
@@ -54,13 +54,14 @@ struct ScaledLevel {
   }
 
  private:
-  /// ρ: with the radius 0.1 of lower levels (kLevelRadius), a posture loses a direction at σ = 0.03 ‖J‖_F. Of 120
-  /// positions below the axis of a Panda's tip that leave the workspace and come back, 112 are reached again, and 97
-  /// with ρ = 0.1; without scaled rows and with the radius 0.1 ‖J‖_F, 111.
+  /// ρ. With the radius 0.1 of lower levels (kLevelRadius), a direction is lost at σ = 0.03 ‖J‖_F because of the
+  /// posture. Source of the value: of 120 positions below the axis of the tip of a Panda that leave the workspace and
+  /// return, 112 are reached again, and 97 with ρ = 0.1. Without scaled rows and with the radius 0.1 ‖J‖_F, 111 are
+  /// reached again.
   static constexpr Scalar kPosture = Scalar(0.3);
 };
 
-/// The same for a posture of all joints.
+/// ScaledLevel for a posture of all joints.
 template <int N, typename Scalar>
 struct ScaledDiagonal {
   DiagonalLevel<N, Scalar> J;
