@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// Space of tip positions that belongs to a task space: Position<2> to PlanarPose, Position<3> to Pose.
+/// Space of the tip positions of a task space: Position<2> for PlanarPose, Position<3> for Pose.
 template <typename Space>
 struct PositionsUnder {
   using type = Space;
@@ -27,14 +27,15 @@ struct PositionsUnder<Pose> {
 template <typename Positions>
 class AnyArm;
 
-/// Any arm that has tasks in Space.
+/// AnyArm type for tasks in Space.
 template <typename Space>
 using AnyArmFor = AnyArm<typename PositionsUnder<Space>::type>;
 
-/// Any arm behind one type: in the plane where Positions is Position<2>, in space where it is Position<3>.
+/// One type for all arms: in the plane with Positions = Position<2>, in space with Positions = Position<3>.
 ///
-/// For programs that learn their arm at run time. Is an arm itself, of run-time size: every evaluation is one virtual
-/// call into the code of the arm that it holds, which may be of fixed size. Immutable; copies share what they hold.
+/// For programs that read the arm at run time. AnyArm is an arm whose number of joints is known at run time. Each
+/// evaluation is one virtual call of the stored arm, which may have a fixed size. Immutable; copies share the stored
+/// arm.
 template <typename Positions>
 class AnyArm {
  public:
@@ -42,7 +43,7 @@ class AnyArm {
   using Pose = typename PoseOver<Positions>::type;
   static constexpr int kDof = Eigen::Dynamic;
 
-  /// An arm whose tasks are Positions and Pose.
+  /// arm: any arm with tasks in Positions and Pose.
   template <typename Arm>
   explicit AnyArm(const Arm& arm) : held_(std::make_shared<const Held<Arm>>(arm)), limits_(dynamic(arm.limits())) {}
 
@@ -55,14 +56,14 @@ class AnyArm {
     held_->kinematics(q, &qd, out);
   }
 
-  /// Tip and J at q; does not touch Jd.
+  /// Tip and J at q. Jd does not change.
   template <typename Space>
   void kinematics(const Vector<kDof>& q, Kinematics<Space, kDof>& out) const noexcept {
     held_->kinematics(q, nullptr, out);
   }
 
  private:
-  /// qd: null where Jd is not needed.
+  /// qd: null if Jd is not needed.
   struct Holder {
     Holder() = default;
     Holder(const Holder&) = delete;

@@ -15,11 +15,11 @@
 
 namespace fpbm {
 
-/// What a task controls: coordinates of a frame, or the position of the centre of mass, which has no frame.
+/// Coordinates that a task controls: of a frame, or the position of the centre of mass, which has no frame.
 enum class FrameCoordinates { kPosition, kOrientation, kPose, kAxis, kCenterOfMass };
 
-/// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows first,
-/// then angular, in the base frame's axes.
+/// Task space of any task of a frame: poses [m, rad], or directions, which are the z axes of poses. Linear rows are
+/// above angular rows, along the axes of the base frame.
 struct FrameSpace {
   static constexpr int kRows = 6;
   static constexpr int kTurns = 3;
@@ -28,7 +28,7 @@ struct FrameSpace {
   struct Point {
     Transform<Scalar> at;
     bool is_axis = false;
-    bool is_empty = false;  ///< Of a task without rows: has no error, and does not move.
+    bool is_empty = false;  ///< For a task without rows, which has no error and no displacement.
   };
 
   template <typename Scalar>
@@ -36,7 +36,7 @@ struct FrameSpace {
     return {};
   }
 
-  /// As Pose, or of directions as Direction, without linear rows.
+  /// Pose::difference(), or for directions Direction::difference() with zeros in the linear rows.
   template <typename Scalar>
   [[nodiscard]] static Vector<6, Scalar> difference(const Point<Scalar>& x, const Point<Scalar>& y) noexcept {
     if (y.is_empty) return filled<Vector<6, Scalar>>(6);
@@ -54,25 +54,25 @@ struct FrameSpace {
   }
 };
 
-/// A task of a frame whose kind and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask, a
-/// pose of fewer rows, and all of them relative to another frame (RelativeTask); or a CenterOfMassTask.
+/// Task of a frame whose type and rows are known at run time: PositionTask, OrientationTask, PoseTask or AxisTask, a
+/// pose with fewer rows, and all of them relative to another frame (RelativeTask); or a CenterOfMassTask.
 class AnyFrameTask {
  public:
   using Scalar = double;
   using Space = FrameSpace;
   static constexpr int kRows = Eigen::Dynamic;
   static constexpr bool kWhole = false;
-  /// Which of x, y, z and the rotations about them a task selects.
+  /// Whether a task selects x, y, z and the rotations about them.
   using Selection = std::array<bool, 6>;
 
   TaskGains<> gains = TaskGains<>(0.0, 0.0);
 
-  /// No task: no rows.
+  /// No task, without rows.
   AnyFrameTask() = default;
 
-  /// selected: rows that the kind does not have are ignored; kAxis ignores all. in_frame: along the frame's axes,
-  /// otherwise the base frame's. axis: in the frame, read by kAxis alone. reference: the frame that all is relative to,
-  /// in place of the base frame. Throws std::invalid_argument where no row is selected, or the axis is zero or not
+  /// selected: rows that the kind does not have are ignored; kAxis ignores all rows. in_frame: rows along the axes of
+  /// the frame, otherwise of the base frame. axis: in the frame, read by kAxis only. reference: the frame that replaces
+  /// the base frame in a relative task. Throws std::invalid_argument if no row is selected, or the axis is zero or not
   /// finite.
   AnyFrameTask(FrameCoordinates kind, const LinkFrame<>& frame, const TaskGains<>& gains_, const Selection& selected,
                bool in_frame, const Vector<3>& axis = {0.0, 0.0, 1.0},
@@ -127,7 +127,7 @@ class AnyFrameTask {
                       Vector<6>& xd, Matrix<Eigen::Dynamic, 6>& S, Rows level) const noexcept {
     x.at = frame_.at(robot, state);
     if (x.is_axis) x.at.R = times(x.at.R, to_axis_);
-    // Along the frame's axes, or the base frame's: of linear and angular rows.
+    // Whether the linear and angular rows are along the axes of the frame, instead of the base frame.
     const bool along_frame = x.is_axis || in_frame_;
     std::array<Vector<3>, 6> axes;
     for (int i = 0; i < count_; ++i) {
@@ -181,7 +181,7 @@ class AnyFrameTask {
   FrameCoordinates kind_ = FrameCoordinates::kPose;
   bool in_frame_ = false;
   int count_ = 0;
-  std::array<int, 6> rows_{};  ///< The selected ones.
+  std::array<int, 6> rows_{};  ///< Selected rows.
   Matrix<3, 3> to_axis_ = identity<Matrix<3, 3>>();
 };
 

@@ -7,8 +7,8 @@
 
 namespace fpbm {
 
-/// Any path in a task space, behind one type. Is a path itself: every sample is one virtual call. Copies share what
-/// they hold.
+/// One type for all paths in a task space. AnyPath is a path, and each sample is one virtual call. Copies share the
+/// stored path.
 template <typename Space_>
 class AnyPath {
  public:

@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// PostureTask of joints that are known at run time.
+/// PostureTask for joints that are known at run time.
 class AnyPostureTask {
  public:
   using Scalar = double;
@@ -18,10 +18,10 @@ class AnyPostureTask {
 
   TaskGains<> gains = TaskGains<>(0.0, 0.0);
 
-  /// No task: no rows.
+  /// No task, without rows.
   AnyPostureTask() = default;
 
-  /// joints: each once, from 0. Throws std::invalid_argument where there are none, or more than kMaxDof.
+  /// joints: indices from 0, each once. Throws std::invalid_argument if there are no joints, or more than kMaxDof.
   AnyPostureTask(const std::vector<int>& joints, const TaskGains<>& gains_)
       : gains(gains_), count_(static_cast<int>(joints.size())) {
     if (count_ < 1 || count_ > kMaxDof) {
@@ -32,7 +32,7 @@ class AnyPostureTask {
 
   [[nodiscard]] int rows() const noexcept { return count_; }
 
-  /// Throws std::invalid_argument where the robot has no such joint, or a joint is listed twice.
+  /// Throws std::invalid_argument if a joint does not exist in the robot, or is listed twice.
   template <typename Robot>
   void bind(const Robot& robot) const {
     require_different("joints", std::vector<int>(joints_.data(), joints_.data() + count_), robot.dof());

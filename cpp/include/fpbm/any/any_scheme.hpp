@@ -13,11 +13,11 @@
 
 namespace fpbm {
 
-/// Any scheme of one level for tasks in Space, behind one type.
+/// One type for all schemes of one level for tasks in Space.
 ///
-/// For programs that learn their scheme or its number of joints at run time. Is a scheme itself, of run-time size:
-/// every evaluation is one virtual call into the code of the scheme that it holds, which may be of fixed size.
-/// Copies share what they hold, which never changes: set_damping() puts a changed copy of it in its place.
+/// For programs that read the scheme or its number of joints at run time. AnyScheme is a scheme whose number of joints
+/// is known at run time. Each evaluation is one virtual call of the stored scheme, which may have a fixed size.
+/// Copies share the stored scheme, which is constant: set_damping() replaces the stored scheme by a changed copy.
 template <Level kLevel_, typename Space>
 class AnyScheme {
  public:
@@ -29,7 +29,7 @@ class AnyScheme {
     static_assert(Scheme::kLevel == kLevel, "a scheme of the same level");
   }
 
-  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const { held_->require_dof(dof); }
 
   /// Joint velocities [rad/s] or accelerations [rad/s²].
@@ -87,7 +87,7 @@ class AnyScheme {
         if constexpr (kLevel == Level::kAcceleration) {
           sized.Jd = kinematics.Jd;
           sized_state.qd = state.qd;
-        }  // Velocity-level schemes read neither.
+        }  // Velocity-level schemes read neither Jd nor qd.
         Vector<N> sized_u;
         const Status status = scheme.resolve(sized, reference, sized_state, sized_u);
         if (!failed(status)) u = sized_u;

@@ -6,13 +6,13 @@
 
 namespace fpbm {
 
-/// A level of tasks that are known at run time: up to two of frames and one of joints, side by side.
+/// Level of tasks that are known at run time: up to two tasks of frames and one posture task, with equal priority.
 using AnyLevel = TaskLevel<AnyFrameTask, AnyFrameTask, AnyPostureTask>;
 
-/// A stack of tasks that are known at run time. Levels without rows are left out.
+/// Stack of tasks that are known at run time. Levels without rows are ignored.
 ///
-/// For programs that learn their tasks at run time. Is a Stack itself, of places for tasks: where a place is empty, its
-/// task has no rows.
+/// For programs that read the tasks at run time. AnyStack is a Stack with a fixed number of places for tasks. An empty
+/// place is a task without rows.
 using AnyStack = Stack<AnyLevel, AnyLevel, AnyLevel, AnyLevel>;
 
 }  // namespace fpbm

@@ -9,12 +9,12 @@
 
 namespace fpbm {
 
-/// Any time law behind one type, by its name. For programs that learn it at run time.
+/// One type for all time laws, by name. For programs that read the time law at run time.
 class AnyTimeLaw {
  public:
   static constexpr const char* kNames[] = {"sin_squared", "quintic", "constant_speed"};
 
-  /// Throws ParameterError where none has that name.
+  /// Throws ParameterError if no time law has this name.
   explicit AnyTimeLaw(const std::string& name) {
     while (law_ < std::size(kNames) && name != kNames[law_]) ++law_;
     if (law_ == std::size(kNames)) {

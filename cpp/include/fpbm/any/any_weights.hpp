@@ -8,9 +8,10 @@
 
 namespace fpbm {
 
-/// Weights of any kind behind one type, of run-time size: a law is then compiled once for all three.
+/// One type for all weights, whose number of joints is known at run time: a law is compiled once for all three types.
 class AnyWeights {
-  /// f(weights) with the weights held. std::visit() would instantiate about a hundred classes and functions a call.
+  /// Calls f(weights) with the stored weights. std::visit() would instantiate about a hundred classes and functions for
+  /// each call.
   template <typename F>
   auto held(const F& f) const {
     if (const auto* diagonal = std::get_if<DiagonalWeights<Eigen::Dynamic>>(&weights_)) return f(*diagonal);
@@ -34,8 +35,8 @@ class AnyWeights {
     return held([](const auto& weights) { return weights.template inverse_bound<Scalar>(); });
   }
 
-  // Calls, so that the large functions that use them stay small. Templates, so that they compile only where they are
-  // called.
+  // Not inlined, so that the large functions that call these functions stay small. Templates, so that they are compiled
+  // only where they are called.
   template <typename = void>
   [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> root(const Vector<Eigen::Dynamic>& a) const noexcept {
     return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.root(a); });

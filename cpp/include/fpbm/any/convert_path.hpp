@@ -11,8 +11,9 @@
 
 namespace fpbm {
 
-/// Path for a task in the space To. A planar path is placed in the xy plane of space; a path of positions holds the
-/// tip's orientation where To is a space of poses. Throws ParameterError where a task in To cannot follow the path.
+/// Path for a task in the space To. A planar path is placed in the xy plane of space. For a path of positions and a
+/// space To of poses, the orientation of the tip is constant. Throws ParameterError if a task in To cannot follow the
+/// path.
 template <typename To, typename From>
 [[nodiscard]] AnyPath<To> convert_path(const AnyPath<From>& path) {
   constexpr bool kFlat = std::is_same_v<To, Position<2>> || std::is_same_v<To, PlanarPose>;

@@ -8,24 +8,24 @@
 #include "fpbm/model/planar_arm.hpp"
 #include "fpbm/model/serial_arm.hpp"
 
-/// Arms for programs that learn the number of joints at run time.
+/// Arms for programs that read the number of joints at run time.
 ///
-/// Six and seven joints in space run in code of fixed size: a simulated step of the Panda then takes 15 % (position) or
-/// 10 % (pose) fewer instructions. Four joints in the plane would gain 5 %.
+/// Arms in space with six and seven joints use code of fixed size: a simulated step of the Panda then needs 15 %
+/// (position) or 10 % (pose) fewer instructions. For four joints in the plane, the gain would be 5 %.
 ///
-/// Templates, so that they compile only where they are called: otherwise every unit that includes them takes 4 s
-/// longer.
+/// Templates, so that the functions are compiled only where they are called. Otherwise, every translation unit that
+/// includes them would need 4 s more.
 namespace fpbm {
 
-/// The planar arm of these link lengths [m].
+/// Planar arm with these link lengths [m].
 /// Throws ParameterError unless there are 2 to kMaxDof lengths, all positive and finite.
 template <typename = void>
 [[nodiscard]] AnyArm<Position<2>> make_planar_arm(const Vector<Eigen::Dynamic>& lengths) {
   return AnyArm<Position<2>>(PlanarArm<Eigen::Dynamic>(lengths));
 }
 
-/// The arm of this chain: a CoupledArm where joints mimic others, else a SerialArm. Throws ParameterError where these
-/// do.
+/// Arm of this chain: a CoupledArm if joints mimic others, else a SerialArm. Throws ParameterError under the conditions
+/// of these types.
 template <typename = void>
 [[nodiscard]] AnyArm<Position<3>> make_arm(const Chain<>& chain) {
   using Any = AnyArm<Position<3>>;

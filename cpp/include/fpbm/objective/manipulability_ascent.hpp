@@ -11,11 +11,13 @@
 
 namespace fpbm {
 
-/// A scheme whose null space ascends the manipulability w = √det(JJᵀ), away from singular postures (Yoshikawa 1985):
-/// u + gain ZZᵀ∇w, where u is the scheme's answer and Z an orthonormal basis of the null space of J.
+/// Scheme with null-space motion that increases the manipulability w = √det(JJᵀ), away from singular postures
+/// (Yoshikawa 1985; docs/equations.md, Secondary objectives): u + gain ZZᵀ∇w, where u is the result of the wrapped
+/// scheme and Z an orthonormal basis of the null space of J.
 ///
-/// Is a scheme itself, and may be wrapped again. At acceleration level ∇w acts like a force: with
-/// NullSpace::with_damping the arm comes to rest at the best posture, without it swings about it for ever.
+/// The ascent is a scheme itself and may be wrapped again. At acceleration level, ∇w acts like a force: with
+/// NullSpace::with_damping, the arm comes to rest at the best posture; without damping, the arm oscillates about the
+/// best posture without decay.
 template <typename Scheme, typename Arm>
 struct ManipulabilityAscent {
   using Scalar = typename Arm::Scalar;
@@ -23,20 +25,20 @@ struct ManipulabilityAscent {
   static constexpr int kDof = Scheme::kDof;
 
   Scheme scheme;
-  Arm arm;      ///< The arm that moves, for the derivatives of its J.
-  Scalar gain;  ///< [rad²/s²], or [rad²/s] at velocity level, for each unit of w.
+  Arm arm;      ///< The same arm, for the derivatives of J.
+  Scalar gain;  ///< [rad²/s²], or [rad²/s] at velocity level, per unit of w.
 
   ManipulabilityAscent(const Scheme& scheme_, const Arm& arm_, Scalar gain_) : scheme(scheme_), arm(arm_), gain(gain_) {
     validation::require_non_negative("manipulability_gain", gain);
   }
 
-  /// Throws std::invalid_argument where a parameter is for another number of joints.
+  /// Throws std::invalid_argument if a parameter is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     scheme.require_dof(dof);
     validation::require_size("the arm of the ascent", arm.dof(), dof);
   }
 
-  /// Joint velocities [rad/s] or accelerations [rad/s²], the tip's the same as the scheme's own.
+  /// Joint velocities [rad/s] or accelerations [rad/s²]. The motion of the tip is the motion of the wrapped scheme.
   template <typename Space, int N>
   [[nodiscard]] Status resolve(const Kinematics<Space, N, Scalar>& kinematics,
                                const Reference<Space, Scalar>& reference, const State<N, Scalar>& state,

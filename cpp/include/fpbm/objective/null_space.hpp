@@ -15,14 +15,14 @@ namespace fpbm {
 ///
 ///   acceleration level: z = c − kₙ qd + kₚ (q_rest − q) − k_c ∇H    velocity level: the same without kₙ qd
 ///
-/// Damping kₙ [1/s] brings the self-motion to rest. The rest posture draws the arm to q_rest [rad] with stiffness kₚ
-/// ([1/s²], or [1/s] at velocity level). Centring keeps the joints off their bounds. c ([rad/s²], or [rad/s]) is the
-/// free choice in the general solutions (3) and (5). Each with_… function returns a copy with its part added, and
-/// throws std::invalid_argument on a bad value.
+/// The damping kₙ [1/s] stops the self-motion. The rest posture q_rest [rad] attracts the joints with the stiffness kₚ
+/// ([1/s²], or [1/s] at velocity level). Centring moves the joints away from their bounds. c ([rad/s²], or [rad/s]) is
+/// the free choice in the general solutions (3) and (5) of docs/equations.md. Each with_… function returns a copy with
+/// its part added, and throws std::invalid_argument if a value is out of range.
 ///
-/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), which removes the joints' drift on closed
-/// paths, is the rest posture at the start: with stiffness λ at velocity level; with damping 2λ and stiffness λ²,
-/// which is critical damping, at acceleration level.
+/// Repetitive motion planning (Zhang and others, Mechatronics 18, 2008), which removes the drift of the joints on
+/// closed paths, is a rest posture at the start: at velocity level, with stiffness λ; at acceleration level, with
+/// damping 2λ and stiffness λ², which is critical damping.
 template <int N, typename Scalar = double>
 class NullSpace {
  public:
@@ -40,9 +40,9 @@ class NullSpace {
     return with_spring(filled<Vector<N, Scalar>>(q_rest.size(), stiffness), q_rest);
   }
 
-  /// Draws each joint to the middle of its bounds, down the gradient of H = ½ Σ ((qᵢ − q̄ᵢ)/(uᵢ − lᵢ))² with
-  /// q̄ = (l + u)/2 (Liégeois 1977), times k_c = gain [rad²/s²], or [rad²/s] at velocity level. A joint that lacks a
-  /// bound takes no part.
+  /// Attracts each joint to the middle of its bounds, along −∇H with H = ½ Σ ((qᵢ − q̄ᵢ)/(uᵢ − lᵢ))² and q̄ = (l + u)/2
+  /// (Liégeois 1977), times k_c = gain [rad²/s²], or [rad²/s] at velocity level. A joint with an infinite bound is
+  /// omitted.
   [[nodiscard]] NullSpace with_joint_centring(const JointLimits<N, Scalar>& limits, Scalar gain) const {
     validation::require_positive("joint_centring", gain);
     const Eigen::Index dof = limits.lower.size();
@@ -66,7 +66,7 @@ class NullSpace {
     return with_constant(c);
   }
 
-  /// In lanes: get(lane) is the null space of one lane.
+  /// Null space with lanes: get(lane) returns the null space of one lane.
   template <typename Get>
   [[nodiscard]] static NullSpace side_by_side(const Get& get) {
     NullSpace result;
@@ -83,7 +83,7 @@ class NullSpace {
     return result;
   }
 
-  /// Throws std::invalid_argument where z is for another number of joints.
+  /// Throws std::invalid_argument if z is for another number of joints.
   void require_dof(Eigen::Index dof) const {
     if (has_constant_) validation::require_size("rest_posture, limits or c", constant_.size(), dof);
   }
@@ -91,7 +91,7 @@ class NullSpace {
   /// kₙ [1/s].
   [[nodiscard]] const Scalar& damping() const noexcept { return damping_; }
 
-  /// The least and the largest stiffness of a joint, of the rest posture and of centring ([1/s²], or [1/s] at velocity
+  /// Smallest and largest stiffness of a joint, as the sum of rest posture and centring ([1/s²], or [1/s] at velocity
   /// level).
   [[nodiscard]] std::pair<Scalar, Scalar> stiffness_range() const noexcept {
     if (stiffness_.size() == 0) return {Scalar(0), Scalar(0)};
@@ -102,7 +102,7 @@ class NullSpace {
     return range;
   }
 
-  /// False where z is zero in every state.
+  /// False if z is zero in every state.
   template <Level kLevel>
   [[nodiscard]] bool active() const noexcept {
     return has_constant_ || (kLevel == Level::kAcceleration && has_damping_);
@@ -127,7 +127,7 @@ class NullSpace {
   template <int, typename>
   friend class NullSpace;
 
-  /// Adds stiffness ∘ (middle − q).
+  /// Adds stiffness ∘ (middle − q), entrywise.
   [[nodiscard]] NullSpace with_spring(const Vector<N, Scalar>& stiffness, const Vector<N, Scalar>& middle) const {
     NullSpace changed = with_constant(entrywise(middle, [&](Eigen::Index i) { return stiffness(i) * middle(i); }));
     changed.stiffness_ += stiffness;
@@ -152,7 +152,7 @@ class NullSpace {
   bool has_damping_ = false;
   bool has_constant_ = false;
   Vector<N, Scalar> stiffness_ = filled<Vector<N, Scalar>>(kSize);  ///< Per joint.
-  Vector<N, Scalar> constant_ = filled<Vector<N, Scalar>>(kSize);   ///< c + kₚ q_rest + what centring adds.
+  Vector<N, Scalar> constant_ = filled<Vector<N, Scalar>>(kSize);   ///< c + kₚ q_rest + constant part of centring.
 };
 
 }  // namespace fpbm

@@ -5,11 +5,13 @@
 
 namespace fpbm {
 
-/// A path in the base frame, from where the tip starts, in two segments: the motion, then a hold at rest on its end.
+/// Path in the base frame that starts at the start of the tip, in two segments: the motion, then rest at the end of the
+/// path.
 ///
-/// The reference may jump between them (the paper's xdd does), so each step of an integrator asks its own segment.
-/// Remembers the last sample, since RK4 asks for each mid-point twice, and for each end again as the next start.
-/// In lanes, many arms follow one path, each from its own tip.
+/// The reference may be discontinuous between the segments (for example xdd of the paper), so that each step of an
+/// integrator reads the reference of its own segment. The last sample is stored, since RK4 reads the reference in the
+/// middle of a step twice, and at the end of a step again at the start of the next step.
+/// With lanes, many arms follow one path, each from its own tip.
 template <typename Path, typename Scalar = typename Path::Scalar>
 class AnchoredPath {
  public:
@@ -17,15 +19,15 @@ class AnchoredPath {
   using Space = typename Path::Space;
   using Point = typename Space::template Point<Scalar>;
 
-  /// path must outlive it.
+  /// path must outlive the AnchoredPath.
   AnchoredPath(const Path& path, const Point& anchor) noexcept
       : path_(path), anchor_(anchor), end_(anchor), time_(0), since_(0), last_(from_anchor(Time(0), Time(0))) {
     end_ = from_anchor(path.duration(), path.duration()).x;
   }
   AnchoredPath(const Path&& path, const Point& anchor) = delete;
 
-  /// Reference at t [s] of the motion, in an integrator's step that starts at since; t is clipped to T, which round-off
-  /// may exceed.
+  /// Reference at t [s] of the motion, in a step of an integrator that starts at `since`. t is limited to T, which
+  /// round-off may exceed.
   [[nodiscard]] const Reference<Space, Scalar>& motion(Time t, [[maybe_unused]] Time since) noexcept {
     bool known = t == time_;
     if constexpr (kHasPieces<Path>) known = known && since == since_;
@@ -37,7 +39,7 @@ class AnchoredPath {
     return last_;
   }
 
-  /// Reference during the hold.
+  /// Reference after the motion, at rest at the end of the path.
   [[nodiscard]] Reference<Space, Scalar> hold() const noexcept { return Reference<Space, Scalar>::hold(end_); }
 
  private:

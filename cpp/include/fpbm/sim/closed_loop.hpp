@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// An arm under a scheme, as an ordinary differential equation in X: q at velocity level, [q, qd] at acceleration
+/// Arm with a scheme as an ordinary differential equation in X: X is q at velocity level, and [q, qd] at acceleration
 /// level.
 template <typename Arm, typename Scheme, typename Space>
 struct ClosedLoop {
@@ -23,7 +23,7 @@ struct ClosedLoop {
   State<N, Scalar> state;
   Vector<N, Scalar> qdd;
 
-  /// X of a state.
+  /// X for a state.
   [[nodiscard]] static X packed(const State<N, Scalar>& state) noexcept {
     X x(state.q.size(), kSecondOrder ? 2 : 1);
     set_column(x, 0, state.q);
@@ -31,14 +31,14 @@ struct ClosedLoop {
     return x;
   }
 
-  /// dX/dt at X. Afterwards kinematics, state and qdd are those of this evaluation; at velocity level state.qd is the
-  /// scheme's answer, and qdd is not used.
+  /// dX/dt at X. Afterwards, kinematics, state and qdd are those of this evaluation. At velocity level, state.qd is the
+  /// result of the scheme, and qdd is not used.
   [[nodiscard]] Status evaluate(const Reference<Space, Scalar>& reference, const X& x, X& dx) noexcept {
     update(x);
     return resolve(reference, dx);
   }
 
-  /// First half of evaluate(): state and kinematics at X.
+  /// First part of evaluate(): state and kinematics at X.
   void update(const X& x) noexcept {
     state.q = column(x, 0);
     if constexpr (kSecondOrder) {
@@ -49,8 +49,8 @@ struct ClosedLoop {
     }
   }
 
-  /// Second half of evaluate(): dX/dt where update() was called. sigma, unless null, gets a lower bound on σ_min(J) of
-  /// the first level where the scheme reports one.
+  /// Second part of evaluate(): dX/dt at the X of update(). sigma, unless null, is set to a lower bound on σ_min(J) of
+  /// the first level if the scheme provides this bound.
   [[nodiscard]] Status resolve(const Reference<Space, Scalar>& reference, X& dx, Scalar* sigma = nullptr) noexcept {
     Status status;
     if constexpr (kSecondOrder) {
@@ -59,7 +59,7 @@ struct ClosedLoop {
       set_column(dx, 0, state.qd);
       set_column(dx, 1, qdd);
     } else {
-      Vector<N, Scalar> qd;  // Not state.qd itself, which the scheme may read.
+      Vector<N, Scalar> qd;  // Not state.qd, which the scheme may read.
       status = resolve(scheme, reference, qd, sigma, 0);
       if (failed(status)) return status;
       state.qd = qd;
@@ -69,7 +69,7 @@ struct ClosedLoop {
   }
 
  private:
-  /// The scheme's answer u. A scheme need not report σ.
+  /// Result u of the scheme. A scheme may omit the argument sigma.
   template <typename Scheme_>
   [[nodiscard]] auto resolve(const Scheme_& s, const Reference<Space, Scalar>& reference, Vector<N, Scalar>& u,
                              Scalar* sigma, int) const noexcept

@@ -8,23 +8,23 @@
 
 namespace fpbm {
 
-/// One sample of a motion, as a rollout passes it to its recorder.
+/// One sample of a motion, which a rollout passes to its recorder.
 template <typename Space, int N, typename Scalar = double>
 struct Sample {
   int index;
   Number<Scalar> t;                            ///< [s]
-  Vector<N, Scalar> q;                         ///< [rad], or [m] for a prismatic joint, as everywhere below
+  Vector<N, Scalar> q;                         ///< [rad], or [m] for a prismatic joint, also below
   Vector<N, Scalar> qd;                        ///< [rad/s]
-  Vector<N, Scalar> qdd;                       ///< [rad/s²]; zero at velocity level.
+  Vector<N, Scalar> qdd;                       ///< [rad/s²], zero at velocity level
   typename Space::template Point<Scalar> tip;  ///< f(q) [m, rad]
   Reference<Space, Scalar> reference;
   Vector<Space::kRows, Scalar> error;  ///< x ⊖ f(q) [m, rad]
-  Matrix<Space::kRows, N, Scalar> J;   ///< Task Jacobian at q.
+  Matrix<Space::kRows, N, Scalar> J;   ///< Task Jacobian at q
 };
 
-/// A recorder that writes samples row by row into the caller's buffers; skips null buffers.
-/// Buffers are row-major: one row per sample of n columns for joint quantities, Space::kSize for points (a pose is a
-/// 4×4 matrix row by row), Space::kRows for the error.
+/// Recorder that writes samples row by row into buffers of the caller. Null buffers are skipped.
+/// Buffers are row-major, with one row per sample: n columns for joint quantities, Space::kSize for points (a pose is a
+/// 4 × 4 matrix row by row), Space::kRows for the error.
 template <typename Space, int N, typename Scalar = double>
 struct MotionBuffers {
   Scalar* t = nullptr;

@@ -5,12 +5,13 @@
 
 namespace fpbm {
 
-/// The classic fourth-order Runge-Kutta method for dx/dt = f(t, x).
+/// Classic fourth-order Runge-Kutta method for dx/dt = f(t, x).
 ///
-/// The derivative is `Status f(t, x, dx) noexcept`. A stage that fails ends the step and leaves x unchanged; otherwise
-/// the step's status is the worst of its stages. X is any type with vector arithmetic, usually an Eigen matrix.
+/// The derivative is `Status f(t, x, dx) noexcept`. If a stage fails, the step ends and x does not change. Otherwise,
+/// the status of the step is the most severe status of its stages. X is any type with vector arithmetic, usually an
+/// Eigen matrix.
 struct RK4 {
-  /// One step of length h from (t, x), with k1 = f(t, x) already known.
+  /// One step of length h from (t, x), if k1 = f(t, x) is already known.
   template <typename Derivative, typename Scalar, typename X>
   [[nodiscard]] static Status step(Derivative&& f, Scalar t, Scalar h, const X& k1, X& x) noexcept {
     const Scalar half = h / Scalar(2);
@@ -40,7 +41,7 @@ struct RK4 {
   }
 
  private:
-  /// A value of the size of x. The entries of a Matrix are not set; any other type is copied.
+  /// A value with the size of x. The entries of a Matrix are not set; any other type is copied.
   template <typename X>
   [[nodiscard]] static X of_size(const X& x) noexcept {
     return x;

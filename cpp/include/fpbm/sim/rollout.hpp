@@ -17,16 +17,16 @@
 
 namespace fpbm {
 
-/// How a rollout ended. Where it stopped early, the samples before are valid.
+/// End of a rollout. If the rollout stopped early, the samples before the end are valid.
 template <int N, typename Scalar = double>
 struct RolloutResult {
-  Status status;          ///< kOk, kCoarse or kDamped when the whole motion is done; otherwise why it stopped.
-  Number<Scalar> time;    ///< When it ended [s].
-  State<N, Scalar> last;  ///< The last valid state.
-  int samples;            ///< Number of samples recorded.
+  Status status;          ///< kOk, kCoarse or kDamped if the motion is complete; otherwise the reason for the stop.
+  Number<Scalar> time;    ///< Time of the end [s].
+  State<N, Scalar> last;  ///< Last valid state.
+  int samples;            ///< Number of recorded samples.
 };
 
-/// Passes a sample to a recorder; false where the recorder ends the motion.
+/// Passes a sample to a recorder. Returns false if the recorder ends the motion.
 template <typename Recorder, typename Sample>
 [[nodiscard]] bool show(Recorder& record, const Sample& sample) {
   if constexpr (std::is_same_v<decltype(record(sample)), bool>) {
@@ -37,18 +37,19 @@ template <typename Recorder, typename Sample>
   }
 }
 
-/// Integrates an arm under a scheme along a path by RK4 at fixed steps, then through a hold on the path's end.
+/// Integrates an arm with a scheme along a path by RK4 at fixed steps, then for a time at rest at the end of the path.
 ///
-/// The path is a displacement from where the tip starts. Where damping at a singular posture makes the tip miss its
-/// path, the motion stops with kTaskLost; a Tracker goes on. Where the steps themselves make a tip error of more than
-/// 1e-4 of the largest lever arm, the motion ends kCoarse: an estimate, see TaskWatch. Velocity-level schemes integrate
-/// q (start.qd is not read), acceleration-level schemes q and qd. `record(const Sample&)` is called once per grid time,
-/// noexcept; where it returns a bool, false ends the motion there, its status still good. Throws std::invalid_argument
-/// where the scheme or start does not fit the arm, the grid does not fit the path, or start is not finite, before
-/// anything is recorded; after that nothing throws or allocates, and a failure is in the result.
+/// The path is a displacement from the start of the tip. If damping at a singular posture prevents the tip from
+/// following its path, the motion stops with kTaskLost, whereas a Tracker continues. If the discretisation error of the
+/// tip exceeds 1e-4 of the largest lever arm, the status is kCoarse; this error is an estimate, see TaskWatch.
+/// Velocity-level schemes integrate q (start.qd is not read), acceleration-level schemes integrate q and qd.
+/// `record(const Sample&)`, which must be noexcept, is called once per time of the grid. If `record` returns false, the
+/// motion ends at this sample, and the status is not a failure. Throws std::invalid_argument if the scheme or start
+/// does not suit the arm, the grid does not suit the path, or start is not finite. After these checks, nothing throws
+/// or allocates, and the result reports failures.
 ///
-/// In lanes, many motions run side by side. A motion whose scheme fails or is damped, whose tip leaves its path, or
-/// whose steps are too long, ends with a last q of NaN: run it by itself to learn why and when.
+/// With lanes, many motions run in parallel. The last q of a motion is NaN if its scheme fails or is damped, its tip
+/// leaves its path, or its steps are too long. Run such a motion without lanes for its status and time.
 template <typename Arm, typename Path, typename Scheme, typename Recorder>
 RolloutResult<Arm::kDof, typename Arm::Scalar> rollout(const Arm& arm, const Path& path, const Scheme& scheme,
                                                        const State<Arm::kDof, typename Arm::Scalar>& start,

@@ -5,12 +5,12 @@
 
 #include "fpbm/task/tick_feedback.hpp"
 
-/// Stability of a tick under feedback, with gains in units of the tick h: x₁ = k₁h, x₂ = k₂h², x₃ = kᵢh³ at
+/// Stability of a tick with feedback, for gains times powers of the tick length h: x₁ = k₁h, x₂ = k₂h², x₃ = kᵢh³ at
 /// acceleration level; x₁ = kh, x₃ = kᵢh² at velocity level.
 namespace fpbm {
 
-/// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle: Routh's criterion for w, where
-/// z = (1+w)/(1−w). Powers of z−1 keep their digits where gains are small.
+/// Whether no root of (z−1)³ + a(z−1)² + b(z−1) + c is outside the unit circle, by Routh's criterion for w, where z =
+/// (1+w)/(1−w). Powers of z−1 keep their digits if the gains are small.
 template <typename Scalar>
 [[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c) noexcept {
   const Scalar w3 = Scalar(8) - Scalar(4) * a + Scalar(2) * b - c;
@@ -22,7 +22,7 @@ template <typename Scalar>
   return holds(w3) && holds(w2) && holds(w1) && holds(c) && (w2 + round_off) * w1 >= w3 * c;
 }
 
-/// The same for (z−1)⁴ + a(z−1)³ + b(z−1)² + c(z−1) + d.
+/// is_in_unit_circle() for (z−1)⁴ + a(z−1)³ + b(z−1)² + c(z−1) + d.
 template <typename Scalar>
 [[nodiscard]] bool is_in_unit_circle(Scalar a, Scalar b, Scalar c, Scalar d) noexcept {
   const Scalar w4 = Scalar(16) - Scalar(8) * a + Scalar(4) * b - Scalar(2) * c + d;
@@ -36,8 +36,9 @@ template <typename Scalar>
          (w3 * w2 - w4 * w1 + round_off) * w1 >= w3 * w3 * d;
 }
 
-/// Whether a tick damps ë = −x₁ė − x₂e − x₃I, where I gains the e of a tick's start at its end. Asks it of both ends of
-/// a tick: RK4's own, and the one of RK4's mean acceleration, which bounds on jerk and other limits make of it.
+/// Whether a tick damps ë = −x₁ė − x₂e − x₃I. The integral I increases at the end of a tick by e at the start of the
+/// tick. Both forms of a tick must be stable: a step of RK4, and a step with the mean acceleration of RK4, as with
+/// bounds on jerk and other limits.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
   struct Change {
@@ -63,7 +64,7 @@ template <typename Scalar>
          holds(by_e.v / Scalar(2), Scalar(1) + by_v.v / Scalar(2), by_integral.v / Scalar(2));
 }
 
-/// Whether a tick of RK4 damps ė = −x₁e − x₃I with such an I.
+/// Whether a tick of RK4 damps ė = −x₁e − x₃I, with I as in is_stable_acceleration().
 template <typename Scalar>
 [[nodiscard]] bool is_stable_velocity(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
   const auto rk4 = [&](Scalar e, Scalar integral) noexcept {
@@ -74,7 +75,8 @@ template <typename Scalar>
   return is_in_unit_circle(-rk4(Scalar(1), Scalar(0)), -rk4(Scalar(0), Scalar(1)), Scalar(0));
 }
 
-/// Whether a tick with one acceleration damps such errors of a task, by TickFeedback. The integral is a part of xdd.
+/// Whether a tick with one acceleration damps the errors of a task, with TickFeedback (docs/equations.md, A tick with
+/// one acceleration). The integral is a part of xdd.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_levels(Scalar x1, Scalar x2, Scalar x3 = Scalar(0)) noexcept {
   const TickFeedback<Scalar> feedback(x1, x2, Scalar(1));
@@ -83,21 +85,23 @@ template <typename Scalar>
                            feedback.position_gain + integral / Scalar(2), integral);
 }
 
-/// Whether a tick damps such errors of the null space if it has the acceleration of its middle, to which it continues
-/// the acceleration a' of the tick before (LimitedState::update_middle): a = −x₁(ė + a'/2) − x₂(e + ė/2 + a'/8).
+/// Whether a tick damps the errors of the null space if the acceleration a is computed in the middle of the tick, up to
+/// which the acceleration a' of the previous tick continues (LimitedState::update_middle): a = −x₁(ė + a'/2) − x₂(e +
+/// ė/2 + a'/8).
 template <typename Scalar>
 [[nodiscard]] bool is_stable_acceleration_of_middle(Scalar x1, Scalar x2) noexcept {
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1 + Scalar(1.125) * x2, x1 + Scalar(2) * x2, x2);
 }
 
-/// Whether a tick damps such errors at velocity level if it has the velocity of its middle, to which it continues the
-/// velocity v' of the tick before: v = −x₁(e + v'/2) − x₃I.
+/// Whether a tick damps the errors at velocity level if the velocity v is computed in the middle of the tick, up to
+/// which the velocity v' of the previous tick continues: v = −x₁(e + v'/2) − x₃I.
 template <typename Scalar>
 [[nodiscard]] bool is_stable_velocity_of_middle(Scalar x1, Scalar x3 = Scalar(0)) noexcept {
   return is_in_unit_circle(Scalar(1) + Scalar(1.5) * x1, x1 + x3, x3);
 }
 
-/// The largest share in [0, 1] for which holds(share) is true, rounded down to four digits, where smaller ones are.
+/// Largest share in [0, 1] for which holds(share) is true, rounded down to four digits. holds() must be true for all
+/// smaller shares.
 template <typename Scalar, typename Holds>
 [[nodiscard]] Scalar largest_share(const Holds& holds) {
   Scalar low(0);

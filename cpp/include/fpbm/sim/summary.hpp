@@ -14,22 +14,24 @@
 
 namespace fpbm {
 
-/// Key figures of a motion. For joint vectors, the largest absolute entry ‖·‖∞; max and peak are over time.
+/// Key figures of a motion. Velocities and accelerations are the largest absolute entry ‖·‖∞ of joint vectors. max and
+/// peak are over time.
 template <typename Scalar = double>
 struct MotionSummary {
-  Scalar max_error;              ///< Distance of the tip from its reference [m].
-  Scalar max_orientation_error;  ///< Angle between the tip's orientation and its reference [rad]; 0 where it is free.
-  Scalar peak_velocity;          ///< [rad/s], or [m/s] for a prismatic joint, as everywhere below
+  Scalar max_error;              ///< Distance between the tip and its reference [m].
+  Scalar max_orientation_error;  ///< Angle between the orientations of tip and reference [rad]; 0 if the task has no
+                                 ///< angles.
+  Scalar peak_velocity;          ///< [rad/s], or [m/s] for a prismatic joint, also below
   Scalar final_velocity;
   Scalar peak_acceleration;  ///< [rad/s²]
   Scalar final_acceleration;
-  Scalar manipulability;  ///< Least √det(JJᵀ) over time (Yoshikawa 1985).
+  Scalar manipulability;  ///< Smallest √det(JJᵀ) over time (Yoshikawa 1985).
 };
 
-/// A recorder that summarises a motion, sample by sample, without storing it.
+/// Recorder that computes the key figures sample by sample, without storing the motion.
 ///
-/// At velocity level accelerations are finite differences of the velocities, central ones, one-sided at both ends. No
-/// branch depends on the numbers, so that it works in lanes.
+/// At velocity level, accelerations are finite differences of the velocities: central differences, and one-sided
+/// differences at both ends. For lanes, no branch depends on the numbers.
 template <typename Space, int N, typename Scalar = double>
 class Summary {
  public:
@@ -53,7 +55,7 @@ class Summary {
     least_ = max(least_, Scalar(-manipulability(sample.J)));
   }
 
-  /// Figures of the samples so far; without samples, zeros and a manipulability of infinity.
+  /// Key figures of the samples so far. Without samples, zeros and an infinite manipulability.
   [[nodiscard]] MotionSummary<Scalar> result() const noexcept {
     using std::max;
     using std::sqrt;
@@ -67,6 +69,7 @@ class Summary {
   }
 
  private:
+  /// Number of linear rows of the error: 2 for a planar pose, otherwise at most 3.
   static constexpr int kLinear = std::is_same_v<Space, PlanarPose> ? 2 : Space::kRows < 3 ? Space::kRows : 3;
 
   /// ‖a‖∞
@@ -78,7 +81,9 @@ class Summary {
     return result;
   }
 
-  /// The slope over the last two steps belongs to the sample between them, the slope over the last step to its end.
+  /// Accelerations as finite differences. The central difference over the last two steps is the acceleration of the
+  /// previous sample. The difference over the first step is the acceleration of the first sample. The difference over
+  /// the last step is the acceleration of the last sample, which result() adds to the peak.
   void differentiate(const Sample<Space, N, Scalar>& sample) noexcept {
     using std::max;
     if (sample.index > 0) {
@@ -99,6 +104,7 @@ class Summary {
   Scalar peak_velocity_{0};
   Scalar acceleration_{0};
   Scalar peak_acceleration_{0};
+  /// Minus the smallest manipulability, which max() updates without a branch.
   Scalar least_ = Scalar(-std::numeric_limits<Number<Scalar>>::infinity());
   Number<Scalar> t_{0};
   Vector<N, Scalar> qd_;

@@ -12,24 +12,25 @@
 
 namespace fpbm {
 
-/// Detects the step in which an error grows by more than its rate explains.
+/// Detects a step in which an error grows by more than its rate predicts.
 ///
-/// From one sample to the next an error e grows by about h ė. Where the step resolves the motion, the rest is small
-/// compared with the reference's travel and with the error, and of the order of a fourth-order truncation. When the arm
-/// steps over a singular posture, or the target is out of reach, the error grows by the reference's travel.
+/// From one sample to the next, an error e grows by about h ė. If the step resolves the motion, the additional growth
+/// is small compared with the displacement of the reference and with the error, and of the order of the truncation
+/// error of a fourth-order method. If the arm steps over a singular posture, or the target is unreachable, the error
+/// grows by the displacement of the reference.
 template <int M, typename Scalar = double>
 class ErrorWatch {
  public:
   using TaskVector = Vector<M, Scalar>;
 
-  /// By how much e is larger than its rate of h seconds ago explains; 0 at first.
+  /// Growth of |e| since the last sample, minus h |ė| at the last sample. 0 for the first sample.
   [[nodiscard]] Scalar growth(const TaskVector& error, Scalar h) const noexcept {
     return started_ ? Scalar(error.norm() - error_.norm() - h * rate_.norm()) : Scalar(0);
   }
 
-  /// Whether a growth of e is small enough. travel: the reference's displacement since the last sample; step: the
-  /// largest step of a joint [rad]; size: the largest contribution of a joint to the quantities whose difference e is.
-  /// travel and size are in the units of e.
+  /// Whether a growth of e is small enough. travel: displacement of the reference since the last sample. step: largest
+  /// step of a joint [rad]. size: largest contribution of a joint to the two quantities whose difference is e. travel
+  /// and size are in the units of e.
   [[nodiscard]] Mask<Scalar> follows(Scalar growth, const TaskVector& error, const TaskVector& rate, Scalar h,
                                      Scalar travel, Scalar step, Scalar size) const noexcept {
     using std::sqrt;
@@ -40,7 +41,7 @@ class ErrorWatch {
     return growth <= expected + truncation + round_off;
   }
 
-  /// Sets e and its rate for the next step; the reference may have jumped since follows().
+  /// Sets e and its rate for the next step. The reference may be discontinuous after follows().
   void start_from(const TaskVector& error, const TaskVector& rate) noexcept {
     error_ = error;
     rate_ = rate;
@@ -56,23 +57,24 @@ class ErrorWatch {
   TaskVector rate_ = TaskVector::Zero();
 };
 
-/// Detects the step of a rollout in which the tip leaves its reference, by position and, at acceleration level, by
-/// velocity; and the sample from which on the tip error is more than the scheme explains.
+/// Detects the step of a rollout in which the tip leaves its reference, in position and, at acceleration level, in
+/// velocity. Also estimates whether the discretisation error of the tip is significant (accurate()).
 ///
-/// The second is an estimate without any further evaluation. What all steps so far have added to the error beyond its
-/// rate, and, at acceleration level, to its rate, which goes on since, bounds the error that they made where nothing
-/// makes it smaller. Feedback does: so the error itself is a bound as well, and the lesser of both is judged. Where a
-/// wrong start velocity makes a larger error, that of the steps may be missed.
+/// The estimate needs no additional evaluations. made_ is the growth of the tip error in excess of its rate, summed
+/// over all steps; at acceleration level, plus the integral of made_rate_, the excess growth of the velocity error.
+/// Without feedback, made_ is an upper bound on the discretisation error. Feedback decreases the error, so that the tip
+/// error is an upper bound too, and the smaller of both bounds is used. If a wrong start velocity causes a larger
+/// error, a discretisation error may be missed.
 template <typename Space, int N, typename Scalar = double>
 class TaskWatch {
  public:
   explicit TaskWatch(const typename Space::template Point<Scalar>& tip)
       : before_(Reference<Space, Scalar>::hold(tip)) {}
 
-  /// Whether this sample, h seconds after the last, is where the scheme had to bring the arm. arrived: the reference
-  /// that the step ended on; reference: the one that the next step starts from, which qdd answers. They differ where
-  /// two pieces of a path meet. Where the scheme was damped, the reference must not outrun the tip by more than one
-  /// step.
+  /// Whether the tip followed the reference in the step of h seconds to this sample. arrived: the reference at the end
+  /// of the step. reference: the reference at the start of the next step, for which qdd was computed. They differ at
+  /// the boundary between two pieces of a path. If the scheme was damped, the tip error may exceed the last error
+  /// without damping by at most kDampedSteps steps of the reference.
   template <Level kLevel>
   [[nodiscard]] Mask<Scalar> follows_reference(const Kinematics<Space, N, Scalar>& kinematics,
                                                const Reference<Space, Scalar>& arrived,
@@ -115,22 +117,22 @@ class TaskWatch {
     return follows;
   }
 
-  /// Whether the steps have made less than an error that counts, at the last sample. Damping excuses an error.
+  /// Whether the discretisation error at the last sample is not significant. Errors due to damping do not count.
   [[nodiscard]] const Mask<Scalar>& accurate() const noexcept { return accurate_; }
 
  private:
-  /// Largest step of a joint that still resolves the motion [rad], or [m] for a prismatic joint.
+  /// Largest step of a joint that resolves the motion [rad], or [m] for a prismatic joint.
   static constexpr auto kLargestStep = static_cast<Number<Scalar>>(0.25);
 
-  /// Largest lag of the tip where the scheme is damped, in steps of the reference.
+  /// Largest lag of a damped tip, in steps of the reference.
   static constexpr auto kDampedSteps = static_cast<Number<Scalar>>(1.1);
 
-  /// Tip error that counts, in lever arms of the joints: 0.1 mm on an arm of 1 m.
+  /// Smallest significant tip error, relative to the largest lever arm of a joint: 0.1 mm for a lever arm of 1 m.
   static constexpr auto kAccuracy = static_cast<Number<Scalar>>(1e-4);
 
   Mask<Scalar> accurate_ = Mask<Scalar>(true);
-  Scalar made_{0};       ///< Error that the steps made, at most.
-  Scalar made_rate_{0};  ///< Error of velocity that the steps made, at most.
+  Scalar made_{0};       ///< Upper bound on the discretisation error.
+  Scalar made_rate_{0};  ///< Upper bound on the discretisation error of the velocity.
   Scalar undamped_error_{0};
   ErrorWatch<Space::kRows, Scalar> position_;
   ErrorWatch<Space::kRows, Scalar> velocity_;
