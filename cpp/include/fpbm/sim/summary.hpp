@@ -19,8 +19,7 @@ namespace fpbm {
 template <typename Scalar = double>
 struct MotionSummary {
   Scalar max_error;              ///< Distance between the tip and its reference [m].
-  Scalar max_orientation_error;  ///< Angle between the orientations of tip and reference [rad]; 0 if the task has no
-                                 ///< angles.
+  Scalar max_orientation_error;  ///< Angle between tip and reference orientation [rad]; 0 if the task has no angles.
   Scalar peak_velocity;          ///< [rad/s], or [m/s] for a prismatic joint, also below
   Scalar final_velocity;
   Scalar peak_acceleration;  ///< [rad/s²]
