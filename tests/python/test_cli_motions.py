@@ -612,7 +612,9 @@ def test_view_on_a_port_in_use() -> None:
 @posix
 def test_ctrl_c_ends_the_viewer_in_peace() -> None:
     pytest.importorskip("viser")
-    out, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C ends it.", 1.0)
+    out, err, code = interrupted(
+        ["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0
+    )
     assert (code, err, out) == (0, "", "")  # Its address is printed once.
 
 
@@ -730,7 +732,7 @@ def test_servo_says_what_is_wrong() -> None:
 @posix
 def test_ctrl_c_ends_servo_in_peace() -> None:
     pytest.importorskip("viser")
-    out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C ends it.", 1.0)
+    out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0)
     assert (code, err, out) == (0, "", "")
 
 
