@@ -78,8 +78,8 @@ void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, cons
     for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
     validation::reject("name", " = '" + name + "': must be one of the obstacles" + (names.empty() ? "" : ": " + names));
   }
-  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must be of the kind that it was");
-  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, in the world");
+  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must have the kind of the obstacle");
+  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
   clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
 }
 
@@ -136,7 +136,7 @@ Shape capsule(const ArrayLike& a, const ArrayLike& b, double radius, int link) {
 
 Shape half_space(const ArrayLike& normal, double offset) {
   const Vector<3> n = fixed_vector<3>(normal, "normal");
-  if (!(n.stableNorm() > 0.0)) validation::reject("normal", " is zero: must point somewhere");
+  if (!(n.stableNorm() > 0.0)) validation::reject("normal", " is zero: must be a nonzero vector");
   validation::require_finite("offset", offset);
   return {HalfSpace<>{n.stableNormalized(), offset}};
 }

@@ -33,7 +33,7 @@ LimiterRows rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
   }
   const auto bounds = real_array(b, "rows[1]", 1);
   if (bounds.size() != rows.count) {
-    validation::fail("rows[1]'s number of entries", static_cast<double>(bounds.size()), "one for each of rows[0]");
+    validation::fail("rows[1]'s number of entries", static_cast<double>(bounds.size()), "one for each row of rows[0]");
   }
   rows.g.leftCols(rows.count) = matrix(G, "rows[0]", rows.count, n).transpose();
   rows.b.head(rows.count) = Eigen::Map<const Eigen::VectorXd>(bounds.data(), bounds.size());

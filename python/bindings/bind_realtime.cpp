@@ -159,7 +159,7 @@ class PyTracker {
   [[nodiscard]] PyTick tick(PyFollower& follower) {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
-      if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
+      if (same == nullptr) validation::reject("follower", ": is for another task: call this tracker's follow()");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
   }
@@ -167,7 +167,7 @@ class PyTracker {
   [[nodiscard]] PyTick tick(PyTargetFilter& filter) {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
-      if (same == nullptr) validation::reject("filter", ": it is for another task");
+      if (same == nullptr) validation::reject("filter", ": is for another task");
       if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
@@ -184,7 +184,7 @@ class PyTracker {
 
   [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) {
     if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->follow(path, ramp, task);
-    if (task) validation::reject("task", " = '" + *task + "': must not be given where the tracker has one task");
+    if (task) validation::reject("task", " = '" + *task + "': must not be given for a tracker with one task");
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
@@ -219,12 +219,12 @@ class PyTracker {
   }
 
  private:
-  static constexpr const char* kByName = "must be given a dictionary of references by the names of the tasks";
+  static constexpr const char* kByName = "must be given a dictionary of references by task name";
 
   /// Throws std::invalid_argument where the tracker has one task.
   [[nodiscard]] StackLoop& stack() const {
     const auto* stacked = std::get_if<Stacked>(&any_);
-    if (stacked == nullptr) validation::reject("tracker", " has one task: needs a stack of tasks for that");
+    if (stacked == nullptr) validation::reject("tracker", " has one task: must have a stack of tasks");
     return **stacked;
   }
 

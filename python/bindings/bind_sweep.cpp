@@ -77,7 +77,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
                   const py::object& options, const Stop& stop) {
   const Array rows = starts(q0s, arm.dof());
   if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
-    throw std::invalid_argument("which and q0s: must be of one length");
+    throw std::invalid_argument("which and q0s: must have equal lengths");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
   const std::optional<Limited> limited = limited_of(options, arm, path);

@@ -242,7 +242,7 @@ class Stack:
         if len(found) == 1:
             return found[0]
         if name is None and found:
-            raise wrong("task", None, f": several tasks follow paths, must be one of {', '.join(t.name for t in able)}")
+            raise wrong("task", None, f": several tasks follow paths: must be one of {', '.join(t.name for t in able)}")
         what = f" = {name!r}" if name is not None else ""
         raise wrong("task", name, f"{what}: must be the name of a position or a pose of the stack to follow a path")
 

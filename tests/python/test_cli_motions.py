@@ -346,7 +346,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--task", "pos"], "--task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (["panda", "--path", "waypoints", "--duration", "1"], "--points: is missing"),
         (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of velocity: must be given"),
-        (["planar:1,1", "--in-plane", "xy"], "path: it lies in space, and the arm in a plane"),
+        (["planar:1,1", "--in-plane", "xy"], "path: is in space, and the arm is planar: must be a planar path"),
         (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
         (["--job", "bad.toml"], "bad.toml: must be valid TOML: "),
         (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),

@@ -460,11 +460,11 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[limits]\nvelocity = [1, 2]", "limits.velocity has 2 entries"),
         (
             "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[run]\ntask = 'pose'",
-            "run.task: it has 3 rows, and the arm 2 joints",
+            "run.task: has 3 rows, and the arm has 2 joints",
         ),
         (
             "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[path]\nkind = 'circle'\nin_plane = 'xy'",
-            "path: it lies in space",
+            "path: is in space",
         ),
     ],
 )

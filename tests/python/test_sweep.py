@@ -517,7 +517,7 @@ def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
         ({"q0s": np.zeros((1, 1, 4))}, r"q0s: must have shape \(n,\) or \(K, n\), got shape \(1, 1, 4\)"),
         ({"q0s": "home"}, "q0s: must be real numbers"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
-        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
+        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: is in space, and the arm is planar: must be a planar path"),
         ({"schemes": []}, "schemes: must have at least one scheme"),
         ({"schemes": [fp.MVN(), fp.WMVN([1, 2, 3])]}, r"schemes\[1\]: weights has 3 entries: must have 4"),
         ({"schemes": fp.MAN(c=[0, 0])}, r"schemes\[0\]: c has 2 entries: must have 4"),

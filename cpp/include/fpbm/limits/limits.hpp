@@ -73,7 +73,7 @@ class Limits {
       if (!(std::abs(state.q(i) - q) <= slack)) {
         validation::fail(validation::element("q0", i), state.q(i),
                          std::isfinite(bounds_.deceleration(i))
-                             ? "where the bound on the joint's velocity is above zero"
+                             ? "where the bound on the joint's velocity is positive"
                              : "within the joint's range");
       }
       const Scalar qd = state.qd(i);
