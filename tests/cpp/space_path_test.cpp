@@ -272,7 +272,9 @@ TEST(SpacePaths, bad_ones_are_refused) {
             "times[2] = 1: must be finite and later than the previous time");
   EXPECT_EQ(refusal([&] { return Way({{0, 0}, {1, kInf}}, {0.0, 1.0}); }), "points[1][1] = inf: must be finite");
   EXPECT_EQ(refusal([&] { return Way::lasting(points, -1.0); }), "duration = -1: must be positive and finite");
-  EXPECT_EQ(refusal([&] { return Way::lasting({{0, 0}, {0, 0}}, 1.0); }),
+  EXPECT_EQ(refusal([&] {
+              return Way::lasting({{0, 0}, {0, 0}}, 1.0);
+            }),
             "points[1]: must differ from the previous point");
   EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must limit the tip");
   EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");

@@ -21,8 +21,8 @@ template <typename To, typename From>
     return path;
   } else if constexpr (std::is_same_v<From, PlanarPose> || std::is_same_v<From, Pose>) {
     constexpr bool kPoseWillDo = kFlat == std::is_same_v<From, PlanarPose>;
-    validation::reject("path", std::string(": rotates the tip, which needs ") +
-                                   (kPoseWillDo ? "task='pose'" : "another kind of arm"));
+    validation::reject(
+        "path", std::string(": rotates the tip, which needs ") + (kPoseWillDo ? "task='pose'" : "another kind of arm"));
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
     validation::reject("path", ": is in space, and the arm is planar: must be a planar path");
   } else if constexpr (std::is_same_v<To, Position<3>>) {
