@@ -497,7 +497,7 @@ def test_sweep_refuses() -> None:
     assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must have the form ")
     assert "did you mean 'alpha'?" in refused("sweep", "panda", "--vary", "alhpa=1")
     assert refused("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
-    assert "leave qd0 out" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
+    assert "remove qd0" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
 
 
 def test_sweep_says_what_became_of_motions_that_stop() -> None:
