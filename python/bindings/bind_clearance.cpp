@@ -157,10 +157,9 @@ void bind_clearance(py::module_& m) {
 
   m.def("preset_capsules", &preset_capsules, py::arg("name"));
 
-  py::class_<PyNearest>(m, "Nearest", "The two shapes of an arm and its surroundings that are nearest to one another.")
-      .def_readonly("pair", &PyNearest::pair, "Their names: of a capsule of the arm, and of the other.")
-      .def_readonly("distance", &PyNearest::distance,
-                    "How far they are apart [m]; below zero, how deep one is in the other.")
+  py::class_<PyNearest>(m, "Nearest", "The nearest checked pair of shapes.")
+      .def_readonly("pair", &PyNearest::pair, "Names: of a capsule of the arm, and of the other shape.")
+      .def_readonly("distance", &PyNearest::distance, "Distance [m]; if negative, the penetration depth.")
       .def("__repr__", [](const PyNearest& nearest) {
         return py::str("<Nearest: {} and {}, {:.6g} m apart>")
             .format(nearest.pair.first, nearest.pair.second, nearest.distance);

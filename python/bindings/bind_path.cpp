@@ -168,10 +168,10 @@ void bind_path(py::module_& m) {
       .def(py::init<const Path&>(), py::arg("path"))
       .def("_duration", &Path::duration)
       .def("sample", &sample, py::arg("t"),
-           R"((x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
+           R"((x, xd, xdd) at t [s], as a displacement from the start of the tip [m, m/s, m/s^2].
 
-x has shape (2,) or (3,), or (4, 4) where the path rotates the tip in space (in the plane: x, y, angle); xd and xdd have
-shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.)");
+x has shape (2,) or (3,); if the path rotates the tip, shape (4, 4) in space, (x, y, angle) in the plane. xd and xdd
+have shape (m,), linear rows first, then angular. Outside 0 <= t <= T, the reference is at rest at the path's ends.)");
 
   const auto duration = py::arg("duration");
   const auto law = py::arg("time_law");

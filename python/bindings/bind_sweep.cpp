@@ -129,10 +129,10 @@ void bind_sweep(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,
                        peak_acceleration, final_acceleration, manipulability);
   PYBIND11_NUMPY_DTYPE(Outcome, status, samples, time, summary);
-  py::class_<Stop>(m, "Stop", "Ends all motions of a sweep in this process, within a sample.")
+  py::class_<Stop>(m, "Stop", "Stops all motions of a sweep in this process within a sample.")
       .def(py::init<>())
       .def(
-          "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "From any thread.");
+          "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "Callable from any thread.");
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
