@@ -254,16 +254,13 @@ void bind_tick(py::module_& m) {
       .def_readonly("sigma", &PyTick::sigma,
                     "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
       .def_property_readonly("error", array(&PyTick::error), "x - f(q) at the tick's start [m, rad], shape (m,).")
-      .def_property_readonly(
-          "scales", &PyTick::level_scales,
-          "For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.")
+      .def_property_readonly("scales", &PyTick::level_scales,
+                             "For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.")
       .def_property_readonly(
           "errors", &PyTick::task_errors,
           "For a stack: x - f(q) of each task by name, zero in rows that the task does not select; else None.")
-      .def_readonly(
-          "nearest", &PyTick::nearest,
-          "The nearest checked pair of shapes at the tick's start; None\n"
-          "without a clearance.");
+      .def_readonly("nearest", &PyTick::nearest,
+                    "The nearest checked pair of shapes at the tick's start; None without a clearance.");
 }
 
 void bind_follower(py::module_& m) {
@@ -407,9 +404,8 @@ The tasks keep their targets; tick.scales and enable() use the new levels. Comma
       .def("frame", &PyTracker::frame, py::arg("task"),
            "For a stack: the frame of the task of that name, in the base frame, shape (4, 4); for an axis task, z is "
            "the axis.")
-      .def(
-          "move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
-          R"(Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
+      .def("move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
+           R"(Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
 
 shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
 that name, or if the shape has another kind.)")

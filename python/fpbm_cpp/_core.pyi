@@ -406,7 +406,7 @@ class Limiter:
     ) -> LimitedMotion:
         """
         Motion u of the next tick for a desired motion: J u = J r + s J (desired - r), with a braking motion r and
-        the largest s <= 1 within the limits. If s is near zero, u is a motion that still moves the tip to the target.
+        the largest s <= 1 within the limits. If s is near zero, u is a motion that still moves the tip toward the target.
 
         J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level, qd is the last
         command. last is the acceleration of the previous tick [rad/s^2], for bounds on jerk; default: zero. rows is a pair
@@ -538,8 +538,7 @@ class Tick:
     @property
     def nearest(self) -> Nearest | None:
         """
-        The nearest checked pair of shapes at the tick's start; None
-        without a clearance.
+        The nearest checked pair of shapes at the tick's start; None without a clearance.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
