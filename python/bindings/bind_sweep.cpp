@@ -27,7 +27,7 @@ Array starts(const ArrayLike& q0s, int dof) {
     validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " + shape_text(py::array::ensure(q0s)));
   }
   const auto rows = real_array(q0s, "q0s", 2);
-  if (rows.shape(0) == 0) validation::reject("q0s", ": must have one row at least");
+  if (rows.shape(0) == 0) validation::reject("q0s", ": must have at least one row");
   validation::require_size("a row of q0s", rows.shape(1), dof);
   return array_of(matrix(q0s, "q0s", rows.shape(0), dof));
 }

@@ -511,7 +511,7 @@ def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
         ({"hold": -1}, "hold = -1"),
         ({"q0s": [0, 0, 0]}, "q0s has 3 entries: must have 4"),
         ({"q0s": [[0, 0, 0]]}, "a row of q0s has 3 entries: must have 4"),
-        ({"q0s": np.zeros((0, 4))}, "q0s: must have one row at least"),
+        ({"q0s": np.zeros((0, 4))}, "q0s: must have at least one row"),
         ({"q0s": [[0, 0, 0, 0], [0, 0, 0, np.inf]]}, r"q0s\[1, 3\] = inf: must be finite"),
         ({"q0s": [0, np.nan, 0, 0]}, r"q0s\[1\] = nan: must be finite"),
         ({"q0s": np.zeros((1, 1, 4))}, r"q0s: must have shape \(n,\) or \(K, n\), got shape \(1, 1, 4\)"),

@@ -124,7 +124,7 @@ def _hint(above: Tree, link: str) -> str:
 
 
 def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
-    """For each mimic joint on the way: the last leader, which is not a mimic joint."""
+    """For each mimic joint of the chain: the last leader, which is not a mimic joint."""
     follows = {}
     for joint in way:
         if joint.type == "fixed" or joint.mimic is None:
@@ -149,7 +149,7 @@ def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) ->
 
 
 def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
-    """The joints that move, the places of the links on the way, and the joints that are held."""
+    """The moving joints, the places of the links of the chain, and the fixed mimic joints."""
     moving = {joint.name for joint in way if joint.type != "fixed"}
     joints: list[Joint] = []
     held = []

@@ -58,7 +58,7 @@ class Shape:
     def between(self, u: Array, low: float, high: float) -> Shape:
         """The part of the body in low <= u x < high; a ball belongs to the part that contains its center.
 
-        A plane that cuts a face cuts its edges: the rest of these edges and the rest of the face have the same hull. At
+        A plane that cuts a face cuts its edges: the remaining parts of the edges and of the face have the same hull. At
         the plane, the face gets a new edge, which a later plane may cut. The new edge is inside the convex hull of the
         section, whose sides are kept. A side joins the edges if a plane cuts it.
         """

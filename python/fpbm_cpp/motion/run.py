@@ -81,10 +81,10 @@ class Run:
         The tip and its reference in the base frame [m]; for a stack, the point of the task that follows the path. Poses
         are (x, y, angle) in the plane, homogeneous matrices in space.
     error : numpy.ndarray, shape (N, m)
-        x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
+        x_ref minus x: linear rows [m], then, for a pose, angular rows [rad] (in space, a rotation vector).
     status, arm, path, scheme, task, options
         End of the motion, and the arguments that produced it; options are the other keyword arguments: dt, hold, stack,
-        ... task is 'position' or 'pose'; for a stack, the name of the task that follows the path, or of the first one.
+        ... task is 'position' or 'pose'; for a stack, the name of the task that follows the path, or of the first.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
         Of track() only: the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
     clearance : numpy.ndarray, shape (N,), or None

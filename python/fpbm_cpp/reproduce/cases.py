@@ -79,7 +79,7 @@ class Result:
 
     @property
     def from_printed(self) -> float | None:
-        """Largest difference of final velocities from the printed ones [rad/s], without misprints."""
+        """Largest difference of final velocities from the printed values [rad/s], without misprints."""
         if self.case.printed_qd is None:
             return None
         good = np.arange(1, len(self.case.printed_qd) + 1) != self.case.misprinted_joint

@@ -147,9 +147,10 @@ def front(size: int, seed: int) -> Search:
 
 
 def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
-    """Indices of the points that no other point dominates, sorted by x: smaller in one score, not larger in the other.
+    """Indices of the points that no other point dominates, sorted by x.
 
-    Of equal points, only the first is in the front. Points with a NaN are not in the front.
+    A dominating point is smaller in one score and not larger in the other score. Of equal points, only the first is in
+    the front. Points with a NaN are not in the front.
     """
     order = np.lexsort((y, x))
     order = order[~np.isnan(x[order] + y[order])]
