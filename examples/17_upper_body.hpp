@@ -29,10 +29,10 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
     "right_wrist_yaw_joint",       // q(16)
 };
 
-/// The joints from the base on, each placed in the frame of the link that carries it [m]; masses of the links [kg] and
-/// their centres [m]; frames. Link 0 is the base, link i + 1 the one that joint i moves.
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
-/// an end; what is left out has no bound.
+/// The joints from the base on, each placed in the frame of its parent link [m]; masses of the links [kg] and their
+/// centres [m]; frames. Link 0 is the base, link i + 1 is the child of joint i.
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the offset and deceleration of the velocity
+/// bound near an end of the range. A value that is left out means no bound.
 inline fpbm::Tree<double, 17, 2> tree() {
   fpbm::Tree<double, 17, 2> tree;
 

@@ -18,9 +18,9 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
     "panda_joint7",  // q(6)
 };
 
-/// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
-/// an end; what is left out has no bound.
+/// The joints from base to tip, each placed in the frame of the previous joint [m].
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the offset and deceleration of the velocity
+/// bound near an end of the range. A value that is left out means no bound.
 inline fpbm::Chain<float, 7> chain() {
   fpbm::Chain<float, 7> chain;
 

@@ -17,9 +17,9 @@ inline constexpr std::array<const char*, kDof> kJointNames = {
     "wrist_3_joint",        // q(5)
 };
 
-/// The joints from base to tip, each placed as seen from the one before [m].
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
-/// an end; what is left out has no bound.
+/// The joints from base to tip, each placed in the frame of the previous joint [m].
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the offset and deceleration of the velocity
+/// bound near an end of the range. A value that is left out means no bound.
 inline fpbm::Chain<float, 6> chain() {
   fpbm::Chain<float, 6> chain;
 

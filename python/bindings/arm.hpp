@@ -23,8 +23,8 @@ struct AnyKinematics {
 template <typename Space>
 void require_enough_joints(Eigen::Index dof) {
   if (dof < Space::kRows) {
-    validation::reject("task", ": it has " + std::to_string(Space::kRows) + " rows, and the arm " +
-                                   std::to_string(dof) + " joints: must not be more rows than joints");
+    validation::reject("task", ": has " + std::to_string(Space::kRows) + " rows, and the arm has " +
+                                   std::to_string(dof) + " joints: must not have more rows than joints");
   }
 }
 

@@ -107,9 +107,9 @@ AnyKinematics make_kinematics(const ArrayLike& tip, const ArrayLike& J, const Op
 }
 
 void bind_kinematics(py::module_& m) {
-  py::class_<AnyKinematics>(m, "Kinematics", R"(Tip, J and Jd of an arm in one state: all that a scheme knows of it.
+  py::class_<AnyKinematics>(m, "Kinematics", R"(Tip, J and Jd of an arm in one state: the input of a scheme.
 
-From an arm's kinematics(), or from any library that has these three (Pinocchio, Drake, MuJoCo, ...).
+From kinematics() of an arm, or from another library (Pinocchio, Drake, MuJoCo, ...).
 
 Parameters
 ----------
@@ -118,14 +118,14 @@ tip : array_like, shape (2,), (3,) or (4, 4)
 J : array_like, shape (m, n)
     Task Jacobian, linear rows first, then angular, along the base frame's axes (Pinocchio's LOCAL_WORLD_ALIGNED).
 Jd : array_like, shape (m, n), optional
-    dJ/dt along qd; velocity-level schemes do without.
+    dJ/dt along qd; not needed by velocity-level schemes.
 task : str
-    Tells what three numbers in tip are: a 'position' in space, or a 'pose' in the plane.
+    Meaning of three numbers in tip: a 'position' in space, or a 'pose' in the plane.
 
 Raises
 ------
 ParameterError
-    Where a number is not finite, or shapes do not fit.)")
+    If a number is not finite, or shapes do not match.)")
       .def(py::init(&make_kinematics), py::arg("tip"), py::arg("J"), py::arg("Jd") = py::none(), py::kw_only(),
            py::arg("task") = "position")
       .def_property_readonly("tip", &tip_of, "f(q) in the base frame [m], shape (2,), (3,) or (4, 4).")
@@ -142,16 +142,15 @@ void bind_arm(py::module_& m) {
   bind_kinematics(m);
 
   const auto task = py::arg("task") = "position";
-  py::class_<Arm, Model>(m, "Arm",
-                         "The compiled part of an arm: in the plane, of link lengths, or in space, of joints.")
+  py::class_<Arm, Model>(m, "Arm", "The compiled part of an arm: planar, from link lengths, or in space, from joints.")
       .def(py::init([](const ArrayLike& lengths) { return Arm(joint_vector(lengths, "lengths")); }), py::arg("lengths"))
       .def(py::init([](const py::typing::List<py::object>& joints, const ArrayLike& tip) {
              return Arm(chain_of(joints, tip));
            }),
            py::arg("joints"), py::arg("tip"))
       .def("forward", &forward, py::arg("q"),
-           "Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous\n"
-           "matrix, shape (4, 4), of one in space. q: shape (n,) [rad].")
+           "Tip f(q) in the base frame [m]: for a planar arm, a position, shape (2,); for an arm in space, a\n"
+           "homogeneous matrix, shape (4, 4). q: shape (n,) [rad].")
       .def("kinematics", &kinematics_of, py::arg("q"), py::arg("qd"), py::kw_only(), task,
            "Tip, J and Jd of a task, 'position' or 'pose', at q, qd, shape (n,) [rad], [rad/s].")
       .def(

@@ -78,8 +78,8 @@ void move_obstacle(Clearance<kDynamic>& clearance, const std::string& name, cons
     for (const auto& each : obstacles) names += (names.empty() ? "" : ", ") + each.name;
     validation::reject("name", " = '" + name + "': must be one of the obstacles" + (names.empty() ? "" : ": " + names));
   }
-  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must be of the kind that it was");
-  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, in the world");
+  if (shape.any.index() != found->shape.index()) validation::reject("shape", ": must have the kind of the obstacle");
+  if (shape.link != 0) validation::fail("shape.link", shape.link, "0, the base");
   clearance.move(static_cast<std::size_t>(found - obstacles.begin()), shape.any, velocity);
 }
 
@@ -136,7 +136,7 @@ Shape capsule(const ArrayLike& a, const ArrayLike& b, double radius, int link) {
 
 Shape half_space(const ArrayLike& normal, double offset) {
   const Vector<3> n = fixed_vector<3>(normal, "normal");
-  if (!(n.stableNorm() > 0.0)) validation::reject("normal", " is zero: must point somewhere");
+  if (!(n.stableNorm() > 0.0)) validation::reject("normal", " is zero: must be a nonzero vector");
   validation::require_finite("offset", offset);
   return {HalfSpace<>{n.stableNormalized(), offset}};
 }
@@ -157,10 +157,9 @@ void bind_clearance(py::module_& m) {
 
   m.def("preset_capsules", &preset_capsules, py::arg("name"));
 
-  py::class_<PyNearest>(m, "Nearest", "The two shapes of an arm and its surroundings that are nearest to one another.")
-      .def_readonly("pair", &PyNearest::pair, "Their names: of a capsule of the arm, and of the other.")
-      .def_readonly("distance", &PyNearest::distance,
-                    "How far they are apart [m]; below zero, how deep one is in the other.")
+  py::class_<PyNearest>(m, "Nearest", "The nearest checked pair of shapes.")
+      .def_readonly("pair", &PyNearest::pair, "Names: of a capsule of the arm, and of the other shape.")
+      .def_readonly("distance", &PyNearest::distance, "Distance [m]; if negative, the penetration depth.")
       .def("__repr__", [](const PyNearest& nearest) {
         return py::str("<Nearest: {} and {}, {:.6g} m apart>")
             .format(nearest.pair.first, nearest.pair.second, nearest.distance);

@@ -33,7 +33,7 @@ LimiterRows rows_of(const std::pair<ArrayLike, ArrayLike>& given, int n) {
   }
   const auto bounds = real_array(b, "rows[1]", 1);
   if (bounds.size() != rows.count) {
-    validation::fail("rows[1]'s number of entries", static_cast<double>(bounds.size()), "one for each of rows[0]");
+    validation::fail("rows[1]'s number of entries", static_cast<double>(bounds.size()), "one for each row of rows[0]");
   }
   rows.g.leftCols(rows.count) = matrix(G, "rows[0]", rows.count, n).transpose();
   rows.b.head(rows.count) = Eigen::Map<const Eigen::VectorXd>(bounds.data(), bounds.size());
@@ -98,43 +98,43 @@ class PyLimiter {
 void bind_limits(py::module_& m) {
   const auto none = py::none();
   py::class_<PyMotion>(m, "LimitedMotion", "A motion of one tick within limits.")
-      .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).")
-      .def_readonly("scale", &PyMotion::scale, "How much of the task is left, from 0 to 1.")
+      .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at velocity level, shape (n,).")
+      .def_readonly("scale", &PyMotion::scale, "Task scale, from 0 to 1.")
       .def_readonly("saturated", &PyMotion::saturated, "Which joints are on a bound, shape (n,).");
 
   py::class_<PyLimiter>(m, "Limiter",
-                        R"(Keeps joint limits in a loop of one's own, with a Jacobian from anywhere.
+                        R"(Keeps joint limits in your own control loop, for any Jacobian.
 
-A motion that keeps every bound over the next tick, and can be brought to rest within them, passes unchanged. Otherwise
-other joints take over in the null space of J; where they cannot, the task is scaled down along its direction.
+A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
+Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
+scaled along its direction.
 
 Parameters
 ----------
 limits : JointLimits
-    Bounds of the joints; one with bounds needs one on its acceleration, except at velocity level.
+    Bounds of the joints. A bounded joint needs a bound on acceleration, except at velocity level.
 dt : float
     Length of a tick [s].
 level : str
-    'acceleration' or 'velocity': what is limited.
+    Level of the limited motion: 'acceleration' or 'velocity'.
 
 Raises
 ------
 ParameterError
-    Where an argument is out of range or a bound is missing.)")
+    If an argument is out of range or a bound is missing.)")
       .def(py::init<const py::object&, double, const std::string&>(), py::arg("limits"), py::arg("dt"), py::kw_only(),
            py::arg("level") = "acceleration")
-      .def(
-          "motion", &PyLimiter::motion, py::arg("J"), py::arg("q"), py::arg("qd"), py::arg("desired"), py::kw_only(),
-          py::arg("last") = none, py::arg("rows") = none,
-          R"(The motion u of the next tick for a desired one: J u = J r + s J (desired - r), with a motion r that slows the arm
-down and s <= 1 as large as the limits allow; where s comes near zero, a motion that still brings the tip nearer.
+      .def("motion", &PyLimiter::motion, py::arg("J"), py::arg("q"), py::arg("qd"), py::arg("desired"), py::kw_only(),
+           py::arg("last") = none, py::arg("rows") = none,
+           R"(Motion u of the next tick for a desired motion: J u = J r + s J (desired - r), with a braking motion r and
+the largest s <= 1 within the limits. If s is near zero, u is a motion that still moves the tip toward the target.
 
-J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level qd is the last command.
-last is the acceleration of the tick before [rad/s^2], from which bounds on jerk start: zero unless given. rows is a pair
-(G, b), shapes (p, n) and (p,), of further bounds G u <= b, 16 at most, kept as far as the limits admit. Raises
-ParameterError where a shape is another, or a number is not finite.)")
+J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level, qd is the last
+command. last is the acceleration of the previous tick [rad/s^2], for bounds on jerk; default: zero. rows is a pair
+(G, b), shapes (p, n) and (p,), of at most 16 further bounds G u <= b, kept as far as the limits admit. Raises
+ParameterError if a shape is wrong, or a number is not finite.)")
       .def("brake", &PyLimiter::brake, py::arg("q"), py::arg("qd"), py::kw_only(), py::arg("last") = none,
-           "The motion that brings every joint to rest, as motion.");
+           "The motion that brings every joint to rest; arguments and result as for motion.");
 }
 
 }  // namespace fpbm::bindings

@@ -67,7 +67,7 @@ Path line(const ArrayLike& displacement, double duration, const std::string& law
 
 Path in_plane(const Path& path, const ArrayLike& axes) {
   const auto* flat = std::get_if<AnyPath<Position<2>>>(&path.any);
-  if (flat == nullptr) validation::reject("in_plane", ": the path must be one of positions in a plane");
+  if (flat == nullptr) validation::reject("in_plane", ": the path must be a planar path of positions");
   const Matrix<2, 3> rows = matrix(axes, "plane", 2, 3);
   return {AnyPath<Position<3>>(InPlane(*flat, Vector<3>(rows.row(0)), Vector<3>(rows.row(1))))};
 }
@@ -91,7 +91,7 @@ AnyPath<Space> sequence_in(const Path* const* begin, const Path* const* end) {
 
 /// Paths one after another, in the smallest of the spaces that has room for all.
 Path sequence(const std::vector<const Path*>& paths) {
-  if (paths.empty()) validation::reject("paths", ": must be one at least");
+  if (paths.empty()) validation::reject("paths", ": must have at least one path");
   const auto in = [&](auto space) {
     return Path{sequence_in<decltype(space)>(paths.data(), paths.data() + paths.size())};
   };
@@ -132,7 +132,7 @@ Path waypoints(const ArrayLike& points, const std::optional<double>& duration, c
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const bool bounded = velocity || acceleration || angular_velocity || angular_acceleration;
   if (duration.has_value() + times.has_value() + bounded != 1) {
-    validation::reject("duration", ", times or bounds of velocity: must be given, one of the three");
+    validation::reject("duration", ", times or bounds of velocity: must be given, exactly one of the three");
   }
   Timing timing = TipBounds<>{velocity.value_or(kNone), acceleration.value_or(kNone), angular_velocity.value_or(kNone),
                               angular_acceleration.value_or(kNone)};
@@ -168,10 +168,10 @@ void bind_path(py::module_& m) {
       .def(py::init<const Path&>(), py::arg("path"))
       .def("_duration", &Path::duration)
       .def("sample", &sample, py::arg("t"),
-           R"((x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
+           R"((x, xd, xdd) at t [s], as a displacement from the start of the tip [m, m/s, m/s^2].
 
-x has shape (2,) or (3,), or (4, 4) where the path rotates the tip in space (in the plane: x, y, angle); xd and xdd have
-shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.)");
+x has shape (2,) or (3,); if the path rotates the tip, shape (4, 4) in space, (x, y, angle) in the plane. xd and xdd
+have shape (m,), linear rows first, then angular. Outside 0 <= t <= T, the reference is at rest at the path's ends.)");
 
   const auto duration = py::arg("duration");
   const auto law = py::arg("time_law");

@@ -159,7 +159,7 @@ class PyTracker {
   [[nodiscard]] PyTick tick(PyFollower& follower) {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<AnyFollower<decltype(space)>>(&follower.any);
-      if (same == nullptr) validation::reject("follower", ": it was laid out for another task");
+      if (same == nullptr) validation::reject("follower", ": is for another task: call this tracker's follow()");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
   }
@@ -167,7 +167,7 @@ class PyTracker {
   [[nodiscard]] PyTick tick(PyTargetFilter& filter) {
     return visit(kByName, [&](auto& tracker, auto space) {
       auto* same = std::get_if<TargetFilter<decltype(space)>>(&filter.any);
-      if (same == nullptr) validation::reject("filter", ": it is for another task");
+      if (same == nullptr) validation::reject("filter", ": is for another task");
       if (same->dt() != dt_) validation::fail("filter's dt", same->dt(), "the tracker's");
       return tick_at(tracker, tracker.state().q, [&] { return tracker.tick(*same); });
     });
@@ -184,7 +184,7 @@ class PyTracker {
 
   [[nodiscard]] PyFollower follow(const Path& path, double ramp, const std::optional<std::string>& task) {
     if (const auto* stacked = std::get_if<Stacked>(&any_)) return (*stacked)->follow(path, ramp, task);
-    if (task) validation::reject("task", " = '" + *task + "': must not be given where the tracker has one task");
+    if (task) validation::reject("task", " = '" + *task + "': must not be given for a tracker with one task");
     return visit("", [&](auto& tracker, auto space) -> PyFollower {
       using Space = decltype(space);
       return {AnyFollower<Space>(path.as<Space>(), tracker.tip(), ramp)};
@@ -219,12 +219,12 @@ class PyTracker {
   }
 
  private:
-  static constexpr const char* kByName = "must be given a dictionary of references by the names of the tasks";
+  static constexpr const char* kByName = "must be given a dictionary of references by task name";
 
   /// Throws std::invalid_argument where the tracker has one task.
   [[nodiscard]] StackLoop& stack() const {
     const auto* stacked = std::get_if<Stacked>(&any_);
-    if (stacked == nullptr) validation::reject("tracker", " has one task: needs a stack of tasks for that");
+    if (stacked == nullptr) validation::reject("tracker", " has one task: must have a stack of tasks");
     return **stacked;
   }
 
@@ -243,38 +243,35 @@ class PyTracker {
 
 void bind_tick(py::module_& m) {
   const auto array = [](auto values) { return [values](const PyTick& tick) { return array_of(tick.*values); }; };
-  py::class_<PyTick>(m, "Tick", "What one tick of a control loop did.")
+  py::class_<PyTick>(m, "Tick", "Result of one tick of a control loop.")
       .def_property_readonly("q", array(&PyTick::q),
-                             "Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).")
-      .def_property_readonly("qd", array(&PyTick::qd), "Its velocity [rad/s], shape (n,).")
+                             "Joint command for the end of the tick [rad], or [m] for a prismatic joint, shape (n,).")
+      .def_property_readonly("qd", array(&PyTick::qd), "Velocity of the command [rad/s], shape (n,).")
       .def_property_readonly("qdd", array(&PyTick::qdd), "Mean acceleration over the tick [rad/s^2], shape (n,).")
-      .def_readonly("status", &PyTick::status, "What became of it; where it failed, why the arm brakes.")
-      .def_readonly("scale", &PyTick::scale, "How much of the task the limits left, from 0 to 1.")
+      .def_readonly("status", &PyTick::status, "Status of the tick; if the tick failed, the reason why the arm brakes.")
+      .def_readonly("scale", &PyTick::scale, "Task scale that the limits admit, from 0 to 1.")
       .def_property_readonly("saturated", &PyTick::saturated_joints, "Which joints are on a bound, shape (n,).")
       .def_readonly("sigma", &PyTick::sigma,
                     "Lower bound on the least singular value of J at the tick's start, tight within a factor sqrt(m).")
       .def_property_readonly("error", array(&PyTick::error), "x - f(q) at the tick's start [m, rad], shape (m,).")
-      .def_property_readonly(
-          "scales", &PyTick::level_scales,
-          "Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.")
+      .def_property_readonly("scales", &PyTick::level_scales,
+                             "For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.")
       .def_property_readonly(
           "errors", &PyTick::task_errors,
-          "Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.")
-      .def_readonly(
-          "nearest", &PyTick::nearest,
-          "The two shapes that are to be kept apart and were nearest to one another at the tick's start; None\n"
-          "without a clearance.");
+          "For a stack: x - f(q) of each task by name, zero in rows that the task does not select; else None.")
+      .def_readonly("nearest", &PyTick::nearest,
+                    "The nearest checked pair of shapes at the tick's start; None without a clearance.");
 }
 
 void bind_follower(py::module_& m) {
   const auto visit = [](auto visitor) { return [visitor](PyFollower& self) { return std::visit(visitor, self.any); }; };
   py::class_<PyFollower>(m, "PathFollower",
-                         "A path laid out from a tip, with a clock that can pause and resume; made by Tracker.follow.")
-      .def("pause", visit([](auto& follower) { follower.pause(); }), "Comes to rest on the path, within the ramp.")
-      .def("resume", visit([](auto& follower) { follower.resume(); }), "Goes on along the path.")
+                         "A path from the tip, with a clock that can pause and resume; the result of Tracker.follow.")
+      .def("pause", visit([](auto& follower) { follower.pause(); }), "Stops on the path within the ramp time.")
+      .def("resume", visit([](auto& follower) { follower.resume(); }), "Continues along the path.")
       .def_property_readonly("time", visit([](auto& follower) { return follower.time(); }), "Path time [s].")
       .def_property_readonly("done", visit([](auto& follower) { return follower.done(); }),
-                             "Whether path time has come to the path's end.");
+                             "Whether path time is at the path's end.");
 }
 
 }  // namespace
@@ -285,63 +282,65 @@ void bind_realtime(py::module_& m) {
   const auto none = py::none();
   py::class_<PyTracker>(
       m, "Tracker",
-      R"(Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
+      R"(Moves an arm tick by tick under a scheme, within joint limits and through singular postures. If the target is
+unreachable, the arm stops.
 
-tick integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities.
-resolve_measured answers for a measured state, with the acceleration that a torque controller is to realise.
-Never feed a measured state to tick. A scheme of velocity level is kept within the same limits.
+tick integrates the tracker's own state by RK4; the result is the command for an arm with position or velocity control.
+resolve_measured computes the acceleration for a torque controller from a measured state.
+Never pass a measured state to tick. The limits hold for schemes of both levels.
 
 Parameters
 ----------
 arm, scheme
-    What moves, and how.
+    The arm and its scheme.
 q0 : array_like, shape (n,)
     Joint positions at the start [rad], within the limits.
 qd0, qdd0 : array_like, shape (n,), optional
-    Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
-    zero unless given.
+    Joint velocities at the start [rad/s], and accelerations just before the start [rad/s^2], for bounds on jerk;
+    default: zero.
 task : str
-    'position' or 'pose', of the tip.
+    Task of the tip: 'position' or 'pose'.
 stack : Stack, optional
-    Several tasks in strict priority, which replace task. tick then takes a dictionary of references.
+    Several tasks in strict priority, which replace task. The argument of tick is then a dictionary of references.
 dt : float
     Length of a tick [s].
 limits : JointLimits, optional
-    The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
+    Default: the limits of the arm. A bounded joint needs a bound on acceleration, except at velocity level.
 error_bound : float
-    Largest tip error that the feedback acts on: a larger one counts as this. Of the position, in arm lengths (the way
-    from the first joint to the tip); of the orientation [rad].
+    Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
+    links), of the orientation [rad].
 integral_gain, integral_bound : float
-    Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
-    [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+    Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and largest contribution of
+    the integral [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
 stall_time : float
-    An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
-    until its target moves, or until resume(). math.inf: it never gives up.
+    If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
+    stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
 singular_radius, singular_brake : float
-    Damping near singular postures, where the scheme has none; 0 switches it off.
+    Damping near singular postures, if the scheme has none; 0: no damping.
 null_damping : float
-    Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
-    rest; 0 switches it off.
+    Null-space damping [1/s], if a scheme of acceleration level has none; without damping, the self-motion never stops.
+    0: no damping.
 recovery : bool
-    Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
+    Whether a stalled arm may move to a remembered posture from which the target is reachable.
 keep_first_level : bool
-    Whether the first level of a stack, such as a grasp of two arms, comes before speed: the lower levels leave it a
-    reserve of the limits, 0.7 of each bound on acceleration and 0.35 of each bound on velocity, and stop keeps it: its
-    references are held at rest, and the joints come to rest in its null space. A task that is farther than 0.001
-    characteristic lengths, or 0.001 rad, from its reference stays where it is.
+    Whether the first level of a stack, for example a grasp of two arms, has priority over speed. The lower levels leave
+    the first level a reserve of the limits: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop
+    keeps the first level: its references are held at rest, and the joints come to rest in its null space. A task that
+    is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it is.
 measured_delay : int
-    Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
-    tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
+    Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
+    which the robot realises the result. 0: exact present states, as in a simulation.
 clearance : Clearance, optional
-    What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
-    obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
+    Self-collision and obstacles that the arm avoids: while obstacles are at rest, no checked pair comes closer than the
+    margin, for every reference. A tick is executed only if the arm can then stop before all shapes; otherwise the arm
+    brakes immediately.
 bounds : sequence of TaskBounds
-    Bounds on coordinates of tasks: walls for points of links, cones for axes, speeds.
+    Bounds on task coordinates: walls for points of links, cones for axes, speeds.
 
 Raises
 ------
 ParameterError
-    Where an argument is out of range, a limit is missing, or the start is beyond a limit or a bound, or not clear.)")
+    If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance.)")
       .def(py::init([](const Model& arm, const Scheme& scheme, const ArrayLike& q0, const OptionalArray& qd0,
                        const OptionalArray& qdd0, const std::string& task, const py::object& stack, double dt,
                        const py::object& limits, double error_bound, double gain, double bound, double stall_time,
@@ -365,62 +364,61 @@ ParameterError
            py::arg("measured_delay") = TrackerOptions<>().measured_delay, py::arg("clearance") = none,
            py::arg("bounds") = py::tuple())
       .def("tick", py::overload_cast<PyFollower&>(&PyTracker::tick), py::arg("follower"),
-           "One tick along a path, whose clock advances with it.")
+           "One tick along a path, whose clock advances by one tick.")
       .def("tick", py::overload_cast<PyTargetFilter&>(&PyTracker::tick), py::arg("filter"),
-           "One tick behind a filter of targets, which goes on, also after stop.")
+           "One tick with a filter of targets, which advances by one tick, also after stop.")
       .def("tick", py::overload_cast<const PyReferences&>(&PyTracker::tick), py::arg("references"),
-           R"(One tick of a stack toward references: a dictionary by the names of the tasks.
+           R"(One tick of a stack toward references: a dictionary by task name.
 
-Each value is a point x, (x, xd) or (x, xd, xdd), and of positions and poses also a PathFollower or a TargetFilter. x has
-shape (3,) of a position, (3, 3) of an orientation, (4, 4) of a pose, (3,) of an axis, (joints,) of a posture [m, rad]. A
-task that is not in the dictionary keeps its last target, at rest; at first, the point where it starts.)")
+Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
+has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
+[m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is its start.)")
       .def("tick", py::overload_cast<const ArrayLike&, const OptionalArray&, const OptionalArray&>(&PyTracker::tick),
            py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
            R"(One tick toward a reference, at rest unless its velocity and acceleration are given.
 
 x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows first, in the base frame. Never fails:
-where no motion can be found the arm brakes, and the tick's status says why.)")
+if there is no motion, the arm brakes, and the status of the tick is the cause.)")
       .def("resolve_measured",
            py::overload_cast<const ArrayLike&, const ArrayLike&, const PyReferences&>(&PyTracker::resolve_measured),
-           py::arg("q"), py::arg("qd"), py::arg("references"), "The same of a stack.")
+           py::arg("q"), py::arg("qd"), py::arg("references"), "The same for a stack.")
       .def("resolve_measured",
            py::overload_cast<const ArrayLike&, const ArrayLike&, const ArrayLike&, const OptionalArray&,
                              const OptionalArray&>(&PyTracker::resolve_measured),
            py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd") = none, py::arg("xdd") = none,
-           R"(The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller to realise.
+           R"(The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller.
 
 The state may be up to measured_delay ticks old.)")
       .def("follow", &PyTracker::follow, py::arg("path"), py::kw_only(), py::arg("ramp") = 0.5, py::arg("task") = none,
-           R"(A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+           R"(A path from the present tip; ramp is the duration of a pause or a resumption [s].
 
-Of a stack, from where the task of that name is; it may be left out if one task alone is a position or a pose.)")
+For a stack, a path from the task of that name; the name is optional if only one task is a position or a pose.)")
       .def("enable", &PyTracker::enable, py::arg("level"), py::arg("on"),
-           R"(Resolves a level of a stack below the first, counted from 0, or leaves it out.
+           R"(Enables or disables a level of a stack below the first; levels are counted from 0.
 
 Commands stay within all bounds.)")
       .def("reorder", &PyTracker::reorder, py::arg("order"),
-           R"(Reorders the levels of a stack: level k becomes what was level order[k].
+           R"(Reorders the levels of a stack: the new level k is the old level order[k].
 
-The tasks keep their targets; tick.scales and enable() count the new levels. Commands stay within all bounds.)")
+The tasks keep their targets; tick.scales and enable() use the new levels. Commands stay within all bounds.)")
       .def("frame", &PyTracker::frame, py::arg("task"),
-           "Of a stack: the frame of the task of that name, in the base frame, shape (4, 4); of an axis task, z is the "
-           "axis.")
-      .def(
-          "move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
-          R"(Moves an obstacle of the clearance: where it is now, and the velocity [m/s] at which it is expected to go on.
+           "For a stack: the frame of the task of that name, in the base frame, shape (4, 4); for an axis task, z is "
+           "the axis.")
+      .def("move", &PyTracker::move, py::arg("name"), py::arg("shape"), py::arg("velocity") = py::make_tuple(0, 0, 0),
+           R"(Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
 
-shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
-where no obstacle has that name, or the shape is of another kind.)")
+shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
+that name, or if the shape has another kind.)")
       .def("stop", &PyTracker::stop,
            "Brings every joint to rest as fast as the limits allow, until resume; with keep_first_level, in the null\n"
            "space of the first level.")
       .def("resume", &PyTracker::resume, "Follows references again.")
-      .def_property_readonly("q", &PyTracker::q, "Joint positions of its own state [rad].")
-      .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of its own state [rad/s].")
-      .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of its last tick [rad/s^2].")
+      .def_property_readonly("q", &PyTracker::q, "Joint positions of the tracker's own state [rad].")
+      .def_property_readonly("qd", &PyTracker::qd, "Joint velocities of the tracker's own state [rad/s].")
+      .def_property_readonly("qdd", &PyTracker::qdd, "Joint accelerations of the last tick [rad/s^2].")
       .def_property_readonly(
           "tip", &PyTracker::tip,
-          "Where the tip of its own state is, in the base frame [m]; of a stack, where each task is, by name.");
+          "Tip of the tracker's own state in the base frame [m]; for a stack, the point of each task by name.");
 }
 
 }  // namespace fpbm::bindings

@@ -124,7 +124,7 @@ void bind_robot(py::module_& m) {
           "joint_names", [](const Model& model) { return model.joint_names; },
           "Names of the joints that have a drive, from the base on.")
       .def("bounds", &bounds_of,
-           "The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.");
+           "Bounds of the joints by name, as in JointLimits, shape (n,) each; infinite if there is no bound.");
 
   const auto task = py::arg("task") = "pose";
   py::class_<PyRobot, Model>(m, "Robot", "The compiled part of a robot.")
@@ -146,7 +146,7 @@ void bind_robot(py::module_& m) {
             return rows_of_task(FrameState(model, q, q, frame).J, name);
           },
           py::arg("q"), py::arg("frame"), py::kw_only(), task,
-          "Jacobian of a frame, shape (m, n): its velocity is J qd, linear rows first, then angular, in the base\n"
+          "Jacobian of a frame, shape (m, n): the frame moves at J qd, linear rows first, then angular, in the base\n"
           "frame's axes. task: 'position', 'orientation' or 'pose'. q: (n,) [rad].")
       .def(
           "jacobian_dot",
@@ -155,8 +155,8 @@ void bind_robot(py::module_& m) {
           py::arg("q"), py::arg("qd"), py::arg("frame"), py::kw_only(), task,
           "dJ/dt along qd, shape (m, n): the frame's acceleration is J qdd + Jd qd. q, qd: (n,) [rad], [rad/s].")
       .def("center_of_mass", &center_of_mass_at, py::arg("q"),
-           "Centre of mass in the base frame, shape (3,) [m], the base included. q: (n,) [rad].\n\n"
-           "Raises ParameterError where the robot has no mass.");
+           "Centre of mass in the base frame, shape (3,) [m], including the base. q: (n,) [rad].\n\n"
+           "Raises ParameterError if the robot has no mass.");
 }
 
 }  // namespace fpbm::bindings

@@ -35,7 +35,7 @@ Box<kDynamic> box_of(const ArrayLike& lower, const ArrayLike& upper) {
   validation::require_size("upper", box.upper.size(), box.lower.size());
   for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
     if (box.lower(i) > box.upper(i)) {
-      validation::fail(validation::element("lower", i), box.lower(i), "at most upper, which is ", box.upper(i));
+      validation::fail(validation::element("lower", i), box.lower(i), "at most upper = ", box.upper(i));
     }
   }
   return box;
@@ -72,7 +72,7 @@ JointVector unit_of(const Box<kDynamic>& box, const OptionalArray& given) {
 
 PyLevels saturate_levels(const std::vector<PyLevelRows>& given, const ArrayLike& lower, const ArrayLike& upper,
                          const OptionalArray& rest, const OptionalArray& unit) {
-  if (given.empty()) validation::reject("levels", ": must be one at least");
+  if (given.empty()) validation::reject("levels", ": must have at least one level");
   const Box<kDynamic> box = box_of(lower, upper);
   const Eigen::Index n = box.lower.size();
   std::vector<LevelRows> levels;

@@ -60,39 +60,41 @@ Scheme make_scheme(const std::string& level, const py::typing::Dict<py::str, py:
 }  // namespace
 
 void bind_scheme(py::module_& m) {
-  py::native_enum<Status>(m, "Status", "enum.Enum", "What became of an evaluation or a rollout.")
+  py::native_enum<Status>(m, "Status", "enum.Enum", "Result of an evaluation or a rollout.")
       .value("OK", Status::kOk, "The motion is complete.")
-      .value("COARSE", Status::kCoarse, "The motion is complete; its steps are too long for the tip error.")
-      .value("DAMPED", Status::kDamped, "The motion is complete; damped near a singular posture.")
-      .value("SLOWED", Status::kSlowed, "The motion is slowed by joint limits.")
-      .value("BLOCKED", Status::kBlocked, "The motion is slowed by shapes that the arm keeps clear of.")
+      .value("COARSE", Status::kCoarse, "The motion is complete; the steps cause a discretisation error of the tip.")
+      .value("DAMPED", Status::kDamped, "The motion is complete, and damped near a singular posture.")
+      .value("SLOWED", Status::kSlowed, "Joint limits scale the task, or a lower level has stopped.")
+      .value("BLOCKED", Status::kBlocked, "Self-collision, obstacles or task bounds limit the task.")
       .value("RECOVERING", Status::kRecovering,
-             "The arm came no nearer to its target, and moved to a posture from which it can reach the target.")
-      .value("STALLED", Status::kStalled, "The arm came no nearer to its target, and rested.")
+             "The arm made no progress toward its target: it moves to a posture from which the target is reachable.")
+      .value("STALLED", Status::kStalled, "The arm makes no progress toward its target: the arm stops.")
       .value("SINGULAR", Status::kSingular, "The posture is singular.")
       .value("TASK_LOST", Status::kTaskLost, "The tip has left its reference.")
       .value("NOT_FINITE", Status::kNotFinite, "A number is not finite.")
       .finalize();
   m.def("failed", &failed, py::arg("status"), "Whether there is no result.");
-  m.def("message", &message, py::arg("status"), "One sentence: what happened.");
-  m.def("advice", &advice, py::arg("status"), "One sentence: what to do about it; empty for OK.");
+  m.def("message", &message, py::arg("status"), "Description of the status in one sentence.");
+  m.def("advice", &advice, py::arg("status"), "Advice for the status in one sentence; empty for OK.");
 
   py::class_<Scheme>(m, "Scheme", "The compiled part of a scheme: the law of a level with its parameters.")
       .def(py::init(&make_scheme), py::arg("level"), py::arg("parameters"))
       .def("resolve", &resolve_for_arm, py::arg("arm"), py::arg("q"), py::arg("qd"), py::arg("x"), py::arg("xd"),
            py::arg("xdd") = py::none(), py::kw_only(), py::arg("task") = "position", py::arg("out") = py::none(),
-           R"(Joint motion that the scheme asks for in a state, or in each of k states.
+           R"(Joint motion of the scheme in a state, or in each of k states.
 
 Parameters
 ----------
 arm : Arm
     The arm.
 q, qd : array_like, shape (n,) or (k, n)
-    Joint state [rad], [rad/s]. Where q has k rows, each of the others has k, along a leading axis, or is one for all.
+    Joint state [rad], [rad/s]. If q has k rows, each other argument has k entries along a leading axis, or one entry
+    for all states.
 x : array_like, shape (2,), (3,) or (4, 4)
-    Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
+    Reference of the tip in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
 xd, xdd : array_like, shape (m,)
-    Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
+    Velocity and acceleration of the reference, linear rows first, then angular [m/s, rad/s]; xdd is optional at
+    velocity level.
 task : str
     'position' or 'pose'.
 out : numpy.ndarray, shape (n,) or (k, n), optional
@@ -106,12 +108,12 @@ numpy.ndarray, shape (n,) or (k, n)
 Raises
 ------
 ParameterError
-    Where an argument is not finite or of the wrong shape.
+    If an argument is not finite or has a wrong shape.
 ResolutionError
-    Where the posture is singular or the result not finite.)")
+    If the posture is singular or the result is not finite.)")
       .def("resolve", &resolve_for_kinematics, py::arg("kinematics"), py::arg("q"), py::arg("qd"), py::arg("x"),
            py::arg("xd"), py::arg("xdd") = py::none(), py::kw_only(), py::arg("out") = py::none(),
-           "The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.");
+           "The same for tip, J and Jd from another library, as a Kinematics.");
 }
 
 }  // namespace fpbm::bindings

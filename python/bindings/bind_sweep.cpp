@@ -27,7 +27,7 @@ Array starts(const ArrayLike& q0s, int dof) {
     validation::reject("q0s", ": must have shape (n,) or (K, n), got shape " + shape_text(py::array::ensure(q0s)));
   }
   const auto rows = real_array(q0s, "q0s", 2);
-  if (rows.shape(0) == 0) validation::reject("q0s", ": must have one row at least");
+  if (rows.shape(0) == 0) validation::reject("q0s", ": must have at least one row");
   validation::require_size("a row of q0s", rows.shape(1), dof);
   return array_of(matrix(q0s, "q0s", rows.shape(0), dof));
 }
@@ -77,7 +77,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
                   const py::object& options, const Stop& stop) {
   const Array rows = starts(q0s, arm.dof());
   if (static_cast<std::size_t>(rows.shape(0)) != which.size()) {
-    throw std::invalid_argument("which and q0s: must be of one length");
+    throw std::invalid_argument("which and q0s: must have equal lengths");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
   const std::optional<Limited> limited = limited_of(options, arm, path);
@@ -129,10 +129,10 @@ void bind_sweep(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(MotionSummary<>, max_error, max_orientation_error, peak_velocity, final_velocity,
                        peak_acceleration, final_acceleration, manipulability);
   PYBIND11_NUMPY_DTYPE(Outcome, status, samples, time, summary);
-  py::class_<Stop>(m, "Stop", "Ends all motions of a sweep in this process, within a sample.")
+  py::class_<Stop>(m, "Stop", "Stops all motions of a sweep in this process within a sample.")
       .def(py::init<>())
       .def(
-          "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "From any thread.");
+          "set", [](Stop& stop) { stop.flag.store(true, std::memory_order_relaxed); }, "Callable from any thread.");
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),

@@ -74,35 +74,35 @@ void bind_target_filter(py::module_& m) {
   };
   const auto none = py::none();
   py::class_<PyTargetFilter>(m, "TargetFilter",
-                             R"(Makes a smooth reference of targets that come at any rate, late, twice or not at all.
+                             R"(Computes a smooth reference from targets that come at any rate, late, twice or never.
 
-Each axis of the base frame goes to the target in the least time within its bounds, in the frame of a target that moves:
-without overshoot to one at rest, without lag behind one that moves evenly. The target's velocity is estimated from the
-points that come. One without news for a timeout comes to rest. From rest, an orientation turns about one axis, its largest
-angle in the least time.
+Each axis of the base frame moves to the target in minimum time within its bounds, in a frame that moves with the
+target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of the
+target is estimated from the received points. A target without a message for the timeout stops. From rest, an
+orientation rotates about one axis, with its largest angle in minimum time.
 
 Parameters
 ----------
 x0 : array_like, shape (2,), (3,) or (4, 4)
-    Where it starts, at rest, in the base frame [m, rad].
+    Start of the reference, at rest, in the base frame [m, rad].
 velocity, acceleration, jerk : float
     Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
 angular_velocity, angular_acceleration, angular_jerk : float
-    The same of each axis' angle [rad/s], [rad/s^2] and [rad/s^3]; needed for poses.
+    Bounds of the angle about each axis [rad/s], [rad/s^2] and [rad/s^3]; required for poses.
 task : str
-    'pose' makes (3,) a pose in the plane.
+    'position' or 'pose'. With 'pose', shape (3,) is a pose in the plane.
 dt : float
     Length of a tick [s].
 timeout : float
-    How long a target moves on, and a twist holds, without news [s].
+    Time without a message after which a target stops and a twist ends [s].
 start : float, optional
-    Time at the first tick on the stamps' clock [s]. Unless given the clock is learnt: the least delayed stamp counts as
+    Time of the first tick on the clock of the stamps [s]. Default: estimated, so that the least delayed stamp counts as
     not delayed.
 
 Raises
 ------
 ParameterError
-    Where an argument is out of range.)")
+    If an argument is out of range.)")
       .def(py::init(&target_filter), py::arg("x0"), py::kw_only(), py::arg("velocity"), py::arg("acceleration"),
            py::arg("jerk"), py::arg("angular_velocity") = none, py::arg("angular_acceleration") = none,
            py::arg("angular_jerk") = none, py::arg("task") = "position", py::arg("dt") = TargetFilterOptions<>().dt,
@@ -118,11 +118,11 @@ ParameterError
                 self.any);
           },
           py::arg("x"), py::arg("stamp") = none,
-          R"(A target, seen at a stamp [s] on any clock, or now.
+          R"(Adds a target with its stamp [s] on any clock; default: now.
 
-Returns False for a rejected message, which changes nothing: x or the stamp is not finite, R deviates from a rotation by
-more than 1e-4, or the stamp is not newer than all before or from the future. An accepted R becomes the nearest rotation.
-Raises ParameterError where x has another shape than x0.)")
+Returns False for a rejected message, which has no effect: x or the stamp is not finite, R deviates from a rotation by
+more than 1e-4, or the stamp is not newer than all previous stamps or is from the future. An accepted R becomes the
+nearest rotation. Raises ParameterError if x has another shape than x0.)")
       .def(
           "push_twist",
           [](PyTargetFilter& self, const ArrayLike& v, Number stamp) {
@@ -134,24 +134,24 @@ Raises ParameterError where x has another shape than x0.)")
                 self.any);
           },
           py::arg("v"), py::arg("stamp") = none,
-          R"(A velocity [m/s, rad/s] to go at, as far as the bounds allow, until the timeout.
+          R"(Sets a desired velocity [m/s, rad/s] until the timeout, within the bounds.
 
-v has shape (m,), linear rows first, in the base frame's axes. Returns whether it is taken, as push does.)")
+v has shape (m,), linear rows first, along the base frame's axes. Returns whether v is accepted, as push.)")
       .def_property_readonly("x", visit([](const auto& filter) { return array_of(filter.reference().x); }),
-                             "Reference at the start of the coming tick, shape (2,), (3,) or (4, 4) [m, rad].")
+                             "Reference at the start of the next tick, shape (2,), (3,) or (4, 4) [m, rad].")
       .def_property_readonly("xd", visit([](const auto& filter) { return array_of(filter.reference().xd); }),
-                             "Its velocity, shape (m,), linear rows first [m/s, rad/s].")
+                             "Velocity of the reference, shape (m,), linear rows first [m/s, rad/s].")
       .def_property_readonly("xdd", visit([](const auto& filter) { return array_of(filter.reference().xdd); }),
-                             "Its acceleration, shape (m,) [m/s^2, rad/s^2].")
+                             "Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].")
       .def(
           "advance", [](PyTargetFilter& self) { std::visit([](auto& filter) { filter.advance(); }, self.any); },
-          "Goes one tick on; Tracker.tick does so by itself.")
+          "Advances by one tick; Tracker.tick calls this itself.")
       .def(
           "reset",
           [](PyTargetFilter& self, const ArrayLike& x) {
             std::visit([&](auto& filter) { filter.reset(point<decltype(space_of(filter))>(x, "x")); }, self.any);
           },
-          py::arg("x"), "Starts anew, at rest at x; a clock that was learnt is forgotten.");
+          py::arg("x"), "Restarts at rest at x; an estimated clock is discarded.");
 }
 
 }  // namespace fpbm::bindings

@@ -17,7 +17,7 @@ EitherScheme<Space> Scheme::make(const AnyArmFor<Space>& arm) const {
 
 template <typename Space>
 EitherScheme<Space> Scheme::make_without_arm(Eigen::Index dof) const {
-  if (needs_arm()) validation::reject("scheme", ": it has objectives that need an arm, and there is none here");
+  if (needs_arm()) validation::reject("scheme", ": has objectives that need an arm: give an arm, not a Kinematics");
   return plain<Space>(JointLimits<kDynamic>::none(dof));
 }
 

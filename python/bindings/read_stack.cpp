@@ -185,7 +185,7 @@ StackTarget read_target(const StackTask& task, const py::handle& given) {
     case TaskKind::kPose: target.at = transform(point, name.c_str()); break;
     case TaskKind::kAxis: {
       const Vector<3> d = fixed_vector<3>(point, name.c_str());
-      if (!(norm(d) > 0.0)) validation::reject(name, " is zero: must point somewhere");
+      if (!(norm(d) > 0.0)) validation::reject(name, " is zero: must be a nonzero vector");
       target.at.R = z_to(d);
       break;
     }

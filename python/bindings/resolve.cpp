@@ -12,7 +12,7 @@ namespace {
 
 void require_xdd(const Scheme& scheme, const OptionalArray& xdd) {
   if (scheme.level == Level::kAcceleration && !xdd) {
-    validation::reject("xdd", ": an acceleration-level scheme needs it");
+    validation::reject("xdd", ": must be given for an acceleration-level scheme");
   }
 }
 
@@ -145,7 +145,7 @@ Array resolve_for_kinematics(const Scheme& scheme, const AnyKinematics& kinemati
                              const ArrayLike& qd, const ArrayLike& x, const ArrayLike& xd, const OptionalArray& xdd,
                              const OptionalOut& out) {
   if (!kinematics.has_rate && scheme.level == Level::kAcceleration) {
-    validation::reject("Jd", ": an acceleration-level scheme needs it");
+    validation::reject("Jd", ": must be given for an acceleration-level scheme");
   }
   return std::visit(
       [&](const auto& known) {

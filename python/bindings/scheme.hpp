@@ -98,7 +98,7 @@ struct Scheme {
       validation::require_size("rest_posture", rest_posture->size(), dof);
       result = result.with_rest_posture(*rest_posture, null_stiffness);
     } else if (null_stiffness != 0.0) {
-      validation::fail("null_stiffness", null_stiffness, "0 where no rest_posture is given");
+      validation::fail("null_stiffness", null_stiffness, "0 without rest_posture");
     }
     if (c) {
       validation::require_size("c", c->size(), dof);

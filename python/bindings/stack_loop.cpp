@@ -30,7 +30,7 @@ std::optional<StackMotion::Source> StackLoop::source_of(const StackTask& task, c
     } else if (task.kind == TaskKind::kPose) {
       if (auto* found = std::get_if<3>(&any)) return found;
     }
-    validation::reject(argument, ": it is for another task than '" + task.name + "'");
+    validation::reject(argument, ": is for another task than '" + task.name + "'");
   };
   if (py::isinstance<PyFollower>(given)) return same(py::cast<PyFollower&>(given).any, "follower");
   if (py::isinstance<PyTargetFilter>(given)) {
@@ -53,7 +53,7 @@ StackMotion::Sources StackLoop::read(const PyReferences& references) {
   StackMotion::Targets targets;
   for (const auto& [key, given] : references) {
     if (!py::isinstance<py::str>(key)) {
-      validation::reject("references", ": the keys of the dictionary must be the names of the tasks");
+      validation::reject("references", ": the keys of the dictionary must be task names");
     }
     const StackTask& task = motion_.plan().task(py::cast<std::string>(key));
     if (const auto source = source_of(task, given)) {
@@ -83,7 +83,7 @@ PyFollower StackLoop::follow(const Path& path, double ramp, const std::optional<
 
 void StackLoop::enable(int level, bool on) {
   if (level < 1 || level >= motion_.plan().levels) {
-    validation::fail("level", level, "that of a level below the first, at most ", motion_.plan().levels - 1);
+    validation::fail("level", level, "a level below the first, at most ", motion_.plan().levels - 1);
   }
   tracker().enable(level, on);
 }
@@ -118,7 +118,7 @@ PyPoints StackLoop::points() const {
 
 Array StackLoop::frame(const std::string& name) const {
   const StackTask& task = motion_.plan().task(name);
-  if (task.kind == TaskKind::kPosture) validation::reject("task", " = '" + name + "': a posture has no frame");
+  if (task.kind == TaskKind::kPosture) validation::reject("task", " = '" + name + "': postures have no frame");
   return array_of(motion_.frame_of(task));
 }
 

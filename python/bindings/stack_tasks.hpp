@@ -61,7 +61,7 @@ struct StackPlan {
       if (each.name == name) return each;
       known += (known.empty() ? "'" : ", '") + each.name + "'";
     }
-    validation::reject("task", " = '" + name + "': must be one of the stack's, " + known);
+    validation::reject("task", " = '" + name + "': must be a task of the stack: " + known);
   }
   /// The task that follows a path: that of the name, or the only position or pose.
   /// Throws std::invalid_argument where there is none.
@@ -74,10 +74,10 @@ struct StackPlan {
     const StackTask* found = nullptr;
     for (const StackTask& each : tasks) {
       if (!each.follows_paths()) continue;
-      if (found != nullptr) validation::reject("task", ": several tasks follow paths, must be the name of one");
+      if (found != nullptr) validation::reject("task", ": several tasks follow paths: must be the name of one");
       found = &each;
     }
-    if (found == nullptr) validation::reject("task", ": no task of the stack is a position or a pose");
+    if (found == nullptr) validation::reject("task", ": the stack has no position or pose to follow a path");
     return *found;
   }
   /// Entries of all errors, one task after another.

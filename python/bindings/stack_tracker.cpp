@@ -53,7 +53,7 @@ std::unique_ptr<StackTracker> tracker_at(const Scheme& scheme, const StackStart&
 
 std::unique_ptr<StackTracker> make_stack_tracker(const Scheme& scheme, const StackStart& from) {
   if (!scheme.is_plain()) {
-    validation::reject("manipulability_gain", " acts beside one task: must not be given with a stack");
+    validation::reject("manipulability_gain", " needs a single task: must not be given with a stack");
   }
   return scheme.level == Level::kVelocity ? tracker_at<Level::kVelocity>(scheme, from)
                                           : tracker_at<Level::kAcceleration>(scheme, from);

@@ -1,8 +1,8 @@
 """Redundancy resolution for robot arms in closed form.
 
-If an arm has more joints than its task has rows, many joint motions give the same tip motion. A scheme selects one of
-them at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, WMVNAcceleration, Balanced, FPBM).
-Units are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
+If an arm has more joints than its task has rows, many joint motions give the same tip motion. A scheme selects a joint
+motion at joint-velocity level (MVN, WMVN) or at joint-acceleration level (MAN, WMVNAcceleration, Balanced, FPBM). Units
+are radians, metres and seconds. Numbers in brackets are the equations of Wang et al., IEEE Access 2019.
 """
 
 from . import arms, paths, robots, schemes, tasks

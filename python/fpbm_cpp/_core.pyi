@@ -64,7 +64,7 @@ class Model:
     """
     def bounds(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
-        The bounds of the joints by name, as JointLimits has them, shape (n,) each; infinite where there is none.
+        Bounds of the joints by name, as in JointLimits, shape (n,) each; infinite if there is no bound.
         """
     @property
     def dof(self) -> int:
@@ -90,9 +90,9 @@ class Robot(Model):
     ) -> None: ...
     def center_of_mass(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Centre of mass in the base frame, shape (3,) [m], the base included. q: (n,) [rad].
+        Centre of mass in the base frame, shape (3,) [m], including the base. q: (n,) [rad].
 
-        Raises ParameterError where the robot has no mass.
+        Raises ParameterError if the robot has no mass.
         """
     def forward(self, q: numpy.typing.ArrayLike, frame: str) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -102,7 +102,7 @@ class Robot(Model):
         self, q: numpy.typing.ArrayLike, frame: str, *, task: str = "pose"
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Jacobian of a frame, shape (m, n): its velocity is J qd, linear rows first, then angular, in the base
+        Jacobian of a frame, shape (m, n): the frame moves at J qd, linear rows first, then angular, in the base
         frame's axes. task: 'position', 'orientation' or 'pose'. q: (n,) [rad].
         """
     def jacobian_dot(
@@ -114,9 +114,9 @@ class Robot(Model):
 
 class Kinematics:
     """
-    Tip, J and Jd of an arm in one state: all that a scheme knows of it.
+    Tip, J and Jd of an arm in one state: the input of a scheme.
 
-    From an arm's kinematics(), or from any library that has these three (Pinocchio, Drake, MuJoCo, ...).
+    From kinematics() of an arm, or from another library (Pinocchio, Drake, MuJoCo, ...).
 
     Parameters
     ----------
@@ -125,14 +125,14 @@ class Kinematics:
     J : array_like, shape (m, n)
         Task Jacobian, linear rows first, then angular, along the base frame's axes (Pinocchio's LOCAL_WORLD_ALIGNED).
     Jd : array_like, shape (m, n), optional
-        dJ/dt along qd; velocity-level schemes do without.
+        dJ/dt along qd; not needed by velocity-level schemes.
     task : str
-        Tells what three numbers in tip are: a 'position' in space, or a 'pose' in the plane.
+        Meaning of three numbers in tip: a 'position' in space, or a 'pose' in the plane.
 
     Raises
     ------
     ParameterError
-        Where a number is not finite, or shapes do not fit.
+        If a number is not finite, or shapes do not match.
     """
     def __init__(
         self,
@@ -160,7 +160,7 @@ class Kinematics:
 
 class Arm(Model):
     """
-    The compiled part of an arm: in the plane, of link lengths, or in space, of joints.
+    The compiled part of an arm: planar, from link lengths, or in space, from joints.
     """
     @typing.overload
     def __init__(self, lengths: numpy.typing.ArrayLike) -> None: ...
@@ -168,8 +168,8 @@ class Arm(Model):
     def __init__(self, joints: list[typing.Any], tip: numpy.typing.ArrayLike) -> None: ...
     def forward(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Tip f(q) in the base frame [m]: a position, shape (2,), of an arm in the plane, a pose as a homogeneous
-        matrix, shape (4, 4), of one in space. q: shape (n,) [rad].
+        Tip f(q) in the base frame [m]: for a planar arm, a position, shape (2,); for an arm in space, a
+        homogeneous matrix, shape (4, 4). q: shape (n,) [rad].
         """
     def jacobian(self, q: numpy.typing.ArrayLike, *, task: str = "position") -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -200,15 +200,15 @@ class Path:
         numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]
     ]:
         """
-        (x, xd, xdd) at t [s], as a displacement from where the tip starts [m, m/s, m/s^2].
+        (x, xd, xdd) at t [s], as a displacement from the start of the tip [m, m/s, m/s^2].
 
-        x has shape (2,) or (3,), or (4, 4) where the path rotates the tip in space (in the plane: x, y, angle); xd and xdd have
-        shape (m,), linear rows first, then angular. At rest on the path's ends outside 0 <= t <= T.
+        x has shape (2,) or (3,); if the path rotates the tip, shape (4, 4) in space, (x, y, angle) in the plane. xd and xdd
+        have shape (m,), linear rows first, then angular. Outside 0 <= t <= T, the reference is at rest at the path's ends.
         """
 
 class Status(enum.Enum):
     """
-    What became of an evaluation or a rollout.
+    Result of an evaluation or a rollout.
     """
 
     BLOCKED = ...
@@ -241,18 +241,20 @@ class Scheme:
         out: numpy.typing.NDArray[numpy.float64] | None = None,
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint motion that the scheme asks for in a state, or in each of k states.
+        Joint motion of the scheme in a state, or in each of k states.
 
         Parameters
         ----------
         arm : Arm
             The arm.
         q, qd : array_like, shape (n,) or (k, n)
-            Joint state [rad], [rad/s]. Where q has k rows, each of the others has k, along a leading axis, or is one for all.
+            Joint state [rad], [rad/s]. If q has k rows, each other argument has k entries along a leading axis, or one entry
+            for all states.
         x : array_like, shape (2,), (3,) or (4, 4)
-            Where the tip is to be in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
+            Reference of the tip in the base frame [m]; a pose is (x, y, angle) in the plane, a homogeneous matrix in space.
         xd, xdd : array_like, shape (m,)
-            Its velocity and acceleration, linear rows first, then angular [m/s, rad/s]; xdd may be left out at velocity level.
+            Velocity and acceleration of the reference, linear rows first, then angular [m/s, rad/s]; xdd is optional at
+            velocity level.
         task : str
             'position' or 'pose'.
         out : numpy.ndarray, shape (n,) or (k, n), optional
@@ -266,9 +268,9 @@ class Scheme:
         Raises
         ------
         ParameterError
-            Where an argument is not finite or of the wrong shape.
+            If an argument is not finite or has a wrong shape.
         ResolutionError
-            Where the posture is singular or the result not finite.
+            If the posture is singular or the result is not finite.
         """
     @typing.overload
     def resolve(
@@ -283,7 +285,7 @@ class Scheme:
         out: numpy.typing.NDArray[numpy.float64] | None = None,
     ) -> numpy.typing.NDArray[numpy.float64]:
         """
-        The same for an arm whose tip, J and Jd you have from elsewhere, as a Kinematics.
+        The same for tip, J and Jd from another library, as a Kinematics.
         """
 
 class Shape:
@@ -308,18 +310,18 @@ class Shape:
 
 class Nearest:
     """
-    The two shapes of an arm and its surroundings that are nearest to one another.
+    The nearest checked pair of shapes.
     """
     def __repr__(self) -> str: ...
     @property
     def distance(self) -> float:
         """
-        How far they are apart [m]; below zero, how deep one is in the other.
+        Distance [m]; if negative, the penetration depth.
         """
     @property
     def pair(self) -> tuple[str, str]:
         """
-        Their names: of a capsule of the arm, and of the other.
+        Names: of a capsule of the arm, and of the other shape.
         """
 
 class Clearance:
@@ -333,12 +335,12 @@ class Clearance:
 
 class Stop:
     """
-    Ends all motions of a sweep in this process, within a sample.
+    Stops all motions of a sweep in this process within a sample.
     """
     def __init__(self) -> None: ...
     def set(self) -> None:
         """
-        From any thread.
+        Callable from any thread.
         """
 
 class LimitedMotion:
@@ -353,34 +355,35 @@ class LimitedMotion:
     @property
     def scale(self) -> float:
         """
-        How much of the task is left, from 0 to 1.
+        Task scale, from 0 to 1.
         """
     @property
     def u(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Accelerations [rad/s^2], or velocities [rad/s] at that level, shape (n,).
+        Accelerations [rad/s^2], or velocities [rad/s] at velocity level, shape (n,).
         """
 
 class Limiter:
     """
-    Keeps joint limits in a loop of one's own, with a Jacobian from anywhere.
+    Keeps joint limits in your own control loop, for any Jacobian.
 
-    A motion that keeps every bound over the next tick, and can be brought to rest within them, passes unchanged. Otherwise
-    other joints take over in the null space of J; where they cannot, the task is scaled down along its direction.
+    A motion is unchanged if it keeps every bound over the next tick, and the joints can then stop within the bounds.
+    Otherwise, other joints replace joints on their bounds in the null space of J. If this is not sufficient, the task is
+    scaled along its direction.
 
     Parameters
     ----------
     limits : JointLimits
-        Bounds of the joints; one with bounds needs one on its acceleration, except at velocity level.
+        Bounds of the joints. A bounded joint needs a bound on acceleration, except at velocity level.
     dt : float
         Length of a tick [s].
     level : str
-        'acceleration' or 'velocity': what is limited.
+        Level of the limited motion: 'acceleration' or 'velocity'.
 
     Raises
     ------
     ParameterError
-        Where an argument is out of range or a bound is missing.
+        If an argument is out of range or a bound is missing.
     """
     def __init__(
         self, limits: typing.Any, dt: typing.SupportsFloat | typing.SupportsIndex, *, level: str = "acceleration"
@@ -389,7 +392,7 @@ class Limiter:
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, last: numpy.typing.ArrayLike | None = None
     ) -> LimitedMotion:
         """
-        The motion that brings every joint to rest, as motion.
+        The motion that brings every joint to rest; arguments and result as for motion.
         """
     def motion(
         self,
@@ -402,13 +405,13 @@ class Limiter:
         rows: tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None,
     ) -> LimitedMotion:
         """
-        The motion u of the next tick for a desired one: J u = J r + s J (desired - r), with a motion r that slows the arm
-        down and s <= 1 as large as the limits allow; where s comes near zero, a motion that still brings the tip nearer.
+        Motion u of the next tick for a desired motion: J u = J r + s J (desired - r), with a braking motion r and
+        the largest s <= 1 within the limits. If s is near zero, u is a motion that still moves the tip toward the target.
 
-        J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level qd is the last command.
-        last is the acceleration of the tick before [rad/s^2], from which bounds on jerk start: zero unless given. rows is a pair
-        (G, b), shapes (p, n) and (p,), of further bounds G u <= b, 16 at most, kept as far as the limits admit. Raises
-        ParameterError where a shape is another, or a number is not finite.
+        J has shape (m, n); q, qd and desired (n,) [rad, rad/s, and rad/s^2 or rad/s]. At velocity level, qd is the last
+        command. last is the acceleration of the previous tick [rad/s^2], for bounds on jerk; default: zero. rows is a pair
+        (G, b), shapes (p, n) and (p,), of at most 16 further bounds G u <= b, kept as far as the limits admit. Raises
+        ParameterError if a shape is wrong, or a number is not finite.
         """
 
 class SaturatedLevels:
@@ -433,35 +436,35 @@ class SaturatedLevels:
 
 class TargetFilter:
     """
-    Makes a smooth reference of targets that come at any rate, late, twice or not at all.
+    Computes a smooth reference from targets that come at any rate, late, twice or never.
 
-    Each axis of the base frame goes to the target in the least time within its bounds, in the frame of a target that moves:
-    without overshoot to one at rest, without lag behind one that moves evenly. The target's velocity is estimated from the
-    points that come. One without news for a timeout comes to rest. From rest, an orientation turns about one axis, its largest
-    angle in the least time.
+    Each axis of the base frame moves to the target in minimum time within its bounds, in a frame that moves with the
+    target: without overshoot for a target at rest, without lag for a target with constant velocity. The velocity of the
+    target is estimated from the received points. A target without a message for the timeout stops. From rest, an
+    orientation rotates about one axis, with its largest angle in minimum time.
 
     Parameters
     ----------
     x0 : array_like, shape (2,), (3,) or (4, 4)
-        Where it starts, at rest, in the base frame [m, rad].
+        Start of the reference, at rest, in the base frame [m, rad].
     velocity, acceleration, jerk : float
         Bounds of each axis of the base frame, [m/s], [m/s^2] and [m/s^3].
     angular_velocity, angular_acceleration, angular_jerk : float
-        The same of each axis' angle [rad/s], [rad/s^2] and [rad/s^3]; needed for poses.
+        Bounds of the angle about each axis [rad/s], [rad/s^2] and [rad/s^3]; required for poses.
     task : str
-        'pose' makes (3,) a pose in the plane.
+        'position' or 'pose'. With 'pose', shape (3,) is a pose in the plane.
     dt : float
         Length of a tick [s].
     timeout : float
-        How long a target moves on, and a twist holds, without news [s].
+        Time without a message after which a target stops and a twist ends [s].
     start : float, optional
-        Time at the first tick on the stamps' clock [s]. Unless given the clock is learnt: the least delayed stamp counts as
+        Time of the first tick on the clock of the stamps [s]. Default: estimated, so that the least delayed stamp counts as
         not delayed.
 
     Raises
     ------
     ParameterError
-        Where an argument is out of range.
+        If an argument is out of range.
     """
     def __init__(
         self,
@@ -480,47 +483,47 @@ class TargetFilter:
     ) -> None: ...
     def advance(self) -> None:
         """
-        Goes one tick on; Tracker.tick does so by itself.
+        Advances by one tick; Tracker.tick calls this itself.
         """
     def push(self, x: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None) -> bool:
         """
-        A target, seen at a stamp [s] on any clock, or now.
+        Adds a target with its stamp [s] on any clock; default: now.
 
-        Returns False for a rejected message, which changes nothing: x or the stamp is not finite, R deviates from a rotation by
-        more than 1e-4, or the stamp is not newer than all before or from the future. An accepted R becomes the nearest rotation.
-        Raises ParameterError where x has another shape than x0.
+        Returns False for a rejected message, which has no effect: x or the stamp is not finite, R deviates from a rotation by
+        more than 1e-4, or the stamp is not newer than all previous stamps or is from the future. An accepted R becomes the
+        nearest rotation. Raises ParameterError if x has another shape than x0.
         """
     def push_twist(
         self, v: numpy.typing.ArrayLike, stamp: typing.SupportsFloat | typing.SupportsIndex | None = None
     ) -> bool:
         """
-        A velocity [m/s, rad/s] to go at, as far as the bounds allow, until the timeout.
+        Sets a desired velocity [m/s, rad/s] until the timeout, within the bounds.
 
-        v has shape (m,), linear rows first, in the base frame's axes. Returns whether it is taken, as push does.
+        v has shape (m,), linear rows first, along the base frame's axes. Returns whether v is accepted, as push.
         """
     def reset(self, x: numpy.typing.ArrayLike) -> None:
         """
-        Starts anew, at rest at x; a clock that was learnt is forgotten.
+        Restarts at rest at x; an estimated clock is discarded.
         """
     @property
     def x(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Reference at the start of the coming tick, shape (2,), (3,) or (4, 4) [m, rad].
+        Reference at the start of the next tick, shape (2,), (3,) or (4, 4) [m, rad].
         """
     @property
     def xd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Its velocity, shape (m,), linear rows first [m/s, rad/s].
+        Velocity of the reference, shape (m,), linear rows first [m/s, rad/s].
         """
     @property
     def xdd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Its acceleration, shape (m,) [m/s^2, rad/s^2].
+        Acceleration of the reference, shape (m,) [m/s^2, rad/s^2].
         """
 
 class Tick:
     """
-    What one tick of a control loop did.
+    Result of one tick of a control loop.
     """
     @property
     def error(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -530,23 +533,22 @@ class Tick:
     @property
     def errors(self) -> dict[str, numpy.typing.NDArray[numpy.float64]] | None:
         """
-        Of a stack: x - f(q) of each task by its name, zero where a task does not select a row; else None.
+        For a stack: x - f(q) of each task by name, zero in rows that the task does not select; else None.
         """
     @property
     def nearest(self) -> Nearest | None:
         """
-        The two shapes that are to be kept apart and were nearest to one another at the tick's start; None
-        without a clearance.
+        The nearest checked pair of shapes at the tick's start; None without a clearance.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Command for the tick's end [rad], or [m] for a prismatic joint, shape (n,).
+        Joint command for the end of the tick [rad], or [m] for a prismatic joint, shape (n,).
         """
     @property
     def qd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Its velocity [rad/s], shape (n,).
+        Velocity of the command [rad/s], shape (n,).
         """
     @property
     def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -561,12 +563,12 @@ class Tick:
     @property
     def scale(self) -> float:
         """
-        How much of the task the limits left, from 0 to 1.
+        Task scale that the limits admit, from 0 to 1.
         """
     @property
     def scales(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        Of a stack: how much of each level the limits left, from 0 to 1, shape (levels,); else None.
+        For a stack: task scale of each level, from 0 to 1, shape (levels,); else None.
         """
     @property
     def sigma(self) -> float:
@@ -576,25 +578,25 @@ class Tick:
     @property
     def status(self) -> Status:
         """
-        What became of it; where it failed, why the arm brakes.
+        Status of the tick; if the tick failed, the reason why the arm brakes.
         """
 
 class PathFollower:
     """
-    A path laid out from a tip, with a clock that can pause and resume; made by Tracker.follow.
+    A path from the tip, with a clock that can pause and resume; the result of Tracker.follow.
     """
     def pause(self) -> None:
         """
-        Comes to rest on the path, within the ramp.
+        Stops on the path within the ramp time.
         """
     def resume(self) -> None:
         """
-        Goes on along the path.
+        Continues along the path.
         """
     @property
     def done(self) -> bool:
         """
-        Whether path time has come to the path's end.
+        Whether path time is at the path's end.
         """
     @property
     def time(self) -> float:
@@ -604,63 +606,65 @@ class PathFollower:
 
 class Tracker:
     """
-    Moves an arm tick by tick under a scheme, within its joints' limits, through singular postures, to rest.
+    Moves an arm tick by tick under a scheme, within joint limits and through singular postures. If the target is
+    unreachable, the arm stops.
 
-    tick integrates the tracker's own state by RK4: the command of an arm that is led by positions or velocities.
-    resolve_measured answers for a measured state, with the acceleration that a torque controller is to realise.
-    Never feed a measured state to tick. A scheme of velocity level is kept within the same limits.
+    tick integrates the tracker's own state by RK4; the result is the command for an arm with position or velocity control.
+    resolve_measured computes the acceleration for a torque controller from a measured state.
+    Never pass a measured state to tick. The limits hold for schemes of both levels.
 
     Parameters
     ----------
     arm, scheme
-        What moves, and how.
+        The arm and its scheme.
     q0 : array_like, shape (n,)
         Joint positions at the start [rad], within the limits.
     qd0, qdd0 : array_like, shape (n,), optional
-        Joint velocities at the start [rad/s], and accelerations just before it [rad/s^2], from which bounds on jerk start;
-        zero unless given.
+        Joint velocities at the start [rad/s], and accelerations just before the start [rad/s^2], for bounds on jerk;
+        default: zero.
     task : str
-        'position' or 'pose', of the tip.
+        Task of the tip: 'position' or 'pose'.
     stack : Stack, optional
-        Several tasks in strict priority, which replace task. tick then takes a dictionary of references.
+        Several tasks in strict priority, which replace task. The argument of tick is then a dictionary of references.
     dt : float
         Length of a tick [s].
     limits : JointLimits, optional
-        The arm's own unless given. A joint with bounds needs one on its acceleration, except at velocity level.
+        Default: the limits of the arm. A bounded joint needs a bound on acceleration, except at velocity level.
     error_bound : float
-        Largest tip error that the feedback acts on: a larger one counts as this. Of the position, in arm lengths (the way
-        from the first joint to the tip); of the orientation [rad].
+        Largest tip error that the feedback uses: of the position in arm lengths (from the first joint to the tip, along the
+        links), of the orientation [rad].
     integral_gain, integral_bound : float
-        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and the most that it adds
-        [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
+        Gain of the integral of the error, [1/s^3] or [1/s^2] at velocity level, off by default, and largest contribution of
+        the integral [arm lengths and radians per s^2, or per s]. Stable below k1 k2.
     stall_time : float
-        An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
-        until its target moves, or until resume(). math.inf: it never gives up.
+        If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
+        stops until the target moves, or until resume(). math.inf: the arm never stops for this reason.
     singular_radius, singular_brake : float
-        Damping near singular postures, where the scheme has none; 0 switches it off.
+        Damping near singular postures, if the scheme has none; 0: no damping.
     null_damping : float
-        Damping of the null space [1/s], where a scheme of acceleration level has none, as self-motion would never come to
-        rest; 0 switches it off.
+        Null-space damping [1/s], if a scheme of acceleration level has none; without damping, the self-motion never stops.
+        0: no damping.
     recovery : bool
-        Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there.
+        Whether a stalled arm may move to a remembered posture from which the target is reachable.
     keep_first_level : bool
-        Whether the first level of a stack, such as a grasp of two arms, comes before speed: the lower levels leave it a
-        reserve of the limits, 0.7 of each bound on acceleration and 0.35 of each bound on velocity, and stop keeps it: its
-        references are held at rest, and the joints come to rest in its null space. A task that is farther than 0.001
-        characteristic lengths, or 0.001 rad, from its reference stays where it is.
+        Whether the first level of a stack, for example a grasp of two arms, has priority over speed. The lower levels leave
+        the first level a reserve of the limits: 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop
+        keeps the first level: its references are held at rest, and the joints come to rest in its null space. A task that
+        is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it is.
     measured_delay : int
-        Largest age of the states that resolve_measured is given [ticks]: the time from the measurement to the start of the
-        tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
+        Largest age of the states for resolve_measured [ticks]: the time from the measurement to the start of the tick in
+        which the robot realises the result. 0: exact present states, as in a simulation.
     clearance : Clearance, optional
-        What the arm is to keep clear of: no two shapes ever come nearer than its margin, whatever the reference, as long as
-        obstacles are at rest. A tick is taken only if from its end the arm can stop clear of all; else it brakes at once.
+        Self-collision and obstacles that the arm avoids: while obstacles are at rest, no checked pair comes closer than the
+        margin, for every reference. A tick is executed only if the arm can then stop before all shapes; otherwise the arm
+        brakes immediately.
     bounds : sequence of TaskBounds
-        Bounds on coordinates of tasks: walls for points of links, cones for axes, speeds.
+        Bounds on task coordinates: walls for points of links, cones for axes, speeds.
 
     Raises
     ------
     ParameterError
-        Where an argument is out of range, a limit is missing, or the start is beyond a limit or a bound, or not clear.
+        If an argument is out of range, a limit is missing, or the start violates a limit, a bound or the clearance.
     """
     def __init__(
         self,
@@ -689,7 +693,7 @@ class Tracker:
     ) -> None: ...
     def enable(self, level: typing.SupportsInt | typing.SupportsIndex, on: bool) -> None:
         """
-        Resolves a level of a stack below the first, counted from 0, or leaves it out.
+        Enables or disables a level of a stack below the first; levels are counted from 0.
 
         Commands stay within all bounds.
         """
@@ -697,33 +701,33 @@ class Tracker:
         self, path: Path, *, ramp: typing.SupportsFloat | typing.SupportsIndex = 0.5, task: str | None = None
     ) -> PathFollower:
         """
-        A path laid out from where the tip is now; ramp is how long a pause or a resumption takes [s].
+        A path from the present tip; ramp is the duration of a pause or a resumption [s].
 
-        Of a stack, from where the task of that name is; it may be left out if one task alone is a position or a pose.
+        For a stack, a path from the task of that name; the name is optional if only one task is a position or a pose.
         """
     def frame(self, task: str) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Of a stack: the frame of the task of that name, in the base frame, shape (4, 4); of an axis task, z is the axis.
+        For a stack: the frame of the task of that name, in the base frame, shape (4, 4); for an axis task, z is the axis.
         """
     def move(self, name: str, shape: Shape, velocity: numpy.typing.ArrayLike = (0, 0, 0)) -> None:
         """
-        Moves an obstacle of the clearance: where it is now, and the velocity [m/s] at which it is expected to go on.
+        Moves an obstacle of the clearance to its present place; velocity [m/s] is its expected further motion.
 
-        shape must be of the kind that the obstacle was given as: its place changes, and its size may. Raises ParameterError
-        where no obstacle has that name, or the shape is of another kind.
+        shape must have the kind of the given obstacle; place and size may change. Raises ParameterError if no obstacle has
+        that name, or if the shape has another kind.
         """
     def reorder(self, order: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> None:
         """
-        Reorders the levels of a stack: level k becomes what was level order[k].
+        Reorders the levels of a stack: the new level k is the old level order[k].
 
-        The tasks keep their targets; tick.scales and enable() count the new levels. Commands stay within all bounds.
+        The tasks keep their targets; tick.scales and enable() use the new levels. Commands stay within all bounds.
         """
     @typing.overload
     def resolve_measured(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, references: dict[str, typing.Any]
     ) -> Tick:
         """
-        The same of a stack.
+        The same for a stack.
         """
     @typing.overload
     def resolve_measured(
@@ -735,7 +739,7 @@ class Tracker:
         xdd: numpy.typing.ArrayLike | None = None,
     ) -> Tick:
         """
-        The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller to realise.
+        The tick for a measured state: its qdd [rad/s^2] is the acceleration for a torque controller.
 
         The state may be up to measured_delay ticks old.
         """
@@ -751,21 +755,21 @@ class Tracker:
     @typing.overload
     def tick(self, follower: PathFollower) -> Tick:
         """
-        One tick along a path, whose clock advances with it.
+        One tick along a path, whose clock advances by one tick.
         """
     @typing.overload
     def tick(self, filter: TargetFilter) -> Tick:
         """
-        One tick behind a filter of targets, which goes on, also after stop.
+        One tick with a filter of targets, which advances by one tick, also after stop.
         """
     @typing.overload
     def tick(self, references: dict[str, typing.Any]) -> Tick:
         """
-        One tick of a stack toward references: a dictionary by the names of the tasks.
+        One tick of a stack toward references: a dictionary by task name.
 
-        Each value is a point x, (x, xd) or (x, xd, xdd), and of positions and poses also a PathFollower or a TargetFilter. x has
-        shape (3,) of a position, (3, 3) of an orientation, (4, 4) of a pose, (3,) of an axis, (joints,) of a posture [m, rad]. A
-        task that is not in the dictionary keeps its last target, at rest; at first, the point where it starts.
+        Each value is a point x, (x, xd) or (x, xd, xdd), and for positions and poses also a PathFollower or a TargetFilter. x
+        has shape (3,) for a position, (3, 3) for an orientation, (4, 4) for a pose, (3,) for an axis, (joints,) for a posture
+        [m, rad]. A task that is not in the dictionary keeps its last target, at rest; the first target is its start.
         """
     @typing.overload
     def tick(
@@ -778,32 +782,32 @@ class Tracker:
         One tick toward a reference, at rest unless its velocity and acceleration are given.
 
         x has shape (2,), (3,) or (4, 4) [m], xd and xdd (m,) [m/s, rad/s], linear rows first, in the base frame. Never fails:
-        where no motion can be found the arm brakes, and the tick's status says why.
+        if there is no motion, the arm brakes, and the status of the tick is the cause.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint positions of its own state [rad].
+        Joint positions of the tracker's own state [rad].
         """
     @property
     def qd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint velocities of its own state [rad/s].
+        Joint velocities of the tracker's own state [rad/s].
         """
     @property
     def qdd(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint accelerations of its last tick [rad/s^2].
+        Joint accelerations of the last tick [rad/s^2].
         """
     @property
     def tip(self) -> typing.Any:
         """
-        Where the tip of its own state is, in the base frame [m]; of a stack, where each task is, by name.
+        Tip of the tracker's own state in the base frame [m]; for a stack, the point of each task by name.
         """
 
 def advice(status: Status) -> str:
     """
-    One sentence: what to do about it; empty for OK.
+    Advice for the status in one sentence; empty for OK.
     """
 
 def check_sweep(
@@ -842,7 +846,7 @@ def lissajous(
 ) -> Path: ...
 def message(status: Status) -> str:
     """
-    One sentence: what happened.
+    Description of the status in one sentence.
     """
 
 def not_run(count: typing.SupportsInt | typing.SupportsIndex) -> numpy.ndarray: ...

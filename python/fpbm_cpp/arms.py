@@ -130,7 +130,7 @@ class SerialArm(Arm):
     """
 
     kind: ClassVar[str] = "joints"
-    joints: Sequence[Joint] = parameter("Joints from base to tip, 1 to MAX_DOF of them. Joints without a name get one.")
+    joints: Sequence[Joint] = parameter("Joints from base to tip, 1 to MAX_DOF of them. Empty names get a default.")
     tip: ArrayField = parameter("Frame of the tip in the last joint's frame.", FRAME, default=IDENTITY)
 
     def _finish(self) -> None:

@@ -30,7 +30,7 @@ class Clearance(Data):
 
     The checked pairs are all capsules of two links that are not adjacent, on one branch of a Robot or on two, and each
     capsule of a moving link with each obstacle. Pairs that overlap in every posture and allowed pairs are not checked.
-    Shapes without a name get one: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
+    Shapes without a name get a default: 'link_3' for a capsule, 'obstacle_1' for an obstacle.
 
     Raises ParameterError if a shape has a wrong type, an obstacle is not in the base frame, two obstacles share a name,
     or no shape has an allowed name.

@@ -1,4 +1,4 @@
-"""Data classes whose parameters are declared once: checks, docstrings, options and sliders derive from that."""
+"""Data classes that declare each parameter once, for checks, docstrings, options and sliders."""
 
 from __future__ import annotations
 
@@ -28,31 +28,31 @@ REQUIRED: Any = inspect.Parameter.empty
 
 @dataclass(frozen=True)
 class Parameter:
-    """What there is to know about a parameter."""
+    """Declaration of a parameter."""
 
     name: str = ""
     type: type = object  # float, int, str, numpy.ndarray, or object for all else.
-    annotation: str = ""  # The same as the declaration has it.
-    default: Any = REQUIRED  # What constructors take where it is not given.
-    usual: Any = REQUIRED  # What jobs and the command line take where it is not given.
+    annotation: str = ""  # The type as written in the source.
+    default: Any = REQUIRED  # Default of constructors.
+    usual: Any = REQUIRED  # Default of jobs and of the command line.
     unit: str = ""
     low: float = -math.inf  # Bounds of a number, or of a vector's entries.
     high: float = math.inf
-    open_low: bool = False  # Whether the lower bound itself is out of range.
-    infinite: bool = False  # Whether infinity will do.
+    open_low: bool = False  # Whether low itself is out of range.
+    infinite: bool = False  # Whether infinity is allowed.
     whole: bool = False  # Whether numbers must be whole.
-    choices: tuple[str, ...] = ()  # The words to choose from.
-    shape: str = ""  # The shapes that an array may have: '(n,) or (n, n)'; '()' of a number.
+    choices: tuple[str, ...] = ()  # Allowed words.
+    shape: str = ""  # Allowed shapes of an array: '(n,) or (n, n)'; '()' for a number.
     help: str = ""
 
     @property
     def required(self) -> bool:
-        """Whether constructors need it."""
+        """Whether constructors require the parameter."""
         return self.default is REQUIRED
 
     @property
     def range(self) -> str:
-        """What its bounds allow: 'positive', 'in [0, 1]'; empty where it has none."""
+        """The bounds in words: 'positive', 'in [0, 1]'; empty if there are none."""
         if math.isfinite(self.high):
             return f"in [{self.low:g}, {self.high:g}]"
         if self.low == 0.0:
@@ -60,7 +60,7 @@ class Parameter:
         return f"at least {self.low:g}" if math.isfinite(self.low) else ""
 
     def _demand(self) -> str:
-        """What a number must be: 'finite and not negative', say."""
+        """Requirement for a number, for example 'finite and not negative'."""
         if self.whole:
             return ", ".join(filter(None, ["a whole number", self.range]))
         if self.infinite or math.isfinite(self.high):
@@ -69,11 +69,11 @@ class Parameter:
         return words.get(self.range, "finite")
 
     def check(self, value: Any) -> Any:
-        """The value as the parameter's type; arrays are copied, and read-only. Raises ParameterError."""
+        """The value as the parameter's type; arrays are copied and read-only. Raises ParameterError."""
         if value is None and self.default is None:
             return value
         if type(value) is float and self.type is float and self._has(value) and math.isfinite(value):
-            return value  # What most are, told without NumPy, ten times as fast.
+            return value  # The common case, ten times as fast without NumPy.
         if isinstance(value, str) and self.choices:
             if value not in self.choices:
                 raise not_one_of(self.name, value, self.choices)
@@ -83,7 +83,7 @@ class Parameter:
         return self._numbers(value) if self.shape or self.type in (float, int) else value
 
     def _has(self, value: Any) -> Any:
-        """Whether a number, or each of an array, is within the bounds."""
+        """Whether a number, or each entry of an array, is within the bounds."""
         return ((value > self.low) if self.open_low else (value >= self.low)) & (value <= self.high)
 
     def _numbers(self, value: Any) -> Any:
@@ -112,7 +112,7 @@ class Parameter:
 
 
 def _fits(shape: tuple[int, ...], wanted: str) -> bool:
-    """Whether an array's shape is one of those in a text, as '(n,) or (n, n)'; a number has none."""
+    """Whether a text like '(n,) or (n, n)' allows a shape; the shape of a number is ()."""
     return any(
         len(sizes) == len(shape)
         and all(size == str(n) or (size.isalpha() and shape[sizes.index(size)] == n) for size, n in zip(sizes, shape))
@@ -128,7 +128,8 @@ ANY = Parameter()
 def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED, **known: Any) -> Any:
     """Declare a parameter as a field of a data class: `radius: float = parameter("Radius.", POSITIVE, unit="m")`.
 
-    Takes what Parameter has; what is not given is as in `like`, and the usual value is the default.
+    Keyword arguments are fields of Parameter; all others are those of `like`. If `like` has no usual value, the usual
+    value is the default.
     """
     usual = default if like.usual is REQUIRED else like.usual
     declared = replace(like, help=help or like.help, default=default, **{"usual": usual, **known})
@@ -136,7 +137,7 @@ def parameter(help: str = "", like: Parameter = ANY, *, default: Any = REQUIRED,
 
 
 def _parameters(maker: Any) -> dict[str, Parameter]:
-    """The parameters of a data class, its own before those that it inherits; of a function, its arguments."""
+    """Parameters of a data class, its own before inherited parameters; for a function, its arguments."""
     declared = {each.name: each.metadata["parameter"] for each in fields(maker)} if is_dataclass(maker) else {}
     found = {}
     for name, argument in inspect.signature(maker).parameters.items():
@@ -153,7 +154,7 @@ parameters: Callable[[Callable[..., Any]], dict[str, Parameter]] = cache(_parame
 
 
 class Data:
-    """A frozen data class: equal where it reads the same, picklable, made again by what repr() says."""
+    """A frozen data class that can be pickled. repr() is the call that makes an equal object, and defines equality."""
 
     def __post_init__(self) -> None:
         for name, declared in parameters(type(self)).items():
@@ -161,14 +162,14 @@ class Data:
         self._finish()
 
     def _finish(self) -> None:
-        """Check what the parameters are together, and make what is compiled."""
+        """Check combinations of parameters, and construct the compiled part."""
 
     def _values(self) -> dict[str, Any]:
-        """What the constructor takes, by name."""
+        """Arguments of the constructor, by name."""
         return {name: getattr(self, name) for name in parameters(type(self))}
 
     def _given(self) -> dict[str, Any]:
-        """The same without what is at its default."""
+        """Arguments of the constructor that differ from their defaults."""
         known, values = parameters(type(self)), self._values().items()
         return {n: v for n, v in values if known[n].required or _text(v) != _text(known[n].check(known[n].default))}
 
@@ -191,7 +192,7 @@ D = TypeVar("D", bound=Data)
 
 @dataclass_transform(frozen_default=True, field_specifiers=(parameter,))
 def data(cls: type[D]) -> type[D]:
-    """Make a frozen data class of a subclass of Data; its docstring gets a section with the parameters."""
+    """Make a subclass of Data a frozen data class, and add a section with the parameters to its docstring."""
     made = dataclass(frozen=True, eq=False, repr=False)(cls)
     entries = "\n".join(_entry(each) for each in parameters(made).values())
     made.__doc__ = f"{inspect.getdoc(cls)}\n\nParameters\n----------\n{entries}\n"
@@ -199,7 +200,7 @@ def data(cls: type[D]) -> type[D]:
 
 
 def _entry(known: Parameter) -> str:
-    """A parameter as docstrings have it."""
+    """Entry of a parameter in a docstring."""
     kind = known.annotation.replace(" | ", " or ") if known.type is object else known.type.__name__
     kind = f"array_like, shape {known.shape}" if known.type is np.ndarray else kind
     words = [kind, known.range, "" if known.required else f"default {_text(known.default)}"]
@@ -210,7 +211,7 @@ def _entry(known: Parameter) -> str:
 
 
 def _text(value: Any) -> str:
-    """A value as Python reads it, numbers without a needless '.0'."""
+    """A value as Python source, numbers without a trailing '.0'."""
     if isinstance(value, float):
         return repr(value + 0.0).removesuffix(".0") if math.isfinite(value) else f"float('{value}')"
     if isinstance(value, np.ndarray):

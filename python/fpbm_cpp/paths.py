@@ -1,4 +1,4 @@
-"""Paths of the tip: shapes, waypoints, and paths made from other paths."""
+"""Paths of the tip: shapes, waypoints, and combinations of paths."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from .parameter import POSITIVE, Data, Parameter, data, parameter, parameters
 
 __all__ = ["Circle", "InPlane", "Line", "Lissajous", "Path", "Sequence", "Tricuspid", "Waypoints", "WithRotation"]
 
-# Who compiles a path of its parameters, by its kind.
+# Functions that construct the compiled part of a path, by kind.
 COMPILERS: dict[str, Callable[..., CorePath]] = {
     each.__name__: each for each in (circle, lissajous, tricuspid, line, waypoints, with_rotation, sequence)
 }
-# What shapes have in common.
+# Parameters of all shapes.
 DURATION = replace(POSITIVE, help="Duration T of the path.", usual=10.0, unit="s")
-TIME_LAW = Parameter(help="How the fraction s of the way grows with time.", choices=TIME_LAWS)
+TIME_LAW = Parameter(help="Time law of the fraction s of the path.", choices=TIME_LAWS)
 
 
 class Path(Data, CorePath):
-    """Where the tip is to be, over T seconds, from rest to rest; then held.
+    """Reference of the tip over T seconds, from rest to rest; after T, the reference stays at the end of the path.
 
-    A displacement from where the tip starts, so that x(0) = f(q0). Paths of positions in the plane lie in the xy plane
-    unless in_plane() lays them elsewhere. Paths of positions leave the tip's orientation free under task='position' and
-    hold it under task='pose', unless with_rotation() rotates it.
+    A path is a displacement from the start of the tip, so that x(0) = f(q0). Planar paths are in the xy plane, or in
+    the plane that in_plane() gives. Under task='position', a path of positions leaves the orientation of the tip free.
+    Under task='pose', the orientation is constant unless with_rotation() rotates the tip.
 
-    The time laws give the fraction s of the way, with tau = t/T: 'sin_squared', the paper's sin^2(pi tau / 2), whose
-    acceleration steps at both ends; 'quintic', 10 tau^3 - 15 tau^4 + 6 tau^5, whose acceleration is zero there;
-    'constant_speed', tau.
+    A time law gives the fraction s of the path, with tau = t/T. 'sin_squared' is the paper's sin^2(pi tau / 2); its
+    acceleration is discontinuous at both ends. 'quintic' is 10 tau^3 - 15 tau^4 + 6 tau^5; its acceleration is zero at
+    both ends. 'constant_speed' is tau.
     """
 
     kind: ClassVar[str]
@@ -47,18 +47,18 @@ class Path(Data, CorePath):
         return self._duration()
 
     def in_plane(self, plane: str | ArrayLike) -> Path:
-        """This path of the plane, laid into a plane of space, 'yz' say: InPlane(path, plane)."""
+        """This planar path in a plane of space, for example 'yz': InPlane(path, plane)."""
         return InPlane(self, plane)
 
     def with_rotation(self, rotation: ArrayLike, *, time_law: str = "quintic") -> Path:
-        """This path of positions, with the tip rotated on the way: WithRotation(path, rotation, time_law=time_law).
+        """This path of positions with a rotation of the tip: WithRotation(path, rotation, time_law=time_law).
 
-        To end in an orientation R: rotation_vector(R @ R0.T). Zero holds the orientation.
+        For an orientation R at the end and R0 at the start, give rotation_vector(R @ R0.T). Zero keeps the orientation.
         """
         return WithRotation(self, rotation, time_law=time_law)
 
     def then(self, path: Path) -> Path:
-        """This path, and from its end another."""
+        """This path, followed by another path from its end."""
         return Sequence((self, path))
 
     def _finish(self) -> None:
@@ -85,12 +85,12 @@ class Lissajous(Path):
 
     kind = "lissajous"
     amplitude: ArrayField = parameter(
-        "Amplitude a: one for both axes or one each.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
+        "Amplitude a: one number, or one for each axis.", POSITIVE, shape="() or (2,)", unit="m", usual=0.1
     )
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     frequencies: ArrayField = parameter(
-        "Frequencies f: whole, so that the figure closes.", default=(2, 1), shape="(2,)", whole=True, low=1.0
+        "Frequencies f: integers, so that the figure is closed.", default=(2, 1), shape="(2,)", whole=True, low=1.0
     )
     phase: float = parameter("Phase delta.", default=pi / 6, unit="rad")
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
@@ -112,41 +112,41 @@ class Line(Path):
     """Straight line."""
 
     kind = "line"
-    displacement: ArrayField = parameter("From its start to its end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0))
+    displacement: ArrayField = parameter("From start to end.", shape="(2,) or (3,)", unit="m", usual=(0.1, 0.0))
     duration: float = parameter(like=DURATION)
     _: KW_ONLY
     time_law: str = parameter(like=TIME_LAW, default="sin_squared")
 
 
 class _Derived(float):
-    """A duration that follows from times or bounds, and was not given."""
+    """A duration that is computed from times or bounds."""
 
 
 @data
 class Waypoints(Path):
     """A smooth path through points, from rest to rest.
 
-    A quintic spline: of all curves through the points at those times, the one of least jerk. Acceleration is continuous
-    everywhere, the ends included. Orientations are splines of quaternions, and turn by the shorter way.
+    The path is a quintic spline, which minimises the squared jerk through the points at the given times. Acceleration
+    is continuous everywhere, also at the ends. Orientations are splines of quaternions, along the shorter rotation.
 
-    Give one of: the duration, of which each piece gets a share by its length; the times; bounds of the tip's motion,
-    for the shortest duration that they allow, to 1 %, rounded up to 0.01 s.
+    Give one of: the duration, which is divided among the pieces by their lengths; the times; or bounds of the tip's
+    motion, for the shortest duration within the bounds, to 1 %, rounded up to 0.01 s.
     """
 
     kind = "waypoints"
     points: ArrayField = parameter(
-        "Positions or poses, two at least. Only differences from the first matter: a path starts where the tip is.",
+        "Positions or poses, at least two. Only displacements from the first point count: a path starts at the tip.",
         shape="(k, 2) or (k, 3) or (k, 4, 4)",
         unit="m",
     )
     _: KW_ONLY
     duration: DerivedField = parameter("Duration T of the path.", POSITIVE, type=float, default=None, unit="s")
-    times: OptionalArrayField = parameter("When each is passed, the first at 0.", default=None, shape="(k,)", unit="s")
-    velocity: float | None = parameter("Highest speed of the tip.", POSITIVE, default=None, unit="m/s")
-    acceleration: float | None = parameter("Highest acceleration of the tip.", POSITIVE, default=None, unit="m/s^2")
-    angular_velocity: float | None = parameter("Highest angular velocity.", POSITIVE, default=None, unit="rad/s")
+    times: OptionalArrayField = parameter("Time of each point; the first is 0.", default=None, shape="(k,)", unit="s")
+    velocity: float | None = parameter("Largest speed of the tip.", POSITIVE, default=None, unit="m/s")
+    acceleration: float | None = parameter("Largest acceleration of the tip.", POSITIVE, default=None, unit="m/s^2")
+    angular_velocity: float | None = parameter("Largest angular velocity.", POSITIVE, default=None, unit="rad/s")
     angular_acceleration: float | None = parameter(
-        "Highest angular acceleration of the tip.", POSITIVE, default=None, unit="rad/s^2"
+        "Largest angular acceleration of the tip.", POSITIVE, default=None, unit="rad/s^2"
     )
 
     def __post_init__(self) -> None:
@@ -163,11 +163,11 @@ class Waypoints(Path):
 
 @data
 class InPlane(Path):
-    """A path of the plane, laid into a plane of space: path.in_plane(plane)."""
+    """A planar path in a plane of space: path.in_plane(plane)."""
 
     path: Path = parameter("A path of positions in the plane.")
     plane: ArrayField = parameter(
-        "The base frame's axes that the path's x and y run along, or two directions at right angles.",
+        "Axes of the base frame for x and y of the path, or two perpendicular directions.",
         choices=("xy", "xz", "yx", "yz", "zx", "zy"),
         shape="(2, 3)",
     )
@@ -179,7 +179,7 @@ class InPlane(Path):
 
 @data
 class WithRotation(Path):
-    """A path of positions, with the tip rotated on the way, from rest to rest over the whole duration."""
+    """A path of positions with a rotation of the tip, from rest to rest over the whole duration."""
 
     kind = "with_rotation"
     path: Path = parameter("A path of positions.")
@@ -189,15 +189,15 @@ class WithRotation(Path):
         unit="rad",
     )
     _: KW_ONLY
-    time_law: str = parameter("How the rotation grows with time.", default="quintic", choices=TIME_LAWS)
+    time_law: str = parameter("Time law of the rotation.", default="quintic", choices=TIME_LAWS)
 
 
 @data
 class Sequence(Path):
-    """Paths one after another: path.then(next). Sequences among them are replaced by their paths."""
+    """Paths one after another: path.then(next). A Sequence among the paths is replaced by its paths."""
 
     kind = "sequence"
-    paths: tuple[Path, ...] = parameter("In their order, one at least.")
+    paths: tuple[Path, ...] = parameter("Paths in their order, at least one.")
 
     def _finish(self) -> None:
         parts = (path.paths if isinstance(path, Sequence) else (path,) for path in self.paths)
@@ -205,7 +205,7 @@ class Sequence(Path):
         super()._finish()
 
 
-# The shapes by the kind that a table has, and how any of them is laid and rotated.
+# Shapes by the kind in a table, and the options that place and rotate a path.
 PATHS: dict[str, type[Path]] = {shape.kind: shape for shape in (Circle, Lissajous, Tricuspid, Line, Waypoints)}
 PATH_OPTIONS: dict[str, Parameter] = {
     "in_plane": replace(parameters(InPlane)["plane"], name="in_plane", default=None, usual=None),

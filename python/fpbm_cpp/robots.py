@@ -25,44 +25,44 @@ PLACE = Parameter(shape="(4, 4)", unit="m")
 
 @data
 class TreeJoint(Data):
-    """A joint of a tree, the link that carries it, and the mass of the link that it moves.
+    """A joint of a tree, its parent link, and the mass of its child link.
 
-    Link 0 is the base, link i + 1 the one that joint i moves, with the joint's frame after its motion.
+    Link 0 is the base. Link i + 1 is the child of joint i; its frame is the frame of joint i after the joint's motion.
     """
 
-    joint: Joint = parameter("Placed in the frame of the link that carries it.")
-    parent: int = parameter("Number of that link: at most the joint's index.", default=0)
+    joint: Joint = parameter("The joint, placed in the frame of the parent link.")
+    parent: int = parameter("Number of the parent link, at most the index of the joint.", default=0)
     _: KW_ONLY
-    mass: float = parameter("Of the link that the joint moves.", NOT_NEGATIVE, default=0.0, unit="kg")
-    center: ArrayField = parameter("Its centre of mass in the link's frame.", CENTER, default=(0, 0, 0))
+    mass: float = parameter("Mass of the child link.", NOT_NEGATIVE, default=0.0, unit="kg")
+    center: ArrayField = parameter("Centre of mass of the child link, in its frame.", CENTER, default=(0, 0, 0))
 
 
 @data
 class NamedFrame(Data):
     """A frame of a link."""
 
-    name: str = parameter("Of the frame.")
+    name: str = parameter("Name of the frame.")
     link: int = parameter("Number of the link, as in TreeJoint.", default=0)
-    offset: ArrayField = parameter("The frame, in the link's frame.", default=IDENTITY, shape="(4, 4)", unit="m")
+    offset: ArrayField = parameter("Pose of the frame in the link's frame.", default=IDENTITY, shape="(4, 4)", unit="m")
 
 
 @data
 class Robot(Data, CoreRobot):
-    """A tree of revolute, continuous and prismatic joints, some of which may follow others.
+    """A tree of revolute, continuous and prismatic joints, which may include mimic joints.
 
-    Joint positions are in radians or metres, those of the joints that have a drive, in the order of joints. A Tracker
-    of a robot needs a stack of tasks, each of a frame: 'base', one of frames, or a joint's name.
+    Joint positions, in radians or metres, are those of the joints with a drive, in the order of joints. A Tracker of a
+    robot needs a stack of tasks, each of a frame: 'base', a name in frames, or the name of a joint.
 
-    Raises ParameterError where an axis is zero, a number is not finite, a joint is carried by a link that does not come
-    before it, two frames have one name, or a joint's bounds leave it no room.
+    Raises ParameterError if an axis is zero, a number is not finite, the parent link of a joint does not come before
+    the joint, two frames share a name, or bounds leave no range for a joint.
     """
 
     kind: ClassVar[str] = "tree"
-    joints: Sequence[TreeJoint] = parameter("Each behind the joint that carries it, 1 to MAX_DOF of them.")
+    joints: Sequence[TreeJoint] = parameter("Joints, each after its parent, 1 to MAX_DOF of them.")
     named_frames: Sequence[NamedFrame] = parameter("Frames that tasks refer to.", default=())
     _: KW_ONLY
     base_mass: float = parameter("Mass of link 0.", NOT_NEGATIVE, default=0.0, unit="kg")
-    base_center: ArrayField = parameter("Its centre of mass.", CENTER, default=(0, 0, 0))
+    base_center: ArrayField = parameter("Centre of mass of link 0.", CENTER, default=(0, 0, 0))
 
     def _finish(self) -> None:
         for i, each in enumerate(self.joints):
@@ -77,7 +77,7 @@ class Robot(Data, CoreRobot):
         seen: set[str] = set()
         for frame in self.named_frames:
             if frame.name in seen:
-                raise wrong("named_frames", frame.name, f" has two frames of the name {frame.name!r}")
+                raise wrong("named_frames", frame.name, f" has two frames {frame.name!r}: names must be unique")
             seen.add(frame.name)
         CoreRobot.__init__(self, list(named), list(self.named_frames), self.base_mass, self.base_center)
 
@@ -96,9 +96,9 @@ class Robot(Data, CoreRobot):
 
     @classmethod
     def from_arms(cls, arms: Mapping[str, SerialArm], placements: Mapping[str, ArrayLike] | None = None) -> Robot:
-        """Robot of several arms by name, each placed in the base frame by a (4, 4) matrix; at its own base otherwise.
+        """Robot of several arms by name. A (4, 4) matrix places each arm in the base frame; default: identity.
 
-        Joint 'joint1' of arm 'left' is 'left_joint1', its tip the frame 'left_tip'.
+        Joint 'joint1' of arm 'left' becomes 'left_joint1', and its tip becomes the frame 'left_tip'.
         """
         joints: list[TreeJoint] = []
         frames = []
@@ -117,7 +117,7 @@ class Robot(Data, CoreRobot):
 
     @classmethod
     def preset(cls, name: str) -> Robot:
-        """Robot of data sheets: one of ROBOT_PRESETS, 'two_pandas' say. Raises ParameterError."""
+        """Robot from data sheets. name: one of ROBOT_PRESETS, for example 'two_pandas'. Raises ParameterError."""
         if name not in ROBOT_PRESETS:
             raise not_one_of("name", name, ROBOT_PRESETS)
         joints, frames, mass, center = robot_preset(name)
@@ -137,26 +137,27 @@ class Robot(Data, CoreRobot):
         locked: Mapping[str, float] | None = None,
         tips: Iterable[str] | None = None,
     ) -> Robot:
-        """Robot of all joints of a URDF file; xacro must be expanded first.
+        """Robot of all joints of a URDF file. Expand xacro first.
 
-        Each link of the file is a frame of its name. Fixed joints become part of the frames; bounds and names are kept;
-        mimic joints follow.
+        Each link of the file is a frame with the name of the link. Fixed joints become part of the frames. Bounds,
+        names and mimic joints are kept.
 
         Parameters
         ----------
         path : path
-            Of the file.
+            The URDF file.
         base : str, optional
-            'fixed', or 'planar': the root link moves along x and y and turns about z, by joints 'base_x', 'base_y' and
-            'base_yaw' without bounds. A floating joint of the file needs 'fixed' or 'planar', which replaces it.
+            'fixed', or 'planar': the root link moves along x and y and rotates about z, by the joints 'base_x',
+            'base_y' and 'base_yaw' without bounds. If the file has a floating joint, give 'fixed' or 'planar', which
+            replaces the floating joint.
         locked : mapping, optional
-            Positions at which joints are held, by name [rad] or [m]: they are no joints of the robot.
+            Positions of joints that are fixed, by name [rad] or [m]; these are not joints of the robot.
         tips : iterable of str, optional
-            Links that the robot is to move: all joints that move none of them are held at 0, or at the position
-            nearest to 0 that they have.
+            Links that the robot moves. Joints that move none of these links are fixed at 0, or at the position in their
+            range that is nearest to 0.
 
-        Raises ValueError where the file is no sound URDF or has more than MAX_DOF joints that move, ParameterError
-        where a locked joint does not exist or its position is out of range, OSError where the file cannot be read.
+        Raises ValueError if the file is not a valid URDF or more than MAX_DOF joints move, ParameterError if a locked
+        joint does not exist or its position is out of range, OSError if the file cannot be read.
         """
         from .io.urdf_tree import read_tree
 
@@ -179,5 +180,5 @@ def _preset(name: str) -> Arm | Robot:
     return Robot.preset(name) if name in ROBOT_PRESETS else SerialArm.preset(name)
 
 
-# What makes an arm or a robot, by the kind that a table has.
+# Constructors of arms and robots, by the kind in a table.
 ROBOTS: dict[str, Callable[..., Arm | Robot]] = {**ARMS, "preset": _preset, "robot": _from_urdf, Robot.kind: Robot}

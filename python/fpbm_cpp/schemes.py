@@ -11,10 +11,10 @@ from .parameter import NOT_NEGATIVE, POSITIVE, Data, Parameter, data, parameter
 
 __all__ = ["FPBM", "MAN", "MVN", "WMVN", "Balanced", "Scheme", "WMVNAcceleration"]
 
-# What more than one class declares.
-ALPHA = Parameter(help="Share of WMVN; MAN has the rest.", usual=0.6, low=0.0, high=1.0)
-WEIGHTS = replace(POSITIVE, help="W, or its diagonal: positive definite. Only ratios matter.", shape="(n,) or (n, n)")
-K = replace(NOT_NEGATIVE, help="Position feedback: xd + k (x - f(q)) in place of xd.", unit="1/s")
+# Parameters of several classes.
+ALPHA = Parameter(help="Weight of WMVN in the balance; the weight of MAN is 1 - alpha.", usual=0.6, low=0.0, high=1.0)
+WEIGHTS = replace(POSITIVE, help="W or its diagonal, positive definite. Only ratios count.", shape="(n,) or (n, n)")
+K = replace(NOT_NEGATIVE, help="Position feedback gain: xd + k (x - f(q)) replaces xd.", unit="1/s")
 STIFFNESS = replace(NOT_NEGATIVE, unit="1/s^2, 1/s at velocity level")
 FREE = Parameter(shape="(n,)", unit="rad/s^2, rad/s at velocity level")
 SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
@@ -22,63 +22,65 @@ SQUARED = replace(NOT_NEGATIVE, unit="rad^2/s^2, rad^2/s at velocity level")
 
 @data
 class Scheme(Data, CoreScheme):
-    """A redundancy resolution scheme: what all of them have.
+    """Base class of the redundancy resolution schemes.
 
-    joint_centring and manipulability_gain need an arm: resolve() cannot do them for a Kinematics.
+    joint_centring and manipulability_gain need an arm: resolve() rejects them for a Kinematics.
     """
 
     kind: ClassVar[str]
-    level: ClassVar[str]  #: 'velocity' where resolve() returns qd, 'acceleration' where it returns qdd.
-    fixed: ClassVar[dict[str, float]] = {}  # What the scheme fixes of the law of its level.
+    level: ClassVar[str]  #: 'velocity' if resolve() returns qd, 'acceleration' if resolve() returns qdd.
+    fixed: ClassVar[dict[str, float]] = {}  # Parameters that the scheme fixes in the law of its level.
     _: KW_ONLY
-    rest_posture: OptionalArrayField = parameter("Where the null space rests.", default=None, shape="(n,)", unit="rad")
-    null_stiffness: float = parameter("How strongly rest_posture draws it.", STIFFNESS, default=0.0)
+    rest_posture: OptionalArrayField = parameter("Rest posture.", default=None, shape="(n,)", unit="rad")
+    null_stiffness: float = parameter("Stiffness of the rest posture.", STIFFNESS, default=0.0)
     c: OptionalArrayField = parameter("Free choice in the general solution (5) or (3).", FREE, default=None)
     joint_centring: float = parameter(
-        "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2 over the joints that the arm's "
-        "limits bound both ways (Liegeois, 1977).",
+        "Gain down the gradient of 1/2 sum ((q_i - middle_i)/(upper_i - lower_i))^2, the sum over the joints with a "
+        "lower and an upper bound (Liegeois, 1977).",
         SQUARED,
         default=0.0,
     )
     manipulability_gain: float = parameter(
-        "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level it wants null_damping, "
-        "without which it swings for ever.",
+        "Gain up the gradient of sqrt(det(J J')) (Yoshikawa, 1985). At acceleration level, also set null_damping: "
+        "without damping, the oscillation does not decay.",
         SQUARED,
         default=0.0,
     )
     singular_radius: float = parameter(
-        "Damping where a singular value of J falls below this times the norm of J. 0 is none, and refuses singular "
-        "postures; 0.02 is a good one.",
+        "Singular values of J below singular_radius times the norm of J are damped; 0.02 is a good value. 0: no "
+        "damping, and singular postures are an error.",
         default=0.0,
         low=0.0,
         high=1.0,
     )
-    singular_brake: float = parameter("Damping of the null space there.", NOT_NEGATIVE, default=10.0, unit="1/s")
+    singular_brake: float = parameter(
+        "Null-space damping near singular postures.", NOT_NEGATIVE, default=10.0, unit="1/s"
+    )
 
     def _finish(self) -> None:
         CoreScheme.__init__(self, self.level, {**self.fixed, **self._values()})
 
 
 class VelocityScheme(Scheme):
-    """A scheme that resolves to joint velocities."""
+    """A scheme at velocity level: the result is the joint velocity."""
 
     level = "velocity"
 
 
 @data
 class AccelerationScheme(Scheme):
-    """A scheme that resolves to joint accelerations."""
+    """A scheme at acceleration level: the result is the joint acceleration."""
 
     level = "acceleration"
     _: KW_ONLY
     null_damping: float = parameter(
-        "Damping of the self-motion; the paper's schemes have none.", NOT_NEGATIVE, default=0.0, usual=2.0, unit="1/s"
+        "Null-space damping; the schemes of the paper have none.", NOT_NEGATIVE, default=0.0, usual=2.0, unit="1/s"
     )
 
 
 @data
 class MVN(VelocityScheme):
-    """Minimum velocity norm, (6): qd = J+ xd; with c the general solution (3)."""
+    """Minimum velocity norm, (6): qd = J+ xd. With c: the general solution (3)."""
 
     kind = "mvn"
     _: KW_ONLY
@@ -87,7 +89,7 @@ class MVN(VelocityScheme):
 
 @data
 class WMVN(VelocityScheme):
-    """Weighted minimum velocity norm, (7): qd = J_W+ xd, of least qd' W qd."""
+    """Weighted minimum velocity norm, (7): qd = J_W+ xd, which minimises qd' W qd."""
 
     kind = "wmvn"
     weights: ArrayField = parameter(like=WEIGHTS)
@@ -97,7 +99,7 @@ class WMVN(VelocityScheme):
 
 @data
 class MAN(AccelerationScheme):
-    """Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd); with c the general solution (5)."""
+    """Minimum acceleration norm, (8): qdd = J+ (xdd - Jd qd). With c: the general solution (5)."""
 
     kind = "man"
     fixed: ClassVar[dict[str, float]] = {"alpha": 0.0}
@@ -105,7 +107,7 @@ class MAN(AccelerationScheme):
 
 @data
 class WMVNAcceleration(AccelerationScheme):
-    """Weighted minimum velocity norm at acceleration level, (9), which is (7) differentiated.
+    """Weighted minimum velocity norm at acceleration level, (9): the time derivative of (7).
 
     qdd = J_W+ (xdd - Jd qd) + N_W W^-1 Jd' (J W^-1 J')^-1 xd.
     """
@@ -129,7 +131,7 @@ class FPBM(AccelerationScheme):
     """Feedback-added pseudoinverse-type balanced minimisation, (13).
 
     The balance (16) with b = xdd - Jd qd + k1 (xd - J qd) + k2 (x - f(q)) in place of xdd - Jd qd, so that the tip
-    error e obeys e'' + k1 e' + k2 e = 0 whatever alpha and W.
+    error e obeys e'' + k1 e' + k2 e = 0 for every alpha and W.
     """
 
     kind = "fpbm"
@@ -139,5 +141,5 @@ class FPBM(AccelerationScheme):
     k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, usual=25.0, unit="1/s^2")
 
 
-# By the kind that a table has.
+# By the kind in a table.
 SCHEMES: dict[str, type[Scheme]] = {each.kind: each for each in (MVN, WMVN, MAN, WMVNAcceleration, Balanced, FPBM)}

@@ -1,4 +1,4 @@
-"""What is shown of a robot: positions and axes of base, joints and tips, frames, and what the joints are called."""
+"""Geometry of a robot for display: positions and axes of base, joints and tips; frames; names of the joints."""
 
 import numpy as np
 
@@ -8,32 +8,32 @@ from .errors import not_one_of
 from .robots import Robot
 from .tasks import FrameTask
 
-HINGE = Joint()  # Of planar arms, whose joints turn about z.
+HINGE = Joint()  # A joint of a planar arm, which rotates about z.
 
 
 def joints_of(arm: Arm | Robot) -> list[Joint]:
-    """The joints, mimic joints included; of a planar arm, their types and axes alone."""
+    """The joints, including mimic joints; for a planar arm, only types and axes are meaningful."""
     if isinstance(arm, Robot):
         return [each.joint for each in arm.joints]
     return list(arm.joints) if isinstance(arm, SerialArm) else [HINGE] * arm.dof
 
 
 def joint_labels(arm: Arm | Robot) -> list[str]:
-    """Names of the joints for people to read; in the plane, where they have none, their numbers."""
+    """Names of the joints for display; the joints of a planar arm have no names and are numbered."""
     return [f"joint {i}" for i in range(1, arm.dof + 1)] if isinstance(arm, PlanarArm) else list(arm.joint_names)
 
 
 def joint_units(arm: Arm | Robot) -> list[str]:
-    """Unit of each joint's position."""
+    """Unit of each joint position."""
     return ["m" if joint.type == "prismatic" else "rad" for joint in joints_of(arm) if joint.mimic is None]
 
 
 def joint_points(arm: Arm | Robot, q: Array) -> Array:
     """Positions of base, joints and tip [m] in postures q, shape (..., n): a line along the links.
 
-    Shape (..., n + 1, 2) of planar arms, whose base is a joint, (..., k + 2, 3) of k joints, mimic joints included. Of
-    a Robot, branch after branch: NaN stands before a branch that does not begin where the last one ended. A link that
-    carries no joint ends at its frames.
+    Shape (..., n + 1, 2) for planar arms, whose base is a joint; (..., k + 2, 3) for k joints, including mimic joints.
+    For a Robot, branch after branch: NaN precedes a branch that does not start at the end of the previous branch. A
+    link that carries no joint ends at its frames.
     """
     if isinstance(arm, PlanarArm):
         heading = np.cumsum(q, axis=-1)
@@ -58,9 +58,9 @@ def length(arm: Arm | Robot, q: Array) -> float:
 
 
 def link_frames(arm: Arm | Robot, q: Array) -> Array:
-    """Frames of base and links in postures q, shape (..., n): each that of its joint after its motion.
+    """Frames of base and links in postures q, shape (..., n): for a link, the frame of its joint after the motion.
 
-    Shape (..., n + 1, 4, 4), or (..., k + 1, 4, 4) of k joints, mimic joints included; as a Capsule's link.
+    Shape (..., n + 1, 4, 4), or (..., k + 1, 4, 4) for k joints, including mimic joints; numbered as Capsule.link.
     """
     if isinstance(arm, PlanarArm):
         points = np.zeros((*q.shape[:-1], arm.dof + 1, 3))
@@ -81,7 +81,7 @@ def task_frames(arm: Arm | Robot, q: Array, task: FrameTask) -> Array:
 
 
 def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
-    """The frame of that name, as tasks have it, likewise. Raises ParameterError where there is none."""
+    """Frame of that name, as in tasks, shape (..., 4, 4). Raises ParameterError if the frame does not exist."""
     names = arm.joint_names if isinstance(arm, PlanarArm) else [joint.name for joint in joints_of(arm)]
     places = {"base": (0, np.eye(4))} | {name: (i, np.eye(4)) for i, name in enumerate(names, 1)}
     if isinstance(arm, Robot):
@@ -98,12 +98,12 @@ def frames_of(arm: Arm | Robot, q: Array, name: str) -> Array:
 
 
 def _parents(arm: Arm | Robot) -> list[int]:
-    """Numbers of the links that carry the joints."""
+    """Numbers of the parent links of the joints."""
     return [each.parent for each in arm.joints] if isinstance(arm, Robot) else list(range(len(joints_of(arm))))
 
 
 def _ends(arm: Arm | Robot) -> list[tuple[int, Array]]:
-    """What is drawn beyond the last joints: links and the frames on them."""
+    """Links and the frames on them that are drawn beyond the last joints."""
     if isinstance(arm, SerialArm):
         return [(len(arm.joints), arm.tip)]
     carrying = _parents(arm)
@@ -112,7 +112,7 @@ def _ends(arm: Arm | Robot) -> list[tuple[int, Array]]:
 
 
 def _line(arm: Arm | Robot) -> list[int]:
-    """Base (0), links and ends by number in the order of a line along them, -1 where the line breaks."""
+    """Base (0), links and ends by number, in the order of a line along them; -1 is a break of the line."""
     parents, ends, line = _parents(arm), _ends(arm), [0]
     for link, parent in enumerate(parents, 1):
         tips = [len(parents) + i for i, (other, _) in enumerate(ends, 1) if other == link]
@@ -122,7 +122,7 @@ def _line(arm: Arm | Robot) -> list[int]:
 
 
 def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array]:
-    """Positions of base and joints, and rotations of base and links, after the joints' motion."""
+    """Positions of base and joints, and rotations of base and links after the joints' motion."""
     p = np.zeros((*q.shape[:-1], 3))
     points, turns = [p], [np.broadcast_to(np.eye(3), (*p.shape, 3))]
     joints = joints_of(arm)
@@ -140,7 +140,7 @@ def _forward_pass(arm: Arm | Robot, q: Array) -> tuple[Array, Array]:
 
 
 def _positions(joints: list[Joint], q: Array) -> list[Array]:
-    """Position of each joint, mimic joints included."""
+    """Position of each joint, including mimic joints."""
     mimics = [joint.mimic for joint in joints]
     driven = (i for i, mimic in enumerate(mimics) if mimic is None)
     own = {i: q[..., column] for column, i in enumerate(driven)}

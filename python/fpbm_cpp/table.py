@@ -1,11 +1,10 @@
-"""Things of this package as plain tables of numbers and text, for TOML, JSON and run files; and back.
+"""Conversion of the package's objects to plain tables of numbers and text, for TOML, JSON and run files, and back.
 
     {"kind": "fpbm", "alpha": 0.6, "weights": [1, 2, 3, 4], "k1": 10.0, "k2": 25.0}
 
-A table has the kind and the parameters of its thing, by their names. A path's also say how it is laid and rotated:
-in_plane, with_rotation, rotation_time_law. Several paths, one after another, are a list of tables; paths of several
-tasks a table of them by the names of the tasks. A stack is a list of tables of tasks, each with its level, counted from
-0.
+A table has the kind of its object and the parameters by name. The table of a path may also have in_plane,
+with_rotation and rotation_time_law. Several paths, one after another, are a list of tables; paths of several tasks are
+a table of these by task name. A stack is a list of tables of tasks, each with its level, counted from 0.
 """
 
 import math
@@ -42,7 +41,7 @@ KINDS: Makers = {
 
 BOUNDS: Makers = {TaskBounds.kind: TaskBounds}
 
-# What stands within other tables, by its key.
+# Tables within other tables, by their keys.
 WITHIN: dict[Any, Any] = {
     (TaskBounds, "task"): {each.kind: each for each in (PositionTask, AxisTask)},
     (TreeJoint, "joint"): Joint,
@@ -54,7 +53,7 @@ LEVEL = Parameter(
     whole=True,
     default=0,
     usual=0,
-    help="Its level, counted from 0: higher levels have lower numbers.",
+    help="Task level, counted from 0; level 0 has the highest priority.",
 )
 LISTS: dict[Any, Any] = {
     (SerialArm, "joints"): Joint,
@@ -67,9 +66,9 @@ LISTS: dict[Any, Any] = {
 
 
 def to_table(thing: Any) -> Any:
-    """A thing of this package as a table; numbers, text and arrays as they stand in one. TypeError for others.
+    """Table of an object of this package; numbers, text and arrays become plain data. TypeError for other objects.
 
-    Infinity is 'inf' in quotes, for JSON. What is None, or a bound that a joint has not, is left out.
+    Infinity becomes the text 'inf', for JSON. None and missing bounds of joints are left out.
     """
     if isinstance(thing, InPlane):
         return {**to_table(thing.path), "in_plane": to_table(thing.plane)}
@@ -92,15 +91,15 @@ def to_table(thing: Any) -> Any:
         return str(thing)
     if thing is None or isinstance(thing, (bool, int, float, str)):
         return thing
-    raise TypeError(f"{thing!r:.80}: must be a thing of this package, numbers or text")
+    raise TypeError(f"{thing!r:.80}: must be an object of this package, numbers or text")
 
 
 def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
-    """The thing that a table stands for, or a list of those of paths or of tasks; a table may hold things as well.
+    """Object of a table, or of a list of tables of paths or of tasks; a table may also contain objects.
 
-    kinds: what may stand there, ROBOTS, PATHS, SCHEMES or TASKS, say. name: what errors call the table.
+    kinds: the allowed kinds, for example ROBOTS, PATHS, SCHEMES or TASKS. name: name of the table in errors.
 
-    Raises ParameterError of the first thing that is wrong, OSError where a file that it names cannot be read.
+    Raises ParameterError for the first error, OSError if a file that the table names cannot be read.
     """
     reader = _Reader()
     thing = reader.read(table, kinds, name)
@@ -110,14 +109,14 @@ def from_table(table: Any, kinds: Makers = KINDS, name: str = "") -> Any:
 
 
 def problems(table: Any, kinds: Makers, name: str = "", *, usual: bool = False) -> list[ParameterError]:
-    """All that is wrong with a table's keys and values, for an arm yet to come. usual: what has such may be missing."""
+    """All errors in the keys and values of a table, without its arm. usual: keys with usual values may be missing."""
     reader = _Reader(usual, make=False)
     reader.read(table, kinds, name)
     return reader.problems
 
 
 def keys(maker: Callable[..., Any]) -> dict[str, Parameter]:
-    """The keys of a maker's table, but for its kind."""
+    """The keys of a table for a constructor, except kind."""
     known = dict(parameters(maker))
     if maker in TASKS.values():
         return {**known, "level": LEVEL}
@@ -125,7 +124,7 @@ def keys(maker: Callable[..., Any]) -> dict[str, Parameter]:
 
 
 def is_by_task(table: Any) -> bool:
-    """Whether a table is of paths, each a table or a list of tables, by the names of their tasks."""
+    """Whether a table contains paths by task name, each a table or a list of tables."""
     if not isinstance(table, Mapping) or not table:
         return False
     pieces = [piece for path in table.values() for piece in (path if isinstance(path, (list, tuple)) else [path])]
@@ -133,14 +132,14 @@ def is_by_task(table: Any) -> bool:
 
 
 class _Reader:
-    """Makes things of tables, and notes what is wrong with them: what it makes is None then."""
+    """Constructs objects from tables, and records errors; after an error, the object is None."""
 
     def __init__(self, usual: bool = False, make: bool = True) -> None:
         self.usual, self.make = usual, make
         self.problems: list[ParameterError] = []
 
     def read(self, table: Any, kinds: Makers | type[Data], name: str) -> Any:
-        """The thing of a table, or of a list of those of paths, or of tables of paths by the names of their tasks."""
+        """Object of a table, of a list of tables of paths, or of tables of paths by task name."""
         if isinstance(table, Data):
             return table
         if isinstance(table, (list, tuple)) and kinds is TASKS:
@@ -151,7 +150,7 @@ class _Reader:
             if len(table) == 1:
                 return self.read(table[0], kinds, name)
             if not table:
-                return self._wrong(name, table, " = []: must be one at least")
+                return self._wrong(name, table, " = []: must have at least one path")
             paths = self._each(table, kinds, name)
             return None if None in paths else self._checked(lambda: PathSequence(paths), name)
         if kinds in (PATHS, EVERY_PATH) and is_by_task(table):
@@ -174,7 +173,7 @@ class _Reader:
             if key in known:
                 values[key] = self._value(value, known[key], maker, within + key)
             elif key != "kind":
-                what = f": {table.get('kind', name)} has no such key: must be one of {', '.join(known)}"
+                what = f": is not a key of {table.get('kind', name)}: must be one of {', '.join(known)}"
                 self._wrong(within + key, value, what + suggestion(key, known))
         for key, parameter in known.items():
             if parameter.required and key not in table and not (self.usual and parameter.usual is not REQUIRED):
@@ -183,7 +182,7 @@ class _Reader:
             return self._checked(lambda: self._made(maker, values), name)
 
     def _made(self, maker: Callable[..., Any], values: dict[str, Any]) -> Any:
-        values.pop("level", None)  # Which _stack() reads.
+        values.pop("level", None)  # Read by _stack().
         plane, rotation, law = (values.pop(key, None) for key in PATH_OPTIONS)
         thing = maker(**values)
         if plane is not None:
@@ -214,12 +213,14 @@ class _Reader:
         for k in range(max(levels, default=0)):
             if k not in levels:
                 return self._wrong(
-                    f"{name}.level", max(levels), f" = {max(levels)}: must be less, as level {k} is empty"
+                    f"{name}.level",
+                    max(levels),
+                    f" = {max(levels)}: level {k} has no task: number the levels from 0 without gaps",
                 )
         return None if None in tasks else self._checked(lambda: Stack(*(levels[k] for k in sorted(levels))), name)
 
     def _checked(self, make: Callable[[], Any], name: str) -> Any:
-        """What make() gives; where it refuses, a problem of the table of this name."""
+        """Result of make(); an error of make() is recorded for the table of this name."""
         try:
             return make()
         except ParameterError as error:

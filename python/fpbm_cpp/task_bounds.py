@@ -1,4 +1,4 @@
-"""Bounds on coordinates of tasks: a wall for a point of the robot, a cone for an axis, a speed."""
+"""Bounds on task coordinates: walls for a point of the robot, a cone for an axis, a speed."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ RANGE = Parameter(shape="() or (m,)", infinite=True, unit="m, rad")
 class TaskBounds(Data):
     """Bounds on the coordinates of a task.
 
-    Of a PositionTask, lower and upper are positions along the base frame's axes, an entry for each of its rows. Of an
-    AxisTask, they are the least and the largest angle between the axis and the task's x: a cone about x.
+    For a PositionTask, lower and upper are positions along the axes of the base frame, one entry for each row. For an
+    AxisTask, lower and upper are the least and the largest angle between the axis and the task's x: a cone about x.
 
-    lower and upper hold at every tick: a tick is taken only if the robot can stop within them from its end. velocity
-    and acceleration hold as far as the joints' limits and the other bounds admit.
+    lower and upper hold at every tick: a tick is executed only if the robot can stop within these bounds from the end
+    of the tick. velocity and acceleration hold as far as the joint limits and the other bounds admit.
 
-    Raises ParameterError where the task is another one, a bound is out of range, or lower is not below upper.
+    Raises ParameterError if the task has another type, a bound is out of range, or lower is not below upper.
     """
 
     kind: ClassVar[str] = "bounds"
-    task: PositionTask | AxisTask = parameter("Whose coordinates; its gains do not matter.")
-    lower: OptionalArrayField = parameter("Lowest values; none where not given.", RANGE, default=None)
-    upper: OptionalArrayField = parameter("Highest values; none where not given.", RANGE, default=None)
+    task: PositionTask | AxisTask = parameter("Task whose coordinates are bounded; its gains are ignored.")
+    lower: OptionalArrayField = parameter("Lower bounds; default: none.", RANGE, default=None)
+    upper: OptionalArrayField = parameter("Upper bounds; default: none.", RANGE, default=None)
     _: KW_ONLY
     velocity: float = parameter(
-        "Highest speed: norm of the velocity of the task's rows, or of the axis.",
+        "Largest speed: norm of the velocity of the task's rows, or of the axis.",
         POSITIVE,
         default=inf,
         infinite=True,
         unit="m/s, rad/s",
     )
     acceleration: float = parameter(
-        "Deceleration before lower and upper; of an axis, of the cosine of the angle. By default the joints' most.",
+        "Deceleration before lower and upper; for an axis, of the cosine of the angle. Default: the joints' largest.",
         POSITIVE,
         default=inf,
         infinite=True,
@@ -53,13 +53,13 @@ class TaskBounds(Data):
         task = self.task
         if isinstance(task, PositionTask):
             if task.axes != "base":
-                raise wrong("task.axes", task.axes, f" = {task.axes!r}: must be 'base', along which bounds are")
+                raise wrong("task.axes", task.axes, f" = {task.axes!r}: must be 'base', the axes of the bounds")
         elif not isinstance(task, AxisTask):
             raise wrong("task", task, f" = {task!r:.80}: must be a PositionTask or an AxisTask")
         elif task.x is None:
-            raise wrong("task.x", None, ": must be given, the direction from which the angle is measured")
+            raise wrong("task.x", None, ": must be given: the bounded angle is measured from this direction")
         if task.reference_frame is not None:
-            raise wrong("task.reference_frame", task.reference_frame, ": must be None, bounds are in the base frame")
+            raise wrong("task.reference_frame", task.reference_frame, ": must be None: bounds are in the base frame")
         rows = len(task.rows or POSITION) if isinstance(task, PositionTask) else 1
         for name, missing in (("lower", -inf), ("upper", inf)):
             values = getattr(self, name)
@@ -76,11 +76,11 @@ class TaskBounds(Data):
     _lower: ClassVar[Array]
     _upper: ClassVar[Array]
 
-    # What the compiled part reads.
+    # Read by the compiled part.
 
     @property
     def selected(self) -> list[bool]:
-        """Which of x, y and z the rows are."""
+        """Whether x, y and z are rows of the task."""
         assert isinstance(self.task, PositionTask)
         return [row in (self.task.rows or POSITION) for row in POSITION]
 
@@ -96,12 +96,12 @@ class TaskBounds(Data):
 
     @property
     def least_angle(self) -> float:
-        """Of an axis [rad]."""
+        """Least angle of an axis [rad]."""
         return max(float(self._lower[0]), 0.0)
 
     @property
     def largest_angle(self) -> float:
-        """Of an axis [rad]; infinite where there is no bound."""
+        """Largest angle of an axis [rad]; infinite if there is no bound."""
         return float(self._upper[0])
 
     def _corner(self, values: Array, missing: float) -> list[float]:

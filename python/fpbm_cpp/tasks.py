@@ -1,4 +1,4 @@
-"""Tasks of a robot, and stacks of them on levels in strict priority."""
+"""Tasks of a robot, and stacks of task levels in strict priority."""
 
 from __future__ import annotations
 
@@ -17,24 +17,26 @@ __all__ += ["RelativePoseTask", "Stack", "Task"]
 
 POSITION = ("x", "y", "z")
 ROTATION = ("rx", "ry", "rz")
-FRAME = "'tip' of an arm, a frame of a Robot, 'base', or a joint's name: of the link that it moves, after its motion."
-REFERENCE = "Another frame, which the task is relative to in place of the base frame: its point, rows and path."
-TARGET = "Its target, if no path or reference is given; where it starts if not given."
-OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="The task's frame, seen from that frame.")
-ROWS = "Some of the rows x, y, z, rx, ry, rz that the task has; None: all."
-AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Whose axes the rows are along.")
+FRAME = (
+    "'tip' of an arm, a frame of a Robot, 'base', or a joint's name, for the frame of the link that the joint moves."
+)
+REFERENCE = "Frame that replaces the base frame for the point, the rows and the path of the task."
+TARGET = "Target if no path or reference is given; default: the start."
+OFFSET = Parameter(default=None, shape="(4, 4)", unit="m", help="Pose of the task's frame in that frame.")
+ROWS = "Selected rows of the task, out of x, y, z, rx, ry, rz; None: all."
+AXES = Parameter(default="base", usual="base", choices=("base", "frame"), help="Frame whose axes the rows are along.")
 
 
 @data
 class Task(Data):
-    """A task of a stack: what all of them have.
+    """Base class of the tasks of a stack.
 
     At acceleration level, the error of a task obeys e'' + k1 e' + k2 e = 0; at velocity level, e' + k e = 0.
     """
 
     kind: ClassVar[str]
     _: KW_ONLY
-    name: str = parameter("Of its references and errors; that of its kind where empty.", default="")
+    name: str = parameter("Name in references and errors; if empty, the kind.", default="")
     k1: float = parameter("Feedback gain on velocity.", NOT_NEGATIVE, default=10.0, unit="1/s")
     k2: float = parameter("Feedback gain on position.", NOT_NEGATIVE, default=25.0, unit="1/s^2")
     k: float = parameter("Feedback gain at velocity level.", NOT_NEGATIVE, default=5.0, unit="1/s")
@@ -62,7 +64,7 @@ class FrameTask(Task):
 
 
 def check_rows(rows: Sequence[str] | None, all_rows: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Rows that a task selects, as a tuple. Raises ParameterError unless they are some of its rows, each once."""
+    """Selected rows as a tuple. Raises ParameterError unless they are rows of the task, each once."""
     if rows is None:
         return None
     if isinstance(rows, str) or not isinstance(rows, Iterable) or not tuple(rows):
@@ -71,7 +73,7 @@ def check_rows(rows: Sequence[str] | None, all_rows: tuple[str, ...]) -> tuple[s
         if row not in all_rows:
             raise not_one_of("rows", row, all_rows)
         if row in rows[:i]:
-            raise wrong("rows", rows, f" has {row!r} twice")
+            raise wrong("rows", rows, f" has {row!r} twice: must have each row once")
     return rows
 
 
@@ -120,9 +122,9 @@ class PoseTask(RowsTask):
 
 @data
 class RelativePoseTask(PoseTask):
-    """The pose of a frame in another frame of the robot: a grasp with two hands. Its point has shape (4, 4) [m].
+    """The pose of a frame in another frame of the robot, as in a grasp with two hands. Its point has shape (4, 4) [m].
 
-    PositionTask, OrientationTask and AxisTask with reference_frame= are relative likewise.
+    PositionTask, OrientationTask and AxisTask with reference_frame= are relative too.
     """
 
     kind = "relative_pose"
@@ -150,20 +152,20 @@ class CenterOfMassTask(Task):
 
 @data
 class AxisTask(FrameTask):
-    """The direction of an axis of a frame: 2 rows, the rotation about the axis is free. Its point has shape (3,)."""
+    """Direction of an axis of a frame: 2 rows; the rotation about the axis is free. Its point has shape (3,)."""
 
     kind = "axis"
-    axis: ArrayField = parameter("In the frame; its length does not matter.", default=(0, 0, 1), shape="(3,)")
+    axis: ArrayField = parameter("Axis in the frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
 
     def _finish(self) -> None:
         super()._finish()
         if not np.any(self.axis):
-            raise wrong("axis", self.axis, " = 0: must point somewhere")
+            raise wrong("axis", self.axis, " = 0: must be a nonzero vector")
 
 
 @data
 class PostureTask(Task):
-    """Positions of all joints, or of some. Its point has shape (joints,) [rad]."""
+    """Positions of all joints or of some joints. Its point has shape (joints,) [rad]."""
 
     kind = "posture"
     q: OptionalArrayField = parameter(TARGET, default=None, shape="(n,)", unit="rad")
@@ -181,7 +183,7 @@ class PostureTask(Task):
         object.__setattr__(self, "joints", names)
 
 
-# By the kind that a table has.
+# By the kind in a table.
 TASKS: dict[str, type[Task]] = {
     each.kind: each
     for each in (
@@ -197,10 +199,10 @@ TASKS: dict[str, type[Task]] = {
 
 
 class Stack:
-    """Tasks on levels in strict priority: a lower level uses only the motion that the higher levels leave free.
+    """Tasks on levels in strict priority: a lower level acts in the null space of the higher levels.
 
-    Each argument is a level: a task, or a list of tasks side by side. At most 4 levels, each with at most two tasks of
-    frames and one PostureTask. Raises ParameterError for an empty level, and where two tasks have one name.
+    Each argument is a level: a task, or a list of tasks with equal priority. There are at most 4 levels, each with at
+    most two tasks of frames and one PostureTask. Raises ParameterError if a level is empty or two tasks share a name.
     """
 
     levels: tuple[tuple[Task, ...], ...]
@@ -208,7 +210,7 @@ class Stack:
     def __init__(self, *levels: Task | Sequence[Task]) -> None:
         made = tuple(tuple(level) if isinstance(level, (list, tuple)) else (level,) for level in levels)
         if not made:
-            raise wrong("levels", levels, ": must be one at least")
+            raise wrong("levels", levels, ": must have at least one level")
         names: list[str] = []
         for k, level in enumerate(made):
             if not level:
@@ -217,28 +219,30 @@ class Stack:
                 if not isinstance(task, Task) or not hasattr(task, "kind"):
                     raise wrong(f"levels[{k}]", task, f" has {task!r:.80}: must be a task, or a sequence of tasks")
                 if task.name in names:
-                    raise wrong(f"levels[{k}]", task, f" has a second task of the name {task.name!r}: give it a name=")
+                    raise wrong(
+                        f"levels[{k}]", task, f" has a second task with the name {task.name!r}: give another name="
+                    )
                 names.append(task.name)
         self.levels = made
 
     @property
     def tasks(self) -> tuple[Task, ...]:
-        """All tasks, those of higher levels first."""
+        """All tasks, higher levels first."""
         return tuple(task for level in self.levels for task in level)
 
     def error_sizes(self, dof: int) -> list[int]:
-        """Numbers in the error of each task, for that many joints."""
+        """Number of entries in the error of each task, for dof joints."""
         sizes = {"pose": 6, "relative_pose": 6, "posture": dof}
         return [len(getattr(task, "joints", None) or ()) or sizes.get(task.kind, 3) for task in self.tasks]
 
     def follower(self, name: str | None = None) -> PositionTask | PoseTask:
-        """The task that follows a path: that of the name, or the only position or pose. Raises ParameterError."""
+        """Task that follows a path: the task of that name, or the only position or pose. Raises ParameterError."""
         able = [task for task in self.tasks if isinstance(task, (PositionTask, PoseTask))]
         found = [task for task in able if name in (None, task.name)]
         if len(found) == 1:
             return found[0]
         if name is None and found:
-            raise wrong("task", None, f": several tasks follow paths, must be one of {', '.join(t.name for t in able)}")
+            raise wrong("task", None, f": several tasks follow paths: must be one of {', '.join(t.name for t in able)}")
         what = f" = {name!r}" if name is not None else ""
         raise wrong("task", name, f"{what}: must be the name of a position or a pose of the stack to follow a path")
 

@@ -1,7 +1,7 @@
-"""Motions whose ticks take longest, and how long their ticks take on this machine, as called from Python.
+"""Motions with the longest known ticks, and the times of their ticks on this machine, called from Python.
 
 bench/search_worst.cpp found the motions, by the number of executed basic blocks. worst_motions.txt has the numbers of
-each motion; bench/worst.hpp says what they are, and reads the same file.
+each motion; bench/worst.hpp defines the numbers and reads the same file.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ PHASES, NUMBERS = 6, 13
 FAR, TURN, FAST = 0.8, 1.5, 1.5  # Largest displacement [m], rotation [rad] and rates [m/s, rad/s] along each axis.
 SHORTEST, LONGEST = 10, 160  # Ticks of a phase.
 DT = 1e-3
-PASSES = 3  # Of a saturation, for each joint, at most.
+PASSES = 3  # Largest number of passes of a saturation per joint.
 
 
 class Times(NamedTuple):
-    """Of the ticks of a case [us], each the least of some runs, and the bound on a tick's passes of saturation."""
+    """Tick times of a case [us], each the least of several runs, and the bound on the saturation passes of a tick."""
 
     case: str
     free: float
@@ -40,7 +40,7 @@ class Times(NamedTuple):
 
 
 def motions() -> dict[str, Array]:
-    """The numbers of each case of one arm: bench/worst.cpp has a clearance and two arms as well."""
+    """The numbers of each case of one arm; bench/worst.cpp also has a clearance and two arms."""
     text = (resources.files(__package__) / "worst_motions.txt").read_text(encoding="utf-8")
     lines = [line.split() for line in text.splitlines()]
     return {
@@ -51,7 +51,7 @@ def motions() -> dict[str, Array]:
 
 
 def tracker(case: str, numbers: Array) -> Tracker:
-    """The case's tracker, at the start of the motion of these numbers."""
+    """Tracker of a case, at the start of the motion with these numbers."""
     panda = SerialArm.preset("panda")
     limits = panda.limits if case.endswith(("_jerk", "_levels")) else replace(panda.limits, jerk=None)
     middle = (limits.upper + limits.lower) / 2
@@ -89,7 +89,7 @@ def _references(case: str, tip: Any, numbers: Array) -> Iterator[tuple[Any, ...]
 
 
 def tick_times(case: str, numbers: Array, runs: int) -> Array:
-    """Least time of each tick of a motion [us]: an interruption by the machine does not count."""
+    """Least time of each tick of a motion over the runs [us], to exclude interruptions by the machine."""
     least: Array = np.empty(0)
     for _ in range(runs):
         loop = tracker(case, numbers)
@@ -103,7 +103,7 @@ def tick_times(case: str, numbers: Array, runs: int) -> Array:
 
 
 def free_motion(joints: int) -> Array:
-    """The target moves slowly, at 1.5 cm/s and 0.015 rad/s along and about each axis."""
+    """Numbers of a motion with a slow target: 1.5 cm/s and 0.015 rad/s along and about each axis."""
     numbers = np.zeros(joints + PHASES * NUMBERS)
     numbers[joints + 6 : joints + 12] = 0.01
     numbers[joints + 12] = 1.0
@@ -111,7 +111,7 @@ def free_motion(joints: int) -> Array:
 
 
 def measure(runs: int) -> Iterator[Times]:
-    """Each case's ticks."""
+    """Tick times of each case."""
     enabled = gc.isenabled()
     gc.disable()
     try:

@@ -142,7 +142,7 @@ TEST(AnyFrameTask, has_the_rows_of_relative_tasks_and_of_the_center_of_mass) {
               rows_in(robot, RelativeTask{PositionTask<1>{left, kGains, {2}}, right}));
   expect_same(any(FrameCoordinates::kCenterOfMass, kHeight), rows_in(robot, CenterOfMassTask<1>{kGains, {2}}));
   EXPECT_EQ(complaint([&] { (void)frame_of(tree, "lft_tip"); }),
-            "frame = 'lft_tip': must be one of the tree's: 'torso_tip' 'right_tip' 'left_tip'");
+            "frame = 'lft_tip': must be a frame of the tree: 'torso_tip' 'right_tip' 'left_tip'");
 }
 
 /// A pose whose rotation about the frame's z axis is free.

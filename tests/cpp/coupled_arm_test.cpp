@@ -154,14 +154,14 @@ TEST(CoupledArm, says_which_joint_has_no_room) {
   };
   EXPECT_EQ(refusal({1, 1.0, 2.0}), "");
   EXPECT_EQ(refusal({1, 1.0, 3.0}),
-            "joints[1].lower = -1: must be below upper = -1 for its followers to keep their bounds");
+            "joints[1].lower = -1: must be below upper = -1 for its mimic joints to keep their bounds");
   EXPECT_EQ(refusal({1, -1.0, -3.0}, "a"),
-            "joint 'a'.lower = -1: must be below upper = -2 for its followers to keep their bounds");
+            "joint 'a'.lower = -1: must be below upper = -2 for its mimic joints to keep their bounds");
   EXPECT_EQ(refusal({1, 0.0, 2.0}), "");
   EXPECT_EQ(refusal({1, 0.0, -1.0}), "");
-  EXPECT_EQ(refusal({1, 0.0, 2.5}), "joints[0].mimic.offset = 2.5: must be within its bounds, since its ratio is 0");
+  EXPECT_EQ(refusal({1, 0.0, 2.5}), "joints[0].mimic.offset = 2.5: must be within the bounds, since the ratio is 0");
   EXPECT_EQ(refusal({1, 0.0, -1.5}, "a"),
-            "joint 'a'.mimic.offset = -1.5: must be within its bounds, since its ratio is 0");
+            "joint 'a'.mimic.offset = -1.5: must be within the bounds, since the ratio is 0");
 }
 
 }  // namespace

@@ -544,7 +544,7 @@ TEST(Guard, names_what_is_wrong) {
     Guard<Level::kAcceleration, 7> guard(in_box);
     guard.require_clear(limits, State<7>{ready(), Vector<7>::Zero()}, Vector<7>::Zero());
   });
-  EXPECT_EQ(outside, "q0: is beyond the bound 'lower y of tip', must be within the bounds of tasks");
+  EXPECT_EQ(outside, "q0: is beyond the bound 'lower y of tip': must be within the task bounds");
   auto tracker = panda_tracker({{"floor", HalfSpace<>{Vector<3>::UnitZ(), 0.0}}});
   EXPECT_FALSE(tracker.guard().clearance().move(0, Capsule<>{zero, zero, 0.1}, zero));
   EXPECT_FALSE(tracker.guard().clearance().move(1, HalfSpace<>{Vector<3>::UnitZ(), 0.0}, zero));

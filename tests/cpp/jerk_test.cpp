@@ -438,7 +438,7 @@ TEST(Jerk, nonsense_is_refused) {
   bounds.jerk(1) = 100.0;
   bounds.acceleration(1) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(complaint([&] { Limits<Level::kVelocity, 2>(bounds, kTick); }),
-            "limits.acceleration[1] = inf: must be finite where the joint's jerk is bounded: give one");
+            "limits.acceleration[1] = inf: must be finite if the joint jerk is bounded: give a bound");
   bounds.acceleration(1) = 10.0;
   const Accelerations limits(bounds, kTick);
   const Vector<2> still = Vector<2>::Zero();

@@ -390,7 +390,7 @@ TEST(Limits, say_what_is_wrong_with_them) {
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "");
   bounds.set(1, {-1.0, 1.0, 2.0, std::numeric_limits<double>::infinity()});
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }),
-            "limits.acceleration[1] = inf: must be finite where the joint's position or velocity is bounded: give one");
+            "limits.acceleration[1] = inf: must be finite if the joint position or velocity is bounded: give a bound");
   EXPECT_EQ(complaint([&] { Limits<Level::kVelocity, 2>(bounds, kTick); }), "");
   bounds.set(1, {1.0, 1.0, 2.0, 5.0});
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "limits.lower[1] = 1: must be below limits.upper");

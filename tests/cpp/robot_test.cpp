@@ -183,15 +183,15 @@ TEST(Tree, names_what_is_wrong) {
     return complaint([&] { Robot<kOpen>{tree}; });
   };
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].parent = 4; }),
-            "joint 'right_panda_joint2'.parent = 4: must be the number of a link before the joint's own, at most 3");
+            "joint 'right_panda_joint2'.parent = 4: must be the number of the parent link, at most 3");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].joint.axis.setZero(); }),
-            "joint 'right_panda_joint2'.axis is zero: must point somewhere");
+            "joint 'right_panda_joint2'.axis is zero: must be a nonzero vector");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[3].moved.mass = -1.0; }),
             "joint 'right_panda_joint2'.moved.mass = -1: must be finite and not negative");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.frames[1].link = 17; }),
             "frames[1].link = 17: must be the number of a link, at most 16");
   EXPECT_EQ(refusal([](Tree<>& tree) { tree.joints[5].joint.mimic.joint = 40; }),
-            "joint 'right_panda_joint4'.mimic.joint = 40: must be the index of a joint with a drive of its own");
+            "joint 'right_panda_joint4'.mimic.joint = 40: must be the index of a joint with its own drive");
   EXPECT_EQ(complaint([] { Robot<7>{two_pandas(true)}; }), "joints has 16 entries: must have 7, one per joint");
 }
 

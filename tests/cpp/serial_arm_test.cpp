@@ -324,7 +324,7 @@ TEST(SerialArm, bad_chains_are_refused) {
   EXPECT_EQ(refusal({}, {}).substr(0, 20), "joints has 0 entries");
   std::vector<Joint<>> bad = good;
   bad[1].axis.setZero();
-  EXPECT_EQ(refusal(bad, {}), "joints[1].axis is zero: must point somewhere");
+  EXPECT_EQ(refusal(bad, {}), "joints[1].axis is zero: must be a nonzero vector");
   bad = good;
   bad[0].axis(2) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refusal(bad, {}), "joints[0].axis[2] = inf: must be finite");

@@ -263,16 +263,19 @@ TEST(SpacePaths, bad_ones_are_refused) {
 
   using Way = Waypoints<Position<2>>;
   const std::vector<Vector<2>> points{{0, 0}, {1, 0}, {1, 1}};
-  EXPECT_EQ(refusal([&] { return Way({{0, 0}}, {0.0}); }), "points has 1 entries: must have 2 at least");
+  EXPECT_EQ(refusal([&] { return Way({{0, 0}}, {0.0}); }), "points has 1 entries: must have at least 2");
   EXPECT_EQ(refusal([&] { return Way(points, {0.0, 1.0}); }), "times has 2 entries: must have 3, one per point");
   EXPECT_EQ(refusal([&] { return Way(points, {0.5, 1.0, 2.0}); }), "times[0] = 0.5: must be 0");
   EXPECT_EQ(refusal([&] {
               return Way(points, {0.0, 1.0, 1.0});
             }),
-            "times[2] = 1: must be finite and after the one before");
+            "times[2] = 1: must be finite and later than the previous time");
   EXPECT_EQ(refusal([&] { return Way({{0, 0}, {1, kInf}}, {0.0, 1.0}); }), "points[1][1] = inf: must be finite");
   EXPECT_EQ(refusal([&] { return Way::lasting(points, -1.0); }), "duration = -1: must be positive and finite");
-  EXPECT_EQ(refusal([&] { return Way::lasting({{0, 0}, {0, 0}}, 1.0); }), "points[1]: must differ from the one before");
+  EXPECT_EQ(refusal([&] {
+              return Way::lasting({{0, 0}, {0, 0}}, 1.0);
+            }),
+            "points[1]: must differ from the previous point");
   EXPECT_EQ(refusal([&] { return Way::within(points, {}); }), "bounds: at least one must limit the tip");
   EXPECT_EQ(refusal([&] { return Way::within(points, {0.0}); }), "velocity = 0: must be positive");
 }

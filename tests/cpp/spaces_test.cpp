@@ -115,11 +115,9 @@ TEST(CoupledArm, moves_its_mimic_joints) {
     return "accepted";
   };
   chain.joints[5].mimic.joint = 3;
-  EXPECT_EQ(refusal(chain),
-            "joint 'panda_joint6'.mimic.joint = 3: must be the index of a joint with a drive of its own");
+  EXPECT_EQ(refusal(chain), "joint 'panda_joint6'.mimic.joint = 3: must be the index of a joint with its own drive");
   chain.joints[5].mimic.joint = 9;
-  EXPECT_EQ(refusal(chain),
-            "joint 'panda_joint6'.mimic.joint = 9: must be the index of a joint with a drive of its own");
+  EXPECT_EQ(refusal(chain), "joint 'panda_joint6'.mimic.joint = 9: must be the index of a joint with its own drive");
   EXPECT_THROW(SerialArm<7>{chain}, std::invalid_argument);
 }
 

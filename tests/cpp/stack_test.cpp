@@ -222,11 +222,11 @@ TEST(Task, names_what_does_not_suit_a_tree) {
   const TaskGains<> gains(1.0, 1.0);
   const auto bound = [&](auto task) { return complaint([&] { task.bind(robot); }); };
   EXPECT_EQ(bound(RelativePoseTask<>{{{9}, gains}, {9}}),
-            "reference_frame: moves with the task's frame, must be of another link");
+            "reference_frame: moves with the task's frame: must be on another link");
   EXPECT_EQ(bound(PoseTask<>{{kTip}, gains}),
             "frame = -1: must be the number of a link: a tree has no tip, name one of its frames");
   EXPECT_EQ(bound(RelativePoseTask<>{{{9}, gains}, {17}}), "frame = 17: must be the number of a link, at most 16");
-  EXPECT_EQ(bound(CenterOfMassTask<>{gains}), "robot: has no mass, must have masses of links");
+  EXPECT_EQ(bound(CenterOfMassTask<>{gains}), "robot: has no mass: give masses of links");
 }
 
 TEST(Direction, difference_turns_one_to_the_other) {

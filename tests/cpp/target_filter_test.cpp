@@ -476,7 +476,7 @@ TEST(TargetFilter, refuses_bad_numbers_by_name) {
     return "accepted";
   };
   EXPECT_EQ(refusal(kBounds, {}, 0.0), "accepted");
-  EXPECT_EQ(refusal(kBounds, {}, kNaN), "x0: must be finite, and its R a rotation");
+  EXPECT_EQ(refusal(kBounds, {}, kNaN), "x0: must be finite, with a rotation R");
   EXPECT_EQ(refusal({0.5, 3.0, 0.0}, {}, 0.0), "jerk = 0: must be positive and finite");
   EXPECT_EQ(refusal({0.5, 3.0, 1.0}, {}, 0.0), "angular_velocity = 0: must be positive and finite");
   EXPECT_EQ(refusal({-0.5, 3.0, 1.0}, {}, 0.0), "velocity = -0.5: must be positive and finite");

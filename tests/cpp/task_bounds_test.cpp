@@ -262,7 +262,7 @@ TEST(TaskBounds, name_what_is_wrong) {
     return complaint([&] { Clearance<7>(chain, {}, {}, 0.0).keep(bounds); });
   };
   AxisBounds<> cone{{kTip}, Vector<3>::UnitZ(), Vector<3>::Zero()};
-  EXPECT_EQ(with(cone), "direction = 0: must be longer: it must point somewhere");
+  EXPECT_EQ(with(cone), "direction = 0: must be a nonzero vector");
   cone.direction = Vector<3>::UnitX();
   cone.lower = -0.1;
   EXPECT_EQ(with(cone), "lower = -0.1: must be finite and not negative");

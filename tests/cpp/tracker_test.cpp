@@ -454,7 +454,7 @@ TEST(Tracker, says_what_is_wrong_with_its_arguments) {
   for (Joint<>& joint : chain.joints) joint.bounds.acceleration = JointBounds<>::kNone;
   const SerialArm<7> unbounded(chain);
   EXPECT_EQ(complaint([&] { CompiledTracker(unbounded, Pose{}, settling(), bent()); }),
-            "limits.acceleration[0] = inf: must be finite where the joint's position or velocity is bounded: give one");
+            "limits.acceleration[0] = inf: must be finite if the joint position or velocity is bounded: give a bound");
   EXPECT_EQ(complaint([] { PathFollower(circle(), Vector<3>(0, 0, 0), 0.0); }),
             "ramp = 0: must be positive and finite");
   const Limits<Level::kAcceleration, 7> slower(panda().limits(), 2e-3);

@@ -340,7 +340,7 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: fp.HalfSpace([0, 0, 0], 1), "normal is zero: must point somewhere"),
+        (lambda: fp.HalfSpace([0, 0, 0], 1), "normal is zero: must be a nonzero vector"),
         (lambda: fp.HalfSpace([0, 0], 1), "normal = [0, 0]: must be real numbers of shape (3,)"),
         (lambda: fp.HalfSpace([0, 0, 1], np.inf), "offset = inf: must be finite"),
         (lambda: fp.Cuboid(2 * np.eye(4), [1, 1, 1]), "pose: must be a homogeneous matrix, with (0, 0, 0, 1) as"),
@@ -368,9 +368,9 @@ BALL = fp.Capsule(0, [0, 0, 0], [0, 0, 0], 0.1, "ball")
             "q0: hand and upper arm are 0.2372 m apart, closer than margin=0.3; give margin=0.2372 or ",
         ),
         (lambda: tracker().move("tabel", TABLE), "name = 'tabel': must be one of the obstacles: table"),
-        (lambda: tracker().move("table", BALL), "shape: must be of the kind that it was"),
+        (lambda: tracker().move("table", BALL), "shape: must have the kind of the obstacle"),
         (lambda: tracker().move("table", TABLE, (0, 0, np.nan)), "velocity[2] = nan: must be finite"),
-        (lambda: tracker(BALL).move("ball", LINKS[0]), "shape.link = 1: must be 0, in the world"),
+        (lambda: tracker(BALL).move("ball", LINKS[0]), "shape.link = 1: must be 0, the base"),
         (lambda: fp.Tracker(PANDA, fp.MAN(), READY).move("x", TABLE), "name = 'x': must be one of the obstacles"),
     ],
 )
@@ -539,4 +539,4 @@ def test_what_is_wrong_is_a_line(in_a_folder: Path, arguments: list[str], line: 
 def test_commands_that_keep_clear_of_nothing_say_so(in_a_folder: Path, name: str) -> None:
     result = call(name, "panda", "--job", "table.toml")
     assert result.exit_code == 1
-    assert result.stderr == f"Error: {name} does not take clearance: leave clearance out, or use track\n"
+    assert result.stderr == f"Error: {name} does not accept clearance: remove clearance, or use track\n"

@@ -349,7 +349,7 @@ RAIL = fp.Robot([fp.TreeJoint(fp.Joint()), fp.TreeJoint(fp.Joint("prismatic", na
         ),
         (
             lambda _: fp.Clearance(ONE).pairs(RAIL),
-            "capsules[0].link = 2: moves with the prismatic joint 'rail', which has no bounds, behind a turning joint",
+            "capsules[0].link = 2: moves with the prismatic joint 'rail', which has no bounds, after a revolute joint",
         ),
         (lambda _: fp.Clearance.preset("three_pandas"), "name = 'three_pandas': must be one of panda, fr3, iiwa14"),
     ],

@@ -120,5 +120,5 @@ def test_ctrl_c(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         last = process.stderr.read().splitlines()[-1]
         assert process.wait(30) == 130
-    assert last == "interrupted; every file written so far is whole"
+    assert last == "interrupted; every written file is complete"
     assert all(file.suffix in (".png", ".pdf") for file in out.iterdir())

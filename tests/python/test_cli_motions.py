@@ -214,7 +214,7 @@ def test_limits() -> None:
     assert "joints on a bound" in call("track", "--job", "job.toml").stdout
     assert "joints on a bound" not in call("track", "--job", "job.toml", "--no-limits").stdout
     fast = call("track", "panda", "--duration", "0.4", "--dt", "0.01").stdout
-    assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps them", fast)
+    assert re.search(r"joints beyond a bound +\d +panda_joint.*: --limits keeps the bounds", fast)
     assert "beyond" not in call("track", "panda", "--duration", "5").stdout
     line = refused("track", "planar:1,1,1", "--limit-velocity", "1")
     assert line.startswith("--limit-acceleration: is missing, and this arm has no acceleration bounds: 10 (rad/s^2) is")
@@ -282,9 +282,7 @@ def test_options_override_a_file() -> None:
 
 def test_paths_of_a_file_are_changed_there() -> None:
     Path("job.toml").write_text("[arm]\nkind = 'planar'\nlengths = [1, 1, 1]\n" + "[[path]]\nkind = 'circle'\n" * 2)
-    assert refused("track", "--job", "job.toml", "--radius", "0.1").startswith(
-        "--radius: there are 2 paths in the file"
-    )
+    assert refused("track", "--job", "job.toml", "--radius", "0.1").startswith("--radius: the file has 2 paths")
     assert call("track", "--job", "job.toml", "--path", "circle", "--radius", "0.1", *QUICK).exit_code == 0
 
 
@@ -301,7 +299,7 @@ def test_a_joint_beyond_a_bound_is_said(name: str) -> None:
     values[50, 2] = -20.0
     assert "beyond" not in summary(run)
     said = summary(replace(run, **{name: values}))
-    assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps them", said)
+    assert re.search("joints beyond a bound +1 +panda_joint3: --limits keeps the bounds", said)
 
 
 def test_a_motion_without_a_sample_is_no_film() -> None:
@@ -327,7 +325,7 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
             "planar:1,1,1,1, "
             "a URDF file; did you mean 'panda'?",
         ),
-        (["planar:1,a"], "ARM = planar:1,a: must be planar: and lengths of links, as planar:1,1,1,1"),
+        (["planar:1,a"], "ARM = planar:1,a: must be planar: and the link lengths, as in planar:1,1,1,1"),
         (["planar:1,-1"], "lengths[1] = -1: must be positive and finite"),
         (["none.urdf", "--tip", "tool"], "cannot read none.urdf: No such file or directory"),
         (["none.urdf"], "cannot read none.urdf: No such file or directory"),
@@ -336,11 +334,11 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
             ["two.urdf", "--tip", "hnd"],
             "--tip = 'hnd': must be a link, perhaps 'hand'; its branches end in 'hand', 'camera'",
         ),
-        (["panda", "--tip", "tool"], "--tip: preset has no such key: must be one of name"),
+        (["panda", "--tip", "tool"], "--tip: is not a key of preset: must be one of name"),
         (["panda", "--radius", "-1"], "--radius = -1: must be positive and finite"),
         (["panda", "--alpha", "x"], "--alpha = 'x': must be a number"),
         (["panda", "--scheme", "fbpm"], "fpbm; did you mean 'fpbm'?"),
-        (["panda", "--scheme", "man", "--alpha", "1"], "--alpha: man has no such key: must be one of null_damping, "),
+        (["panda", "--scheme", "man", "--alpha", "1"], "--alpha: is not a key of man: must be one of null_damping, "),
         (["panda", "--weights", "1,2"], "--weights has 2 entries: must have 7, one per joint"),
         (["panda", "--q0", "0,0"], "--q0 has 2 entries: must have 7, one per joint"),
         (["panda", "--qd0", "0,0"], "--qd0 has 2 entries: must have 7, one per joint"),
@@ -348,9 +346,9 @@ TWO_BRANCHES = """<robot name="two"><link name="base"/><link name="camera"/><lin
         (["panda", "--task", "pos"], "--task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (["panda", "--path", "waypoints", "--duration", "1"], "--points: is missing"),
         (["panda", "--path", "waypoints", "--points", "0,0;1,0"], "times or bounds of velocity: must be given"),
-        (["planar:1,1", "--in-plane", "xy"], "path: it lies in space, and the arm in a plane"),
+        (["planar:1,1", "--in-plane", "xy"], "path: is in space, and the arm is planar: must be a planar path"),
         (["--job", "none.toml"], "cannot read none.toml: No such file or directory"),
-        (["--job", "bad.toml"], "bad.toml: no TOML: "),
+        (["--job", "bad.toml"], "bad.toml: must be valid TOML: "),
         (["--job", "wrong.toml"], "wrong.toml: path.radius = -1: must be positive and finite"),
         (["--job", "wrong.toml", "--radius", "-2"], "--radius = -2: must be positive and finite"),
         (["--job", "wrong.toml", "--radius", "1", "--path", "cirle"], "--path = 'cirle': must be one of "),
@@ -495,11 +493,11 @@ def test_sweep() -> None:
 
 
 def test_sweep_refuses() -> None:
-    assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must be as alpha=0,0.6,1 or ")
-    assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must be as ")
+    assert refused("sweep", "panda", "--vary", "alpha").startswith("--vary alpha: must have the form alpha=0,0.6,1 or ")
+    assert refused("sweep", "panda", "--vary", "alpha=0:1").startswith("--vary alpha=0:1: must have the form ")
     assert "did you mean 'alpha'?" in refused("sweep", "panda", "--vary", "alhpa=1")
     assert refused("sweep", "panda", "--vary", "alpha=2") == "--alpha = 2: must be in [0, 1]"
-    assert "leave qd0 out" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
+    assert "remove qd0" in refused("sweep", "panda", "--qd0", "0,0,0,0,0,0,0")
 
 
 def test_sweep_says_what_became_of_motions_that_stop() -> None:
@@ -614,7 +612,9 @@ def test_view_on_a_port_in_use() -> None:
 @posix
 def test_ctrl_c_ends_the_viewer_in_peace() -> None:
     pytest.importorskip("viser")
-    out, err, code = interrupted(["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C ends it.", 1.0)
+    out, err, code = interrupted(
+        ["view", "panda", *QUICK, "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0
+    )
     assert (code, err, out) == (0, "", "")  # Its address is printed once.
 
 
@@ -721,7 +721,7 @@ def test_servo_says_what_is_wrong() -> None:
     assert refused("servo", "panda", "--q0", "1,2").startswith("--q0 has 2 entries")
     assert refused("servo", "robot").startswith("ARM = 'robot': must be one of")
     Path("job.toml").write_text("[arm]\nkind = 'preset'\nname = 'panda'\n[run]\nqd0 = [0.1, 0, 0, 0, 0, 0, 0]")
-    assert refused("servo", "--job", "job.toml") == "servo begins at rest: leave qd0 out, or use track"
+    assert refused("servo", "--job", "job.toml") == "servo starts at rest: remove qd0, or use track"
     pytest.importorskip("viser")
     assert refused("servo", "panda", "--q0", "9,0,0,-2,0,2,0") == "--q0[0] = 9: must be within the joint's range"
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -732,7 +732,7 @@ def test_servo_says_what_is_wrong() -> None:
 @posix
 def test_ctrl_c_ends_servo_in_peace() -> None:
     pytest.importorskip("viser")
-    out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C ends it.", 1.0)
+    out, err, code = interrupted(["servo", "panda", "--port", "0", "--no-browser"], ": Ctrl-C stops the server.", 1.0)
     assert (code, err, out) == (0, "", "")
 
 
@@ -758,7 +758,7 @@ def test_bench() -> None:
     for name in ("MVN", "WMVN", "MAN", "WMVNAcceleration", "Balanced", "FPBM"):
         assert all(0.01 < float(number) < 1000 for number in rows[name])
         assert len(rows[name]) == 3
-    assert all(float(number) > 0 for number in rows["motions a second"])
+    assert all(float(number) > 0 for number in rows["motions per second"])
     assert max(map(len, result.stdout.splitlines())) <= 100
 
 

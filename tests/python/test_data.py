@@ -382,7 +382,7 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
     ("table", "makers", "words"),
     [
         (3, PATHS, ["path = 3: must be a table"]),
-        ([], PATHS, ["path = []: must be one at least"]),
+        ([], PATHS, ["path = []: must have at least one path"]),
         ({}, PATHS, ["path.kind: is missing: must be one of circle, lissajous, tricuspid, line, waypoints"]),
         ({"kind": "cirle"}, PATHS, ["path.kind = 'cirle': must be one of", "; did you mean 'circle'?"]),
         ({"kind": ["circle"]}, PATHS, ["path.kind = ['circle']: must be one of"]),
@@ -391,7 +391,7 @@ CIRCLE = {"kind": "circle", "radius": 1, "duration": 1}
         (
             {**CIRCLE, "radus": 1},
             PATHS,
-            ["path.radus: circle has no such key", "rotation_time_law; did you mean 'radius'?"],
+            ["path.radus: is not a key of circle", "rotation_time_law; did you mean 'radius'?"],
         ),
         ({"kind": "circle", "radius": 1}, PATHS, ["path.duration: is missing"]),
         ({**CIRCLE, "in_plane": "xw"}, PATHS, ["path.in_plane = 'xw': must be one of xy, xz, yx, yz, zx, zy"]),
@@ -427,5 +427,5 @@ def test_path_options_are_those_of_the_paths():
 
 
 def test_only_what_is_ours_makes_a_table():
-    with pytest.raises(TypeError, match="must be a thing of this package"):
+    with pytest.raises(TypeError, match="must be an object of this package"):
         to_table(object())

@@ -436,7 +436,7 @@ def test_command_writes_robots(arm: Path) -> None:
     for wrong in ((arm, "--capsules"), ("two_pandas", "--capsules")):
         result = call(*wrong, "-o", "-")
         assert result.exit_code == 2
-        assert "--capsules are those of an arm: give one --tip." in result.output
+        assert "--capsules are for an arm only: give one --tip." in result.output
 
 
 @pytest.mark.parametrize("preset", ["panda", "two_pandas"])

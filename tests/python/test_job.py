@@ -382,7 +382,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         read_job(tmp_path / "none.toml")
     for content in (b"[arm", b"a = ", b"\xff", b"[arm]\n[arm]\n"):
         (tmp_path / "bad.toml").write_bytes(content)
-        with pytest.raises(JobError, match="no TOML: "):
+        with pytest.raises(JobError, match="must be valid TOML: "):
             read_job(tmp_path / "bad.toml")
 
 
@@ -410,7 +410,7 @@ LAWS = "sin_squared, quintic, constant_speed"
         ("[arm]\nkind = 'joints'\njoints = [{}, {axis = 'x'}]", "arm.joints[1].axis = 'x': must be real numbers"),
         (
             f"{ARM}[pth]",
-            "pth: a job has no such key: must be one of arm, path, scheme, task, run, limits, bounds, clearance; "
+            "pth: is not a key of a job: must be one of arm, path, scheme, task, run, limits, bounds, clearance; "
             "did you mean 'path'?",
         ),
         (f"{ARM}[path]\nkind = 'cirle'", f"path.kind = 'cirle': must be one of {SHAPES}; did you mean 'circle'?"),
@@ -431,7 +431,7 @@ LAWS = "sin_squared, quintic, constant_speed"
             "path.frequencies[1] = 1.5: must be a whole number",
         ),
         (f"{ARM}[path]\nkind = 'waypoints'\npoints = [[0, 0], [1, 0]]", "path.duration, times or bounds of velocity"),
-        (f"path = []\n{ARM}", "path = []: must be one at least"),
+        (f"path = []\n{ARM}", "path = []: must have at least one path"),
         (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 'a'", "path[1].radius = 'a': must be"),
         (f"{ARM}[[path]]\nkind = 'circle'\n[[path]]\nkind = 'circle'\nradius = 0", "path[1].radius = 0: must be"),
         (f"{ARM}[scheme]\nkind = 'fbpm'", f"scheme.kind = 'fbpm': must be one of {KINDS}; did you mean 'fpbm'?"),
@@ -441,11 +441,11 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"{ARM}[scheme]\nkind = 'fpbm'\nweights = [1, 2]", "scheme.weights has 2 entries: must have 7, one per joint"),
         (
             f"{ARM}[scheme]\nkind = 'man'\nalpha = 0.5",
-            "scheme.alpha: man has no such key: must be one of null_damping, ",
+            "scheme.alpha: is not a key of man: must be one of null_damping, ",
         ),
         (f"{ARM}[[task]]\nkind = 'posture'", "run.task: must be the name of a position or a pose of the stack"),
         (f"{ARM}[[task]]\nkind = 'pose'\n[run]\ntask = 'seam'", "run.task = 'seam': must be the name of a position or"),
-        (f"{ARM}[[task]]\nkind = 'pose'\nlevel = 1", "task.level = 1: must be less, as level 0 is empty"),
+        (f"{ARM}[[task]]\nkind = 'pose'\nlevel = 1", "task.level = 1: level 0 has no task: number the levels from 0"),
         (
             f"{ARM}[[task]]\nkind = 'pose'\nframe = 'hand'",
             "frame = 'hand': must be a frame, or the joint of a link: 'base', 'tip'",
@@ -453,18 +453,18 @@ LAWS = "sin_squared, quintic, constant_speed"
         (f"task = 1\n{ARM}", "task = 1: must be a table"),
         (f"{ARM}[[bounds]]\nupper = 1", "bounds[0].task: is missing"),
         (f"{ARM}[[bounds]]\ntask = {{kind = 'pose'}}", "bounds[0].task.kind = 'pose': must be one of position, axis"),
-        (f"{ARM}[[bounds]]\ntask = {{kind = 'axis'}}\nupper = 1", "task.x: must be given, the direction from which"),
+        (f"{ARM}[[bounds]]\ntask = {{kind = 'axis'}}\nupper = 1", "task.x: must be given: the bounded angle"),
         (f"{ARM}[run]\ntask = 'pos'", "run.task = 'pos': must be one of position, pose; did you mean 'pose'?"),
         (f"{ARM}[run]\nq0 = [1, 2]", "run.q0 has 2 entries: must have 7, one per joint"),
         (f"{ARM}[run]\ndt = 0.3", "run.dt = 0.3: must be a divisor of duration = 10"),
         (f"{ARM}[limits]\nvelocity = [1, 2]", "limits.velocity has 2 entries"),
         (
             "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[run]\ntask = 'pose'",
-            "run.task: it has 3 rows, and the arm 2 joints",
+            "run.task: has 3 rows, and the arm has 2 joints",
         ),
         (
             "[arm]\nkind = 'planar'\nlengths = [1, 1]\n[path]\nkind = 'circle'\nin_plane = 'xy'",
-            "path: it lies in space",
+            "path: is in space",
         ),
     ],
 )

@@ -128,7 +128,7 @@ def test_claims(done: Reproduction) -> None:
     assert "MAN 0.431 (Fig. 1), FPBM 0.305 (Fig. 2)" in peak
     assert done.claims[1].verdict == "corrected (holds only on: circle)"
     assert "W_5 0.066 < W_6 0.084" in weights
-    assert "the joints move on by 0.66 rad" in rest
+    assert "the joints move by 0.66 rad" in rest
     assert "from 0.30 to 2.62 rad/s (circle 13)" in rest
     assert "the joints move by 0.0043 rad" in cure
 

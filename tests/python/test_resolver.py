@@ -169,7 +169,7 @@ def test_repr_and_level():
         (lambda: fp.WMVN("heavy"), "weights = 'heavy': must be real numbers"),
         (lambda: fp.WMVN(np.ones((2, 2, 2))), r"weights = .*: must be real numbers of shape \(n,\) or \(n, n\)"),
         (lambda: fp.WMVN(np.ones((2, 3))), r"weights = .*: must be real numbers of shape \(n,\) or \(n, n\)"),
-        (lambda: fp.WMVN([[1, 2], [0, 1]]), r"weights\[1, 0\] = 0: must be equal to its mirror image"),
+        (lambda: fp.WMVN([[1, 2], [0, 1]]), r"weights\[1, 0\] = 0: must be equal to the transposed entry"),
         (lambda: fp.WMVN([[1, 2], [2, 1]]), r"weights\[1, 1\] = 1: must be larger: W is not positive definite"),
         (lambda: fp.WMVN([[1, np.inf], [np.inf, 1]]), r"weights\[0, 1\] = inf: must be finite"),
         (lambda: fp.WMVN([1, 1], k=-1), "k = -1: must be finite and not negative"),
@@ -180,7 +180,7 @@ def test_repr_and_level():
         (lambda: fp.FPBM(0.5, [1, 1], 1, np.inf), "k2 = inf: must be finite and not negative"),
         (lambda: fp.MAN(null_damping=-2), "null_damping = -2: must be finite and not negative"),
         (lambda: fp.MAN(rest_posture=[0, 0]), "null_stiffness = 0: must be positive"),
-        (lambda: fp.MAN(null_stiffness=1), "null_stiffness = 1: must be 0 where no rest_posture is given"),
+        (lambda: fp.MAN(null_stiffness=1), "null_stiffness = 1: must be 0 without rest_posture"),
         (lambda: fp.MAN(c=[0, np.nan]), r"c\[1\] = nan: must be finite"),
         (lambda: fp.FPBM(0.5, [1, 1], 1, 1, c=[0, 0, 0]), "c has 3 entries: must have 2"),
     ],
@@ -197,7 +197,7 @@ def test_bad_parameters(make, words):
         ({"qd": [0, 0, 0, np.inf]}, r"qd\[3\] = inf"),
         ({"x": [0, 0, 0]}, "x has 3 entries: must have 2"),
         ({"xd": [0, np.nan]}, r"xd\[1\] = nan"),
-        ({"xdd": None}, "xdd: an acceleration-level scheme needs it"),
+        ({"xdd": None}, "xdd: must be given for an acceleration-level scheme"),
         ({"task": "pose"}, "x has 2 entries: must have 3"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
     ],
@@ -301,7 +301,7 @@ def test_many_states_of_an_arm_in_the_plane(arm, q0):
         ({"x": np.array([np.eye(4)] * 4 + [2 * np.eye(4) - np.diag([0, 0, 0, 1])])}, r"x\[4\].R: must be a rotation"),
         ({"x": np.zeros((5, 3))}, r"x: must have shape \(4, 4\), got \(5, 3\)"),
         ({"xd": np.zeros((5, 3))}, r"xd: must have shape \(5, 6\), got \(5, 3\)"),
-        ({"xdd": None}, "xdd: an acceleration-level scheme needs it"),
+        ({"xdd": None}, "xdd: must be given for an acceleration-level scheme"),
     ],
 )
 def test_bad_arguments_of_many_states(change, words):
@@ -331,7 +331,7 @@ def test_kinematics_of_ones_own(q0):
 
     without_rate = fp.Kinematics([0.0, 0.0, 3.0], J)
     np.testing.assert_allclose(J @ fp.MVN().resolve(without_rate, q0, qd, [0, 0, 0], [1, 2, 3]), [1, 2, 3], atol=1e-12)
-    with pytest.raises(ValueError, match="Jd: an acceleration-level scheme needs it"):
+    with pytest.raises(ValueError, match="Jd: must be given for an acceleration-level scheme"):
         scheme.resolve(without_rate, *asked)
 
 
@@ -356,7 +356,7 @@ def test_bad_kinematics(make, words):
 
 def test_a_task_of_more_rows_than_joints():
     arm = fp.PlanarArm([1, 1])
-    with pytest.raises(ValueError, match="task: it has 3 rows, and the arm 2 joints"):
+    with pytest.raises(ValueError, match="task: has 3 rows, and the arm has 2 joints"):
         fp.MVN().resolve(arm, [0.1, 0.2], [0, 0], [0, 0, 0], [0, 0, 0], task="pose")
-    with pytest.raises(ValueError, match="task: it has 3 rows, and the arm 2 joints"):
+    with pytest.raises(ValueError, match="task: has 3 rows, and the arm has 2 joints"):
         fp.simulate(arm, fp.Circle(0.1, 1.0), fp.MVN(), [0.1, 0.2], task="pose")

@@ -157,7 +157,7 @@ def test_jacobians_are_those_of_the_led_tasks() -> None:
     ("change", "words"),
     [
         ({"stack": None}, "stack: must be given for a Robot"),
-        ({"stack": None, "path": PATHS}, "path = .*: must be one path, or paths by the names of tasks of a stack"),
+        ({"stack": None, "path": PATHS}, "path = .*: must be one path, or paths by task names of a stack"),
         ({"path": {}}, "path = {}: must be one path"),
         ({"path": {"lift": PATHS["left"]}}, "task = 'lift': must be the name of a position or a pose"),
         ({"path": {"left": 3}}, r"path\['left'\] = 3: must be a path"),
@@ -356,7 +356,7 @@ def test_the_command_line_says_what_is_wrong(urdf: Path) -> None:
         (["track", "robot.urdf", "--task", "left_tool", "--locked", "nek=1"], "--locked has 'nek'"),
         (["track", "robot.urdf", "--task", "pose"], "--tip = '': must be a link"),
         (["track", "panda", "--task", "pose", "--task", "position"], "--task: must be given once"),
-        (["sweep", "two_pandas", "--task", "left_tip"], "arm: must be an arm, along one path"),
+        (["sweep", "two_pandas", "--task", "left_tip"], "arm: must be an arm on one path"),
     ]:
         result = testing.CliRunner().invoke(cli.command, words)
         assert result.exit_code == 1, result.output

@@ -248,7 +248,7 @@ def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
     here = fp.simulate(FLAT, fp.Circle(0.2, 1.0), fp.WMVN(pandas.Series([1.0, 2, 3, 1 / 3])), q0, dt=0.01)
     there = fp.simulate(FLAT, fp.Circle(0.2, 1.0), through_file(here, tmp_path).scheme, q0, dt=0.01)
     assert bits(here) == bits(there)
-    with pytest.raises(TypeError, match="must be a thing of this package"):
+    with pytest.raises(TypeError, match="must be an object of this package"):
         replace(run, options={"dt": {1, 2}}).save(tmp_path / "run.npz")
 
 
@@ -256,10 +256,10 @@ def test_what_other_libraries_have_for_arrays(q0, run, tmp_path):
 NO_PATHS = {
     "another module's": ({"kind": "os.system"}, r"path.kind = 'os.system': must be one of circle, .*sequence"),
     "nothing": ({}, "path.kind: is missing"),
-    "unhashable": ({"kind": ["circle"]}, "holds no run"),
+    "unhashable": ({"kind": ["circle"]}, "is not a valid run"),
     "wrong numbers": ({"kind": "circle", "radius": -1.0, "duration": 1.0}, "path.radius = -1: must be positive"),
     "wrong kinds": ({"kind": "circle", "radius": "x", "duration": 1.0}, "path.radius = 'x': must be a number"),
-    "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: circle has no such key"),
+    "too many": ({"kind": "circle", "radius": 1.0, "duration": 1.0, "x": 1}, "path.x: is not a key of circle"),
     "too few": ({"kind": "circle", "radius": 1.0}, "path.duration: is missing"),
     "no table": (7, "path = 7: must be a table"),
     "no array": ({"kind": "waypoints", "points": [[0], [1, 1]], "duration": 1}, "path.points = .*: must be real"),
@@ -319,20 +319,20 @@ def test_a_file_that_names_other_files_is_refused(table, run, tmp_path):
 @pytest.mark.parametrize(
     ("change", "members", "words"),
     [
-        ({"version": 2}, {}, r"its format 2 is newer than 1, .*: upgrade fpbm_cpp"),
-        ({"version": "1"}, {}, "its format is 'fpbm_cpp run' '1'"),
-        ({"format": "other"}, {}, "its format is 'other' 1"),
+        ({"version": 2}, {}, r"format 2 is newer than 1, .*: upgrade fpbm_cpp"),
+        ({"version": "1"}, {}, "has the format 'fpbm_cpp run' '1'"),
+        ({"format": "other"}, {}, "has the format 'other' 1"),
         ({"status": {"code": "BORED", "time": 1.0, "q": []}}, {}, "BORED"),
         ({"task": "dance"}, {}, "task = 'dance'"),
-        ({"options": 7}, {}, "holds no run"),
-        ({}, {"meta": None}, "says nothing of arm, path and scheme"),
-        ({}, {"meta": np.array("{")}, "must be a whole file that a run was saved to"),
-        ({}, {"meta": np.array("[" * 100_000)}, "must be a whole file that a run was saved to"),
-        ({}, {"q": None}, "holds no run: .*q"),
+        ({"options": 7}, {}, "is not a valid run"),
+        ({}, {"meta": None}, "has no arm, path and scheme"),
+        ({}, {"meta": np.array("{")}, "must be a complete file from Run.save"),
+        ({}, {"meta": np.array("[" * 100_000)}, "must be a complete file from Run.save"),
+        ({}, {"q": None}, "is not a valid run: .*q"),
         ({}, {"q": np.zeros((101, 3))}, r"q has shape \(101, 3\) and type float64: must have \(101, 4\) and float64"),
         ({}, {"x": np.zeros((101, 3))}, r"x has shape \(101, 3\)"),
         ({}, {"t": np.zeros(100)}, "has shape"),
-        ({}, {"t": np.zeros(())}, "holds no run"),
+        ({}, {"t": np.zeros(())}, "is not a valid run"),
         ({}, {"q": np.zeros((101, 4), int)}, "type int64: must have"),
         ({}, {"saturated": np.zeros((101, 4))}, r"saturated has shape \(101, 4\) and type float64"),
     ],
@@ -369,7 +369,7 @@ def test_a_file_that_is_no_run_is_refused(run, tmp_path):
     broken = [pickled.getvalue(), single.getvalue(), archive.getvalue(), bytes(damaged), b"", b"\x80\x04N."]
     for content in (*broken, *(whole[:n] for n in range(1, len(whole), 997)), whole[:-1]):
         file.write_bytes(content)
-        with pytest.raises(ValueError, match=r"run\.npz: must be a whole file that a run was saved to"):
+        with pytest.raises(ValueError, match=r"run\.npz: must be a complete file from Run.save"):
             fp.load(file)
     with pytest.raises(FileNotFoundError):
         fp.load(tmp_path / "none.npz")

@@ -173,12 +173,12 @@ def test_three_tasks_by_hand():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"levels": []}, "levels: must be one at least"),
+        ({"levels": []}, "levels: must have at least one level"),
         ({"levels": [([[1, 0]], [1, 2])]}, r"levels\[0\]'s b"),
         ({"levels": [([[1, 0, 0]], [1])]}, r"levels\[0\]'s J"),
         ({"levels": [([[1, np.nan]], [1])]}, "finite"),
         ({"levels": [(np.zeros((65, 2)), np.zeros(65))]}, "number of rows"),
-        ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper, which is 1"),
+        ({"lower": [0, 2]}, r"lower\[1\] = 2: must be at most upper = 1"),
         ({"upper": [1, np.nan]}, r"upper\[1\]"),
         ({"rest": [0, 3]}, r"rest\[1\] = 3: must be from lower to upper"),
         ({"unit": [1, 0]}, r"unit\[1\] = 0: must be positive"),

@@ -127,7 +127,7 @@ def test_followers_keep_their_bounds(seed):
 
 def test_a_joint_without_room_is_named():
     joints = [fp.Joint(name="a", lower=0, upper=1), fp.Joint(name="b", lower=3, upper=4, mimic=(0, 2.0, 0.5))]
-    with pytest.raises(ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1 for its followers to keep"):
+    with pytest.raises(ValueError, match=r"joint 'a'.lower = 1.25: must be below upper = 1 for its mimic joints"):
         fp.SerialArm(joints)
 
 
@@ -157,7 +157,7 @@ def test_bounds_of_a_table():
             lambda: fp.SerialArm([fp.Joint("helical")]),
             "type = 'helical': must be one of revolute, continuous, prismatic",
         ),
-        (lambda: fp.SerialArm([fp.Joint(axis=[0, 0, 0])]), "axis is zero: must point somewhere"),
+        (lambda: fp.SerialArm([fp.Joint(axis=[0, 0, 0])]), "axis is zero: must be a nonzero vector"),
         (lambda: fp.SerialArm([fp.Joint(axis=[0, 1])]), r"axis = \[0, 1\]: must be real numbers of shape \(3,\)"),
         (
             lambda: fp.SerialArm([fp.Joint(placement=np.eye(3))]),

@@ -90,14 +90,14 @@ def test_a_handle_stands_for_a_target(which, task):
 
 
 def test_it_says_how_the_arm_fares(servo):
-    until(lambda: "all is well" in says(servo))
+    until(lambda: "the whole task is executed" in says(servo))
     servo.target = [8.0, 3.0]
-    until(lambda: "a lower level has stopped. It follows as fast as its joints may." in says(servo))
-    until(lambda: "it rests. Drag the handle into reach" in says(servo))
+    until(lambda: "a lower level has stopped. The tip follows as fast as the joint limits admit." in says(servo))
+    until(lambda: "the arm stops. Drag the handle into the workspace" in says(servo))
     assert servo.status is fp.Status.STALLED
     assert "100 %" in says(servo)
     servo.target = [1.5, 2.0]
-    until(lambda: "all is well" in says(servo) and "0.000 m" in says(servo))
+    until(lambda: "the whole task is executed" in says(servo) and "0.000 m" in says(servo))
     np.testing.assert_allclose(servo.tip, [1.5, 2.0], atol=1e-3)
     shown = np.array(servo._chart._plot.data)
     assert shown.shape == (5, 200)
@@ -108,7 +108,7 @@ def test_stop_go_on_and_back(servo):
     servo.target = [1.0, 2.0]
     until(lambda: servo.tick and np.abs(servo.tick.qd).max() > 0.1)
     servo.stop()
-    assert servo._button.label == "go on"
+    assert servo._button.label == "continue"
     until(lambda: "stopped: the arm is at rest" in says(servo))
     stopped = servo.q
     time.sleep(0.2)
@@ -131,9 +131,9 @@ def test_the_page_chooses_schemes(servo):
     assert isinstance(servo.scheme, fp.WMVN)
     controls._weights[0].value = -1.0
     controls._on_update(CLICK)
-    until(lambda: "not taken: weights" in says(servo))
+    until(lambda: "rejected: weights" in says(servo))
     controls._reset(fpbm(4))
-    until(lambda: "not taken" not in says(servo))
+    until(lambda: "rejected" not in says(servo))
     assert servo.scheme == fpbm(4)
 
 
@@ -153,7 +153,7 @@ def test_it_keeps_clear_of_what_is_dragged_to_it():
         ((place, grip),) = servo._scene._grips  # Not the wall's.
         np.testing.assert_allclose(place, [2.2, 0.3, 0])
         servo.target = [2.2, 0.0]
-        until(lambda: "Drag the handle round the nearest shape." in says(servo))
+        until(lambda: "Drag the handle around the nearest shape." in says(servo))
         until(lambda: f"{servo.tick.nearest.distance:.3f} m" in says(servo))  # The arm still brakes.
         assert "post" in says(servo)
         servo.target = [2.6, 2.4]
@@ -232,7 +232,7 @@ def test_targets_of_a_stack_are_a_dictionary(stacked):
         ({"palce": before["place"]}, "task = 'palce': must be one of .*; did you mean 'place'"),
         ({"upright": [0, 0, 0]}, "target of 'upright': must be finite"),
         ({"place": [0, 0, np.nan]}, "target of 'place': must be finite"),
-        ([0, 0, 0], "target = .*: must be a dictionary of points by the names of the tasks"),
+        ([0, 0, 0], "target = .*: must be a dictionary of points by task names"),
     ]:
         with pytest.raises(ValueError, match=words):
             stacked.target = lie
@@ -241,12 +241,12 @@ def test_targets_of_a_stack_are_a_dictionary(stacked):
 
 
 def test_it_says_how_each_task_and_level_fares(stacked):
-    until(lambda: "all is well" in says(stacked))
+    until(lambda: "the whole task is executed" in says(stacked))
     levels = ["upright, place", "elbow", "turn", "home"]
     for text in (*(f"scale of {level}" for level in levels), *(f"from {name} to handle" for name in stacked.tip)):
         assert (text in says(stacked)) == ("home to" not in text), text
     stacked.target = {"place": stacked.target["place"] + [2.0, 0, 0]}  # Out of reach.
-    until(lambda: "Drag the handle into reach" in says(stacked))
+    until(lambda: "Drag the handle into the workspace" in says(stacked))
     frame = stacked._loop.frame("place")[:3, 3]
     assert f"{np.linalg.norm(stacked.target['place'] - frame):.3f} m" in says(stacked)
     labels = [series["label"] for series in stacked._chart._plot.series]
@@ -262,7 +262,7 @@ def test_schemes_beside_a_stack_have_no_gains(stacked):
         controls._on_update(SimpleNamespace(client="somebody", target=controls._kind))
         assert type(stacked.scheme).__name__ == kind
         assert not any(controls._sliders[name].visible for name in ("k1", "k2", "k"))
-    assert "not taken" not in says(stacked)
+    assert "rejected" not in says(stacked)
     for name, x in target.items():
         np.testing.assert_array_equal(stacked.target[name], x)
 
@@ -296,7 +296,7 @@ def test_it_serves_until_it_is_closed():
         ({"q0": [9, 0, 0, 0]}, r"q0\[0\] = 9: must be within"),
         ({"clearance": 3}, "clearance: must be a Clearance"),
         ({"port": -1}, "port = -1"),
-        ({"urdf": "none.urdf"}, "must be left out where the arm is planar"),
+        ({"urdf": "none.urdf"}, "must not be given for a planar arm"),
         ({"targets": fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)}, "another task"),
         ({"stack": fp.PoseTask()}, "stack: must be a Stack"),
     ],
@@ -332,7 +332,7 @@ def test_it_prints_its_address_and_ctrl_c_closes_it():
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         said = child.stdout.readline()
         assert said, child.stderr.read()
-        with urllib.request.urlopen(said.removesuffix(": Ctrl-C ends it.\n")) as page:
+        with urllib.request.urlopen(said.removesuffix(": Ctrl-C stops the server.\n")) as page:
             assert b"<html" in page.read()
         child.send_signal(signal.SIGINT)
         rest, errors = child.communicate(timeout=30)
@@ -404,12 +404,12 @@ def test_dragged_in_a_browser(page, servo):
     for goal in ([2.0, 2.5], [2.5, 1.0]):
         drag(page, servo, goal)
         eventually(page, lambda: np.abs(servo.tip - servo.target).max() < 0.01)
-    page.get_by_text("all is well").wait_for()
+    page.get_by_text("the whole task is executed").wait_for()
     drag(page, servo, [4.5, 2.0])
-    page.get_by_text("it rests. Drag the handle into reach").wait_for()
+    page.get_by_text("the arm stops. Drag the handle into the workspace").wait_for()
     assert np.linalg.norm(servo.target) > 4 > np.linalg.norm(servo.tip) > 3
     drag(page, servo, [1.0, 2.0])
-    page.get_by_text("all is well").wait_for()
+    page.get_by_text("the whole task is executed").wait_for()
     eventually(page, lambda: np.abs(servo.tip - servo.target).max() < 0.01)
 
     drawn = "Object.values(window.__viserTestpoints.uplots)[0].chart.data"
@@ -418,8 +418,8 @@ def test_dragged_in_a_browser(page, servo):
     assert all(0 < share <= 100.001 for share in shares)
     page.get_by_role("button", name="stop").click()
     page.get_by_text("stopped: the arm is at rest").wait_for()
-    page.get_by_role("button", name="go on").click()
-    page.get_by_text("all is well").wait_for()
+    page.get_by_role("button", name="continue").click()
+    page.get_by_text("the whole task is executed").wait_for()
     page.get_by_role("button", name="back to start").click()
     eventually(page, lambda: np.abs(servo.q - BENT).max() < 1e-6)
 

@@ -329,7 +329,7 @@ def test_what_does_not_suit_is_refused():
     with pytest.raises(ValueError, match=r"limits.acceleration\[0\] = inf: must be finite"):
         ServoLoop(bent, fpbm(3), [0.1, 1, 1], limits=limits)
     other = fp.TargetFilter([0, 0, 0], velocity=1, acceleration=1, jerk=1)
-    with pytest.raises(ValueError, match="it is for another task"):
+    with pytest.raises(ValueError, match="is for another task"):
         a_loop("panda", "pose", targets=other)
     with pytest.raises(ValueError, match="dt"):
         a_loop("panda", "position", targets=other, dt=0.002)

@@ -183,7 +183,7 @@ def test_what_does_not_suit_is_refused():
         ({"targets": {"upright": plain}}, "targets = 'upright': must be one of place, elbow"),
         ({"targets": {"place": late}}, "filter's dt"),
         ({"targets": {"place": 3}}, "place"),
-        ({"stack": fp.Stack(fp.PoseTask()), "targets": {"pose": plain}}, "it is for another task than 'pose'"),
+        ({"stack": fp.Stack(fp.PoseTask()), "targets": {"pose": plain}}, "is for another task than 'pose'"),
         ({"scheme": fp.FPBM(0.6, WEIGHTS, 10, 25)}, "k1 = 10: must be 0"),
     ]:
         with pytest.raises(ValueError, match=words):

@@ -289,10 +289,10 @@ def test_stacks_are_values():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: fp.Stack(), "must be one at least"),
+        (lambda: fp.Stack(), "must have at least one level"),
         (lambda: fp.Stack([]), "levels.0. is empty"),
         (lambda: fp.Stack(3), "must be a task"),
-        (lambda: fp.Stack(fp.PoseTask(), fp.PoseTask()), "a second task of the name 'pose'"),
+        (lambda: fp.Stack(fp.PoseTask(), fp.PoseTask()), "a second task with the name 'pose'"),
         (lambda: fp.PositionTask(rows=("x", "q")), "rows = 'q': must be one of"),
         (lambda: fp.PositionTask(rows="xy"), "must be some of"),
         (lambda: fp.PositionTask(rows=("x", "x")), "twice"),
@@ -379,12 +379,12 @@ def test_wrong_references_change_nothing(panda, balanced):
     tracker = fp.Tracker(panda, balanced, READY, stack=cup())
     place = tracker.tip["place"]
     for references, message in [
-        ({"cup": place}, "task = 'cup': must be one of the stack's, 'upright'"),
+        ({"cup": place}, "task = 'cup': must be a task of the stack: 'upright'"),
         ({"place": place[:2]}, "place has 2 entries"),
         ({"place": place * np.nan}, r"place\[0\] = nan"),
         ({"elbow": place + 1, "upright": (0, 0, 0)}, "upright is zero"),
         ({"place": (place, [1, 2])}, "place's xd has 2 entries: must have 3$"),
-        ({3: place}, "references: the keys of the dictionary must be the names of the tasks"),
+        ({3: place}, "references: the keys of the dictionary must be task names"),
         ({"upright": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1)}, "another task than 'upright'"),
         ({"place": fp.TargetFilter(place, velocity=1, acceleration=1, jerk=1, dt=2e-3)}, "filter's dt"),
         (place, "must be given a dictionary"),

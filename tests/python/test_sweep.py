@@ -151,7 +151,7 @@ def test_a_choice_of_lanes_that_is_none():
     environment = {**os.environ, "FPBM_LANES": "avx1024"}
     run = subprocess.run([sys.executable, "-c", "import fpbm_cpp"], env=environment, capture_output=True, text=True)
     assert run.returncode != 0
-    assert "FPBM_LANES is 'avx1024', but must be one of 'avx512', 'avx2', 'none', or unset" in run.stderr
+    assert "FPBM_LANES = 'avx1024': must be one of 'avx512', 'avx2', 'none', or unset" in run.stderr
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -511,18 +511,18 @@ def test_ctrl_c_stops_at_once(tmp_path, executor, hold):
         ({"hold": -1}, "hold = -1"),
         ({"q0s": [0, 0, 0]}, "q0s has 3 entries: must have 4"),
         ({"q0s": [[0, 0, 0]]}, "a row of q0s has 3 entries: must have 4"),
-        ({"q0s": np.zeros((0, 4))}, "q0s: must have one row at least"),
+        ({"q0s": np.zeros((0, 4))}, "q0s: must have at least one row"),
         ({"q0s": [[0, 0, 0, 0], [0, 0, 0, np.inf]]}, r"q0s\[1, 3\] = inf: must be finite"),
         ({"q0s": [0, np.nan, 0, 0]}, r"q0s\[1\] = nan: must be finite"),
         ({"q0s": np.zeros((1, 1, 4))}, r"q0s: must have shape \(n,\) or \(K, n\), got shape \(1, 1, 4\)"),
         ({"q0s": "home"}, "q0s: must be real numbers"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
-        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
-        ({"schemes": []}, "schemes: must be one at least"),
+        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: is in space, and the arm is planar: must be a planar path"),
+        ({"schemes": []}, "schemes: must have at least one scheme"),
         ({"schemes": [fp.MVN(), fp.WMVN([1, 2, 3])]}, r"schemes\[1\]: weights has 3 entries: must have 4"),
         ({"schemes": fp.MAN(c=[0, 0])}, r"schemes\[0\]: c has 2 entries: must have 4"),
         ({"workers": 0}, "workers = 0: must be 1 at least"),
-        ({"workers": 1, "executor": Broken()}, "workers: must be left out where there is an executor"),
+        ({"workers": 1, "executor": Broken()}, "workers: must not be given with an executor"),
     ],
 )
 def test_bad_arguments(arm, circle, q0, change, words):

@@ -91,7 +91,7 @@ def test_a_run_keeps_its_bounds():
     ("make", "words"),
     [
         (lambda: fp.TaskBounds(fp.PostureTask(), 1), "must be a PositionTask or an AxisTask"),
-        (lambda: fp.TaskBounds(fp.AxisTask(), upper=1), "task.x: must be given, the direction"),
+        (lambda: fp.TaskBounds(fp.AxisTask(), upper=1), "task.x: must be given: the bounded angle"),
         (lambda: fp.TaskBounds(fp.AxisTask(x=[0, 0, 1]), -0.1), r"lower = -0.1: must be an angle from 0 to pi"),
         (lambda: fp.TaskBounds(fp.PositionTask(rows=("x",)), [1, 2], 3), "lower has 2 entries: must have 1"),
         (lambda: fp.TaskBounds(fp.PositionTask(), 1, [2, 3, 0]), r"lower\[2\] = 1: must be below upper"),

@@ -182,7 +182,7 @@ def test_it_goes_through_pickle_with_its_limits(q0):
         ({"q0": [4, 0, 0, 0], "limits": TIGHT}, r"q0\[0\] = 4: must be within"),
         ({"qd0": [0, 0]}, "qd0 has 2 entries: must have 4"),
         ({"task": "speed"}, "task = 'speed': must be 'position' or 'pose'"),
-        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: it lies in space, and the arm in a plane"),
+        ({"path": fp.Line([1, 2, 3], 1.0)}, "path: is in space, and the arm is planar: must be a planar path"),
         ({"scheme": fp.WMVN([1, 2, 3])}, "weights has 3 entries: must have 4"),
         ({"error_bound": -1}, "error_bound = -1: must be positive"),
         ({"integral_gain": -1}, "integral_gain = -1"),

@@ -253,7 +253,7 @@ def test_bad_references(panda, settling):
     with pytest.raises(ValueError, match=r"xd\[1\] = nan"):
         tracker.tick([0, 0, 0], [0, np.nan, 0])
     other = fp.Tracker(panda, settling, BENT, task="pose")
-    with pytest.raises(ValueError, match="laid out for another task"):
+    with pytest.raises(ValueError, match="follower: is for another task"):
         tracker.tick(other.follow(fp.Circle(0.1, 1.0).in_plane("xy")))
     slow = fp.Tracker(panda, fp.MVN(), BENT)
     with pytest.raises(ValueError, match="velocity-level"):

@@ -193,7 +193,7 @@ def test_a_baseline_that_is_infeasible():
 def test_where_nothing_is_feasible():
     with pytest.raises(RuntimeError, match="none of 9 schemes is feasible: 9 stopped early"):
         fp.tune(ARM, fp.Line([5, 0], 5.0), Q0, dt=0.05, trials=8)
-    with pytest.raises(RuntimeError, match=r"0 stopped early .* the others err by at least .*, where tolerance"):
+    with pytest.raises(RuntimeError, match=r"0 stopped early .* the least error of the others is .*, above tolerance"):
         quick(dt=0.25, tolerance=1e-12)
 
 
@@ -297,11 +297,11 @@ def test_interruption_within_an_objective():
     ("change", "words"),
     [
         ({"objective": "speed"}, "objective = 'speed': must be one of 'peak_velocity', 'peak_acceleration', .*, or a"),
-        ({"objective": "limit_distance"}, "objective = 'limit_distance': the arm has no joint that is bounded both"),
+        ({"objective": "limit_distance"}, "objective = 'limit_distance': must have a joint with two bounds"),
         ({"search": {"beta": (0, 1)}}, "search: 'beta' must be one of 'alpha', 'weights', 'k1', 'k2', 'null_damping'"),
         ({"search": {}}, "search: must name at least one parameter"),
         ({"search": {"alpha": (0.8, 0.2)}}, r"search\['alpha'\] = \(0.8, 0.2\): must be finite, with low < high"),
-        ({"search": {"alpha": (0.8, 1.2)}}, r"search\['alpha'\] = \(0.8, 1.2\): must lie in \[0, 1\]"),
+        ({"search": {"alpha": (0.8, 1.2)}}, r"search\['alpha'\] = \(0.8, 1.2\): must be in \[0, 1\]"),
         ({"search": {"k1": (0, 10)}}, r"search\['k1'\] = \(0, 10\): must be positive, since it is searched on a log"),
         ({"search": {"k1": 10}}, r"search\['k1'\] = 10: must be a pair \(low, high\)"),
         ({"search": {"k1": "low"}}, r"search\['k1'\] = 'low': must be a pair \(low, high\)"),

@@ -446,7 +446,7 @@ def test_follower_is_held_where_the_base_is_below_its_leader(write) -> None:
         (c,), _ = read_urdf(file, "tip", "mid")
     assert c.name == "c"
     np.testing.assert_allclose(c.placement, moved("revolute", [0, 0, 1], 0.3), rtol=0, atol=1e-15)
-    assert refusal(file, "far", "mid") == "no joints move but those that are held: 'b'"
+    assert refusal(file, "far", "mid") == "all moving joints are held: 'b': at least one must move"
 
 
 # What is refused
@@ -488,7 +488,7 @@ REFUSED = {
     },
     with_number('<origin rpy="0 -inf 0"/>'): "joint 'a': origin rpy = '0 -inf 0': must be 3 finite numbers",
     with_number('<axis xyz="0 0"/>'): "joint 'a': axis xyz = '0 0': must be 3 finite numbers",
-    with_number('<axis xyz="0 -0 0.0"/>' + LIMIT): "joint 'a': axis = 0 0 0: must point somewhere",
+    with_number('<axis xyz="0 -0 0.0"/>' + LIMIT): "joint 'a': axis = 0 0 0: must be a nonzero vector",
     with_number('<limit lower="left"/>'): "joint 'a': limit lower = 'left': must be 1 finite number",
     with_number('<limit lower="-inf"/>'): "joint 'a': limit lower = '-inf': must be 1 finite number",
     with_number('<limit upper="nan"/>'): "joint 'a': limit upper = 'nan': must be 1 finite number",
@@ -516,10 +516,10 @@ REFUSED = {
         "joint 'a': type = None: must be revolute, continuous, prismatic or fixed"
     ),
     # The tree.
-    robot(): "links that are no joint's child: none: must be one, the root",
-    robot(link("tip", "b")): "links that are no joint's child: 'tip', 'b': must be one, the root",
+    robot(): "links without a parent joint: none: must be one, the root",
+    robot(link("tip", "b")): "links without a parent joint: 'tip', 'b': must be one, the root",
     robot(link(*map(str, range(15)))): (
-        f"links that are no joint's child: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one, the root"
+        f"links without a parent joint: {', '.join(repr(str(i)) for i in range(12))}, 3 more: must be one, the root"
     ),
     two_links(joint("a", "base", "tap")): "joint 'a': child link 'tap' does not exist",
     two_links(joint("a", "bass", "tip")): "joint 'a': parent link 'bass' does not exist",
@@ -547,10 +547,12 @@ REFUSED = {
         "joint 'b' mimics 'a' by ratio 0 and offset 0: must be finite, the ratio not zero"
     ),
     three_links(Z + LIMIT, mimic("a", 'offset="4"')): (
-        "joint 'a': those that mimic it leave it no room: lower = -1, upper = -2"
+        "joint 'a': the bounds of its mimic joints leave no range: lower = -1, upper = -2"
     ),
     three_links(Z + LIMIT, mimic("a", limit="")): "joint 'b' is revolute and has no <limit> with a velocity",
-    three_links(Z + LIMIT, mimic("a")).replace("revolute", "fixed", 1): ("no joints move but those that are held: 'b'"),
+    three_links(Z + LIMIT, mimic("a")).replace("revolute", "fixed", 1): (
+        "all moving joints are held: 'b': at least one must move"
+    ),
     robot(
         link("base", "tip", *(f"l{i}" for i in range(71))),
         joint("j0", "base", "tip", mimic("j1")),
@@ -572,13 +574,13 @@ def test_refused(text: str, message: str, write) -> None:
             "hand",
             "right",
             "tip 'hand' is not below base 'right', they have 'torso' in common: "
-            "base must lie between the root 'root' and the tip",
+            "base must be between the root 'root' and the tip",
         ),
         (
             "torso",
             "hand",
             "tip 'torso' is not below base 'hand', they have 'torso' in common: "
-            "base must lie between the root 'root' and the tip",
+            "base must be between the root 'root' and the tip",
         ),
         ("hand", "hand", "no joints move between base 'hand' and tip 'hand': must be 1 to 64"),
     ],
@@ -662,7 +664,7 @@ HOSTILE = {
     "many elements": (lambda: "<robot>" + "<a/>" * 4_000_000, "line 1: has more than 50000 XML elements"),
     "many attributes": (
         lambda: "<robot {}/>".format(" ".join(f"a{i}='0'" for i in range(1_000_000))),
-        "links that are no joint's child: none: must be one, the root",
+        "links without a parent joint: none: must be one, the root",
     ),
     "long name": (
         lambda: robot(link("x" * 16_000_000)),
@@ -672,7 +674,7 @@ HOSTILE = {
         lambda: with_number(f'<origin xyz="{"1" * 10_000_000}"/>'),
         f"line 2: origin xyz = '{'1' * 40}...' has 10000000 characters: must have at most 256",
     ),
-    "long text": (lambda: robot(" " * 16_000_000), "links that are no joint's child: none: must be one, the root"),
+    "long text": (lambda: robot(" " * 16_000_000), "links without a parent joint: none: must be one, the root"),
     "zeros": (lambda: b"\0" * 1_000_000, "line 1: invalid XML: not well-formed (invalid token)"),
     "noise": (
         lambda: np.random.default_rng(0).bytes(1_000_000),
@@ -773,7 +775,7 @@ def test_ur5() -> None:
 
 
 # Sensors that nothing moves, grippers' fingers, wheels and joints locked by their bounds.
-KNOWN_REASONS = ("must be 1 to 64", "those that are held", "must be positive", "must be below")
+KNOWN_REASONS = ("must be 1 to 64", "all moving joints are held", "must be positive", "must be below")
 
 
 @with_robots

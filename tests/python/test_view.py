@@ -599,13 +599,13 @@ def test_a_urdf_that_is_not_the_arms(file, tmp_path):
     broken = file.with_name("broken.urdf")
     broken.write_text("<robot")
     for bad, model, words in (
-        (fp.PlanarArm([1, 1, 1, 1]), file, "must be left out where the arm is planar"),
+        (fp.PlanarArm([1, 1, 1, 1]), file, "must not be given for a planar arm"),
         (
             fp.SerialArm.preset("panda"),
             file,
-            "has no joint 'panda_joint1', which the arm has; its own: a, b, c, d, grip",
+            "has no joint 'panda_joint1' of the arm; joints of the file: a, b, c, d, grip",
         ),
-        (arm, longer, "is another arm's: its joint 'd' is 0.1 m from where this arm has it"),
+        (arm, longer, "must be of this arm: joint 'd' is displaced by 0.1 m from this arm's joint"),
         (arm, broken, "yourdfpy cannot read it"),
     ):
         path = fp.Line([0.01, 0] if isinstance(bad, fp.PlanarArm) else [0.01, 0, 0], 1.0)
@@ -642,7 +642,7 @@ def test_a_port_in_use():
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        with pytest.raises(OSError, match=f"port {port} is in use: choose another one, or 0 for one that is free"):
+        with pytest.raises(OSError, match=f"port {port} is in use: choose another port, or 0 for a free port"):
             Viewer(a_run(), port=port)
 
 
@@ -672,7 +672,7 @@ def test_it_prints_its_address_and_ctrl_c_closes_it(call):
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         said = child.stdout.readline()
         assert said, child.stderr.read()
-        url = said.removesuffix(": Ctrl-C ends it.\n")
+        url = said.removesuffix(": Ctrl-C stops the server.\n")
         with urllib.request.urlopen(url) as page:
             assert b"<html" in page.read()
         child.send_signal(signal.SIGINT)

@@ -129,7 +129,7 @@ def test_a_level_that_waits_is_named():
         goal = servo.target["left_tip"].copy()
         goal[:3, 3] += [0.1, 0.1, 0.15]
         servo.target = {"left_tip": goal}
-        until(lambda: "posture: the levels above" in servo._readout._status.content)
+        until(lambda: "posture: slowed by higher levels" in servo._readout._status.content)
 
 
 def test_relative_tasks_have_no_handle():

@@ -1,4 +1,4 @@
-"""The command line: fpbm-cpp, built on click; in three modules by what they do."""
+"""The command line fpbm-cpp, built on click."""
 
 import click
 
@@ -11,7 +11,7 @@ __all__ = ["command"]
 
 
 class _InOrder(click.Group):
-    """Lists its commands as they were added."""
+    """A group that lists its commands in the order of their definition."""
 
     def list_commands(self, context: click.Context) -> list[str]:
         return list(self.commands)
@@ -31,5 +31,5 @@ Examples:
 def command() -> None:
     """Redundancy resolution for robot arms: MVN, WMVN, MAN and FPBM.
 
-    Radians, metres, seconds throughout.
+    Units are radians, metres and seconds.
     """

@@ -1,4 +1,4 @@
-"""Commands that make a motion: track, compare, view, servo."""
+"""Commands that run a motion: track, compare, view, servo."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,9 +16,9 @@ from .request import Request, motion_command
 from .text import FIGURES, Row, figure_table, summary
 
 port_option = click.option(
-    "--port", type=click.IntRange(0, 65535), default=8080, help="Port to serve at; 0 takes one that is free."
+    "--port", type=click.IntRange(0, 65535), default=8080, help="Port of the page; 0 selects a free port."
 )
-browser_option = click.option("--browser/--no-browser", default=True, help="Open the page in the browser, or not.")
+browser_option = click.option("--browser/--no-browser", default=True, help="Whether to open the page in the browser.")
 ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 
 
@@ -34,16 +34,16 @@ ALSO = click.Choice(["csv", "rosbag", "gif", "mp4"])
 )
 @out_option
 @dark_option
-@click.option("--also", multiple=True, type=ALSO, help="Write this to the folder, too; may be said again.")
+@click.option("--also", multiple=True, type=ALSO, help="Also write this file to the folder; can be repeated.")
 def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...]) -> None:
-    """Move an arm along a path, and say how it went.
+    """Move an arm along a path, and print key figures of the motion.
 
-    ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e, planar: and lengths of links as in planar:1,1,1,1, or a URDF file
-    with --tip. Or ARM is a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
-    Everything else has a default, and what was taken is printed. Several numbers go between commas.
+    ARM is panda, fr3, iiwa14, gen3, ur5e or ur10e; planar: and the link lengths, as in planar:1,1,1,1; or a URDF file
+    with --tip. ARM can also be a robot: two_pandas, or a URDF file with a --task for each frame that follows the path.
+    All options have defaults, and the defaults in use are printed. Separate several numbers by commas.
 
-    With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads back, and job.toml, which says it all again.
-    Exits with 1 where the motion must stop early; what was done until then is printed and written all the same.
+    With --out, the folder gets run.png, run.npz, which fpbm_cpp.load reads, and job.toml, which contains all options.
+    If the motion stops early, the exit status is 1, and the motion before the stop is still printed and written.
     """
     if also and out is None:
         raise click.UsageError("--also needs --out DIR.")
@@ -66,7 +66,7 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
 
 
 @motion_command(
-    "Several schemes on one path, side by side.",
+    "Compare several schemes on one path.",
     """
     fpbm-cpp compare panda --hold 5
     fpbm-cpp compare planar:1,1,1,1 --radius 0.45 --weights 1,2,3,4 --schemes mvn,man,fpbm --out circle
@@ -74,17 +74,17 @@ def track(request: Request, out: Path | None, dark: bool, also: tuple[str, ...])
     kind=False,
     clear=True,
 )
-@click.option("--schemes", metavar="NAMES", help=f"Which, between commas; all unless given: {', '.join(SCHEMES)}.")
+@click.option("--schemes", metavar="NAMES", help=f"Schemes, separated by commas; default: {', '.join(SCHEMES)}.")
 @out_option
 @dark_option
 def compare(request: Request, schemes: str | None, out: Path | None, dark: bool) -> None:
-    """Move an arm along a path under several schemes, side by side.
+    """Move an arm along a path under several schemes, and compare the motions.
 
-    Each scheme takes those of the options that it has. ARM and the options are those of track.
+    Each scheme uses the options that it has. For ARM and the options, see track.
 
-    Prints a row of figures for each scheme: the largest errors of the tip, peak and final joint velocities and
-    accelerations, the least manipulability, and how it ended. With --out, the folder gets compare.png, a saved run for
-    each scheme, and job.toml.
+    Prints a row of figures for each scheme: whether the motion is complete, the largest tip errors, peak and final
+    joint velocities and accelerations, and the least manipulability. With --out, the folder gets compare.png, a saved
+    run for each scheme, and job.toml.
     """
     kinds = [name.strip() for name in schemes.split(",")] if schemes else list(SCHEMES)
     for kind in kinds:
@@ -93,7 +93,7 @@ def compare(request: Request, schemes: str | None, out: Path | None, dark: bool)
     motions = {kind: request.motion(kind) for kind in kinds}
     with request.plain():
         runs = {kind: motion.run() for kind, motion in motions.items()}
-    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Has every option that any of them has, as a rule.
+    chosen = motions.get(request.scheme, motions[kinds[-1]])  # Usually has the options of all schemes.
     request.say(chosen, scheme=False)
     remarks: dict[str, list[str]] = {}
     for kind, run in runs.items():
@@ -129,9 +129,9 @@ def _row(kind: str, run: Run) -> Row:
 @port_option
 @browser_option
 def view(request: Request, port: int, browser: bool) -> None:
-    """Show an arm on its path in the browser, with the scheme and its gains at hand.
+    """Show an arm on its path in the browser, with inputs for the scheme and its gains.
 
-    A URDF file is shown with its meshes. Ctrl-C ends it. ARM and the options are those of track.
+    The meshes of a URDF file are drawn. Ctrl-C ends the command. For ARM and the options, see track.
     """
     motion = request.motion()
     with request.plain():
@@ -158,13 +158,13 @@ def view(request: Request, port: int, browser: bool) -> None:
 @port_option
 @browser_option
 def servo(request: Request, port: int, browser: bool) -> None:
-    """Drag a handle in the browser, and the arm's tip follows, within its joint limits.
+    """Drag a handle in the browser; the tip of the arm follows within the joint limits.
 
-    1000 ticks a second on this machine's clock. A strip shows how near the joints are to their bounds, a sentence what
-    keeps the arm from the handle. A URDF file is shown with its meshes. What the arm keeps clear of is drawn as well;
-    arrows move boxes and capsules of the surroundings. If a job has tasks, each has a handle. Of a robot, each --task
-    is a frame with a handle: pose tasks, two side by side on a level, and a posture on the level below. Ctrl-C ends it.
-    ARM and the options are those of track; of a job, the path does not matter.
+    The tracker runs 1000 ticks per second on this machine's clock. A chart shows how close the joints are to their
+    bounds, and a sentence shows what keeps the arm from the handle. The meshes of a URDF file and the shapes of the
+    clearance are drawn; arrows move obstacles that are boxes or capsules. If a job has tasks, each task has a handle.
+    For a robot, each --task is a frame with a handle: pose tasks, two on each level, and a posture task on the level
+    below. Ctrl-C ends the command. For ARM and the options, see track; the path of a job is ignored.
     """
     motion = request.motion(at_rest=True, limited=True)
     with _served():
@@ -192,7 +192,7 @@ def servo(request: Request, port: int, browser: bool) -> None:
 
 @contextmanager
 def _served() -> Iterator[None]:
-    """Say plainly that a page cannot be served; Ctrl-C ends it in peace."""
+    """Report in one line that a page cannot be served; Ctrl-C ends the command without an error."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Commands that say in one plain line what went wrong, and write each file whole or not at all."""
+"""Commands that report an error in one line, and write each file completely or not at all."""
 
 import io
 import signal
@@ -21,15 +21,15 @@ WIDTH = 100
 PLACE = click.Path(path_type=Path)  # A file or a folder.
 Writer = Callable[[Path], Any]
 
-OUT = "Folder to write to, made where missing; other files in it are left alone."
-WORKERS = "Threads; as many as there are processors unless given."
+OUT = "Output folder, created if missing; other files in it are not changed."
+WORKERS = "Number of threads; default: number of processors."
 out_option = click.option("--out", type=PLACE, metavar="DIR", help=OUT)
 workers_option = click.option("--workers", type=click.IntRange(1), help=WORKERS)
-dark_option = click.option("--dark", is_flag=True, help="Pictures on a dark ground.")
+dark_option = click.option("--dark", is_flag=True, help="Figures on a dark background.")
 
 
 class Plain(click.Command):
-    """Lists options by what they are about; a warning or an error is a line; Ctrl-C ends it with exit status 130."""
+    """Lists its options by topic, prints a warning or an error as one line, and exits with status 130 after Ctrl-C."""
 
     def invoke(self, context: click.Context) -> Any:
         try:
@@ -60,7 +60,7 @@ class Plain(click.Command):
 
 @contextmanager
 def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
-    """Say plainly that a place, the error's own unless given, cannot be read or written to."""
+    """Report in one line that a place (default: the place in the error) cannot be read or written."""
     try:
         yield
     except OSError as error:
@@ -72,13 +72,13 @@ def file_errors(doing: str, place: Path | None = None) -> Iterator[None]:
 
 
 def make_folder(out: Path) -> None:
-    """Make a folder, at once where work would be lost otherwise."""
+    """Make a folder. Call this before long work whose results would be lost without a folder."""
     with file_errors("write to", out):
         out.mkdir(parents=True, exist_ok=True)
 
 
 def write_files(out: Path, files: dict[str, Writer]) -> None:
-    """Write to a folder what each name's function writes to the file that it is given, and say so."""
+    """Write files to a folder, each by the function for its name, and print the names."""
     make_folder(out)
     for name, write in files.items():
         with file_errors("write to", out / name):
@@ -101,7 +101,7 @@ def picture(figure: "Figure") -> Writer:
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[int, int], object]]:
-    """A function to call with (done, total): prints them on one line of the screen, unless errors go elsewhere."""
+    """A function of (done, total) that prints on one line, if standard error is a terminal."""
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return
@@ -112,7 +112,7 @@ def progress(label: str) -> Iterator[Callable[[int, int], object]]:
 
 
 def import_viser() -> None:
-    """Import viser with Ctrl-C held back: trimesh takes it for an optional part that is missing, and goes on."""
+    """Import viser with Ctrl-C delayed: trimesh treats the interrupt as a missing optional module and continues."""
     held: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
     try:

@@ -1,4 +1,4 @@
-"""What the command line asks for: a job's file, with an option over each of its keys."""
+"""Jobs from the command line: a job file, and an option that overrides each of its keys."""
 
 import functools
 from collections.abc import Callable, Iterator, Sequence
@@ -26,15 +26,15 @@ HEADING = {
     "limits": "Joint limits",
     "clearance": "Clearance",
 }
-SAVED = "Write the job to a TOML file, with all that was taken by default."
+SAVED = "Write the job, including all defaults, to a TOML file."
 METAVARS = {"tip": "LINK", "base": "LINK", "in_plane": "AXES", "file": "FILE", "srdf": "FILE"}
-WORDS = {"task": ("position", "pose")}  # Which shells complete; a job with tasks has other names as well.
-# What jobs take where nothing is given and the arm decides.
-TAKEN = {"base": "the root", "q0": "a ready one", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
+WORDS = {"task": ("position", "pose")}  # Words that shells complete; a job with tasks has further names.
+# Defaults that depend on the arm.
+TAKEN = {"base": "the root", "q0": "a ready posture", "qd0": "at rest", "in_plane": "yz in space", "weights": "ones"}
 
 
 def _value(text: str) -> Any:
-    """A number, or several: '1,2; 3,4' has two rows. What is none stays text, which the job refuses."""
+    """A number or several: '1,2; 3,4' has two rows. Other text stays text, which the job rejects."""
     try:
         rows = [_row(row) for row in text.split(";")]
     except ValueError:
@@ -49,42 +49,42 @@ def _row(text: str) -> Any:
 
 
 class Word(click.Choice):  # type: ignore[type-arg]
-    """One of a few words, which shells complete. The job says what is wrong with another."""
+    """One of a few words, which shells complete. The job reports the error of any other word."""
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
         return value
 
 
 class JobOption(click.Option):
-    """An option for a key of a job, listed under what it is about."""
+    """An option for a key of a job, listed under its topic."""
 
     def __init__(self, section: str, key: str, flag: str, **attributes: Any) -> None:
         super().__init__([flag, f"{section}__{key}"], default=None, **attributes)
         self.section, self.key, self.heading = section, key, HEADING[section]
 
 
-BASE = "Link of a URDF file that stays; of a robot, fixed, or planar: it moves along x and y and turns about z."
-LOCKED = "Position at which a robot holds a joint of its URDF file; may be said again.  [rad, m]"
+BASE = "Base link of a URDF file. For a robot: fixed, or planar, which moves along x and y and rotates about z."
+LOCKED = "Fix a joint of the robot in a URDF file at a position; can be repeated.  [rad, m]"
 TASK = (
-    "What the tip keeps to, position or pose; of a job with tasks, the name of the one that follows the path; of a "
-    "robot, a frame to move, and may be said again.  [default: position]"
+    "Task of the tip: position or pose. For a job with tasks: name of the task that follows the path. For a robot: a "
+    "frame that moves; can be repeated.  [default: position]"
 )
 CLEAR = (
-    "Keep clear of the arm itself, by this URDF file's collision geometry, and of the job's obstacles; keeps limits."
+    "Avoid self-collision, with the collision geometry of this URDF file, and the job's obstacles; keeps joint limits."
 )
-SRDF = "MoveIt's file of link pairs that may meet."
-MARGIN = "Least distance of two shapes."
-PER_LINK = "At most so many capsules for each link."
+SRDF = "SRDF file of MoveIt, whose disabled pairs are not checked."
+MARGIN = "Least distance between two shapes."
+PER_LINK = "Largest number of capsules per link."
 
-LIVE = {"q0"}  # Of a run, where there is no path.
+LIVE = {"q0"}  # Keys of a run that apply without a path.
 
 
 def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
-    """The options of a job: all, or without the kind of scheme, or what it keeps clear of; or of an arm without a path,
-    which keeps its limits.
+    """Options of a job, with or without the kind of the scheme, the path and the clearance. Without a path, the limits
+    are always kept.
     """
     urdf = known("arm", "urdf")
-    yield _option("arm", "tip", replace(urdf["tip"], help="Link of a URDF file to move."))
+    yield _option("arm", "tip", replace(urdf["tip"], help="Tip link of a URDF file."))
     yield _option("arm", "base", replace(urdf["base"], help=BASE))
     yield JobOption("arm", "locked", "--locked", multiple=True, metavar="JOINT=NUMBER", help=LOCKED)
     for key, declared in known("run").items():
@@ -99,11 +99,11 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
         keys = {each: known(section, each) for each in (usual, *SECTIONS[section])}
         if kind or section != "scheme":
             words = Word(list(SECTIONS[section]))
-            yield JobOption(section, "kind", f"--{section}", type=words, help=f"Which; {usual} unless given.")
+            yield JobOption(section, "kind", f"--{section}", type=words, help=f"Kind; default: {usual}.")
         for key in dict.fromkeys(key for each in keys for key in keys[each]):
             having = [each for each in keys if key in keys[each]]
             yield _option(section, key, keys[having[0]][key], of=having if len(having) < 3 else [])
-    text = "Keep them: the arm's, but for those below. Where it has no accelerations, give some: 10 rad/s^2 is usual."
+    text = "Keep the arm's limits, with the changes below. If it has no acceleration bounds, give some, say 10 rad/s^2."
     if path:
         yield JobOption("limits", "keep", "--limits/--no-limits", help=text)
     for key, declared in known("limits").items():
@@ -116,7 +116,7 @@ def _job_options(kind: bool, path: bool, clear: bool) -> Iterator[JobOption]:
 
 
 def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: Sequence[str] = ()) -> JobOption:
-    """The option for a key, of a few kinds only where these are named."""
+    """The option for a key. of: the kinds that have the key, if only a few have it."""
     several = bool(declared.shape)
     kind: Any = _value if several or declared.type in (float, int) else str
     words = WORDS.get(key, declared.choices)
@@ -133,13 +133,13 @@ def _option(section: str, key: str, declared: Parameter, prefix: str = "", of: S
 def motion_command(
     short_help: str, examples: str, *, kind: bool = True, path: bool = True, clear: bool = False
 ) -> Callable[[Callable[..., None]], Plain]:
-    """A command, named as its function, which gets a Request for ARM, --job, --save-job and the options of a job."""
+    """A command with its function's name, which gets a Request from ARM, --job, --save-job and the job's options."""
 
     def make(function: Callable[..., None]) -> Plain:
         ours = list(_job_options(kind, path, clear))
 
         @click.argument("arm", required=False, metavar="ARM")
-        @click.option("--job", type=PLACE, metavar="FILE", help="TOML file with what options do not say.")
+        @click.option("--job", type=PLACE, metavar="FILE", help="TOML file of a job, which the options override.")
         @click.option("--save-job", type=PLACE, metavar="FILE", help=SAVED)
         @functools.wraps(function)
         def call(arm: str | None, job: Path | None, save_job: Path | None, **options: Any) -> None:
@@ -155,7 +155,7 @@ def motion_command(
 
 
 class Request:
-    """A job's table, and what the command line calls its keys: what the file says, with the options over it."""
+    """A job's table from the file and from the options, which override the file; and the options of its keys."""
 
     def __init__(self, arm: str | None, file: Path | None, copy: Path | None, values: dict[JobOption, Any]) -> None:
         if arm is None and file is None:
@@ -172,41 +172,41 @@ class Request:
         if arm is not None:
             self.table["arm"] = _arm(arm)
         given = {option: value for option, value in values.items() if value not in (None, ())}
-        # What something is, then what it has; tasks last, which go by the arm.
+        # Kinds before their keys; tasks last, because they depend on the arm.
         for option in sorted(given, key=lambda each: (each.key != "kind", each.key == "task")):
             self._put(option, given[option])
         names = {f"{option.section}.{option.key}": option for option in values}
         self.flags = {key: each.opts[0] for key, each in names.items() if each in given or key not in said}
         if isinstance(self.table.get("task"), list) and names["run.task"] in given:
-            self.flags["run.frame"] = "--task"  # Which made the tasks.
+            self.flags["run.frame"] = "--task"  # --task made the tasks.
 
     @property
     def scheme(self) -> str:
-        """The kind of scheme that is asked for."""
+        """The requested kind of scheme."""
         given = self.table.get("scheme")
         return str(given.get("kind")) if isinstance(given, dict) else FREE["scheme"]
 
     def motion(self, kind: str | None = None, *, at_rest: bool = False, limited: bool = False) -> Motion:
-        """The motion, under a kind of scheme where one is named.
+        """The motion, with this kind of scheme if given.
 
-        at_rest: whether it has to begin at rest; limited: whether limits are kept though nobody asks.
+        at_rest: whether the motion must start at rest. limited: whether limits are kept without a request.
         """
         table = {"limits": {}, **self.table} if limited else self.table
         for section in ("clearance", "bounds"):
             if section in table and "clearance" not in self.sections:
                 command = click.get_current_context().info_name
-                raise click.ClickException(f"{command} does not take {section}: leave {section} out, or use track")
+                raise click.ClickException(f"{command} does not accept {section}: remove {section}, or use track")
         if kind is not None:
             table = {**table, "scheme": _of_kind("scheme", table.get("scheme"), kind)}
         with self.plain(), file_errors("read"):
             motion = prepare(table)
         if at_rest and motion.options.qd0 is not None:
             command = click.get_current_context().info_name
-            raise click.ClickException(f"{command} begins at rest: leave qd0 out, or use track")
+            raise click.ClickException(f"{command} starts at rest: remove qd0, or use track")
         return motion
 
     def say(self, motion: Motion, *, scheme: bool = True, path: bool = True) -> None:
-        """Write the job where it is asked for; print what is run, and what was taken where nothing was said."""
+        """Write the job if requested; print the motion and the defaults in use."""
         if self.copy is not None:
             with file_errors("write to", self.copy):
                 motion.save(self.copy)
@@ -219,7 +219,7 @@ class Request:
 
     @contextmanager
     def plain(self) -> Iterator[None]:
-        """Say what is wrong with the job as the command line calls it, a line each."""
+        """Report each error of the job in one line, with the name on the command line."""
         try:
             yield
         except JobError as error:
@@ -241,7 +241,7 @@ class Request:
             value = dict(map(_locked, value))
         there = self.table.get(section)
         if there is not None and (isinstance(there, list) or is_by_task(there)) and key != "kind":
-            many = f"there are {len(there)} {section}s in the file: change them there, or say --{section}"
+            many = f"the file has {len(there)} {section}s: change them in the file, or give --{section}"
             raise click.ClickException(f"{option.opts[0]}: {many}")
         if not isinstance(there, dict):
             there = {"kind": FREE[section]} if section in FREE else {}
@@ -250,7 +250,7 @@ class Request:
         self.table[section] = {**there, key: value}
 
     def _put_tasks(self, tasks: Sequence[str]) -> None:
-        """The task of the tip, or the one that is led; of a robot without tasks, frames whose poses are moved."""
+        """Task of the tip, or task that follows the path; for a robot without tasks, frames that get pose tasks."""
         arm = self.table.get("arm", {})
         is_robot = arm.get("kind") == "robot" or arm.get("name") in ROBOT_PRESETS
         is_robot |= arm.get("kind") == "urdf" and "tip" not in arm and not set(tasks) & set(WORDS["task"])
@@ -283,7 +283,7 @@ def _arm(text: str) -> Table:
         try:
             lengths = [float(length) for length in text[len("planar:") :].rstrip(",").split(",")]
         except ValueError:
-            must = "must be planar: and lengths of links, as planar:1,1,1,1"
+            must = "must be planar: and the link lengths, as in planar:1,1,1,1"
             raise click.ClickException(f"ARM = {text}: {must}") from None
         return {"kind": "planar", "lengths": lengths}
     if Path(text).suffix or Path(text).exists():
@@ -294,7 +294,7 @@ def _arm(text: str) -> Table:
 
 
 def _of_kind(section: str, table: Any, kind: str) -> Table:
-    """A table of this kind, without the keys that only other kinds have."""
+    """A table of this kind, without the keys of other kinds."""
     foreign = {key for each in SECTIONS[section] for key in known(section, each)} - set(known(section, kind))
     kept = {key: value for key, value in table.items() if key not in foreign} if isinstance(table, dict) else {}
     return {**kept, "kind": kind}

@@ -1,4 +1,4 @@
-"""Commands that make many motions: sweep, tune."""
+"""Commands that run many motions: sweep, tune."""
 
 import csv
 import io
@@ -23,21 +23,21 @@ from .request import Request, Word, motion_command
 from .text import FIGURES, Row, figure_table, number
 
 Cases = list[tuple[float, ...]]
-VARY = "Numbers for an option of the scheme: alpha=0,0.6,1, or alpha=0:1:11 for 11 of them. All combinations run."
+VARY = "Values of a scheme option: alpha=0,0.6,1, or alpha=0:1:11 for 11 values. All combinations run."
 
 
 @motion_command(
-    "Many schemes from many starts, on all cores.",
+    "Run many schemes from many starts, on all cores.",
     """
     fpbm-cpp sweep panda --vary alpha=0:1:6 --starts 20 --duration 2
     fpbm-cpp sweep planar:1,1,1,1 --radius 0.45 --vary alpha=0,0.6,1 --vary null-damping=0,2 --hold 5 --out grid""",
 )
 @click.option("--vary", multiple=True, metavar="OPTION=VALUES", help=VARY)
-@click.option("--starts", type=click.IntRange(1), default=1, help="How many starts: q0 and others near it.")
+@click.option("--starts", type=click.IntRange(1), default=1, help="Number of starts: q0 and random postures near q0.")
 @click.option(
-    "--spread", type=click.FloatRange(0.0), default=0.05, help="Standard deviation of their joint positions [rad]."
+    "--spread", type=click.FloatRange(0.0), default=0.05, help="Standard deviation of the joint positions [rad]."
 )
-@click.option("--seed", type=click.IntRange(0), default=0, help="Of the starts: the same seed, the same starts.")
+@click.option("--seed", type=click.IntRange(0), default=0, help="Random seed of the starts.")
 @workers_option
 @out_option
 def sweep(
@@ -45,9 +45,9 @@ def sweep(
 ) -> None:
     """Move an arm along a path under many schemes from many starts, on all cores.
 
-    Prints a row for each scheme: how many of its motions are complete, and the worst figure of those. With --out, the
-    folder gets sweep.csv, a row for each motion, and job.toml. Ctrl-C keeps what is finished. ARM and the options are
-    those of track.
+    Prints a row for each scheme: the number of complete motions, and the worst figures of the complete motions. With
+    --out, the folder gets sweep.csv, with a row for each motion, and job.toml. After Ctrl-C, the finished motions are
+    kept. For ARM and the options, see track.
     """
     motion = request.motion(at_rest=True)
     with request.plain():
@@ -87,11 +87,11 @@ def _values(vary: str) -> list[float]:
         first, last, count = text.split(":")
         return [float(value) for value in np.linspace(float(first), float(last), int(count))]
     except ValueError:
-        raise click.ClickException(f"--vary {vary}: must be as alpha=0,0.6,1 or alpha=0:1:11") from None
+        raise click.ClickException(f"--vary {vary}: must have the form alpha=0,0.6,1 or alpha=0:1:11") from None
 
 
 def _table(done: Sweep, keys: list[str], cases: Cases) -> str:
-    """A row for each scheme, with the worst figure of its complete motions, and what became of others."""
+    """A row for each scheme, with the worst figures of its complete motions, and remarks on the other motions."""
     rows: list[Row] = []
     for i, (case, ok) in enumerate(zip(cases, done.ok)):
         figures = {name: getattr(done, name)[i, ok] for name in FIGURES if ok.any()}
@@ -117,27 +117,26 @@ def _csv(done: Sweep, keys: list[str], cases: Cases) -> str:
 
 
 @motion_command(
-    "Find the parameters of FPBM that suit best.",
+    "Optimise the parameters of FPBM.",
     """
     fpbm-cpp tune planar:1,1,1,1 --radius 0.45
     fpbm-cpp tune panda --task pose --objective peak_acceleration --trials 200 --out tuned
     fpbm-cpp track --job tuned/job.toml""",
     kind=False,
 )
-@click.option("--objective", type=Word(list(OBJECTIVES)), default="peak_velocity", help="What is to be small.")
-@click.option("--trials", type=click.IntRange(1), default=1000, help="How many schemes to try.")
-@click.option("--seed", type=click.IntRange(0), default=0, help="Of the search: the same seed, the same answer.")
+@click.option("--objective", type=Word(list(OBJECTIVES)), default="peak_velocity", help="Objective to minimise.")
+@click.option("--trials", type=click.IntRange(1), default=1000, help="Number of schemes to try.")
+@click.option("--seed", type=click.IntRange(0), default=0, help="Random seed of the search.")
 @workers_option
 @out_option
 @dark_option
 def tune(
     request: Request, objective: str, trials: int, seed: int, workers: int | None, out: Path | None, dark: bool
 ) -> None:
-    """Find the parameters of FPBM that suit an arm and a path best.
+    """Optimise the parameters of FPBM for an arm and a path.
 
-    ARM and the options are those of track; what is found is compared with the FPBM that they ask for.
-    With --out, the folder gets tune.png and job.toml, the job with the scheme that was found. Ctrl-C keeps the best so
-    far.
+    The baseline is FPBM with the given options. With --out, the folder gets tune.png and job.toml, the job with the
+    best scheme. After Ctrl-C, the best scheme so far is kept. For ARM and the options, see track.
     """
     motion = request.motion("fpbm", at_rest=True)
     with request.plain():
@@ -156,7 +155,7 @@ def tune(
     try:
         with progress("trying schemes") as report:
             found = search(arm, path, motion.q0, objective, progress=report, **how)
-    except (ValueError, RuntimeError) as error:  # The latter where nothing that was tried keeps to the path.
+    except (ValueError, RuntimeError) as error:  # RuntimeError: no trial is feasible.
         raise click.ClickException(str(error)) from None
     except TuneInterrupted as interrupted:
         if interrupted.tuning is not None:

@@ -1,4 +1,4 @@
-"""Figures of motions as text."""
+"""Key figures of motions as text."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -11,7 +11,7 @@ from ..motion.task_errors import error_parts
 from ..skeleton import joint_labels, joint_units
 from .plain import WIDTH
 
-# The figures of a motion that a sweep has: the head of their column, its unit, and the figure of a run.
+# Key figures of a sweep: column heading, unit, and the figure of a run.
 FIGURES: dict[str, tuple[str, str, Callable[[Run], float]]] = {
     "max_error": ("tip error", "m", Run.max_error),
     "max_orientation_error": ("tip error", "rad", Run.max_orientation_error),
@@ -25,7 +25,7 @@ Row = tuple[Sequence[str], str, Mapping[str, float]]
 
 
 def columns(*rows: Sequence[str]) -> str:
-    """Rows of cells as aligned columns, the first to the left; rows may be shorter than the first."""
+    """Rows of cells as aligned columns; the first column is left-aligned. Rows may be shorter than the first row."""
     whole = [[*row, *[""] * (len(rows[0]) - len(row))] for row in rows]
     widths = [max(map(len, column)) for column in zip(*whole)]
     lines = ("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in whole)
@@ -33,7 +33,7 @@ def columns(*rows: Sequence[str]) -> str:
 
 
 def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: Iterable[str]) -> str:
-    """A row for each scheme: cells of these names, what is complete, figures of the worst motion; remarks below."""
+    """Table with a row for each scheme: named cells, complete motions, figures of the worst motion; remarks below."""
     shown = [name for name in FIGURES if task == "pose" or name != "max_orientation_error"]
     header = zip(*((name, "") for name in (*names, "complete")), *(FIGURES[name][:2] for name in shown))
     cells = [[*first, done, *(number(figures[name]) for name in shown if figures)] for first, done, figures in rows]
@@ -42,12 +42,12 @@ def figure_table(names: Sequence[str], task: str, rows: Iterable[Row], remarks: 
 
 
 def number(value: float) -> str:
-    """As many digits as one reads."""
+    """A number with four significant digits, or two below 1e-3."""
     return f"{value:.1e}" if 0.0 < abs(value) < 1e-3 else f"{value:.4g}"
 
 
 def summary(run: Run) -> str:
-    """A motion's key figures, with where and when they are reached, and how it ended."""
+    """Key figures of a motion, each with its joint and its time, and the status."""
     rows = list(_figures(run)) if len(run.t) else []
     name_width, value_width, unit_width = (max((len(row[i]) for row in rows), default=6) for i in range(3))
     lines = [f"{n:{name_width}}  {v:>{value_width}} {u:{unit_width}}  {w}".rstrip() for n, v, u, w in rows]
@@ -90,4 +90,4 @@ def _figures(run: Run) -> Iterator[tuple[str, str, str, str]]:
     if run.saturated is not None:
         yield "joints on a bound", str(len(joints)), "", ", ".join(joints)
     elif joints:
-        yield "joints beyond a bound", str(len(joints)), "", f"{', '.join(joints)}: --limits keeps them"
+        yield "joints beyond a bound", str(len(joints)), "", f"{', '.join(joints)}: --limits keeps the bounds"

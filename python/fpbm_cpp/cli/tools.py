@@ -1,4 +1,4 @@
-"""Commands beside motions: bench, reproduce, export-header, completion."""
+"""Other commands: bench, reproduce, export-header, completion."""
 
 import os
 import platform
@@ -27,23 +27,24 @@ from ..worst import measure
 from .plain import OUT, PLACE, WIDTH, Plain, file_errors
 from .text import columns
 
-EVALUATIONS = 4000  # Of a scheme, by RK4, on a path of 1 s at 1 kHz.
-# Joints, the tip's frame, capsules, and what a comment says of where they come from.
+EVALUATIONS = 4000  # Evaluations of a scheme by RK4 on a path of 1 s at 1 kHz.
+# Joints, frame of the tip, capsules, and their source for a comment.
 Exported = tuple[Sequence[Joint], Array, Sequence[Capsule] | None, str]
 PROCESSORS = os.cpu_count() or 1
-MOTIONS = 4 * PROCESSORS * LANES  # Of a sweep.
+MOTIONS = 4 * PROCESSORS * LANES  # Motions of a sweep.
 HOW = (
-    "Microseconds an evaluation of a scheme: the median time of fp.simulate() for a circle of 1 s at 1 kHz, by the "
-    f"{EVALUATIONS} evaluations that RK4 makes there. An evaluation is kinematics, reference and scheme; integrating "
-    "and recording are in it. Below, motions of the same kind that fp.sweep() ran in a second with FPBM, "
+    "Microseconds per evaluation of a scheme: the median time of fp.simulate() for a circle of 1 s at 1 kHz, divided "
+    f"by the {EVALUATIONS} evaluations of RK4. The time includes kinematics, reference, scheme, integration and "
+    "recording. Last row: motions of the same kind per second of fp.sweep() with FPBM, "
     f"{MOTIONS} at a time, on all processors."
 )
 HOW_WORST = (
-    "Microseconds a tick of fp.Tracker, as called from Python: a tick without active limits, and ticks of the motion "
-    "with the longest tick that a search has found. Each is the least of some runs. Passes: bound on the passes of "
-    "saturation in a tick. The source's bench/worst.cpp has the same in C++, and a clearance and two arms as well."
+    "Microseconds per tick of fp.Tracker, called from Python: a tick without active limits, and ticks of the motion "
+    "with the longest tick that a search has found. Each time is the least of several runs. Passes: bound on the "
+    "saturation passes in a tick. bench/worst.cpp in the source measures these motions in C++, and also a clearance "
+    "and two arms."
 )
-HEADER = "Header to write, whole or not at all; - is the standard output."
+HEADER = "Header file to write; - is the standard output."
 PLANAR, PANDA = {"kind": "planar", "lengths": [1.0] * 4}, {"kind": "preset", "name": "panda"}
 CASES: dict[str, Table] = {
     "4 links, position": {"arm": PLANAR},
@@ -57,15 +58,15 @@ def tool(short_help: str, example: str) -> Callable[[Callable[..., None]], click
     return click.command(cls=Plain, short_help=short_help, epilog=f"Example: fpbm-cpp {example}")
 
 
-@tool("Time this machine.", "bench --seconds 1")
-@click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="How long each is timed.")
-@click.option("--worst", is_flag=True, help="Time the longest ticks that a search has found instead.")
-@click.option("--runs", type=click.IntRange(1, 1000), default=20, help="Of each motion, with --worst.")
+@tool("Measure this machine.", "bench --seconds 1")
+@click.option("--seconds", type=click.FloatRange(0.01, 60.0), default=0.2, help="Time for each measurement [s].")
+@click.option("--worst", is_flag=True, help="Measure the longest ticks that a search has found.")
+@click.option("--runs", type=click.IntRange(1, 1000), default=20, help="Number of runs of each motion, with --worst.")
 def bench(seconds: float, worst: bool, runs: int) -> None:
-    """Time this machine: what a scheme costs an evaluation, and how many motions a second a sweep runs.
+    """Measure this machine: the time of an evaluation of each scheme, and the motions per second of a sweep.
 
-    As called from Python, on whatever else the machine has to do. The source's bench folder times single steps in C++,
-    and other libraries.
+    The calls are from Python, under the present load of the machine. The bench folder of the source measures single
+    steps in C++, and other libraries.
     """
     if worst:
         click.echo(f"{click.wrap_text(HOW_WORST, WIDTH)}\n")
@@ -80,7 +81,7 @@ def bench(seconds: float, worst: bool, runs: int) -> None:
         times = [_median(_motion(case, kind).run, seconds) / EVALUATIONS for case in CASES]
         rows.append([scheme.__name__, *(f"{1e6 * each:.3f}" for each in times)])
     rates = [f"{_rate(_motion(case, 'fpbm'), seconds):.0f}" for case in CASES]
-    click.echo(columns(["", *CASES], *rows, [""], ["motions a second", *rates]))
+    click.echo(columns(["", *CASES], *rows, [""], ["motions per second", *rates]))
 
 
 def _motion(case: str, kind: str) -> Motion:
@@ -93,7 +94,7 @@ def _rate(motion: Motion, seconds: float) -> float:
 
 
 def _median(run: Callable[[], object], seconds: float) -> float:
-    """Median time of a run, of as many as there is time for, three at least, after one that does not count [s]."""
+    """Median time of a run [s], over as many runs as the seconds allow, at least three, after one run to warm up."""
     run()
     times: list[float] = []
     while len(times) < 3 or sum(times) < seconds:
@@ -109,8 +110,8 @@ def reproduce(out: Path) -> None:
     """Reproduce the FPBM paper: figures, tables, errata and claims.
 
     Runs the paper's 18 motions, compares them with the printed numbers and with an independent solution, and writes
-    Figs. 1 to 8 (fig1.png, fig1.pdf and so on) and report.md. Takes about a quarter of a minute. Exits with 1 where a
-    motion differs from the independent solution by more than 1e-9.
+    Figs. 1 to 8 (fig1.png, fig1.pdf and so on) and report.md. Takes about 15 seconds. The exit status is 1 if a motion
+    differs from the independent solution by more than 1e-9.
     """
     start = time.perf_counter()
     try:
@@ -119,7 +120,7 @@ def reproduce(out: Path) -> None:
         with file_errors("write to"):
             done = paper.reproduce(out, say=lambda step: click.echo(f"{step} ...", err=True))
     except KeyboardInterrupt:
-        raise KeyboardInterrupt("interrupted; every file written so far is whole") from None
+        raise KeyboardInterrupt("interrupted; every written file is complete") from None
     for table in done.tables:
         click.echo(f"\n{table.text()}")
     click.echo("\nClaims, with the numbers in report.md")
@@ -132,28 +133,24 @@ def reproduce(out: Path) -> None:
         raise click.ClickException("a motion differs from the independent solution by more than 1e-9")
 
 
-@tool("Write an arm or a robot in C++.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
+@tool("Write an arm or a robot as a C++ header.", "export-header my_arm.urdf --tip tool -o my_arm.hpp")
 @click.argument("arm", metavar="ARM", type=PLACE)
-@click.option("--tip", metavar="LINK", multiple=True, help="Link to move: one of an arm, several of a robot.")
-@click.option(
-    "--base", metavar="LINK", help="Link of an arm that stays, the root unless given; of a robot: fixed or planar."
-)
+@click.option("--tip", metavar="LINK", multiple=True, help="Tip link: one for an arm, several for a robot.")
+@click.option("--base", metavar="LINK", help="Base link of an arm, default: the root; for a robot: fixed or planar.")
 @click.option("-o", "--out", type=PLACE, metavar="FILE.hpp", required=True, help=HEADER)
-@click.option("--name", metavar="NAMESPACE", help="C++ namespace; after the header's file name unless given.")
+@click.option("--name", metavar="NAMESPACE", help="C++ namespace; default: from the file name of the header.")
 @click.option(
-    "--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry; of an arm only."
+    "--capsules", is_flag=True, help="Add capsules that contain the links' collision geometry; for an arm only."
 )
-@click.option(
-    "--scalar", type=click.Choice(SCALARS), default="double", help="Type of all numbers; double unless given."
-)
+@click.option("--scalar", type=click.Choice(SCALARS), default="double", help="Type of all numbers.")
 def export_header(
     arm: Path, tip: tuple[str, ...], base: str | None, out: Path, name: str | None, capsules: bool, scalar: str
 ) -> None:
     """Write a URDF file, or a preset such as panda or two_pandas, as a C++ header.
 
-    With one --tip, the header constructs the arm from base to tip. With several or none, it constructs the robot, a
-    tree of the joints that move the tips, with these links as frames; of all joints and links without a tip. The
-    program reads no file.
+    With one --tip, the header constructs the arm from base to tip. With several, it constructs the robot: the tree of
+    the joints that move the tips, with these links as frames. Without --tip, the robot has all joints and links of the
+    file. A program with the header reads no file.
     """
     from ..io import write_whole
     from ..io.header import export_header, export_tree, namespace_of
@@ -163,7 +160,7 @@ def export_header(
         name = name or namespace_of((arm if to_stdout else out).stem)
         if str(arm) in ROBOT_PRESETS or (str(arm) not in PRESETS and len(tip) != 1):
             if capsules:
-                raise click.UsageError("--capsules are those of an arm: give one --tip.")
+                raise click.UsageError("--capsules are for an arm only: give one --tip.")
             robot, source = _robot(arm, tip, base)
             header = export_tree(robot, name=name, source=source, scalar=scalar)
         else:
@@ -197,7 +194,7 @@ def _urdf(urdf: Path, tip: str, base: str | None, capsules: bool) -> Exported:
 
 
 def _robot(urdf: Path, tips: Sequence[str], base: str | None) -> tuple[Robot, str]:
-    """The robot of a preset or of a file, whose frames are the tips if there are any."""
+    """The robot of a preset or a file; the frames are the tips, or all links without tips."""
     if str(urdf) in ROBOT_PRESETS:
         _require_no_links(urdf, tips, base)
         return Robot.preset(str(urdf)), f"preset {urdf}"
@@ -215,14 +212,14 @@ def _require_no_links(preset: Path, tip: Sequence[str], base: str | None) -> Non
 
 
 def _said(urdf: Path, base: str | None, tips: Sequence[str]) -> str:
-    """What a comment says of where a file's joints come from."""
+    """Source of the joints, for a comment."""
     ends = [f"tip{'s' * (len(tips) > 1)} {', '.join(tips)}"] if tips else []
     return ", ".join([urdf.name, *([f"base {base}"] if base else []), *ends])
 
 
 @click.command(
     "completion",
-    short_help="Make a shell complete these commands.",
+    short_help="Print the completion script of a shell.",
     epilog="""\b
 Examples:
   eval "$(fpbm-cpp completion bash)"      # in ~/.bashrc
@@ -232,7 +229,7 @@ Examples:
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> None:
-    """Print what makes a shell complete fpbm-cpp's commands and options."""
+    """Print a script that makes a shell complete the commands and options of fpbm-cpp."""
     kind = get_completion_class(shell)
     assert kind is not None
     click.echo(kind(context.find_root().command, {}, "fpbm-cpp", "_FPBM_CPP_COMPLETE").source())

@@ -1,13 +1,13 @@
-"""Motions and arms in files: runs and back, tables, datasets, ROS bags, URDF, C++ headers."""
+"""Files of motions and arms: run files, tables, datasets, ROS bags, URDF, C++ headers."""
 
 import os
 from pathlib import Path
 
 
 def write_whole(file: Path, content: bytes) -> Path:
-    """Write a file, or leave what is there as it was. Raises OSError; returns the file."""
+    """Write a file completely, or keep the existing file. Raises OSError; returns the file."""
     if file.exists() and not file.is_file():
-        file.write_bytes(content)  # A device; a directory says that it is one.
+        file.write_bytes(content)  # A device; a directory raises an error here.
         return file
     part = file.with_name(f".{file.name}.{os.getpid()}.part")
     try:

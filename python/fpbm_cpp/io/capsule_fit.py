@@ -1,9 +1,9 @@
 """The smallest capsule around points and balls.
 
-A capsule is all that lies within a radius r of a segment from a to b. Of those that contain the points, the one of
-least volume pi r^2 |b - a| + 4/3 pi r^3 is sought over a, b and r by sequential quadratic programming, as in El Khoury,
-"Planning optimal motions for anthropomorphic systems" (2013), 3.8.1, from the best of many directions: on a given line
-the best capsule is a search over r alone. The result contains all points whatever the search did.
+A capsule is the set of points within a radius r of a segment from a to b. The volume pi r^2 |b - a| + 4/3 pi r^3 of a
+capsule that contains the points is minimised over a, b and r by sequential quadratic programming, as in El Khoury,
+"Planning optimal motions for anthropomorphic systems" (2013), 3.8.1. The starts are the best of many directions: on a
+given line, the best capsule is a search over r only. The result contains all points for every outcome of the search.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 from .._types import Array
 from ..errors import extra
 
-DIRECTIONS = 80  # Of lines that are tried.
-STARTS = 4  # Lines that the search starts from.
-APART = 0.9  # Cosine of the least angle between two of them.
-BALL = 0.1  # Capsules shorter than this are started from twice, once made longer; points fill a ball of radius 1.
-ACTIVE = 40  # Points that the search sees at first; those that it leaves outside join them.
+DIRECTIONS = 80  # Directions of lines that are tried.
+STARTS = 4  # Lines at which the search starts.
+APART = 0.9  # Cosine of the least angle between two of these lines.
+BALL = 0.1  # Shorter capsules give two starts, one of them longer; the points are scaled to a ball of radius 1.
+ACTIVE = 40  # Points in the first search; points outside its result are added.
 GOLDEN = (np.sqrt(5.0) - 1) / 2
-ROUNDS = 24  # Of the golden section on a line: its share of the radii's range is 1e-5 in the end.
-MARKS = (np.sqrt(2.0), np.pi)  # Without a common measure, so that points of equal marks are equal but for round-off.
-ROOM = 1e-12  # Of the radius, as a share of the coordinates: rounding in whoever computes a distance.
+ROUNDS = 24  # Of the golden section on a line: the final interval is 1e-5 of the range of radii.
+MARKS = (np.sqrt(2.0), np.pi)  # Incommensurable, so that points with equal marks are equal up to round-off.
+ROOM = 1e-12  # Slack of the radius, relative to the coordinates, for round-off in distance computations.
 
 
 class Fit(NamedTuple):
@@ -41,9 +41,9 @@ class Fit(NamedTuple):
 
 
 def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = False) -> Fit:
-    """The smallest capsule that contains balls about points (N, 3) of radii (N,), which are 0 unless given.
+    """The smallest capsule that contains balls at points (N, 3) with radii (N,); default radii: 0.
 
-    Deterministic. A rough fit is a few times as fast, and seldom larger. Raises ImportError where SciPy is missing.
+    Deterministic. A rough fit is several times as fast, and rarely larger. Raises ImportError if SciPy is missing.
     """
     radii = np.zeros(len(points)) if radii is None else radii
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -59,14 +59,14 @@ def fit_capsule(points: Array, radii: Array | None = None, *, rough: bool = Fals
 
 
 def fit_cylinder(radius: float, length: float) -> Fit:
-    """The smallest capsule about the z axis that contains a cylinder about it, whose middle is the origin."""
+    """The smallest capsule about the z axis that contains a cylinder about the z axis, centred at the origin."""
     half = length / 2
     rim = np.array([[radius, 0, -half], [radius, 0, half]])
     return _on_lines(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), rim, np.zeros(2))[0]
 
 
 def enclosing(a: Array, b: Array, points: Array, radii: Array) -> Fit:
-    """The capsule with this axis that contains the balls, with some room for rounding."""
+    """The capsule with this axis that contains the balls, with some slack for round-off."""
     room = ROOM * float(np.max(np.abs(points), initial=0.0) + np.max(radii, initial=0.0))
     return Fit(a, b, float(np.max(distances(points, a, b) + radii)) + room)
 
@@ -77,33 +77,33 @@ def distances(points: Array, a: Array, b: Array) -> Array:
 
 
 def _nearest(points: Array, a: Array, b: Array) -> tuple[Array, Array]:
-    """Where on the segment each point's nearest one is: as a share of the way from a to b, and in space."""
+    """For each point, the nearest point of the segment: as a fraction from a to b, and in space."""
     along = b - a
     share = np.clip((points - a) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)[:, None]
     return share, a + share * along
 
 
 def outermost(points: Array, radii: Array) -> tuple[Array, Array]:
-    """Without the points that others' convex hull contains."""
+    """The points that are not in the convex hull of the others."""
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     bare = points[radii == 0.0]
     if len(bare) > 4:
-        # Edges share their ends. Points of equal marks count once: the capsule is enlarged to contain all in the end.
+        # Edges share their ends. Points with equal marks count once; enclosing() makes the result contain all points.
         mark = bare[:, 0] + MARKS[0] * bare[:, 1] + MARKS[1] * bare[:, 2]
         bare = bare[np.sort(np.unique(mark, return_index=True)[1])]
-        with suppress(spatial.QhullError):  # They are flat, and few as a rule.
+        with suppress(spatial.QhullError):  # The points are flat, and usually few.
             bare = bare[spatial.ConvexHull(bare).vertices]
     balls = radii > 0.0
     return np.vstack([bare, points[balls]]), np.concatenate([np.zeros(len(bare)), radii[balls]])
 
 
 def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
-    """The best capsules on lines of many directions, no two alike, or on a principal axis; they hold most points."""
+    """The best capsules on lines of many different directions, or on a principal axis; they contain most points."""
     i = np.arange(DIRECTIONS)
     z, turn = 1.0 - (i + 0.5) / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * i  # A spiral over half the sphere.
     flat = np.sqrt(1.0 - z * z)
     spiral = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
-    # The points farthest out will do; the search sees all.
+    # The outermost points suffice here; the search has all points.
     reach = np.hstack([points @ spiral.T, -points @ spiral.T]) + radii[:, None]
     few = np.unique(np.argmax(reach, axis=0))
     points, radii = points[few], radii[few]
@@ -114,14 +114,14 @@ def _starts(points: Array, radii: Array, rough: bool) -> list[Fit]:
     for fit, u in fits:
         if len(chosen) < most and all(abs(u @ other) < APART for _, other in chosen):
             chosen.append((fit, u))
-    # The search cannot turn a ball.
+    # The search cannot rotate a ball.
     balls = [(fit, u) for fit, u in chosen if np.linalg.norm(fit.b - fit.a) < BALL]
     longer = [Fit(fit.a - BALL * u, fit.b + BALL * u, fit.radius) for fit, u in balls]
     return [*(fit for fit, _ in chosen), *longer]
 
 
 def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
-    """A small capsule for each direction (D, 3): its axis passes near the centre of the points' projection."""
+    """A small capsule for each direction (D, 3): the axis passes near the centre of the points' projection."""
     shadows = points - (directions @ points.T)[:, :, None] * directions[:, None, :]  # (D, N, 3)
     middles = shadows.mean(axis=1)
     each = np.arange(len(directions))
@@ -133,9 +133,9 @@ def _about(directions: Array, points: Array, radii: Array) -> list[Fit]:
 
 
 def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) -> list[Fit]:
-    """The smallest capsule whose axis is on each line (D, 3): the larger r, the shorter its axis may be.
+    """The smallest capsule with its axis on each line (D, 3): for a larger r, the axis may be shorter.
 
-    A golden-section search over r, on all lines at once.
+    A golden-section search over r, for all lines simultaneously.
     """
     away = points - origins[:, None]  # (D, N, 3)
     s = np.einsum("dnk,dk->dn", away, directions)
@@ -155,7 +155,7 @@ def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) ->
     middles = (s.min(axis=1) + s.max(axis=1)) / 2
     most = np.max(np.hypot(s - middles[:, None], d) + radii, axis=1)  # Of a ball.
 
-    def radius(x: Array) -> Array:  # Where the volume falls infinitely fast from the least radius, it does not over x.
+    def radius(x: Array) -> Array:  # The slope of the volume at the least radius may be infinite in r, not in x.
         return np.asarray(least + (most - least) * x * x)
 
     inner, outer = np.zeros(len(s)), np.ones(len(s))
@@ -176,7 +176,7 @@ def _on_lines(origins: Array, directions: Array, points: Array, radii: Array) ->
 
 
 def _improved(start: Fit, points: Array, radii: Array, tolerance: float) -> Fit:
-    """A capsule that contains the points, and whose volume has a minimum there; near another."""
+    """A capsule near the start that contains the points and has a local minimum of the volume."""
     optimize = extra("scipy.optimize", "a capsule that fits", "clearance")
 
     def volume(x: Array) -> tuple[float, Array]:

@@ -1,4 +1,4 @@
-"""Distances of links by their capsules and by their convex hulls, in postures that fill the joints' ranges."""
+"""Distances between links by capsules and by convex hulls, in postures that fill the joint ranges."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .capsule_fit import Fit, distances, outermost
 from .urdf_shapes import Shape, together
 
 PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107)
-# Choices that tests/python/test_home_postures.py passes with; no sweep of values stands behind them.
-CLOSE = 1.2  # Capsules below so many margins are close: a start at rest is accepted from one margin on.
-APART = 1.5  # Links whose hulls are above so many margins are not close: between the two, no cut is worth its capsule.
-FIRST = 2  # Postures of which one is enough for a pair to count: joints at zero, and in the middle.
-OFTEN = 0.25  # Share of the postures that is enough.
-OPEN = 3.0  # [rad] or [m], the range of a joint without ends, to either side of zero.
-NORMALS = 200  # Directions in which a gap between hulls is looked for at first.
-SPREADS = 0.1 * 0.6 ** np.arange(8)  # Of directions about the best one, in each round of the search for a better one.
+# tests/python/test_home_postures.py passes with these values; they are not from a parameter study.
+CLOSE = 1.2  # Capsules closer than CLOSE margins are close: a start at rest is accepted from one margin on.
+APART = 1.5  # Hulls farther apart than APART margins are not close; between the values, a cut is not worth a capsule.
+FIRST = 2  # Number of postures of which a single one makes a pair count: joints at zero, and in the middle.
+OFTEN = 0.25  # Fraction of the postures that makes a pair count.
+OPEN = 3.0  # [rad] or [m], range of an unbounded joint on each side of zero.
+NORMALS = 200  # Directions of the first search for a gap between hulls.
+SPREADS = 0.1 * 0.6 ** np.arange(8)  # Of directions about the best direction, in each round of the search.
 
 
 class Part(NamedTuple):
@@ -37,7 +37,7 @@ class Part(NamedTuple):
 
 @dataclass
 class Link:
-    """A link by its number in the tree, that of the link that carries its joint (-1 of the base), and its parts."""
+    """A link: its number in the tree, the number of its parent link (-1 for the base), and its parts."""
 
     number: int
     parent: int
@@ -48,21 +48,21 @@ class Link:
         return [part.fit for part in self.parts]
 
     def may_meet(self, later: Link) -> bool:
-        """Whether a link with a number that is not smaller is not this one, nor the one that this carries."""
+        """Whether a link with an equal or larger number is neither this link nor its child."""
         return later.number > self.number and later.parent != self.number
 
 
 class Gaps:
-    """Pairs of links, not next to one another, that are too close: capsules are below CLOSE margins, hulls above APART.
+    """Pairs of non-adjacent links that are too close: capsules closer than CLOSE margins, hulls farther than APART.
 
-    A pair counts where it is too close in one of the first postures, or in a share OFTEN of all.
+    A pair counts if it is too close in one of the first postures, or in a fraction OFTEN of all postures.
     """
 
     def __init__(self, links: list[Link], frames: Array, margin: float) -> None:
         self.links = links
         self.margin, self.close = margin, CLOSE * margin
         inverse = np.linalg.inv(frames)
-        self._cases: dict[tuple[int, int], Array] = {}  # Poses of the second link, and how much each counts.
+        self._cases: dict[tuple[int, int], Array] = {}  # Poses of the second link, and their weights.
         self._weights: dict[tuple[int, int], Array] = {}
         self._left_out: dict[tuple[int, int], Array] = {}
         hulls = [_outer(link) for link in links]
@@ -80,22 +80,22 @@ class Gaps:
             self._weights[i, j] = np.where(np.array(wrong) < FIRST, 1.0, 1.0 / len(poses))
 
     def worst(self, but: Collection[tuple[int, int]]) -> tuple[int, int] | None:
-        """Of the pairs that are too close often, but for some, the one that is so by most; None where none is."""
+        """The pair with the largest excess of all pairs that count, except some; None if there is no pair."""
         pairs = [pair for pair in self._cases if pair not in but and self._often(*pair) >= OFTEN]
         return max(pairs, key=lambda pair: self.excess(*pair), default=None)
 
     def _often(self, i: int, j: int) -> float:
-        """In what share of the postures a pair is too close; at least 1 where it is so in one of the first."""
+        """Fraction of the postures in which a pair is too close; at least 1 if it is too close in a first posture."""
         gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
         return float((gaps < self.close) @ self._weights[i, j])
 
     def excess(self, i: int, j: int) -> float:
-        """How much capsules of a pair are too close by, in all postures together [m]."""
+        """Excess of a pair: the distances by which its capsules are too close, summed over the postures [m]."""
         gaps = capsules_apart(self.links[i].fits, self.links[j].fits, self._cases[i, j])
         return float(np.maximum(self.close - gaps, 0.0) @ self._weights[i, j])
 
     def excess_with(self, i: int, parts: list[Part], pair: tuple[int, int]) -> float:
-        """That of a pair with other parts of link i; infinite where a pair that is left out would not be any longer."""
+        """Excess of a pair with other parts of link i; infinite if an unchecked pair would become a checked pair."""
         kept, self.links[i].parts = self.links[i].parts, parts
         try:
             found = self.excess(*pair)
@@ -111,7 +111,7 @@ class Gaps:
 
 
 def _outer(link: Link) -> Shape:
-    """The points of a link that others' convex hull does not contain."""
+    """The points of a link that are not in the convex hull of the others."""
     whole = together([part.shape for part in link.parts])
     points, sizes = outermost(whole.points, whole.sizes)
     bare = np.repeat(points[sizes == 0.0][:, None], 2, axis=1)
@@ -129,7 +129,7 @@ def postures(joints: Sequence[Joint], count: int) -> Array:
 
 
 def follow(joints: Sequence[Joint], q: Array) -> Array:
-    """Positions (count, n) with those of mimic joints set by their leaders."""
+    """Positions (count, n), with mimic joints set from their leaders."""
     for i, each in enumerate(joints):
         if each.mimic is not None:
             leader, ratio, offset = each.mimic
@@ -161,7 +161,7 @@ def capsules_apart(first: Sequence[Fit], second: Sequence[Fit], poses: Array) ->
 
 
 def _segments_apart(p: Array, q: Array, a: Array, b: Array) -> Array:
-    """Distances (count,) of the segment from p to q from segments a to b (count, 3): of inner points, or of an end."""
+    """Distances (count,) between the segment p to q and segments a to b (count, 3): of inner points, or of an end."""
     d, e, w = q - p, b - a, p - a
     dd, ee, de, dw, ew = d @ d, np.sum(e * e, axis=1), e @ d, w @ d, np.sum(e * w, axis=1)
     det = dd * ee - de * de
@@ -177,9 +177,9 @@ def _segments_apart(p: Array, q: Array, a: Array, b: Array) -> Array:
 
 
 def hulls_apart(first: Shape, second: Shape, pose: Array, enough: float = np.inf) -> float:
-    """A lower bound on the distance of two links' convex hulls: the widest gap between planes, of many directions.
+    """Lower bound on the distance of two links' convex hulls: the widest gap between parallel planes, for many normals.
 
-    The search for a better direction ends at the first that gives enough.
+    The search for a better normal ends when the gap is at least `enough`.
     """
     moved = second.points @ pose[:3, :3].T + pose[:3, 3]
 
@@ -199,7 +199,7 @@ def hulls_apart(first: Shape, second: Shape, pose: Array, enough: float = np.inf
 
 
 def _sphere(count: int) -> Array:
-    """Directions that fill the sphere evenly, on a spiral."""
+    """Directions on a spiral that fill the sphere evenly."""
     i = np.arange(count)
     z, turn = 1.0 - (2 * i + 1.0) / count, np.pi * (1.0 + np.sqrt(5.0)) * i
     flat = np.sqrt(1.0 - z * z)

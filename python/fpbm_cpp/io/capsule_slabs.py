@@ -1,4 +1,4 @@
-"""Cuts that make capsules clear of one another in postures that a robot must be accepted in."""
+"""Cuts of links, so that their capsules keep the margin in required postures."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from .capsule_fit import enclosing, fit_capsule
 from .capsule_gaps import Link, Part, capsules_apart, link_frames, postures
 
 MOST = 8  # Capsules that a link may have: TIAGo's torso needs 5 in its home posture.
-PLACES = 6  # A cut in two is tried at each of so many parts of a shape.
+PLACES = 6  # Number of equal parts of a shape at whose ends a cut in two is tried.
 SLABS = (3, 4, 5)  # Numbers of equal slabs that are tried.
-STEPS = (0.1, 0.2, 0.5, 1.0)  # Radii that a capsule is moved by; a choice.
-LEAST = 0.1  # Share of what a part lacks that a cut must gain; a choice.
-SPREAD = 64  # Postures, beside the required ones, in which a pair that is close in all is left out.
-ROOM = 1.01  # Of the margin: a posture in which capsules are one margin apart is accepted.
-ALIKE = 0.95  # Cosine of an angle between directions that count as one.
+STEPS = (0.1, 0.2, 0.5, 1.0)  # Displacements of a capsule that are tried, in radii; not tuned.
+LEAST = 0.1  # Fraction of a part's missing distance that a cut must gain; not tuned.
+SPREAD = 64  # Postures, in addition to the required ones, that decide which pairs are close in all postures.
+ROOM = 1.01  # In margins: a posture in which capsules are one margin apart is accepted.
+ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
 
 
 class Postures:
-    """How much closer than a margin the capsules of links are in some postures."""
+    """Missing distances of the links' capsules to a margin in required postures."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Postures:
         self.touching = {pair for pair in self.poses if self._touch(*pair)}
 
     def _touch(self, i: int, j: int) -> bool:
-        """Whether corners of the links are closer than the margin: then no capsules are farther apart."""
+        """Whether corners of the links are closer than the margin; then capsules that contain them are too."""
         spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
         one, other = (np.vstack([part.shape.points for part in self.links[k].parts]) for k in (i, j))
         tree = spatial.cKDTree(one)
@@ -56,7 +56,7 @@ class Postures:
         )
 
     def lack(self, i: int, j: int, one: list[Part], other: list[Part]) -> float:
-        """How much, summed over the required postures, parts of link i and link j lack to the margin [m].
+        """Missing distance of parts of link i and link j to the margin, summed over the required postures [m].
 
         As in Clearance, capsules that are closer than the margin in all postures do not count.
         """
@@ -69,7 +69,7 @@ class Postures:
         return float(np.sum(found))
 
     def lack_of_link(self, i: int, parts: list[Part]) -> float:
-        """How much parts of link i lack to all other links [m]; infinite where it lacks to one it touches."""
+        """Missing distance of parts of link i to all other links [m]; infinite if nonzero for a touching link."""
         total = 0.0
         for pair in self.poses:
             if i in pair:
@@ -81,7 +81,7 @@ class Postures:
         return total
 
     def worst(self, given_up: Collection[tuple[int, int]]) -> tuple[int, int] | None:
-        """The pair that lacks most, of those that do not touch; None where no other pair lacks anything."""
+        """The pair with the largest missing distance of all pairs that do not touch; None if none is missing."""
         lacks = {
             (i, j): self.lack(i, j, self.links[i].parts, self.links[j].parts)
             for i, j in self.poses
@@ -94,11 +94,11 @@ class Postures:
 def clear(
     links: list[Link], joints: list[TreeJoint], required: Array, margin: float, but: Collection[tuple[int, int]] = ()
 ) -> None:
-    """Changes capsules until they keep the margin in the required postures (k, n), where the links do; but some pairs.
+    """Change capsules until they keep the margin in the required postures (k, n) if the links do, except some pairs.
 
-    Capsules are moved away while that gains anything, since it adds none; TIAGo then has 33 capsules, and 43 were not
-    enough the other way round. Else, of all cuts of a pair's links, the one is made that gains most for each capsule
-    that it adds.
+    Capsules are first moved, since a displacement adds no capsule: TIAGo then has 33 capsules, whereas 43 were not
+    enough if cuts came first. If no displacement helps, the cut with the largest gain per added capsule is made, of all
+    cuts of a pair's links.
     """
     state = Postures(links, joints, required, margin, but)
     given_up: set[tuple[int, int]] = set()
@@ -120,7 +120,7 @@ def clear(
 def _best(
     state: Postures, pair: tuple[int, int], ways: Callable[[Part], Iterable[list[Part]]]
 ) -> tuple[int, list[Part]] | None:
-    """The link of a pair, and its parts, of which one is changed in the way that gains most; None where none gains."""
+    """The link of a pair, and its parts after the change of one part with the largest gain; None without a gain."""
     most, best = 0.0, None
     for i in pair:
         parts = state.links[i].parts
@@ -139,7 +139,7 @@ def _best(
 
 
 def _directions(part: Part) -> list[Array]:
-    """The axis of a part's capsule, its principal axes, and its frame's axes, no two alike."""
+    """The axis of a part's capsule, its principal axes and its frame's axes, without nearly equal directions."""
     points = part.shape.points
     along = part.fit.b - part.fit.a
     principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
@@ -151,7 +151,7 @@ def _directions(part: Part) -> list[Array]:
 
 
 def _slabs(part: Part) -> Iterator[list[Part]]:
-    """A part, cut in two, or into equal slabs."""
+    """A part, cut in two or into equal slabs."""
     points = part.shape.points
     for u in _directions(part):
         low, high = float(np.min(points @ u)), float(np.max(points @ u))
@@ -163,7 +163,7 @@ def _slabs(part: Part) -> Iterator[list[Part]]:
 
 
 def _moved(part: Part) -> Iterator[list[Part]]:
-    """A part with its capsule moved: behind a flat face, a larger capsule whose axis is farther away bulges less."""
+    """A part with its capsule displaced: behind a flat face, a larger capsule with a farther axis bulges less."""
     for u in _directions(part):
         for step in (*STEPS, *(-step for step in STEPS)):
             a, b = (end + step * part.fit.radius * u for end in (part.fit.a, part.fit.b))

@@ -1,4 +1,4 @@
-"""A URDF's collision geometry as capsules that contain it."""
+"""Capsules that contain the collision geometry of a URDF file."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from .urdf import Places, read_places
 from .urdf_shapes import Shape, read_shapes, together
 from .urdf_tree import read_tree
 
-FAIR = 0.85  # More capsules than one have at most this share of its volume.
-CUTS = 6  # A cut is tried at each of so many parts of a shape.
-ALIKE = 0.95  # Cosine of an angle between directions that are as good as one.
-MANY = 12  # So many shapes are not tried in groups.
-POSTURES = 64  # In which distances of links are compared.
-MORE = 1  # Capsules that a link may have above per_link, where it is taken to be too close to others.
-GAIN = 0.8  # A finer cut leaves at most this share of the distance that capsules are too close by; a choice.
+FAIR = 0.85  # Several capsules have at most this fraction of the volume of one capsule.
+CUTS = 6  # Number of equal parts of a shape at whose ends a cut is tried.
+ALIKE = 0.95  # Cosine of the angle between directions that count as equal.
+MANY = 12  # More shapes than this are not tried in groups.
+POSTURES = 64  # Postures in which distances of links are compared.
+MORE = 1  # Additional capsules of a link above per_link, if its capsules are too close to others.
+GAIN = 0.8  # A finer cut reduces the excess of a pair to at most this fraction; not tuned.
 
 
 def capsules_of(
@@ -43,25 +43,27 @@ def capsules_of(
     required: ArrayLike | None = None,
     allowed: Collection[tuple[str, str]] = (),
 ) -> list[Capsule]:
-    """Capsules that contain the collision geometry of a URDF file's links: tight, and the same each time.
+    """Tight capsules that contain the collision geometry of the links of a URDF file. Deterministic.
 
-    Each link has one, of least volume, or up to per_link where these take at least 15 % less room. Unless per_link is 1
-    or finer is False, a link may have one more where it would be taken to be closer to another link than a margin [m]:
-    see Gaps. In the required postures (k, n) [rad] or [m], capsules keep the margin where clear() achieves that, by up
-    to 8 capsules a link, but for allowed pairs of names.
-    Without tip, joints are those of Robot.from_urdf(path, base=base, locked=locked, tips=tips), which holds each other
-    joint. With tip, joints are those of SerialArm.from_urdf(path, tip, base). Links that no joint between base and tip
-    moves belong to the base, each other link to the last such joint before it: tools and fingers beyond the tip as
-    well. Joints that are not between base and tip are held at zero, so capsules of an open gripper or of another arm
-    hold for that posture alone. Visual geometry is not read: a link that has no other has no capsule.
+    Each link has one capsule of least volume, or up to per_link capsules if their volume is at least 15 % smaller.
+    Unless per_link is 1 or finer is False, a link may have one more capsule if its capsules would be closer to another
+    link than a margin [m] and the links are not: see Gaps. In the required postures (k, n) [rad] or [m], capsules keep
+    the margin if clear() finds up to 8 capsules per link that do, except for allowed pairs of names.
+
+    Without tip, the joints are those of Robot.from_urdf(path, base=base, locked=locked, tips=tips), which fixes all
+    other joints. With tip, the joints are those of SerialArm.from_urdf(path, tip, base). A link that no joint between
+    base and tip moves belongs to the base, and each other link to the last of these joints before it; this includes
+    tools and fingers beyond the tip. Joints that are not between base and tip are fixed at zero, so the capsules of a
+    gripper or of another arm are valid for that posture only. Visual geometry is not read: a link without collision
+    geometry has no capsule.
 
     Returns
     -------
     list of Capsule
-        From base to tip, in frames of the robot's links: that of link i is the file's own for the child of joint i.
+        From base to tip, in the frames of the robot's links; link i has the frame of joint i's child in the file.
 
-    Raises ValueError where the file is no sound URDF, has no such chain or no collision geometry, or a mesh is not
-    found or cannot be read; OSError where the file cannot be read; ImportError where an extra is missing.
+    Raises ValueError if the file is not a valid URDF, has no chain between the links or no collision geometry, or if a
+    mesh is not found or cannot be read; OSError if the file cannot be read; ImportError if an extra is missing.
     """
     if isinstance(per_link, bool) or not isinstance(per_link, (int, np.integer)) or per_link < 1:
         raise wrong("per_link", per_link, f" = {per_link!r}: must be a whole number, at least 1")
@@ -71,7 +73,7 @@ def capsules_of(
         raise ValueError(f"{os.fsdecode(path)}: has no <collision> geometry")
     names = sorted(shapes, key=lambda link: places[link][0])
     links = []
-    fitted: dict[bytes, list[Part]] = {}  # Arms of one kind have the same shapes.
+    fitted: dict[bytes, list[Part]] = {}  # Equal arms have equal shapes.
     for name in names:
         number, frame = places[name]
         moved = [shape.moved(frame) for shape in shapes[name]]
@@ -96,7 +98,7 @@ def _joints(
     locked: Mapping[str, float] | None,
     tips: Iterable[str] | None,
 ) -> tuple[list[TreeJoint], Places]:
-    """The joints that move, as of a tree, and where each link of the file is."""
+    """The moving joints as joints of a tree, and the place of each link of the file."""
     if tip is None:
         tree = read_tree(path, base=base, locked=locked, tips=tips)
         return tree["joints"], {frame.name: (frame.link, frame.offset) for frame in tree["named_frames"]}
@@ -108,10 +110,10 @@ def _joints(
 
 
 def refine(links: list[Link], joints: list[TreeJoint], most: int, margin: float) -> None:
-    """Cuts links further, into at most so many parts, where capsules are close and the links' hulls are not: see Gaps.
+    """Cut links further, into at most `most` parts, if capsules are close and the links' hulls are not: see Gaps.
 
-    Of all cuts of either link, the one is made after which the capsules are too close by least. A pair that is below
-    the margin in all postures is left out by Clearance: no cut brings such a pair back.
+    Of all cuts of either link, the cut with the least excess of the pair is made. Clearance does not check a pair that
+    is closer than the margin in all postures; no cut makes this pair a checked pair.
     """
     gaps = Gaps(links, link_frames(joints, postures([each.joint for each in joints], POSTURES)), margin)
     given_up: set[tuple[int, int]] = set()
@@ -144,7 +146,7 @@ def _halves(part: Part) -> Iterator[list[Part]]:
 
 
 def _parts_of(shapes: list[Shape], most: int) -> list[Part]:
-    """The parts of a link with a capsule each: all of it, or more parts where that saves a fair share of the volume."""
+    """The parts of a link with a capsule each: one part, or several if that reduces the volume by 1 - FAIR."""
     whole = together(shapes)
     parts = [_part(whole)]
     ways: list[Callable[[], list[Shape]]] = [lambda: _cut(whole, parts[0].fit, most)]
@@ -174,13 +176,13 @@ def _fit(shape: Shape) -> Fit:
 
 
 def _cut(whole: Shape, fit: Fit, most: int) -> list[Shape]:
-    """Up to so many parts between parallel planes: across the one capsule, or a principal axis."""
+    """Up to `most` parts between parallel planes, normal to the axis of the capsule or to a principal axis."""
     cuts = [_slabs(whole, u, most) for u in _directions(whole, fit)]
     return min(cuts, key=lambda parts: sum(map(_rough_volume, parts)))
 
 
 def _directions(shape: Shape, fit: Fit) -> list[Array]:
-    """Normals of planes to cut a shape by: its capsule's axis, and its principal axes, no two alike."""
+    """Normals of cutting planes: the axis of the capsule and the principal axes, without nearly equal directions."""
     along = fit.b - fit.a
     length = float(np.linalg.norm(along))
     directions = [along / length] if length > 0.0 else []
@@ -191,7 +193,7 @@ def _directions(shape: Shape, fit: Fit) -> list[Array]:
 
 
 def _slabs(whole: Shape, u: Array, most: int) -> list[Shape]:
-    """Cut by planes across u, each where the parts' capsules get least, while that helps."""
+    """Cut by planes normal to u, each where the total volume of the capsules is least, while the volume decreases."""
     s = whole.points @ u
     places = np.linspace(s.min(), s.max(), CUTS + 1)[1:-1]
     bounds = [-np.inf, np.inf]
@@ -222,7 +224,7 @@ def _rough_volume(shape: Shape) -> float:
 
 
 def _grouped(shapes: list[Shape], most: int) -> list[Shape]:
-    """Shapes joined two by two, those first whose common capsule is least larger than their own."""
+    """Shapes joined in pairs, first the pair whose common capsule adds the least volume."""
     groups = list(shapes)
     while len(groups) > most:
         own = list(map(_rough_volume, groups))

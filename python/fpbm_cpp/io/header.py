@@ -1,4 +1,4 @@
-"""Arms and robots written as C++ headers, for programs that read no files."""
+"""C++ headers of arms and robots, for programs that read no files."""
 
 import re
 import textwrap
@@ -15,7 +15,7 @@ from ..robots import NamedFrame, Robot, TreeJoint
 
 SCALARS = ("double", "float")
 
-# Names that a namespace cannot have: C++'s keywords, and namespaces of others.
+# Invalid names of a namespace: keywords of C++, and namespaces of other libraries.
 TAKEN = """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
 co_await co_return co_yield compl concept const consteval constexpr constinit const_cast continue decltype default
 delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable
@@ -24,8 +24,8 @@ return short signed sizeof static static_assert static_cast struct switch templa
 typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq Eigen fpbm std"""
 
 BOUNDS = """\
-/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the velocity's offset and deceleration near
-/// an end; what is left out has no bound."""
+/// Bounds are lower, upper [rad] or [m], velocity, acceleration, jerk, and the offset and deceleration of the velocity
+/// bound near an end of the range. A value that is left out means no bound."""
 
 
 def export_header(
@@ -37,13 +37,13 @@ def export_header(
     capsules: Sequence[Capsule] | None = None,
     scalar: str = "double",
 ) -> str:
-    """Text of a C++ header that builds an arm, so that a program needs neither a parser nor a file.
+    """Text of a C++ header that constructs an arm, so that a program needs neither a parser nor a file.
 
-    It has kDof, kJointNames, chain() and arm(), an fpbm::CoupledArm where one joint mimics another, else an
-    fpbm::SerialArm, in the namespace of that name, 'my::arm' say; and capsules() where capsules on its links are given,
-    none or more. tip: its frame, shape (4, 4) [m], seen from the last joint. source: where the arm comes from, for a
-    comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError where no namespace can
-    have the name.
+    The header has kDof, kJointNames, chain() and arm(), which returns an fpbm::CoupledArm if the arm has mimic joints,
+    otherwise an fpbm::SerialArm. It has capsules() if capsules are given, also for an empty list. name: the namespace,
+    for example 'my::arm'. tip: frame of the tip in the frame of the last joint, shape (4, 4) [m]. source: origin of the
+    arm, for a comment. scalar: 'double', or 'float' for a processor without double. Raises ParameterError if the name
+    is not a valid namespace.
     """
     drives = _drives(joints, name, scalar)
     kind = "SerialArm" if drives == len(joints) else "CoupledArm"
@@ -56,7 +56,7 @@ def export_header(
         includes += ["fpbm/clearance/clearance.hpp", "vector"]
     return f"""\
 {_begin(joints, name, source, includes)}
-/// The joints from base to tip, each placed as seen from the one before [m].
+/// The joints from base to tip, each placed in the frame of the previous joint [m].
 {BOUNDS}
 inline fpbm::Chain{length} chain() {{
 {_body(f"fpbm::Chain{length} chain", parts, scalar)}
@@ -72,10 +72,10 @@ inline {arm} arm() {{
 
 
 def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "double") -> str:
-    """Text of a C++ header that builds a robot, so that a program needs neither a parser nor a file.
+    """Text of a C++ header that constructs a robot, so that a program needs neither a parser nor a file.
 
-    It has kDof, kJointNames, tree(), with the masses of links and with all frames of the robot, and robot(). name,
-    source, scalar and what it raises are those of export_header().
+    The header has kDof, kJointNames, tree(), with the masses of the links and all frames of the robot, and robot().
+    name, source, scalar and errors are those of export_header().
     """
     joints = [each.joint for each in robot.joints]
     drives = _drives(joints, name, scalar)
@@ -87,8 +87,8 @@ def export_tree(robot: Robot, *, name: str, source: str = "", scalar: str = "dou
     parts += [_frame_lines(f"  tree.frames[{i}]", each, scalar) for i, each in enumerate(robot.named_frames)]
     return f"""\
 {_begin(joints, name, source, ["array", "fpbm/model/robot.hpp"])}
-/// The joints from the base on, each placed in the frame of the link that carries it [m]; masses of the links [kg] and
-/// their centres [m]; frames. Link 0 is the base, link i + 1 the one that joint i moves.
+/// The joints from the base on, each placed in the frame of its parent link [m]; masses of the links [kg] and their
+/// centres [m]; frames. Link 0 is the base, link i + 1 is the child of joint i.
 {BOUNDS}
 inline {tree} tree() {{
 {_body(f"{tree} tree", parts, scalar)}
@@ -104,18 +104,18 @@ inline {kind} robot() {{
 
 
 def namespace_of(stem: str) -> str:
-    """A namespace named after a file, whose name has no suffix here: '04-my arm' gives 'my_arm'."""
+    """A namespace from the name of a file without its suffix: '04-my arm' gives 'my_arm'."""
     name = re.sub(r"[^A-Za-z0-9]+", "_", stem).lstrip("_0123456789").rstrip("_") or "arm"
     return f"{name}_arm" if name in TAKEN.split() else name
 
 
 def _is_identifier(name: str) -> bool:
-    # Two underscores in a row, or one at the beginning, are reserved for the compiler.
+    # Two successive underscores, and a leading underscore, are reserved for the compiler.
     return re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*_?", name) is not None and name not in TAKEN.split()
 
 
 def _drives(joints: Sequence[Joint], name: str, scalar: str) -> int:
-    """Number of joints that have a drive. Raises ParameterError where scalar or name does not serve."""
+    """Number of joints that have a drive. Raises ParameterError if scalar or name is invalid."""
     if scalar not in SCALARS:
         raise not_one_of("scalar", scalar, SCALARS)
     if not all(_is_identifier(part) for part in name.split("::")):
@@ -124,7 +124,7 @@ def _drives(joints: Sequence[Joint], name: str, scalar: str) -> int:
 
 
 def _begin(joints: Sequence[Joint], name: str, source: str, includes: Sequence[str]) -> str:
-    """The header to the names of the joints."""
+    """The first part of the header, up to the names of the joints."""
     drives = [_literal(joint.name or f"joint_{i}") for i, joint in enumerate(joints, 1) if joint.mimic is None]
     width = max(map(len, drives), default=0)
     names = "\n".join(f"    {literal + ',':{width + 1}}  // q({i})" for i, literal in enumerate(drives))
@@ -147,7 +147,7 @@ inline constexpr std::array<const char*, kDof> kJointNames = {{
 
 
 def _body(declaration: str, parts: Sequence[Sequence[str]], scalar: str) -> str:
-    """The declaration of what a function returns, and the lines that fill it."""
+    """Declaration of the result of a function, and the lines that assign it."""
     text = "\n\n".join("\n".join(lines) for lines in parts if lines)
     none = f"  constexpr {scalar} kNone = fpbm::JointBounds<{scalar}>::kNone;\n" if "kNone" in text else ""
     return f"{none}  {declaration};\n\n{text}\n"
@@ -233,6 +233,6 @@ def _number(number: float, scalar: str) -> str:
 
 def _literal(text: str) -> str:
     """A C++ string literal of the text in UTF-8; bytes beyond ASCII are written in octal."""
-    special = {byte: f"\\{byte:c}" for byte in b'\\"?'}  # Of ?, since ??/ was once a backslash.
+    special = {byte: f"\\{byte:c}" for byte in b'\\"?'}  # ? is escaped because ??/ was a trigraph for a backslash.
     escaped = (special.get(byte, f"{byte:c}" if 32 <= byte < 127 else f"\\{byte:03o}") for byte in text.encode())
     return '"' + "".join(escaped) + '"'

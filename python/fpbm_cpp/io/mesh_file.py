@@ -1,4 +1,4 @@
-"""Meshes that robots' files name: where they are, and what is in them."""
+"""Meshes in robot description files: search and reading."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAX_BYTES = 256 * 2**20
 def find_mesh(urdf: Path, name: str) -> Path | None:
     """The file of a mesh that a URDF file names, or None.
 
-    A package is any folder above the URDF file or in ROS_PACKAGE_PATH, or a folder in one of those.
+    A package is a folder above the URDF file or in ROS_PACKAGE_PATH, or a folder in one of these.
     """
     place = name.partition("://")[2] or name
     inside = place.partition("/")[2] if name.startswith("package://") else place
@@ -32,8 +32,8 @@ def find_mesh(urdf: Path, name: str) -> Path | None:
 def read_mesh(file: Path) -> Array:
     """The edges of a mesh's triangles, shape (E, 2, 3) [m]: STL, OBJ or DAE.
 
-    A DAE's unit is heeded and its up axis is not, as ROS has it. No other file is opened: neither materials nor
-    textures. Raises ValueError where it is no such mesh, ImportError where trimesh or pycollada is missing.
+    As in ROS, the unit of a DAE file applies and its up axis is ignored. No other file is opened: neither materials nor
+    textures. Raises ValueError if the mesh is not valid, ImportError if trimesh or pycollada is missing.
     """
     trimesh = extra("trimesh", "a mesh's capsule", "clearance")
     kind = file.suffix.lower().removeprefix(".")

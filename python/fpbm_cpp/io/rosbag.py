@@ -20,15 +20,15 @@ from .tables import quaternions
 def to_rosbag(run: Run, directory: str | os.PathLike[str], frame: str, trajectory: bool) -> None:
     rosbag2, typesys = (extra(f"rosbags.{part}", "to_rosbag", "ros") for part in ("rosbag2", "typesys"))
     if not len(run.t):
-        raise ValueError("the run has no samples: must have one at least to be a bag")
+        raise ValueError("the run has no samples: must have at least one sample")
     target = Path(directory)
     if target.exists() or target.is_symlink():
-        raise FileExistsError(f"{target}: exists already, and a bag is not written over anything")
+        raise FileExistsError(f"{target}: exists already: give a new directory, a bag does not replace files")
     store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
-    # A bag's files have its name, so an unfinished bag is marked by the name of its parent.
+    # The files of a bag have the name of the bag, so the name of the parent marks an unfinished bag.
     part = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".part", dir=target.absolute().parent))
     try:
-        # ROS 2 Humble cannot parse the qualities of service of version 9; later releases read both.
+        # ROS 2 Humble cannot parse the QoS profiles of version 9; later releases read both versions.
         with rosbag2.Writer(part / target.name, version=8) as writer:
             topics: dict[str, Any] = {}
             for topic, time, message in _messages(run, store.types, frame, trajectory):
@@ -69,7 +69,7 @@ def _messages(run: Run, types: Any, frame: str, trajectory: bool) -> Iterator[tu
 
 
 def _poses(run: Run, x: Array, reference: bool = False) -> tuple[Array, Array]:
-    """Positions in space, and quaternions: for a task of position, the arm's, and of the reference the identity."""
+    """Positions in space, and quaternions: for a position task, those of the arm; for the reference, the identity."""
     if x.ndim == 3:
         return x[:, :3, 3], quaternions(x[:, :3, :3])
     if isinstance(run.arm, PlanarArm):  # In the xy plane.

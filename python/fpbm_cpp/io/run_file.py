@@ -1,4 +1,4 @@
-"""Runs in files, and back as they were: arrays in an .npz file, all else in it as JSON; nothing is pickled."""
+"""Run files: arrays in an .npz file, all other data as JSON in the same file; nothing is pickled."""
 
 import io
 import json
@@ -24,11 +24,11 @@ from . import write_whole
 
 FORMAT = "fpbm_cpp run"
 KINDS: dict[str, Makers] = {"arm": ROBOTS, "path": EVERY_PATH, "scheme": SCHEMES}
-VERSION = 1  # Of the format: one more for each that older packages cannot read.
+VERSION = 1  # Of the format; incremented for each format that older packages cannot read.
 
 
 def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
-    """Write a run to a file, whole or not at all."""
+    """Write a run to a file, completely or not at all."""
     meta = {
         "format": FORMAT,
         "version": VERSION,
@@ -44,30 +44,30 @@ def save(run: Run, file: str | os.PathLike[str], note: Any, seed: Any) -> None:
 
 
 def load(file: str | os.PathLike[str]) -> Run:
-    """Read a run that Run.save wrote: arrays, arm, path, scheme and all, equal to the last bit.
+    """Read a run that Run.save wrote: arrays, arm, path, scheme and all other fields, equal to the last bit.
 
-    Nothing in a file is executed: arm, path and scheme are made from numbers by this package's own classes. The run's
-    provenance says when, where and by which versions it was made, with its note and seed.
+    Nothing in the file is executed: the classes of this package construct arm, path and scheme from numbers. The
+    provenance of the run has date, machine and versions, note and seed.
 
-    Raises ValueError if the file is no run, is damaged, names anything outside this package, or has a newer format, and
-    OSError if it cannot be read.
+    Raises ValueError if the file is not a run, is damaged, names anything outside this package, or has a newer format;
+    OSError if the file cannot be read.
     """
     content = FilePath(file).read_bytes()
     try:
         meta, arrays = _members(content)
     except Exception as error:  # Readers of damaged files raise exceptions of every kind.
-        raise ValueError(f"{file}: must be a whole file that a run was saved to: {error}") from error
+        raise ValueError(f"{file}: must be a complete file from Run.save(): {error}") from error
     if meta["version"] > VERSION:
         newest = f"{VERSION}, the newest that fpbm_cpp {__version__} reads: upgrade fpbm_cpp"
-        raise ValueError(f"{file}: its format {meta['version']} is newer than {newest}")
+        raise ValueError(f"{file}: format {meta['version']} is newer than {newest}")
     try:
         return _run(meta, arrays)
     except Exception as error:
-        raise ValueError(f"{file}: holds no run: {error}") from error
+        raise ValueError(f"{file}: is not a valid run: {error}") from error
 
 
 def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
-    """Where a run comes from: as its file says, or from here and now."""
+    """Provenance of a run: from its file, or of this moment on this machine."""
     if note is not None and not isinstance(note, str):
         raise ValueError(f"note = {note!r}: must be text")
     if seed is not None:
@@ -88,7 +88,7 @@ def _provenance(run: Run, note: Any, seed: Any) -> dict[str, Any]:
 
 
 def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
-    """The table; ValueError if another file would be read for it."""
+    """The table; ValueError if the table names another file."""
     if table.get("kind") in ("urdf", "robot"):
         raise ValueError(f"kind = {table['kind']!r}: a run's file must not name another file")
     return table
@@ -96,13 +96,13 @@ def _refuse_files(table: dict[str, Any]) -> dict[str, Any]:
 
 def _members(content: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
     if not content.startswith(b"PK"):
-        raise ValueError("it is no .npz file")
+        raise ValueError("is not an .npz file")
     with np.load(io.BytesIO(content), allow_pickle=False) as members:
         if "meta" not in members:
-            raise ValueError("it says nothing of arm, path and scheme")
+            raise ValueError("has no arm, path and scheme")
         meta = json.loads(str(members["meta"]), object_hook=_refuse_files)
         if meta["format"] != FORMAT or not isinstance(meta["version"], int):
-            raise ValueError(f"its format is {meta['format']!r} {meta['version']!r}")
+            raise ValueError(f"has the format {meta['format']!r} {meta['version']!r}")
         return meta, {name: members[name] for name in (*ARRAYS, *LIMITED, *OF_STACKS) if name in members}
 
 
@@ -110,7 +110,7 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
     made_of = {name: from_table(meta[name], KINDS[name], name) for name in KINDS}
     options: dict[str, Any] = {name: np.inf if value == "inf" else value for name, value in meta["options"].items()}
     if "scale" in arrays:
-        options.setdefault("null_damping", 0.0)  # Trackers before that option added none.
+        options.setdefault("null_damping", 0.0)  # Before this option existed, trackers added no damping.
     for name in ("limits", "clearance"):
         if options.get(name) is not None:
             options[name] = from_table(options[name], name=name)
@@ -127,7 +127,7 @@ def _run(meta: dict[str, Any], arrays: dict[str, Any]) -> Run:
 
 
 def _check_shapes(run: Run) -> None:
-    """Raise ValueError unless all arrays of a run have the shapes that its arm and tasks ask for."""
+    """Raise ValueError unless all arrays of a run have the shapes for its arm and tasks."""
     arm, stack = run.arm, run.stack
     if run.kind not in ("position", "pose"):
         raise not_one_of("task", run.kind, ("position", "pose"))

@@ -1,4 +1,4 @@
-"""Pairs of links that an SRDF file says need not be kept apart, and its named postures."""
+"""Disabled pairs of links and named postures of an SRDF file."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ KEPT: Kept = {("robot",): {"disable_collisions": ("link1", "link2")}}
 def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
     """The links of each <disable_collisions link1="..." link2="...">, as MoveIt's setup assistant writes them.
 
-    Names in a pair and pairs are in order, and none is there twice. <disable_default_collisions> is not heeded: more
-    pairs are then kept apart than MoveIt does. Raises ValueError where the file is no sound SRDF, OSError where it
-    cannot be read.
+    The pairs and the names in a pair are sorted, without duplicates. <disable_default_collisions> is ignored, so more
+    pairs are checked than in MoveIt. Raises ValueError if the file is not a valid SRDF, OSError if it cannot be read.
     """
     name = os.fsdecode(path)
     pairs = set()
@@ -34,9 +33,9 @@ def read_disabled_pairs(path: str | os.PathLike[str]) -> list[tuple[str, str]]:
 
 
 def read_group_states(path: str | os.PathLike[str]) -> list[dict[str, float]]:
-    """Positions of the joints of each <group_state> [rad] or [m]; without those that have a joint of several numbers.
+    """Joint positions of each <group_state> [rad] or [m], except states with a joint that has several numbers.
 
-    Raises ValueError where the file is no sound SRDF, OSError where it cannot be read.
+    Raises ValueError if the file is not a valid SRDF, OSError if it cannot be read.
     """
     name = os.fsdecode(path)
     states = []

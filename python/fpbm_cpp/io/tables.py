@@ -1,4 +1,4 @@
-"""Runs as tables, one row a sample, for pandas and as CSV; and as xarray's datasets."""
+"""Runs as tables with one row per sample, for pandas and CSV, and as xarray datasets."""
 
 import csv
 import io
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Its name, what its columns are called, with {} for the component, over what its components are ('joint', 'axis',
-# 'quaternion', or '' of one that has none), values over time, and units of the components, '' where there is none.
+# Name; names of the columns, with {} for the component; dimension of the components ('joint', 'axis', 'quaternion', or
+# '' for a scalar); values over time; units of the components, '' for no unit.
 Quantity = tuple[str, str, str, NDArray[Any], list[str]]
 
 
 def _quantities(run: Run) -> Iterator[Quantity]:
-    """All quantities of a run but the times, from left to right."""
+    """All quantities of a run except the times, in the order of the columns."""
     joints, none = joint_units(run.arm), [""] * 4
     for name, values, per in (("q", run.q, ""), ("qd", run.qd, "/s"), ("qdd", run.qdd, "/s^2")):
         yield name, f"{name}_{{}}", "joint", values, [unit + per for unit in joints]
@@ -71,7 +71,7 @@ def _columns(run: Run) -> Iterator[tuple[str, str, NDArray[Any]]]:
 def to_pandas(run: Run) -> "pd.DataFrame":
     pandas = extra("pandas", "to_pandas", "data")
     names, units, columns = zip(*_columns(run))
-    frame: pd.DataFrame = pandas.DataFrame(dict(enumerate(columns)))  # Names may be there twice.
+    frame: pd.DataFrame = pandas.DataFrame(dict(enumerate(columns)))  # Names may be repeated.
     frame.columns = pandas.Index(names)
     frame.attrs["units"] = {name: unit for name, unit in zip(names, units) if unit}
     return frame
@@ -99,7 +99,7 @@ def to_xarray(run: Run) -> "xr.Dataset":
         coordinates["quaternion"] = ("quaternion", list("xyzw"))
     data = {}
     for name, _, over, values, units in _quantities(run):
-        # Both, if some joints are revolute and some prismatic; without a unit "1", as in the CF conventions.
+        # Both units for revolute and prismatic joints; "1" without a unit, as in the CF conventions.
         unit = ", ".join(sorted(set(units), reverse=True)) or "1"
         data[name] = (("time", over)[: values.ndim], values, {"units": unit})
     things = {"arm": repr(run.arm), "path": repr(run.path), "scheme": repr(run.scheme)}
@@ -110,7 +110,7 @@ def to_xarray(run: Run) -> "xr.Dataset":
 def quaternions(rotations: Array) -> Array:
     """Unit quaternions (x, y, z, w) of rotation matrices, shape (N, 4) of (N, 3, 3).
 
-    Of the two quaternions of an orientation, each row takes the one nearer to the row before; the first has w >= 0.
+    Of the two quaternions of an orientation, a row has the quaternion nearer to the previous row; the first has w >= 0.
     """
     vectors = np.array([rotation_vector(R) for R in rotations]).reshape(-1, 3)
     half = np.linalg.norm(vectors, axis=1, keepdims=True) / 2

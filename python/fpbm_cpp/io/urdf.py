@@ -1,4 +1,4 @@
-"""Chains of joints from URDF files: names, numbers and the tree must be sound in all of it, the rest on the way."""
+"""Chains of joints from URDF files. Names, numbers and the tree of the whole file must be valid, and the chain."""
 
 import difflib
 import os
@@ -19,21 +19,21 @@ from ..errors import ParameterError, wrong
 from .urdf_file import ENVELOPE, UrdfJoint, read_robot
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed")
-Tree = dict[str, "UrdfJoint | None"]  # The joint above each link, None above the root.
-Places = dict[str, tuple[int, Array]]  # By link: how many joints move it, and its frame seen from the last of them.
-Follow = tuple[str, float, float]  # Leader, ratio, offset: a position is ratio times the leader's, plus offset.
+Tree = dict[str, "UrdfJoint | None"]  # The parent joint of each link, None for the root.
+Places = dict[str, tuple[int, Array]]  # By link: number of joints that move it, and its frame in the frame of the last.
+Follow = tuple[str, float, float]  # Leader, ratio, offset: the position is ratio times the leader's plus offset.
 
 
 def read_urdf(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array]:
-    """Read the joints that move from link base (the root unless given) to link tip, and the tip's frame.
+    """Read the moving joints from link base (default: the root) to link tip, and the frame of the tip.
 
-    As SerialArm.from_urdf() says. The bounds of a joint that another mimics are narrowed so that both keep theirs.
+    See SerialArm.from_urdf(). The bounds of a leader are narrowed so that its mimic joints keep their own bounds.
     """
     return read_places(path, tip, base)[:2]
 
 
 def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None) -> tuple[list[Joint], Array, Places]:
-    """Read as read_urdf() does, and where each link of the file is; joints off the way are held at zero."""
+    """The result of read_urdf(), and the place of each link of the file; joints off the chain are fixed at zero."""
     name = os.fsdecode(path)
     try:
         links, every = read_robot(name)
@@ -56,7 +56,7 @@ def read_places(path: str | os.PathLike[str], tip: str, base: str | None = None)
 
 
 def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
-    """The joint above each link; a ValueError says why they are no tree."""
+    """The parent joint of each link. Raises ValueError with the cause if the joints are not a tree."""
     above: Tree = dict.fromkeys(links)
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
@@ -72,12 +72,12 @@ def tree_of(links: Iterable[str], joints: Iterable[UrdfJoint]) -> Tree:
         raise ValueError(f"its links form a loop: {listed(error.args[1])}") from None
     roots = [link for link, joint in above.items() if joint is None]
     if len(roots) != 1:
-        raise ValueError(f"links that are no joint's child: {listed(roots)}: must be one, the root")
+        raise ValueError(f"links without a parent joint: {listed(roots)}: must be one, the root")
     return above
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names as messages show them, 12 at most."""
+    """Names for a message, at most 12."""
     shown = list(map(repr, names))
     more = [f"{len(shown) - 12} more"] if len(shown) > 12 else []
     return ", ".join(shown[:12] + more) or "none"
@@ -91,7 +91,7 @@ def _way(above: Tree, tip: str, base: str | None) -> list[UrdfJoint]:
     others = {base, *(joint.parent for joint in _to_root(above, "base", base))}
     if base not in links:
         fork = next(link for link in links if link in others)
-        where = f"base must lie between the root {links[-1]!r} and the tip"
+        where = f"base must be between the root {links[-1]!r} and the tip"
         raise ValueError(f"tip {tip!r} is not below base {base!r}, they have {fork!r} in common: {where}")
     way = up[: links.index(base)][::-1]
     count = _moving(way)
@@ -115,16 +115,16 @@ def _to_root(above: Tree, role: str, link: str) -> list[UrdfJoint]:
 
 
 def _hint(above: Tree, link: str) -> str:
-    """Links that may have been meant, and the ends of all branches, that with the most joints first."""
+    """Similar names of links, and the ends of all branches, first the branch with the most joints."""
     parents = {joint.parent for joint in above.values() if joint}
     leaves = (name for name in above if name not in parents)
     ends = sorted(leaves, key=lambda name: -_moving(_to_root(above, "tip", name)))
-    close = difflib.get_close_matches(link, list(above)[:300])  # Of thousands it would take long.
+    close = difflib.get_close_matches(link, list(above)[:300])  # Thousands would take long.
     return (f", perhaps {' or '.join(map(repr, close))}" if close else "") + f"; its branches end in {listed(ends)}"
 
 
 def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) -> dict[str, Follow]:
-    """For each joint on the way that mimics: the joint that it follows in the end, which mimics none."""
+    """For each mimic joint of the chain: the last leader, which is not a mimic joint."""
     follows = {}
     for joint in way:
         if joint.type == "fixed" or joint.mimic is None:
@@ -149,7 +149,7 @@ def follows_of(way: Iterable[UrdfJoint], mimics: Mapping[str, Follow | None]) ->
 
 
 def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Joint], Places, list[UrdfJoint]]:
-    """The joints that move, where the links on the way are, and the joints that are held."""
+    """The moving joints, the places of the links of the chain, and the fixed mimic joints."""
     moving = {joint.name for joint in way if joint.type != "fixed"}
     joints: list[Joint] = []
     held = []
@@ -169,20 +169,20 @@ def _chain(way: list[UrdfJoint], follows: Mapping[str, Follow]) -> tuple[list[Jo
                 frame = frame @ step_of(joint, offset)
         places[joint.child] = (len(joints), frame)
     if not joints:
-        raise ValueError(f"no joints move but those that are held: {listed(joint.name for joint in held)}")
+        raise ValueError(f"all moving joints are held: {listed(joint.name for joint in held)}: at least one must move")
     return joints, places, held
 
 
 def step_of(joint: UrdfJoint, position: float) -> Array:
-    """What a joint at a position moves its link by."""
+    """Transform of a joint at a position."""
     if not np.any(joint.axis):
-        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
+        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector")
     along = position * np.array(joint.axis) / np.linalg.norm(joint.axis)
     return frame_at(p=along) if joint.type == "prismatic" else frame_at(R=rotation(along))
 
 
 def _all_places(above: Tree, known: Places) -> Places:
-    """Where all links are: those above the base and on side branches as if each joint there were fixed at zero."""
+    """Places of all links; joints above the base and on side branches are fixed at zero."""
     beside: dict[str, list[tuple[str, Array]]] = {link: [] for link in above}
     for joint in filter(None, above.values()):
         step = pose(joint.xyz, joint.rpy)
@@ -213,10 +213,10 @@ def frame_at(p: ArrayLike = 0.0, R: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)
 
 
 def chain_joint(joint: UrdfJoint, placement: Array) -> Joint:
-    """A joint that moves, with its bounds; a ValueError says what is wrong with them."""
+    """A moving joint with its bounds. Raises ValueError if the bounds are invalid."""
     if not np.any(joint.axis):
-        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must point somewhere")
-    # The format's defaults.
+        raise ValueError(f"joint {joint.name!r}: axis = 0 0 0: must be a nonzero vector")
+    # Defaults of the URDF format.
     limit: dict[str, Any] = {"lower": 0.0, "upper": 0.0, "acceleration": inf, "jerk": inf, **joint.limit}
     if joint.type == "continuous":
         limit = {"velocity": inf, **limit, "lower": -inf, "upper": inf}
@@ -233,7 +233,7 @@ def chain_joint(joint: UrdfJoint, placement: Array) -> Joint:
 
 
 def _envelope(joint: UrdfJoint) -> dict[str, float]:
-    """A Franka's bound on velocity that depends on position, as libfranka reads it."""
+    """Bound on velocity as a function of position for Franka, as libfranka reads it."""
     if not joint.envelope:
         return {}
     offset, deceleration = (joint.envelope.get(name) for name in ENVELOPE)
@@ -244,7 +244,7 @@ def _envelope(joint: UrdfJoint) -> dict[str, float]:
 
 
 def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[Joint]:
-    """The joints with their mimics, and each leader bounded so that its followers stay within their own bounds."""
+    """The joints with their mimics, and each leader bounded so that its mimic joints keep their own bounds."""
     coupled = list(joints)
     index = {joint.name: i for i, joint in enumerate(joints)}
     for i, follower in enumerate(joints):
@@ -257,7 +257,7 @@ def coupled_joints(joints: list[Joint], follows: Mapping[str, Follow]) -> list[J
         lower, upper = max(leader.lower, ends[0]), min(leader.upper, ends[1])
         if lower >= upper:
             room = f"lower = {lower:g}, upper = {upper:g}"
-            raise ValueError(f"joint {name!r}: those that mimic it leave it no room: {room}")
+            raise ValueError(f"joint {name!r}: the bounds of its mimic joints leave no range: {room}")
         coupled[index[name]] = replace(
             leader,
             type="revolute" if leader.type == "continuous" and upper < inf else leader.type,

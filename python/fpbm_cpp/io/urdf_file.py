@@ -1,6 +1,6 @@
-"""The links and joints of a URDF file: what a chain is made of.
+"""The links and joints of a URDF file.
 
-Meshes, transmissions and simulators' extras are not read, masses where they are asked for.
+Meshes, transmissions and extensions for simulators are not read; masses are read on request.
 """
 
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ import numpy as np
 from .._types import Array
 from .xml_file import Element, Kept, named, read_xml
 
-# The attributes that are read, by the elements that they are in.
+# Attributes that are read, by their elements.
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
-ENVELOPE = ("velocity_offset", "deceleration_limit")  # Of a Franka: a bound on velocity that depends on position.
+ENVELOPE = ("velocity_offset", "deceleration_limit")  # Of Franka: bound on velocity as a function of position.
 KEPT: Kept = {
     ("robot",): {"link": ("name",), "joint": ("name", "type")},
     ("robot", "joint"): {
@@ -42,7 +42,7 @@ class Mass(NamedTuple):
 
 @dataclass(frozen=True)
 class UrdfJoint:
-    """A joint as a URDF states it, with the format's defaults for what it leaves out."""
+    """A joint of a URDF file, with the defaults of the format."""
 
     name: str
     type: str | None
@@ -51,18 +51,18 @@ class UrdfJoint:
     xyz: list[float]
     rpy: list[float]
     axis: list[float]
-    limit: dict[str, float]  # What is stated of LIMITS.
-    envelope: dict[str, float]  # What is stated of ENVELOPE.
-    mimic: tuple[str, float, float] | None  # Another joint, multiplier, offset.
+    limit: dict[str, float]  # Given attributes of LIMITS.
+    envelope: dict[str, float]  # Given attributes of ENVELOPE.
+    mimic: tuple[str, float, float] | None  # Leader, multiplier, offset.
 
 
 def read_robot(path: str) -> tuple[list[str], list[UrdfJoint]]:
-    """Read the names of the links, and the joints; a ValueError says what is wrong with the file."""
+    """Read the names of the links, and the joints. Raises ValueError if the file is invalid."""
     return _links_and_joints(read_xml(path, KEPT))
 
 
 def read_robot_with_masses(path: str) -> tuple[list[str], list[UrdfJoint], dict[str, Mass]]:
-    """The same, and the masses of the links that have one."""
+    """The result of read_robot(), and the masses of the links that have one."""
     robot = read_xml(path, INERTIALS)
     links, joints = _links_and_joints(robot)
     masses: dict[str, Mass] = {}

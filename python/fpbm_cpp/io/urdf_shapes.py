@@ -1,4 +1,4 @@
-"""Collision geometry of a URDF's links: what is to be kept apart, as edges and balls whose convex hulls fill it."""
+"""Collision geometry of the links of a URDF file, as edges and balls whose convex hulls contain it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .mesh_file import find_mesh, read_mesh
 from .urdf import pose
 from .xml_file import Element, Kept, named, read_xml
 
-SIDES = 64  # Of the prism around a cylinder: 0.12 % wider.
+SIDES = 64  # Of the prism around a cylinder, which is 0.12 % wider.
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 KEPT: Kept = {
     ("robot",): {"link": ("name",)},
@@ -30,15 +30,15 @@ KEPT: Kept = {
 class Shape:
     """A body in a link's frame: the faces between its edges, and balls.
 
-    edges: shape (E, 2, 3). centers and radii of the balls: (B, 3) and (B,). cylinder: radius, length and frame where it
-    is nothing but one; its edges are those of a prism around it. All in metres.
+    edges: shape (E, 2, 3). centers and radii of the balls: (B, 3) and (B,). cylinder: radius, length and frame if the
+    body is a single cylinder; its edges are those of a prism around the cylinder. All in metres.
     """
 
     edges: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))
     centers: Array = field(default_factory=lambda: np.zeros((0, 3)))
     radii: Array = field(default_factory=lambda: np.zeros(0))
     cylinder: tuple[float, float, Array] | None = None
-    sides: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))  # Around sections by planes, of what was cut.
+    sides: Array = field(default_factory=lambda: np.zeros((0, 2, 3)))  # Sides of sections by cutting planes.
 
     @property
     def points(self) -> Array:
@@ -56,11 +56,11 @@ class Shape:
         return Shape(self.edges @ R.T + p, self.centers @ R.T + p, self.radii, cylinder, self.sides @ R.T + p)
 
     def between(self, u: Array, low: float, high: float) -> Shape:
-        """What lies in low <= u x < high; a ball belongs where its center is.
+        """The part of the body in low <= u x < high; a ball belongs to the part that contains its center.
 
-        A plane that cuts a face cuts its edges: what is left of these has the hull of what is left of the face. There,
-        the face gets a new edge, which a later plane may cut. That edge is inside the convex hull of the section, whose
-        sides are kept, and join the edges where a plane cuts them.
+        A plane that cuts a face cuts its edges: the remaining parts of the edges and of the face have the same hull. At
+        the plane, the face gets a new edge, which a later plane may cut. The new edge is inside the convex hull of the
+        section, whose sides are kept. A side joins the edges if a plane cuts it.
         """
         kept, cut = _clipped(self.edges, u, low, high)
         sides_kept, sides_cut = _clipped(self.sides, u, low, high)
@@ -74,7 +74,7 @@ class Shape:
 
 
 def _clipped(edges: Array, u: Array, low: float, high: float) -> tuple[Array, NDArray[np.bool_]]:
-    """What is left of edges in low <= u x <= high, and which of them a plane cuts."""
+    """The parts of edges in low <= u x <= high, and which of these edges a plane cuts."""
     s = edges @ u
     rise = s[:, 1] - s[:, 0]
     flat = rise == 0.0
@@ -88,7 +88,7 @@ def _clipped(edges: Array, u: Array, low: float, high: float) -> tuple[Array, ND
 
 
 def _section(points: Array, u: Array, bound: float) -> Array:
-    """Sides of the convex hull of those points that are on a plane u x = bound."""
+    """Sides of the convex hull of the points on a plane u x = bound."""
     spatial = extra("scipy.spatial", "a capsule that fits", "clearance")
     size = float(np.max(np.abs(points), initial=0.0))
     on = points[np.abs(points @ u - bound) <= 1e-9 * size]
@@ -105,7 +105,7 @@ def _section(points: Array, u: Array, bound: float) -> Array:
 
 
 def together(shapes: list[Shape]) -> Shape:
-    """Several shapes as one; one shape as it is."""
+    """Several shapes joined to one shape."""
     if len(shapes) == 1:
         return shapes[0]
     return Shape(
@@ -119,8 +119,8 @@ def together(shapes: list[Shape]) -> Shape:
 def read_shapes(path: str | os.PathLike[str]) -> dict[str, list[Shape]]:
     """Collision geometry of each link that has any, in the link's frame.
 
-    Raises ValueError where the file is no sound URDF, or a mesh is not found or cannot be read; ImportError where what
-    reads meshes is missing.
+    Raises ValueError if the file is not a valid URDF, or if a mesh is not found or cannot be read; ImportError if a
+    library for meshes is missing.
     """
     name = os.fsdecode(path)
     meshes: dict[str, Array] = {}

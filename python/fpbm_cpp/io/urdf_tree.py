@@ -1,4 +1,4 @@
-"""Trees of joints from URDF files, with masses: what a Robot is made of."""
+"""Trees of joints from URDF files, with masses, for a Robot."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def read_tree(
     locked: Mapping[str, float] | None = None,
     tips: Iterable[str] | None = None,
 ) -> dict[str, Any]:
-    """The arguments of a Robot, as Robot.from_urdf() says."""
+    """The arguments of a Robot; see Robot.from_urdf()."""
     name = os.fsdecode(path)
     if base is not None and base not in BASES:
         raise not_one_of("base", base, BASES)
@@ -47,7 +47,7 @@ def read_tree(
 def _held(
     above: Tree, every: Iterable[UrdfJoint], locked: dict[str, float], tips: Iterable[str] | None
 ) -> dict[str, float]:
-    """Positions of the joints that are held, by name."""
+    """Positions of the fixed joints, by name."""
     joints = {joint.name: joint for joint in every}
     for name, position in locked.items():
         if name not in joints or joints[name].type in ("fixed", "floating", "planar"):
@@ -55,7 +55,7 @@ def _held(
             hint = f", perhaps {' or '.join(map(repr, close))}" if close else ""
             raise wrong("locked", name, f" has {name!r}: must be names of joints that move{hint}")
         if (mimic := joints[name].mimic) is not None:
-            raise wrong("locked", name, f" has {name!r}, which mimics {mimic[0]!r}: lock that one")
+            raise wrong("locked", name, f" has {name!r}, which mimics {mimic[0]!r}: lock the leader")
         low, high = _range(joints[name])
         if not low <= position <= high:
             raise ParameterError(
@@ -72,7 +72,7 @@ def _held(
 
 
 def _needed(above: Tree, joints: Mapping[str, UrdfJoint], tips: list[str]) -> set[str]:
-    """Names of the joints that move a tip, and of those that they mimic."""
+    """Names of the joints that move a tip, and of their leaders."""
     needed: set[str] = set()
     for tip in tips:
         if tip not in above:
@@ -94,7 +94,7 @@ def _range(joint: UrdfJoint) -> tuple[float, float]:
 
 
 def _planar_base() -> list[Joint]:
-    """Joints that move a base along x and y, and turn it about z."""
+    """Joints of a base that moves along x and y and rotates about z."""
     return [
         Joint("prismatic", axis=(1, 0, 0), name="base_x"),
         Joint("prismatic", axis=(0, 1, 0), name="base_y"),
@@ -103,7 +103,7 @@ def _planar_base() -> list[Joint]:
 
 
 def _depth_first(above: Tree) -> Iterator[UrdfJoint]:
-    """All joints, each behind the one that carries it; a chain's joints in a row."""
+    """All joints, each after its parent; the joints of a chain follow one another."""
     below: dict[str, list[UrdfJoint]] = {link: [] for link in above}
     for joint in filter(None, above.values()):
         below[joint.parent].append(joint)
@@ -128,7 +128,7 @@ def _robot(
         if joint.type not in TYPES:
             raise ValueError(f"joint {joint.name!r}: type = {joint.type!r}: must be {', '.join(TYPES)}")
         if joint.type in ("floating", "planar") and base is None:
-            raise ValueError(f"joint {joint.name!r} is {joint.type}: base= must be 'fixed' or 'planar', in its place")
+            raise ValueError(f"joint {joint.name!r} is {joint.type}: base= must be 'fixed' or 'planar', to replace it")
         if joint.type in ("revolute", "continuous", "prismatic"):
             leader, ratio, offset = follows.get(joint.name, (joint.name, 1.0, 0.0))
             if leader in held:
@@ -140,7 +140,7 @@ def _robot(
         places[joint.child] = (number, frame)
     if not 1 <= len(joints) <= MAX_DOF:
         raise ValueError(
-            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}, the others locked=, or left by tips="
+            f"{len(joints) or 'no'} joints move: must be 1 to {MAX_DOF}; fix the others by locked= or tips="
         )
     moving = {joint.name for joint in joints}
     coupled = coupled_joints(joints, {name: follow for name, follow in follows.items() if name in moving})
@@ -164,7 +164,7 @@ def _moving_joint(joint: UrdfJoint, frame: Array) -> Joint:
 
 
 def _weights(places: Places, masses: Mapping[str, Mass], count: int) -> list[Mass]:
-    """Mass and its centre of each link of the robot, which may be several of the file."""
+    """Mass and centre of mass of each link of the robot, which may have several links of the file."""
     total, moment = np.zeros(count), np.zeros((count, 3))
     for link, (mass, center) in masses.items():
         number, frame = places[link]

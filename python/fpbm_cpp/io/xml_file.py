@@ -1,6 +1,6 @@
 """XML files of robots.
 
-A file may come from anywhere: one bounded pass expands no entity, opens no other file, and keeps what is asked for.
+Files are not trusted: one bounded pass expands no entity, opens no other file, and keeps the requested elements only.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ MAX_ELEMENTS = 50_000
 MAX_DEPTH = 64
 MAX_TEXT = 256  # Characters of an attribute.
 
-# What is read of a file: by the elements around them, elements and those of their attributes that are kept.
+# Kept elements of a file and their kept attributes, by the enclosing elements.
 Kept = Mapping[tuple[str, ...], Mapping[str, tuple[str, ...]]]
 
 
 @dataclass
 class Element:
-    """An element, the attributes that are kept of it, and the elements in it that are kept."""
+    """An element, its kept attributes, and its kept child elements."""
 
     tag: str
     line: int
@@ -32,11 +32,11 @@ class Element:
         return [part for part in self.parts if part.tag == tag]
 
     def get(self, tag: str, key: str) -> str | None:
-        """An attribute of the first part with this tag; None where there is none."""
+        """An attribute of the first part with this tag; None if there is none."""
         return next((part.attributes.get(key) for part in self.parts if part.tag == tag), None)
 
     def require_one_each(self, owner: str) -> None:
-        """Raise ValueError where two of the parts have one tag."""
+        """Raise ValueError if two parts have the same tag."""
         seen: set[str] = set()
         for part in self.parts:
             if part.tag in seen:
@@ -44,16 +44,16 @@ class Element:
             seen.add(part.tag)
 
     def numbers(self, tag: str, key: str, default: list[float], owner: str) -> list[float]:
-        """As many finite numbers as the default has, which they are where the part does not state them."""
+        """As many finite numbers as in the default, which applies if the attribute is missing."""
         text = self.get(tag, key)
         if text is None:
             return default
         try:
-            # Python also reads 1_000 and the digits of other scripts.
+            # float() also accepts 1_000 and the digits of other scripts.
             found = [float(word) for word in text.split()] if text.isascii() and "_" not in text else []
         except ValueError:
             found = []
-        # No robot has numbers beyond 1e100, and products of smaller ones do not overflow.
+        # No robot has numbers beyond 1e100, and products of smaller numbers do not overflow.
         if len(found) != len(default) or not all(abs(number) < 1e100 for number in found):
             wanted = f"{len(default)} finite number{'s' * (len(default) > 1)}"
             raise ValueError(f"{owner}: {tag} {key} = {text!r}: must be {wanted}")
@@ -61,7 +61,7 @@ class Element:
 
 
 def read_xml(path: str | os.PathLike[str], kept: Kept) -> Element:
-    """Read what is kept of a file whose root is <robot>; a ValueError says what is wrong with the file."""
+    """Read the kept elements of a file whose root is <robot>. Raises ValueError if the file is invalid."""
     with open(path, "rb") as file:
         xml = file.read(MAX_BYTES + 1)
     if len(xml) > MAX_BYTES:
@@ -110,7 +110,7 @@ def cut(text: str) -> str:
 
 
 def named(elements: Iterable[Element]) -> dict[str, Element]:
-    """Elements of one tag by their names, which none may lack or share."""
+    """Elements of one tag by name; each must have a unique name."""
     found: dict[str, Element] = {}
     for i, element in enumerate(elements, 1):
         name = element.attributes.get("name")

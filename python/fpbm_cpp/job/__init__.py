@@ -1,9 +1,9 @@
-"""Jobs: a motion as a file says it, checked key by key, and made real.
+"""Jobs: motions that a file describes, checked key by key.
 
 from fpbm_cpp.job import prepare, read_job
 run = prepare(read_job("job.toml")).run()
 
-A job is a table of plain data, as TOML has it: arm, path, scheme, run, limits.
+A job is a table of plain data, as in TOML: arm, path, scheme, run, limits.
 """
 
 from .motion import Motion, prepare, read_job, write_job

@@ -1,4 +1,4 @@
-"""A job made real: read, its blanks filled, its arm, path and scheme built, ready to run."""
+"""Reads a job, adds the defaults, and constructs its arm, path and scheme."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ from .sections import (
     with_kind,
 )
 
-# The hand points down, from the makers' ready postures: Franka's, 30° -90° 60° of the iiwa 14, Kinova's home, right
-# angles of UR's [rad].
+# Ready postures with the hand down [rad]: the maker's for Franka; 30° -90° 60° for the iiwa 14; the maker's home for
+# Kinova; right angles for UR.
 READY = {
     "panda": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
     "fr3": [0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854],
@@ -55,11 +55,11 @@ READY = {
 }
 READY["two_pandas"] = 2 * READY["panda"]
 
-# How far joints of an unknown arm are bent, one way, the other or not at all [rad]; at most a quarter of their range.
+# Displacement of the joints of an unknown arm, in either direction or zero [rad]; at most a quarter of their range.
 BEND = 1.0
 TIP_TASKS = ("position", "pose")
-MOST = 3**7  # Postures that are looked at.
-GOOD = 0.8  # Of what the best has, as far as singular postures are.
+MOST = 3**7  # Largest number of candidate postures.
+GOOD = 0.8  # Accepted inverse condition number, relative to the best.
 
 
 Jacobian = Callable[[Array], Array]
@@ -67,18 +67,18 @@ Jacobian = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion to be run."""
+    """A motion that is ready to run."""
 
-    job: Table  # What was asked for, with every blank filled.
-    taken: dict[str, list[str]]  # What was filled in, by section, as in 'k1 = 10'.
+    job: Table  # The job, with all defaults.
+    taken: dict[str, list[str]]  # The defaults in use by section, for example 'k1 = 10'.
     arm: Arm | Robot
     path: Paths
     scheme: Scheme
     options: RunOptions
-    stack: Stack | None  # None where the tip's task is the only one.
-    limits: JointLimits | None  # None where they are not kept.
-    clearance: Clearance | None  # What is kept clear of, within limits.
-    bounds: tuple[TaskBounds, ...]  # Of tasks, within limits.
+    stack: Stack | None  # None if the tip's task is the only task.
+    limits: JointLimits | None  # None if they are not kept.
+    clearance: Clearance | None  # Needs limits.
+    bounds: tuple[TaskBounds, ...]  # Bounds of tasks; need limits.
 
     @property
     def q0(self) -> Array:
@@ -88,30 +88,30 @@ class Motion:
 
     @property
     def label(self) -> str:
-        """What to call the arm and the path."""
+        """Name of the arm and the path."""
         paths = self.job["path"]
         each = (" then ".join(piece["kind"] for piece in _pieces(path)) for path in _by_task(paths).values())
         return f"{self.name}, {' and '.join(each)}"
 
     @property
     def name(self) -> str:
-        """What to call the arm."""
+        """Name of the arm."""
         arm = self.job["arm"]
         return str(arm.get("name") or arm.get("file") or f"arm of {self.arm.dof} joints")
 
     @property
     def keywords(self) -> dict[str, Any]:
-        """The keyword arguments of sweep() and tune() that say how it is run."""
+        """The keyword arguments of sweep() and tune() for this motion."""
         options = self.options
         keywords = {"dt": options.dt, "hold": options.hold, "task": options.task}
         keywords |= {"stack": self.stack, "limits": self.limits}
-        # A job says the damping of its scheme: 0 is none.
+        # The scheme of a job has its own damping, which may be 0.
         return keywords if self.limits is None else {**keywords, "null_damping": 0.0}
 
     def of_one_arm(self) -> tuple[Arm, Path]:
-        """Arm and path, for sweep() and tune(). Raises JobError where there is a robot, or are several paths."""
+        """Arm and path, for sweep() and tune(). Raises JobError for a robot or for several paths."""
         if isinstance(self.arm, Robot) or isinstance(self.path, Mapping):
-            raise JobError(wrong("arm", None, ": must be an arm, along one path: track moves robots along several"))
+            raise JobError(wrong("arm", None, ": must be an arm on one path: use track for a robot or several paths"))
         return self.arm, self.path
 
     def with_scheme(self, options: Mapping[str, Any]) -> Motion:
@@ -120,11 +120,11 @@ class Motion:
         return replace(self, job={**self.job, "scheme": scheme}, scheme=make("scheme", scheme, self.arm))
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Write the job to a file, whole or not at all. Raises OSError."""
+        """Write the job to a file, completely or not at all. Raises OSError."""
         write_job(self.job, file)
 
     def run(self) -> Run:
-        """The motion: simulate()'s or, where limits are kept, track()'s; as far as it goes where it must stop early."""
+        """Run the motion by simulate(), or by track() if limits are kept; a motion may stop early."""
         keywords = {**self.keywords, "qd0": self.options.qd0}
         with job_errors():
             if self.limits is not None:
@@ -136,7 +136,7 @@ class Motion:
 
 
 def prepare(job: Table) -> Motion:
-    """Build what a job asks for. Raises JobError, or OSError where a file that it names cannot be read."""
+    """Construct the motion of a job. Raises JobError, or OSError if a file that the job names cannot be read."""
     require_sound(job)
     arm = make("arm", job["arm"])
     full = filled(job, arm)
@@ -158,17 +158,17 @@ def prepare(job: Table) -> Motion:
             alone = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
             check_sweep(arm, led, [scheme], options.q0, options.dt, options.hold, kind, alone)
         except ValueError:
-            motion.run()  # Refuses the same, by the names that a job has for it.
+            motion.run()  # Raises the same error, with the names in the job.
             raise
     return motion
 
 
 def filled(job: Table, arm: Arm | Robot) -> Table:
-    """The job with what it leaves out."""
+    """The job with the defaults for missing keys."""
     path = job.get("path", {"kind": FREE["path"]})
     pieces = {task: _filled_paths(each, arm) for task, each in _by_task(path).items()}
     pieces = pieces if is_by_task(path) else pieces[""]
-    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # Which the tasks have.
+    gains = {"k1": 0.0, "k2": 0.0} if "task" in job else {}  # The tasks have gains.
     scheme = dict(job.get("scheme", {"kind": FREE["scheme"]}))
     gains = {key: gain for key, gain in gains.items() if key in known("scheme", scheme.get("kind"))}
     scheme = _filled("scheme", {**gains, **scheme})
@@ -187,7 +187,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))
     full = {**job, "path": pieces, "scheme": scheme, "run": run}
     if "bounds" in job:
-        full["limits"] = job.get("limits", {})  # Without which no arm can stop in time.
+        full["limits"] = job.get("limits", {})  # Without limits, no arm can stop in time.
     if "clearance" in job:
         full["limits"] = job.get("limits", {})
         full["clearance"] = with_kind(job["clearance"])
@@ -201,7 +201,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
 
 
 def taken(job: Table, full: Table) -> dict[str, list[str]]:
-    """What the full job has and the job did not say, by section, as in 'k1 = 10', but for what is off."""
+    """Defaults in the full job by section, for example 'k1 = 10', without those that are off."""
     texts = {
         section: [*dict.fromkeys(_taken(job.get(section, {}), full[section]))] for section in ("path", "scheme", "run")
     }
@@ -209,7 +209,7 @@ def taken(job: Table, full: Table) -> dict[str, list[str]]:
 
 
 def _taken(said: Any, full: Any) -> Iterator[str]:
-    """The same of a section."""
+    """The same for a section."""
     if is_by_task(full):
         for task in full:
             yield from _taken(said.get(task, {}), full[task])
@@ -221,7 +221,7 @@ def _taken(said: Any, full: Any) -> Iterator[str]:
 
 
 def _filled(section: str, said: Table) -> Table:
-    """A table with the usual values of its kind, where they are not what the library takes anyway."""
+    """A table with the usual values of its kind, where they differ from the defaults of the library."""
     declared = known(section, said.get("kind")).items()
     usual = {key: each.usual for key, each in declared if each.usual is not each.default or section == "run"}
     return {**{key: to_table(value) for key, value in usual.items() if value not in (REQUIRED, None)}, **said}
@@ -233,7 +233,7 @@ def _pieces(path: Any) -> list[Table]:
 
 
 def _by_task(path: Any) -> dict[str, Any]:
-    """Paths by the names of their tasks; '' of one that has none."""
+    """Paths by task name; the name of a single path is ''."""
     return path if is_by_task(path) else {"": path}
 
 
@@ -242,7 +242,7 @@ def _filled_paths(said: Any, arm: Arm | Robot) -> Any:
 
 
 def _filled_path(said: Table, arm: Arm | Robot) -> Table:
-    """A path; a path of the plane is laid before an arm in space."""
+    """A path with its defaults; for an arm in space, a planar path is placed in the yz plane."""
     whole = _filled("path", said)
     if isinstance(arm, PlanarArm) or "in_plane" in whole:
         return whole
@@ -259,7 +259,7 @@ def _text(value: Any) -> str:
 
 
 def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float]:
-    """Joint positions that are not singular [rad]; in the plane, even bends that add up to a quarter of a turn."""
+    """Joint positions that are not singular [rad]; for a planar arm, equal bends that add up to a quarter turn."""
     if isinstance(arm, PlanarArm):
         posture = np.full(arm.dof, np.pi / 2 / (arm.dof - 1))
     else:
@@ -273,9 +273,9 @@ def ready(arm: Arm | Robot, task: str, stack: Stack | None = None) -> list[float
 
 
 def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> Iterator[tuple[Jacobian, Any]]:
-    """Those that are not to be singular, of the tip or of each frame that a robot's tasks are of, and their joints.
+    """Jacobians that must not be singular, of the tip or of each frame of a robot's tasks, and their joints.
 
-    The joints of a frame are those that move no other of these frames, if there are six.
+    The joints of a frame are those that move none of the other frames, if there are at least six.
     """
     if not isinstance(arm, Robot):
         yield lambda q: arm.jacobian(q, task=task), np.arange(arm.dof)
@@ -289,9 +289,9 @@ def _jacobians(arm: Arm | Robot, q: Array, task: str, stack: Stack | None) -> It
 
 
 def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) -> Array:
-    """The middle of the limits with the fewest joints bent that make it about as far from singular as any are."""
+    """The middle of the limits with the fewest displaced joints, about as far from singular as the best candidate."""
     room = np.minimum(BEND, (limits.upper - limits.lower) / 4)[columns]
-    # The last joints change fastest: of long arms, those near the base stay as they are.
+    # The last joints vary first: on a long arm, the joints near the base stay in the middle.
     bends = np.array(list(islice(product((0.0, 1.0, -1.0), repeat=len(columns)), MOST)))
     bends = bends[np.argsort(np.abs(bends).sum(axis=1), kind="stable")]
     postures = np.tile(middle, (len(bends), 1))
@@ -303,18 +303,18 @@ def _bent(limits: JointLimits, middle: Array, jacobian: Jacobian, columns: Any) 
 
 
 def read_job(file: str | os.PathLike[str]) -> Table:
-    """What a TOML file says, as yet unchecked. Files that it names are seen from there. Raises JobError or OSError."""
+    """Content of a TOML file, unchecked. File names in it are relative to its folder. Raises JobError or OSError."""
     try:
         table: Table = tomlkit.parse(FilePath(file).read_bytes()).unwrap()
     except (TOMLKitError, UnicodeDecodeError) as error:
-        raise JobError(wrong("", None, f"no TOML: {error}")) from None
+        raise JobError(wrong("", None, f"must be valid TOML: {error}")) from None
     for each, key in _files(table):
         each[key] = os.path.normpath(FilePath(file).parent / each[key])
     return table
 
 
 def write_job(job: Table, file: str | os.PathLike[str]) -> None:
-    """Write a job that is sound to a file, whole or not at all; read_job reads it back. Raises OSError."""
+    """Write a valid job to a file, completely or not at all; read_job() reads it. Raises OSError."""
     place = FilePath(file).resolve()
     table = {section: in_order(section, job[section]) for section in SECTIONS if section in job}
     for each, key in _files(table):
@@ -326,7 +326,7 @@ def write_job(job: Table, file: str | os.PathLike[str]) -> None:
 
 
 def _files(table: Table) -> Iterator[tuple[Table, str]]:
-    """The sections that name a file, and the keys of those."""
+    """The sections that name a file, and their keys."""
     for section in ("arm", "clearance"):
         for key in ("file", "srdf"):
             said = table.get(section)

@@ -1,4 +1,4 @@
-"""What a job may say, what its sections stand for, and what is wrong with them."""
+"""Sections of a job: their keys, their errors, and the construction of their objects."""
 
 from __future__ import annotations
 
@@ -23,40 +23,40 @@ Table = dict[str, Any]
 
 @data
 class RunOptions(Data):
-    """How a motion is run."""
+    """Options of a run."""
 
     task: str = parameter(
-        "What the tip keeps to, position or pose; of a job with tasks, the name of the one that follows the path.",
+        "Task of the tip, position or pose; for a job with tasks, the name of the task that follows the path.",
         default="position",
     )
     q0: OptionalArrayField = parameter("Joint positions at the start.", default=None, shape="(n,)", unit="rad")
     qd0: OptionalArrayField = parameter("Joint velocities at the start.", default=None, shape="(n,)", unit="rad/s")
-    dt: float = parameter("Step.", POSITIVE, default=1e-3, unit="s")
-    hold: float = parameter("How long to stay on the path's end.", NOT_NEGATIVE, default=0.0, unit="s")
+    dt: float = parameter("Time step.", POSITIVE, default=1e-3, unit="s")
+    hold: float = parameter("Time at the end of the path.", NOT_NEGATIVE, default=0.0, unit="s")
 
 
-# What each section may be. Of runs and limits there is but one kind, which no file says.
+# Kinds of each section. run and limits have one kind each, which is not in the file.
 SECTIONS: dict[str, Makers] = {
     "arm": ROBOTS,
-    "path": PATHS,  # Or a list of tables, of paths one after another; or a table of either by the names of tasks.
+    "path": PATHS,  # Or a list of tables, of paths one after another; or a table of these by task name.
     "scheme": SCHEMES,
     "task": TASKS,  # A list of tables: the tasks of a stack.
     "run": {"run": RunOptions},
     "limits": {JointLimits.kind: JointLimits},
     "bounds": BOUNDS,  # A list of tables.
-    "clearance": CLEARANCES,  # Which of them goes by whether there are capsules.
+    "clearance": CLEARANCES,  # The kind depends on whether there are capsules.
 }
-FREE = {"path": "circle", "scheme": "fpbm"}  # The kind that is taken where the section is missing.
+FREE = {"path": "circle", "scheme": "fpbm"}  # The kind if the section is missing.
 
 
 def known(section: str, kind: object = None) -> dict[str, Parameter]:
-    """The keys of a section of this kind; none where there is no such kind."""
+    """The keys of a section of this kind; none if the kind does not exist."""
     only = len(SECTIONS[section]) == 1
     maker = SECTIONS[section].get(section if only else str(kind))
     return keys(maker) if maker else {}
 
 
-# The section of a key that the library names without one.
+# The section of a key that the library names without its section.
 OWNERS = {
     key: section
     for section in ("clearance", "arm", "path", "limits", "scheme", "run")
@@ -66,7 +66,7 @@ OWNERS = {
 
 
 def with_kind(clearance: Table) -> Table:
-    """A clearance with its kind: of capsules where there are some, else of a URDF file."""
+    """A clearance with its kind: with capsules if there are any, otherwise from a URDF file."""
     return {"kind": Clearance.kind if "capsules" in clearance else "urdf", **clearance}
 
 
@@ -80,7 +80,7 @@ def in_order(section: str, said: Any) -> Any:
 
 
 class JobError(ValueError):
-    """A job that cannot be run. errors: everything that is wrong with it, by its keys, as 'path.radius'."""
+    """A job that cannot be run. errors: all errors, by key, for example 'path.radius'."""
 
     def __init__(self, *errors: ParameterError) -> None:
         super().__init__("\n".join(map(str, errors)))
@@ -89,18 +89,18 @@ class JobError(ValueError):
 
 @contextmanager
 def job_errors() -> Iterator[None]:
-    """Say by a job's keys what the library refuses: raise JobError for ParameterError."""
+    """Raise JobError, with the key of the job, in place of ParameterError."""
     try:
         yield
     except ParameterError as error:
         section, inside, _ = error.name.partition(".")
-        named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")  # Which is run.task.
+        named = section.partition("[")[0] in SECTIONS and bool(inside or section != "task")  # task is run.task.
         raise JobError(error if named else error.within(OWNERS.get(error.name, "run"))) from None
 
 
 def require_sound(job: Table) -> None:
-    """Raise JobError with all keys and values that are wrong, whatever is made of them."""
-    no_key = f": a job has no such key: must be one of {', '.join(SECTIONS)}"
+    """Raise JobError with all wrong keys and values, before any object is constructed."""
+    no_key = f": is not a key of a job: must be one of {', '.join(SECTIONS)}"
     errors = [wrong(key, job[key], no_key + suggestion(key, SECTIONS)) for key in job if key not in SECTIONS]
     if "arm" not in job:
         errors.append(wrong("arm", None, ": is missing"))
@@ -112,13 +112,13 @@ def require_sound(job: Table) -> None:
 
 
 def make(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
-    """What a section stands for, for this arm. Raises JobError."""
+    """Object of a section, for this arm. Raises JobError."""
     with job_errors():
         return from_table(_whole(section, said, arm), SECTIONS[section], section)
 
 
 def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
-    """A section as the library's tables are: with its only kind, and limits of all joints, the arm's unless said."""
+    """A section as a table of the library: with its only kind, and limits of all joints, by default the arm's."""
     if section in ("task", "bounds") and isinstance(said, dict):
         said = [said]
     if section == "bounds" and isinstance(said, list):
@@ -128,12 +128,12 @@ def _whole(section: str, said: Any, arm: Arm | Robot | None = None) -> Any:
     if section == "clearance":
         said = with_kind(said)
     if section == "arm" and said.get("kind") == "urdf":
-        return {"tip": "", **said}  # Which is refused with what links there are.
+        return {"tip": "", **said}  # Rejected later, with a list of the links.
     if section == "limits":
         own = {name: getattr(arm.limits, name).tolist() if arm else [inf] for name in known(section)}
         joints = arm.dof if arm else 1
         every = {key: [value] * joints for key, value in said.items() if isinstance(value, (int, float))}
         said = {**own, **said, **every}
     if section == "scheme" and "weights" in known(section, said.get("kind")):
-        return {"weights": [1.0], **said}  # Which are filled in for the arm.
+        return {"weights": [1.0], **said}  # Replaced by the default for the arm.
     return {"kind": section, **said} if len(SECTIONS[section]) == 1 else said

@@ -1,4 +1,5 @@
-"""Motions: simulated, tracked within limits, swept by the thousand, and the data that they come to.
+"""Motions: simulation, tracking within limits, sweeps, and their data.
 
-Data flows one way: run (data) ← simulation ← workers, sweeping. Modules do not have the names of their functions.
+Modules depend on one another in one direction: run (data) ← simulation ← workers, sweeping. Names of modules differ
+from names of functions.
 """

@@ -1,4 +1,4 @@
-"""A finished motion, as data, and what users call on it: figures, the viewer, files."""
+"""A finished motion as data, with methods for figures, the viewer and files."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-Paths: TypeAlias = Path | Mapping[str, Path]  # Of the task that is led, or of several by name.
+Paths: TypeAlias = Path | Mapping[str, Path]  # Of the task that follows a path, or of several tasks by name.
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
-LIMITED = ("scale", "saturated", "clearance")  # Of runs that kept the joints' limits, and kept clear of shapes.
+LIMITED = ("scale", "saturated", "clearance")  # Of runs within joint limits, and with a clearance.
 OF_STACKS = ("scales", "task_errors")
 
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How a motion ended: why (code), when (time of the last sample [s]) and where (q [rad], shape (n,)).
+    """End of a motion: status code, time of the last sample [s], and joint positions q [rad], shape (n,).
 
-    The code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED where the whole motion is done, and the status true.
+    If the motion is complete, the code is OK, COARSE, DAMPED, SLOWED, BLOCKED or STALLED, and the status is true.
     """
 
     code: Status
@@ -44,12 +44,12 @@ class RunStatus:
 
     @property
     def ok(self) -> bool:
-        """Whether the whole motion is done."""
+        """Whether the motion is complete."""
         return not failed(self.code)
 
     @property
     def advice(self) -> str:
-        """What to do about it; empty if all is well."""
+        """What to do; empty if the code is OK."""
         return advice(self.code)
 
     def __bool__(self) -> bool:
@@ -67,34 +67,34 @@ class RunStatus:
 class Run:
     """A motion, one row per sample: N samples of n joints.
 
-    Two runs are equal (==) if they are of the same things and all arrays are the same to the last bit.
+    Two runs are equal (==) if arm, path, scheme, task, options and status are equal, and all arrays to the last bit.
 
     Attributes
     ----------
     t : numpy.ndarray, shape (N,)
         Times [s].
     q, qd, qdd : numpy.ndarray, shape (N, n)
-        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; m for rad where a joint is prismatic. qdd of
-        track() is the mean over the tick that begins at the sample; at velocity level, simulate()'s is differences.
+        Joint positions [rad], velocities [rad/s], accelerations [rad/s^2]; for a prismatic joint, read m in place of
+        rad. qdd of track() is the mean over the tick that starts at the sample. qdd of simulate() at velocity level is
+        from finite differences.
     x, x_ref : numpy.ndarray, shape (N, 2), (N, 3) or (N, 4, 4)
-        The tip and its reference in the base frame [m]; of a stack, the frame of the task that follows the path, as the
-        task has it. Poses are (x, y, angle) in the plane, homogeneous matrices in space.
+        The tip and its reference in the base frame [m]; for a stack, the point of the task that follows the path. Poses
+        are (x, y, angle) in the plane, homogeneous matrices in space.
     error : numpy.ndarray, shape (N, m)
-        x_ref minus x: linear rows [m], then, for a pose, angular ones [rad] (in space, a rotation vector).
+        x_ref minus x: linear rows [m], then, for a pose, angular rows [rad] (in space, a rotation vector).
     status, arm, path, scheme, task, options
-        How the motion ended, and what it was made of; options are the other keyword arguments: dt, hold, stack, ...
-        task is 'position' or 'pose'; of a stack, the name of the task that follows the path, or the first of several.
+        End of the motion, and the arguments that produced it; options are the other keyword arguments: dt, hold, stack,
+        ... task is 'position' or 'pose'; for a stack, the name of the task that follows the path, or of the first.
     scale, saturated : numpy.ndarray, shapes (N,) and (N, n), or None
-        Of track() alone: the share of the task that the limits left, from 0 (the arm braked) to 1 (all of it), and
-        which joints were on a bound.
+        Of track() only: the task scale, from 0 (the arm brakes) to 1 (the whole task), and which joints are on a bound.
     clearance : numpy.ndarray, shape (N,), or None
-        Of track() with a clearance: how far the two shapes are apart that are nearest to one another [m].
+        Of track() with a clearance: distance between the two nearest shapes [m].
     scales : numpy.ndarray, shape (N, levels), or None
-        Of a stack: the share of each level that the limits left, from 0 to 1.
+        Of a stack: the task scale of each level, from 0 to 1.
     task_errors : numpy.ndarray, shape (N, ...), or None
-        Of a stack: what `errors` has by name, one task after another.
+        Of a stack: the arrays in `errors`, one task after another.
     provenance : dict
-        Of a run from a file: when, where and by which versions it was made, with the note and seed saved with it.
+        Of a run from a file: date, machine and versions that produced the run, with its note and seed.
     """
 
     t: Array
@@ -122,7 +122,7 @@ class Run:
         return float(self.error_norms()[0].max(initial=0.0))
 
     def max_orientation_error(self) -> float:
-        """Largest angle between the tip's orientation and its reference [rad]; 0 where the task leaves it free."""
+        """Largest angle between the tip's orientation and its reference [rad]; 0 if the orientation is free."""
         return float(self.error_norms()[1].max(initial=0.0))
 
     def error_norms(self) -> tuple[Array, Array]:
@@ -136,7 +136,7 @@ class Run:
 
     @property
     def orientation_error(self) -> Array:
-        """Angular rows of the error [rad], shape (N, 1) or (N, 3); (N, 0) for a task of position."""
+        """Angular rows of the error [rad], shape (N, 1) or (N, 3); (N, 0) for a position task."""
         return self.error[:, self.positions.shape[1] :]
 
     @property
@@ -156,43 +156,43 @@ class Run:
 
     @property
     def stack(self) -> Stack | None:
-        """The stack of tasks, where the motion has one."""
+        """The stack of tasks, or None."""
         return self.options.get("stack")
 
     @property
     def kind(self) -> str:
-        """'position' or 'pose': what the task is that follows the path."""
+        """Kind of the task that follows the path: 'position' or 'pose'."""
         if self.stack is None:
             return self.task
         return "pose" if isinstance(self.led, PoseTask) else "position"
 
     @property
     def paths(self) -> dict[str, Path]:
-        """The path of each task that follows one, by name; first that of the task of x, x_ref and error."""
+        """The paths by task name; the first is that of the task of x, x_ref and error."""
         given = self.path if isinstance(self.path, Mapping) else {self.task: self.path}
         return {self.task: given[self.task], **given}
 
     @property
     def led(self) -> FrameTask:
-        """The task that x, x_ref and error are of."""
+        """The task of x, x_ref and error."""
         return PositionTask() if self.stack is None else self.stack.follower(self.task)
 
     @property
     def tips(self) -> list[FrameTask]:
-        """What is drawn as tips: an arm's tip; of a Robot, the tasks that follow paths."""
+        """The frames that are drawn as tips: the tip of an arm; for a Robot, those of the tasks that follow paths."""
         if not isinstance(self.arm, Robot) or self.stack is None:
             return [PositionTask()]
         return [self.stack.follower(name) for name in self.paths]
 
     @property
     def frames(self) -> dict[str, Array]:
-        """Of a stack: the frame of each task of a frame by name, in the base frame [m], shape (N, 4, 4); else empty."""
+        """For a stack: the frame of each frame task by name, in the base frame [m], shape (N, 4, 4); else empty."""
         tasks = self.stack.tasks if self.stack is not None else ()
         return {task.name: task_frames(self.arm, self.q, task) for task in tasks if isinstance(task, FrameTask)}
 
     @property
     def errors(self) -> dict[str, Array]:
-        """Of a stack: the error of each task by name [m, rad], one row a sample, as tick.errors; else empty."""
+        """For a stack: the error of each task by name [m, rad], one row per sample, as tick.errors; otherwise empty."""
         if self.stack is None or self.task_errors is None:
             return {}
         sizes = self.stack.error_sizes(self.arm.dof)
@@ -201,33 +201,33 @@ class Run:
 
     @property
     def limits(self) -> JointLimits:
-        """The joints' limits that track() was given; otherwise the arm's own."""
+        """The joint limits given to track(); otherwise those of the arm."""
         return self.options.get("limits") or self.arm.limits
 
     def manipulability(self) -> Array:
-        """sqrt(det(J J')) of the tip, shape (N,): 0 where the posture is singular (Yoshikawa, 1985).
+        """sqrt(det(J J')) of the tip, shape (N,): 0 in a singular posture (Yoshikawa, 1985).
 
-        Of a Robot, of all tasks that follow a path.
+        For a Robot, J has the rows of all tasks that follow a path.
         """
         J = self.jacobians()
         return np.asarray(np.sqrt(np.maximum(np.linalg.det(J @ J.transpose(0, 2, 1)), 0.0)))
 
     def jacobians(self) -> Array:
-        """Jacobian of the tip at each sample, shape (N, m, n); of a Robot, of all tasks that follow a path."""
+        """Jacobian of the tip at each sample, shape (N, m, n); for a Robot, of all tasks that follow a path."""
         arm = self.arm
         if isinstance(arm, Robot):
             return np.concatenate([task_jacobians(arm, self.q, task) for task in self.tips], axis=1)
         return np.array([arm.jacobian(q, task=self.kind) for q in self.q]).reshape(-1, self.error.shape[1], arm.dof)
 
     def arrays(self) -> dict[str, Any]:
-        """All arrays by name; those of limits, of a clearance and of a stack only where there are some."""
+        """All arrays by name; those of limits, a clearance and a stack only if the run has them."""
         arrays = {name: getattr(self, name) for name in (*ARRAYS, *LIMITED, *OF_STACKS)}
         return {name: np.asarray(array) for name, array in arrays.items() if array is not None}
 
     def plot(self, *, panels: Sequence[str] | None = None, dark: bool = False) -> Figure:
         """Figure of the motion on one page: arm snapshots, tip error, joints, limits, manipulability.
 
-        panels: the names of those wanted instead, from fpbm_cpp.plot.PANELS. dark: on black. Needs matplotlib.
+        panels: names of other panels, from fpbm_cpp.plot.PANELS. dark: dark background. Needs matplotlib.
         """
         from ..plot import plot_run
 
@@ -240,9 +240,9 @@ class Run:
         Viewer(self, urdf=urdf, **{"open_browser": True, **how}).wait()
 
     def replay(self) -> Run:
-        """Make the motion again: the same to the last bit, in the same build on the same kind of processor.
+        """Repeat the motion: equal to the last bit with the same build on the same kind of processor.
 
-        Raises ValueError where the options do not say how it was made.
+        Raises ValueError if the options do not hold the arguments of the run.
         """
         from .simulation import simulate, track
 
@@ -256,29 +256,29 @@ class Run:
     def save(
         self, file: str | os.PathLike[str], *, note: str | None = None, seed: int | Sequence[int] | None = None
     ) -> None:
-        """Write the run to an .npz file, for fp.load. An existing file is replaced, whole or not at all.
+        """Write the run to an .npz file, for fp.load. An existing file is replaced, completely or not at all.
 
-        numpy.load reads the arrays; all else is JSON text in 'meta', and nothing is pickled. The provenance keeps the
-        note, any text, and the seed of the random numbers behind the run.
+        numpy.load reads the arrays. All other data are JSON text in 'meta'; nothing is pickled. The provenance contains
+        the note, any text, and the seed of the run's random numbers.
         """
         from ..io.run_file import save
 
         save(self, file, note, seed)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Data frame of a row for each sample, with its units in frame.attrs["units"]. Needs the extra 'data'.
+        """Data frame with a row for each sample, and units in frame.attrs["units"]. Needs the extra 'data'.
 
         Columns t, q_<joint>, qd_<joint>, qdd_<joint>, x, y, z with qx, qy, qz, qw or angle, x_ref and so on, error_x
-        and so on, orientation_error_x and so on; scale and saturated_<joint> where the limits were kept, and clearance.
+        and so on, orientation_error_x and so on; scale and saturated_<joint> within limits, and clearance.
         """
         from ..io.tables import to_pandas
 
         return to_pandas(self)
 
     def to_csv(self, file: str | os.PathLike[str]) -> None:
-        """Write the columns of to_pandas() as CSV, with heads like 'qd_joint_1 [rad/s]'. Needs no extra.
+        """Write the columns of to_pandas() as CSV, with headings like 'qd_joint_1 [rad/s]'. Needs no extra.
 
-        Numbers read back are the same to the last bit. An existing file is replaced, whole or not at all.
+        Numbers read back are equal to the last bit. An existing file is replaced, completely or not at all.
         """
         from ..io.tables import to_csv
 
@@ -287,8 +287,8 @@ class Run:
     def to_xarray(self) -> xr.Dataset:
         """Dataset over time, joint and axis, with units as attributes. Needs the extra 'data'.
 
-        Variables q, qd, qdd, x, x_ref, error; in a pose orientation (a quaternion) or angle, the same with _ref, and
-        orientation_error; scale and saturated where the limits were kept, and clearance.
+        Variables q, qd, qdd, x, x_ref, error; for a pose, orientation (a quaternion) or angle, the same with _ref, and
+        orientation_error; scale and saturated within limits, and clearance.
         """
         from ..io.tables import to_xarray
 
@@ -297,11 +297,12 @@ class Run:
     def to_rosbag(
         self, directory: str | os.PathLike[str], *, frame: str = "base_link", trajectory: bool = False
     ) -> None:
-        """Write a ROS 2 bag, whole or not at all, stamped with the run's time from 0. Needs the extra 'ros', no ROS.
+        """Write a ROS 2 bag, completely or not at all, with the run's times as stamps. Needs the extra 'ros', not ROS.
 
-        Topics /joint_states, /tip and /tip_reference (JointState, PoseStamped) in the base frame of that name; with
-        trajectory also /joint_trajectory, one message. Where the task leaves the orientation free, the tip's is the
-        arm's and the reference's the identity. Raises FileExistsError where there is something of the bag's name.
+        Topics are /joint_states, /tip and /tip_reference (JointState, PoseStamped), in the base frame with the name
+        frame; with trajectory, also /joint_trajectory with one message. If the task leaves orientation free, the
+        orientation of /tip is that of the arm, and of /tip_reference the identity. Raises FileExistsError if the
+        directory exists.
         """
         from ..io.rosbag import to_rosbag
 
@@ -311,7 +312,7 @@ class Run:
         return isinstance(other, Run) and self._key() == other._key()
 
     def _key(self) -> tuple[Any, ...]:
-        """What is compared."""
+        """Key for comparisons."""
         arrays = {name: (array.shape, array.dtype, array.tobytes()) for name, array in self.arrays().items()}
         status = self.status.code, self.status.time, self.status.q.tobytes()
         return self.arm, self.path, self.scheme, self.task, self.options, status, arrays

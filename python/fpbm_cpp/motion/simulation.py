@@ -1,4 +1,4 @@
-"""A whole motion: simulated under the plain law, or tracked within the joints' limits."""
+"""A whole motion: simulated without limits, or tracked within the joint limits."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ from .run import Paths, Run, RunStatus
 
 
 class LimitOptions(NamedTuple):
-    """How a motion keeps its joints' limits; the fields are arguments of track()."""
+    """Options of a motion within joint limits; the fields are arguments of track()."""
 
     limits: JointLimits | None = None
     error_bound: float = 0.1
@@ -32,8 +32,8 @@ class LimitOptions(NamedTuple):
     clearance: Clearance | None = None
     bounds: Sequence[TaskBounds] = ()
     stack: Stack | None = None
-    task: str = ""  # Of the stack's, the one that follows the path.
-    other_paths: Mapping[str, Path] = {}  # Those of other tasks of the stack, by name.
+    task: str = ""  # Task of the stack that follows the path.
+    other_paths: Mapping[str, Path] = {}  # Paths of other tasks of the stack, by name.
 
 
 def simulate(
@@ -49,36 +49,37 @@ def simulate(
     stack: Stack | None = None,
     partial: bool = False,
 ) -> Run:
-    """Move an arm along a path under a scheme, by RK4 at fixed steps.
+    """Move an arm along a path under a scheme, by RK4 with fixed steps.
 
-    The path is a displacement from where the tip starts, f(q0). Velocity-level schemes integrate q, acceleration-level
-    schemes q and qd. Runs without the interpreter's lock. The run's status says how it ended.
+    The path is a displacement from the start of the tip, f(q0). A velocity-level scheme integrates q, an
+    acceleration-level scheme q and qd. The function runs without the interpreter's lock. run.status is the status at
+    the end of the motion.
 
-    Raises ValueError if an argument is out of range, not finite, or of the wrong shape: nothing is run. Raises
-    ResolutionError if the motion must stop early: its run holds the part before.
+    Raises ValueError if an argument is out of range, not finite, or of the wrong shape; nothing is run then. Raises
+    ResolutionError if the motion stops early; the run of the error has the motion before the stop.
 
     Parameters
     ----------
     arm, path, scheme
-        What moves, along what, and how. A Robot needs a stack. Of a stack, path may be a dictionary of the paths of
-        several tasks by their names: the motion is as long as the longest path.
+        The arm, its path and its scheme. A Robot needs a stack. For a stack, path may be a dictionary of paths by task
+        name: the motion is as long as the longest path.
     q0 : array_like, shape (n,)
         Joint positions at the start [rad].
     dt : float
         Step [s]; it must divide the path's duration and the hold.
     hold : float
-        Time to stay at rest on the path's end afterwards [s].
+        Time at rest at the end of the path [s].
     qd0 : array_like, shape (n,), optional
         Joint velocities at the start [rad/s], zero by default; velocity-level schemes do not read them.
     task : str
-        'position', the default, or 'pose' to track the tip's orientation as well; of a stack, the name of the task that
-        follows the path, which may be left out if one task alone is a position or a pose; of several paths, the name
-        of the task of the run's x, x_ref and error, the first unless given.
+        'position' (default), or 'pose' to track the tip's orientation too. For a stack: the name of the task that
+        follows the path, which is optional if only one task is a position or a pose. For several paths: the name of
+        the task of the run's x, x_ref and error; default: the first.
     stack : Stack, optional
-        Several tasks in strict priority. The path leads one task from where the task's frame is, the other tasks have
+        Several tasks in strict priority. The path is a displacement from the start of one task; the other tasks have
         their targets x or q. Directions that are nearly singular or in conflict with higher levels are damped.
     partial : bool
-        If the motion must stop early, return what was done instead of raising.
+        If the motion stops early, return the run before the stop instead of raising.
     """
     options = motion_options(arm, dt, hold, qd0)
     name, kind, led, others = led_paths(path, task, stack)
@@ -118,17 +119,17 @@ def track(
 ) -> Run:
     """Move an arm along a path under a scheme, within its joints' limits and through singular postures.
 
-    The motion is a Tracker's, where simulate() has the plain law's: every joint keeps its bounds, the motion is damped
-    near singular postures, and nothing makes it stop early. Sample k is the state at t_k, the tip's error there, and
-    the tick that begins there: its mean acceleration, its scale, and which joints it had on a bound. The run's status
-    is the worst of all ticks: OK, DAMPED, SLOWED, BLOCKED or STALLED; without damping it may be SINGULAR, where the arm
-    braked. Raises ValueError as simulate() does, and if a limit is missing or the start breaks one or is not clear.
+    The motion is that of a Tracker: every joint keeps its bounds, the motion is damped near singular postures, and it
+    never stops early. Sample k has the state and the tip's error at t_k, and of the tick that starts at t_k the mean
+    acceleration, the task scale, and the joints on a bound. The status is the worst of all ticks: OK, DAMPED, SLOWED,
+    BLOCKED or STALLED; without damping it may be SINGULAR, if the arm brakes at a singular posture. Raises ValueError
+    as simulate() does, and if a limit is missing, or if the start violates a limit or the clearance.
 
     Parameters
     ----------
     arm, path, scheme, q0, dt, hold, qd0, task, stack
-        As for simulate(); q0 and qd0 must be within the limits. If the limits make the arm late, a longer hold lets it
-        arrive.
+        As for simulate(); q0 and qd0 must be within the limits. If the limits delay the arm, a longer hold gives
+        it time to arrive.
     limits, error_bound, integral_gain, integral_bound, stall_time
         As for Tracker.
     singular_radius, singular_brake, null_damping, clearance, bounds
@@ -156,7 +157,7 @@ def track(
 
 
 def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
-    """Name of the task that follows the path, and whether it is a 'position' or a 'pose'."""
+    """Name and kind of the task that follows the path; the kind is 'position' or 'pose'."""
     if stack is None:
         return task or "position", task or "position"
     if not isinstance(stack, Stack):
@@ -166,11 +167,11 @@ def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
 
 
 def led_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, dict[str, Path]]:
-    """What led_task() says of the run's task, its path, and the paths of the other tasks. Raises ParameterError."""
+    """Name and kind of the run's task, its path, and the paths of the other tasks. Raises ParameterError."""
     if not isinstance(path, Mapping):
         return *led_task(task, stack), path, {}
     if stack is None or not path:
-        raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by the names of tasks of a stack")
+        raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
     for each, led in path.items():
         led_task(each, stack)
         if not isinstance(led, Path):
@@ -182,14 +183,14 @@ def led_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, 
 
 
 def limit_options(limited: LimitOptions) -> dict[str, Any]:
-    """The options as a run keeps them: its task and its paths are fields of their own."""
+    """The options of a run, without its task and its paths, which are separate fields."""
     return {name: value for name, value in limited._asdict().items() if name not in ("task", "other_paths")}
 
 
 def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:
-    """The law of a stack alone: no bounds, no rest at unreachable targets, no damping but the scheme's and of levels.
+    """Options of a stack without limits: no stop at unreachable targets, and only damping of the scheme and of levels.
 
-    An error of 1000 arm lengths is beyond any target.
+    error_bound is 1000 arm lengths, which no target exceeds.
     """
     free = np.full(arm.dof, np.inf)
     limits = JointLimits(lower=-free, upper=free, velocity=free, acceleration=free)
@@ -198,7 +199,7 @@ def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:
 
 
 def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | None = None) -> dict[str, Any]:
-    """The keyword arguments that every motion has, as its run keeps them."""
+    """The keyword arguments of every motion, as options of its run."""
     start = np.zeros(arm.dof) if qd0 is None else np.array(qd0, dtype=float)
     return {"dt": float(dt), "hold": float(hold), "qd0": start.ravel().tolist()}
 
@@ -206,7 +207,7 @@ def motion_options(arm: Arm | Robot, dt: float, hold: float, qd0: ArrayLike | No
 def make_run(
     outcome: Any, q0: ArrayLike, arm: Arm | Robot, path: Paths, scheme: Scheme, task: str, options: dict[str, Any]
 ) -> Run:
-    """A run of what the compiled part gives: status, time, number of samples, and arrays filled as far as these."""
+    """A run from the result of the compiled part: status, time, number of samples, and arrays, filled up to them."""
     code, time, samples, given = outcome
     arrays = {name: array if samples == len(array) else array[:samples].copy() for name, array in given.items()}
     if scheme.level == "velocity" and samples > 1 and not {"scale", "scales"} & arrays.keys():

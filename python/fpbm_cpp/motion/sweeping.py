@@ -1,4 +1,4 @@
-"""Many motions at once, every scheme from every start, and their key figures."""
+"""Sweeps: motions of every scheme from every start, and their key figures."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
@@ -21,42 +21,42 @@ from .run import LIMITED
 from .simulation import LimitOptions, led_task, limit_options, make_run, motion_options, without_limits
 from .workers import run_chunks
 
-# True for a bar on the terminal or in a notebook, or what to call with (done, total).
+# True for a progress bar in the terminal or in a notebook, or a function of (done, total).
 Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
-# A chunk's motions are a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks, for many
-# workers to share, of at most SAMPLES samples each, some tenths of a second of work. The number of workers plays no
-# part, so that the results do not depend on it.
+# The number of motions in a chunk is a multiple of GROUP, the largest number of lanes. There are at least CHUNKS chunks
+# for many workers, each of at most SAMPLES samples, which take some tenths of a second. The chunks, and so the results,
+# do not depend on the number of workers.
 GROUP, CHUNKS, SAMPLES = 8, 64, 200_000
 
-# By their numbers in the compiled part; the last, at -1, is that of a motion that was not run.
+# By number in the compiled part; the last, at -1, is for a motion that was not run.
 STATUSES = np.array([*Status, None], dtype=object)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Sweep:
-    """Key figures of every scheme from every start: arrays of shape (S, K), of S schemes from K starts.
+    """Key figures of every scheme from every start: arrays of shape (S, K), for S schemes and K starts.
 
-    A figure of joint vectors is of the largest entry by size; largest and peak are over time. Entries are nan where
-    there is no figure: where a motion was not run, or stopped before its first sample.
+    A figure of joint vectors is the largest absolute entry; largest and peak are over time. Entries are nan if a motion
+    was not run or stopped before its first sample.
 
     Attributes
     ----------
     status, time
-        How each motion ended, a Status, or None where it was not run; and the time of its last sample [s].
+        Status of each motion, or None if it was not run; and the time of its last sample [s].
     max_error, max_orientation_error
         Largest distance of the tip from its reference [m], and angle between its orientation and its reference [rad],
-        which is 0 where the task leaves it free.
+        which is 0 if the task leaves the orientation free.
     peak_velocity, final_velocity, peak_acceleration, final_acceleration
-        Of the joints [rad/s], [rad/s^2], m for rad where one is prismatic. At velocity level, accelerations are finite
-        differences of the velocities.
+        Of the joints [rad/s], [rad/s^2]; for a prismatic joint, read m in place of rad. At velocity level,
+        accelerations are finite differences of the velocities.
     manipulability
-        The least sqrt(det(J J')) of the task on the way (Yoshikawa, 1985).
+        The least sqrt(det(J J')) of the task during the motion (Yoshikawa, 1985).
     motions
-        The whole motions, each a Run, if they were asked for; None where one was not run.
+        The whole motions, each a Run, if requested; None for a motion that was not run.
     arm, path, schemes, q0s, task
-        What moved, along what, how, from where, and whether the task on the path is a 'position' or a 'pose': S
-        schemes, and starts of shape (K, n).
+        The arm, its path, S schemes, starts of shape (K, n), and the kind of the task on the path: 'position' or
+        'pose'.
     """
 
     status: NDArray[Any]
@@ -77,7 +77,7 @@ class Sweep:
 
     @property
     def done(self) -> NDArray[np.bool_]:
-        """Which motions were run, complete or not: all, unless the sweep was interrupted."""
+        """Which motions were run, complete or not; all, unless the sweep was interrupted."""
         return ~np.isnan(self.time)
 
     @property
@@ -87,7 +87,7 @@ class Sweep:
         return np.isin(self.status, np.array(good, dtype=object))
 
     def __str__(self) -> str:
-        """One line for each scheme: how many motions are complete, and the worst of those."""
+        """One line for each scheme: the number of complete motions, and their worst figures."""
         return "\n".join([repr(self), *map(self._row, range(len(self.schemes)))])
 
     def _row(self, i: int) -> str:
@@ -130,45 +130,45 @@ def sweep(
 ) -> Sweep:
     """Simulate every scheme from every start, each motion as simulate() does, and keep the key figures of each.
 
-    With limits, each motion keeps them as track() does. Runs on all cores, without the interpreter's lock, or in the
-    executor's workers. Motions of one task run side by side in the processor's lanes, where they agree with simulate()
-    to 1e-12. The results are the same to the last bit for any number of workers. A motion that must stop
-    early raises nothing: its status says so.
+    With limits, each motion keeps the limits as track() does. The motions run on all cores, without the interpreter's
+    lock, or in the executor's workers. Motions of one task run side by side in the SIMD lanes of the processor, where
+    they agree with simulate() to 1e-12. The results are equal to the last bit for any number of workers. A motion that
+    stops early raises no error; its status has the cause.
 
-    Raises ValueError or TypeError if an argument is wrong, ImportError if what progress=True needs is missing: nothing
-    is run. On Ctrl-C it raises SweepInterrupted, a KeyboardInterrupt whose sweep holds what is finished.
+    Raises ValueError or TypeError if an argument is wrong, ImportError if the library for progress=True is missing;
+    nothing is run then. Ctrl-C raises SweepInterrupted, a KeyboardInterrupt whose sweep has the finished motions.
 
     Parameters
     ----------
     arm, path, dt, hold, task, stack
         As for simulate(). Motions of a stack run one by one in each worker, without lanes.
     schemes : Scheme or sequence of Scheme
-        S of them.
+        S schemes.
     q0s : array_like, shape (n,) or (K, n)
-        Joint positions at the start [rad], one row a start; all begin at rest.
+        Joint positions at the start [rad], one row per start; all motions start at rest.
     limits : JointLimits, optional
-        Limits that every motion keeps: arm.limits are the arm's own. None by default.
+        Limits that every motion keeps; arm.limits are those of the arm. Default: none.
     error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping : float
-        As for Tracker; they need limits.
+        As for Tracker; these options need limits.
     executor : concurrent.futures.Executor, optional
-        Runs the motions, in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; it stays open.
+        Runs the motions in chunks: a ProcessPoolExecutor, a Dask client's get_executor(), ...; the executor stays open.
     workers : int, optional
-        Number of threads if there is no executor; as many as processors by default.
+        Number of threads without an executor; default: number of processors.
     progress : bool or callable, optional
         True for a progress bar, which needs the extra 'progress'; or a function of (done, total), numbers of motions.
     motions : bool
-        Keep the whole motions as well, in the result's motions: 8 bytes for each number of simulate()'s arrays.
+        Also keep the whole motions, in the result's motions: 8 bytes for each number in the arrays of simulate().
     """
     if isinstance(arm, Robot):
         raise wrong("arm", arm, f" = {arm}: must be an arm; simulate() and track() take a Robot")
     laws = (schemes,) if isinstance(schemes, Scheme) else tuple(schemes)
     if not laws:
-        raise wrong("schemes", schemes, ": must be one at least")
+        raise wrong("schemes", schemes, ": must have at least one scheme")
     for i, law in enumerate(laws):
         if not isinstance(law, Scheme):
             raise TypeError(f"schemes[{i}]: must be a Scheme, got {type(law).__name__}")
     if workers is not None and executor is not None:
-        raise wrong("workers", workers, ": must be left out where there is an executor, which has its own")
+        raise wrong("workers", workers, ": must not be given with an executor, which has its own workers")
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be 1 at least")
     name, kind = led_task(task, stack)
@@ -176,7 +176,7 @@ def sweep(
         limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )
     if limits is None and limited != LimitOptions():
-        raise wrong("limits", None, ": must be given where an option that needs them is")
+        raise wrong("limits", None, ": must be given with an option that needs limits")
     kept = None if limits is None else limited._replace(stack=stack, task=name)
     if limits is None and stack is not None:
         kept = without_limits(arm, stack, name)
@@ -188,7 +188,7 @@ def sweep(
     outcomes, status, runs = not_run(total), np.full(total, None), np.full(total, None)
 
     def chunk(part: slice) -> tuple[Any, ...]:
-        """What a worker needs: motion i is of laws[i // K] from starts[i % K], with K starts."""
+        """Input of a worker: motion i has laws[i // K] and starts[i % K], for K starts."""
         law, start = np.divmod(np.arange(part.start, part.stop), len(starts))
         few = list(laws[law[0] : law[-1] + 1])
         return arm, path, few, (law - law[0]).tolist(), starts[start], float(dt), float(hold), kind, motions, kept
@@ -219,7 +219,7 @@ def sweep(
 
 
 def _parts(total: int, starts: int, samples: int) -> list[slice]:
-    """The motions of each chunk, of one scheme unless its motions are too few to fill a chunk."""
+    """The motions of each chunk: of one scheme, unless its motions are too few to fill a chunk."""
     size = min(-(-total // CHUNKS), max(1, SAMPLES // samples))
     size = GROUP * -(-size // GROUP)
     row = total if starts < size else starts
@@ -228,7 +228,7 @@ def _parts(total: int, starts: int, samples: int) -> list[slice]:
 
 @contextmanager
 def reporting(progress: Progress, total: int) -> Iterator[Callable[[int], object]]:
-    """A function to call with how many of the total are done. Raises ImportError where the bar's library is missing."""
+    """A function of the number of finished motions. Raises ImportError if the library of the bar is missing."""
     if callable(progress):
         yield lambda done: progress(done, total)
     elif progress:

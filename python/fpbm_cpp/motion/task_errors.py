@@ -8,7 +8,7 @@ from .run import Run
 
 
 def error_parts(run: Run) -> Iterator[tuple[str, str, Array, list[str]]]:
-    """Task, unit, values and what the columns are called: of a pose two parts, none where the run has no stack."""
+    """Task, unit, values and names of the columns: two parts for a pose; nothing for a run without a stack."""
     rows = ["x", "y", "z"]
     units = dict(zip(run.arm.joint_names, joint_units(run.arm)))
     for task in run.stack.tasks if run.stack is not None else ():

@@ -1,4 +1,4 @@
-"""Frames of tasks along a motion: the positions that are drawn, and Jacobians."""
+"""Frames of tasks along a motion: positions for figures, and Jacobians."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def tracks(run: Run) -> list[tuple[Array, Array]]:
-    """Of each path of a run: positions of the task's frame and of its reference in the base frame [m], (N, 2 or 3)."""
+    """For each path of a run: positions of the task's frame and of its reference in the base frame [m], (N, 2 or 3)."""
     found = [(run.positions, run.reference_positions)]
     frames = run.frames
     for name in run.paths:
@@ -30,7 +30,7 @@ def tracks(run: Run) -> list[tuple[Array, Array]]:
 
 
 def _in_base(run: Run, name: str, vectors: Array) -> Array:
-    """Vectors along the axes that a task has its points in, shape (N, 3), along the base frame's."""
+    """Vectors of shape (N, 3) from the axes of a task's points to the axes of the base frame."""
     assert run.stack is not None
     reference = run.stack.follower(name).reference_frame
     if reference is None:
@@ -39,9 +39,9 @@ def _in_base(run: Run, name: str, vectors: Array) -> Array:
 
 
 def task_jacobians(robot: Robot, q: Array, task: FrameTask) -> Array:
-    """Jacobian of a task, seen from its reference frame, in the base frame's axes, shape (N, m, n).
+    """Jacobian of a task relative to its reference frame, along the axes of the base frame, shape (N, m, n).
 
-    m is 6 of a PoseTask, else 3, of the position.
+    m is 6 for a PoseTask, otherwise 3, for the position.
     """
     p = task_frames(robot, q, task)[:, :3, 3]
     J = _jacobians_at(robot, q, task.frame, p)

@@ -1,4 +1,4 @@
-"""Running a sweep's chunks: in threads of our own or in any executor, until Ctrl-C."""
+"""Runs the chunks of a sweep in threads or in any executor, until Ctrl-C."""
 
 import os
 import threading
@@ -11,12 +11,12 @@ from typing import Any
 
 from .._core import Stop, sweep_chunk
 
-Result = tuple[Any, list[Any]]  # Outcomes, one for each motion, and the arrays of each if these are wanted.
-POLL = 0.05  # How often to look for Ctrl-C [s].
+Result = tuple[Any, list[Any]]  # Outcomes, one for each motion, and the arrays of each motion if requested.
+POLL = 0.05  # Interval between checks for Ctrl-C [s].
 
 
 def run_chunk(chunk: tuple[Any, ...], stop: Stop | None) -> Result:
-    """Run a chunk, in whichever process this is. Motions that stop cuts short are marked as not run."""
+    """Run a chunk in this process. Motions that stop interrupts are marked as not run."""
     arguments = (*chunk, stop or Stop())
     return sweep_chunk(*arguments)
 
@@ -28,10 +28,10 @@ def run_chunks(
     take: Callable[[slice, Any, list[Any]], object],
     report: Callable[[int], object],
 ) -> None:
-    """Run chunks, given as their motions and what sweep_chunk() takes, and call take() and report() in this thread.
+    """Run chunks, given as motions and the arguments of sweep_chunk(), and call take() and report() in this thread.
 
-    On an exception, chunks that have not begun are cancelled, those in this process stop within a sample, and those in
-    other processes are left to them. On KeyboardInterrupt, all that is finished is still taken.
+    On an exception, chunks that have not started are cancelled, chunks in this process stop within a sample, and chunks
+    in other processes continue. On KeyboardInterrupt, take() is still called for finished chunks.
     """
     if executor is None:
         with ThreadPoolExecutor(workers or os.cpu_count()) as threads:
@@ -72,16 +72,16 @@ def run_chunks(
 
 @contextmanager
 def interrupted_at_checks() -> Iterator[Callable[[], None]]:
-    """A function to call at safe points: there, and nowhere between, a Ctrl-C raises KeyboardInterrupt.
+    """A function to call at safe points: a Ctrl-C raises KeyboardInterrupt at these points only.
 
-    Raised while one of Python's own locks is taken, it would leave it locked for ever. Does nothing outside the main
-    thread, or where the program has a handler of its own for Ctrl-C.
+    A KeyboardInterrupt during the acquisition of one of Python's own locks would never release this lock. Does nothing
+    outside the main thread, or if the program has its own handler for Ctrl-C.
     """
     pressed, process = False, os.getpid()
 
     def handle(number: int, frame: Any) -> None:
         nonlocal pressed
-        if os.getpid() != process:  # A worker that was forked in the meantime.
+        if os.getpid() != process:  # A worker that was forked since then.
             default_int_handler(number, frame)
         pressed = True
 

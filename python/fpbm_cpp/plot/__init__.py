@@ -1,9 +1,9 @@
 """Figures and animations of motions, sized for a paper, on a white or a dark background.
 
 plot_run() and Run.plot() draw one motion, compare() draws several, animate() writes an animation. Each panel is a
-function of axes and run, for figures of your own. Nothing here uses matplotlib.pyplot: figures are plain objects
-without global state, and work without a display and in several threads. Show one with IPython's display(run.plot()),
-or write it with run.plot().savefig("run.pdf").
+function of axes and run, for your own figures. This package does not use matplotlib.pyplot: figures are objects
+without global state, and work without a display and in several threads. Show a figure with IPython's
+display(run.plot()), or write it with run.plot().savefig("run.pdf").
 """
 
 try:

@@ -1,4 +1,4 @@
-"""Animation of one motion, and its file: .mp4 by ffmpeg, .gif by Pillow, which comes with matplotlib."""
+"""Animation of one motion, and its file: .mp4 by ffmpeg, .gif by Pillow, a dependency of matplotlib."""
 
 import os
 import shutil
@@ -27,7 +27,7 @@ from .panels import LINK, Panel, choose, draw_base, draw_target, frame_arm
 from .theme import DARK, LIGHT, TEXT, Theme
 
 Frame = NDArray[np.uint8]
-FASTEST_GIF = 50.0  # Frames per second; many programs play faster files slowly.
+FASTEST_GIF = 50.0  # Frames per second; many programs play faster files too slowly.
 
 
 def animate(
@@ -40,15 +40,15 @@ def animate(
     dark: bool = False,
     dpi: float = 180.0,
 ) -> None:
-    """Write an animation of a run: the moving arm, the trail of its tip, and panels with a cursor at that time.
+    """Write an animation of a run: the moving arm, the trail of its tip, and panels with a cursor at the current time.
 
-    The file is an .mp4, which needs ffmpeg or the extra 'animation', or a .gif; an existing one is replaced, whole or
-    not at all. fps is frames per second, speed the seconds of the motion in a second of the animation, and dpi pixels
-    per inch: with 180 and two panels the animation has 1280 × 720 pixels. panels are names from PANELS, shown beside
-    the arm; dark draws on black.
+    The file is an .mp4, which needs ffmpeg or the extra 'animation', or a .gif. An existing file is replaced,
+    completely or not at all. fps is frames per second, speed the seconds of the motion per second of the animation, and
+    dpi pixels per inch: with 180 and two panels the animation has 1280 × 720 pixels. panels are names from PANELS, for
+    panels beside the arm. dark: dark background.
 
     Raises ValueError if an argument is out of range, the file has another suffix, or the run has no samples;
-    ImportError if there is no ffmpeg for an .mp4; OSError if the file cannot be written.
+    ImportError if ffmpeg for an .mp4 is missing; OSError if the file cannot be written.
     """
     for name, value in (("fps", fps), ("speed", speed), ("dpi", dpi)):
         Parameter(name, float, low=0.0, open_low=True).check(value)
@@ -61,7 +61,7 @@ def animate(
 
 
 def _frames(run: Run, samples: Iterable[int], panels: Mapping[str, Panel], theme: Theme, dpi: float) -> Iterator[Frame]:
-    """Frames of the samples, shape (height, width, 3); what does not move is drawn once."""
+    """Frames of the samples, shape (height, width, 3); the background is drawn once."""
     figure, drawn = lay_out(run, "", panels, theme, lettered=False)
     figure.set_dpi(dpi)
     canvas: Any = FigureCanvasAgg(figure)
@@ -93,7 +93,7 @@ def _set_points(line: Any, points: Array) -> None:
 
 
 def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
-    """Draw what does not move: base, target and first posture, with room for all other postures."""
+    """Draw the background: base, target and first posture, with space for all other postures."""
     postures = np.unique(np.linspace(0, len(run.t) - 1, 200).astype(int))
     axes.plot(*np.concatenate(joint_points(run.arm, run.q[postures])).T, alpha=0.0)
     axes.plot(*joint_points(run.arm, run.q[0]).T, color=theme.fade(0.0), mec=theme.paper, **LINK)
@@ -105,7 +105,7 @@ def _draw_background(axes: Any, run: Run, theme: Theme) -> None:
 
 
 def write_frames(file: Path, frames: Iterable[Frame], fps: float) -> None:
-    """Write frames, all of one shape (height, width, 3), to a file, whole or not at all; its name is checked first."""
+    """Write frames of one shape (height, width, 3) to a file, completely or not at all. Checks the file name first."""
     suffix = file.suffix.lower()
     if suffix not in (".mp4", ".gif"):
         raise ValueError(f"file = {str(file)!r}: must end in .mp4 or .gif")
@@ -151,7 +151,7 @@ def _write_mp4(file: Path, first: Frame, frames: Iterable[Frame], fps: float, ff
 
 
 def _write_gif(file: Path, first: Frame, frames: Iterable[Frame], fps: float) -> None:
-    colours = Image.fromarray(first).quantize(kmeans=1)  # One palette, so that what does not move is stored once.
+    colours = Image.fromarray(first).quantize(kmeans=1)  # One palette, so that the background is stored once.
     images = [Image.fromarray(frame).quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
     ends = np.round(np.arange(len(images) + 1) * 100.0 / fps)
     durations = (10 * np.diff(ends)).astype(int).tolist()  # [ms]; a .gif counts in steps of 10 ms.

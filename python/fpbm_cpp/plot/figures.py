@@ -1,4 +1,4 @@
-"""Figures of one motion and of several, laid out on a column or a page of a paper."""
+"""Figures of one motion and of several motions, with the width of a column or a page of a paper."""
 
 import re
 import textwrap
@@ -21,13 +21,13 @@ ROW, COMPARED_ROW, SLIDE = 1.45, 1.75, 4.0  # [in]
 def plot_run(
     run: Run, title: str | None = None, panels: str | Sequence[str] | None = None, *, dark: bool = False
 ) -> Figure:
-    """Figure of a run, as far as it went: the arm on the left, the first panels beside it, the others below it.
+    """Figure of a run, up to its end: the arm on the left, the first panels beside it, the others below it.
 
-    Its text is 9 points high. It is two columns of a paper wide, or one column where there are few panels and no arm.
-    title is by default the scheme and the path. panels are names from PANELS, by default all but the components of the
-    error; those that the run has no data for are left out: 'scale' and 'saturation' without joint limits,
-    'clearance' without one, 'axis_orientation_errors' where the task is a position. dark draws on black. Raises
-    ValueError if a panel is unknown or given twice, or no panel is left.
+    The text is 9 points high. The figure is two columns of a paper wide, or one column for few panels without an arm.
+    The default title has the scheme and the path. panels are names from PANELS; default: all except the components of
+    the error. Panels without data are left out: 'scale' and 'saturation' without joint limits, 'clearance' without a
+    clearance, 'axis_orientation_errors' if the task is a position. dark: dark background. Raises ValueError if a panel
+    is unknown or given twice, or no panel has data.
     """
     chosen = choose(run, panels)
     if title is None:
@@ -36,7 +36,7 @@ def plot_run(
 
 
 def _title(run: Run, width: int) -> str:
-    """Scheme and path, in lines of so many characters, and when the motion stopped if it stopped early."""
+    """Scheme and path, in lines of at most width characters, and the time of an early stop."""
 
     def short(part: object) -> str:
         return re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4g}", repr(part))
@@ -78,7 +78,7 @@ def lay_out(
 
 
 def _columns(panels: Mapping[str, Panel]) -> tuple[list[list[str]], int]:
-    """The panels of each column, and the number of rows; the arm takes the rows that its column has left."""
+    """The panels of each column, and the number of rows; the arm fills the remaining rows of its column."""
     rest = [name for name in panels if name != "arm"]
     if "arm" in panels:
         rows = ceil(len(rest) / 2) + 1
@@ -93,7 +93,7 @@ def _norms(rows: Array) -> Array:
     return np.asarray(np.linalg.norm(rows, axis=1))
 
 
-# What the panels of a comparison show: heading, values of a run, symbol, and what follows the joints' unit, if any.
+# Panels of a comparison: heading, values of a run, symbol, and suffix of the joints' unit, or None.
 Quantity = tuple[str, Callable[[Run], Array], str, str | None]
 VELOCITIES: Quantity = "Joint velocities", lambda run: _norms(run.qd), r"$\|\dot q\|$", "/s"
 ACCELERATIONS: Quantity = "Joint accelerations", lambda run: _norms(run.qdd), r"$\|\ddot q\|$", "/s²"
@@ -107,10 +107,10 @@ POSE_TASK = (VELOCITIES, ACCELERATIONS, DISTANCES, POSITION_ERROR, ORIENTATION_E
 
 
 def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: bool = False) -> Figure:
-    """Figure of several runs, with one line for each; runs without names are named after their schemes.
+    """Figure of several runs, with one line for each run. Runs without names get the names of their schemes.
 
-    Its panels show joint velocities, joint accelerations, tip error and manipulability over time; where the task is a
-    pose, also the orientation error and the distance of the joints from where they began. dark draws on black. Raises
+    The panels show joint velocities, joint accelerations, tip error and manipulability over time; if the task is a
+    pose, also the orientation error and the distance of the joints from their start. dark: dark background. Raises
     ValueError if there is no run.
     """
     named = dict(runs) if isinstance(runs, Mapping) else _named(runs)
@@ -124,7 +124,7 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
     for letter, axes, (heading, values_of, symbol, per) in zip("abcdef", grid.T.flat, quantities):
         dress(axes, theme, f"({letter}) {heading}")
         log = "error" in heading
-        # The first line is widest, so that lines which coincide are all seen.
+        # The first line is widest, so that coincident lines are all visible.
         for run, (colour, dash), width in zip(shown, theme.styles(), np.linspace(3.0, 1.4, len(shown))):
             t, values = run.t, values_of(run)
             axes.plot(*(envelope(t, values) if log else (t, values)), color=colour, ls=dash, lw=width)
@@ -137,7 +137,7 @@ def compare(runs: Sequence[Run] | Mapping[str, Run], title: str = "", *, dark: b
 
 
 def _named(runs: Sequence[Run]) -> dict[str, Run]:
-    """Runs by the names of their schemes, numbered where several have the same name."""
+    """Runs by the names of their schemes, with numbers for equal names."""
     names = [type(run.scheme).__name__ for run in runs]
     return {
         name if names.count(name) == 1 else f"{name} {names[: i + 1].count(name)}": run

@@ -1,4 +1,4 @@
-"""Lines over time and their legends: in the line of a heading, beside one panel, or below all panels."""
+"""Lines over time and their legends: beside a heading, beside a panel, or below all panels."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -23,13 +23,13 @@ def draw_lines(axes: Any, theme: Theme, t: Array, values: Array, names: Sequence
 
 
 def over_time(axes: Any, label: str) -> None:
-    """Label the axes; time fills the x axis from end to end."""
+    """Label the axes; the x axis has no margins."""
     axes.set(xlabel="time [s]", ylabel=label)
     axes.margins(x=0.0)
 
 
 def label_time_below(column: Sequence[Any]) -> None:
-    """Label time on the last of these panels, which stand one below the other, and align their y labels."""
+    """Label time on the last panel of a column, and align the y labels."""
     for axes in column[:-1]:
         axes.tick_params(labelbottom=False)
         axes.set_xlabel("")
@@ -43,7 +43,7 @@ def from_zero(axes: Any) -> None:
 
 
 def in_decades(axes: Any) -> None:
-    """Make the y axis logarithmic, from one power of ten to another."""
+    """Make the y axis logarithmic, with powers of ten at both ends."""
     drawn = [line.get_ydata() for line in axes.get_lines() if len(line.get_ydata())]
     least, most = (float(end([end(values) for values in drawn])) if drawn else 1.0 for end in (np.min, np.max))
     lower, upper = np.floor(np.log10(least)), np.ceil(np.log10(most))
@@ -54,7 +54,7 @@ def in_decades(axes: Any) -> None:
 
 
 def envelope(t: Array, values: Array) -> tuple[Array, Array]:
-    """The largest value in each of SPANS intervals: an error's trend without the noise of round-off."""
+    """The largest value in each of SPANS intervals: the trend of an error without round-off noise."""
     values = np.maximum(values, LEAST)
     if len(t) <= SPANS:
         return t, values
@@ -63,25 +63,25 @@ def envelope(t: Array, values: Array) -> tuple[Array, Array]:
 
 
 def head_legend(axes: Any, theme: Theme, handles: Sequence[Any] | None = None) -> None:
-    """Legend of a few lines, right of the heading."""
+    """Legend of a few lines, to the right of the heading."""
     place = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderpad": 0.2}
     _legend(axes, theme, handles=handles or axes.get_lines(), ncols=9, handlelength=1.5, **place)
 
 
 def inner_legend(axes: Any, theme: Theme) -> None:
-    """Legend of a few lines with long names, in the axes, where it covers the least."""
+    """Legend of a few lines with long names, in the axes, at the place that covers least."""
     _legend(axes, theme, loc="best", labelspacing=0.2, borderpad=0.2)
 
 
 def side_legend(axes: Any, theme: Theme) -> None:
-    """Legend of many lines, right of the axes."""
+    """Legend of many lines, to the right of the axes."""
     handles, names = axes.get_legend_handles_labels()
     anchor = (1.02, 1.0)
     _legend(axes, theme, handles=handles, loc="upper left", bbox_to_anchor=anchor, ncols=1 + (len(names) - 1) // 8)
 
 
 def foot_legend(part: Any, theme: Theme, panels: Sequence[Any], width: float, names: Sequence[str] = ()) -> None:
-    """One legend for all panels, in place of their own."""
+    """One legend for all panels, which replaces their own legends."""
     entries: dict[str, Any] = dict(zip(names, panels[0].get_lines()))
     for axes in panels:
         if axes.get_legend():
@@ -97,7 +97,7 @@ def foot_height(names: Sequence[str], width: float) -> float:
 
 
 def _across(names: Sequence[str], width: float) -> int:
-    """Number of entries in a row: as many as the longest name allows in this width [in], and equal in all rows."""
+    """Number of entries in a row: as many as the longest name admits in this width [in], and equal in all rows."""
     room = max(1, int(width / (0.5 + 0.072 * max(map(len, names)))))
     return ceil(len(names) / ceil(len(names) / room))
 

@@ -1,4 +1,4 @@
-"""The panels of a motion, each a function of axes and run, and by name all that a figure may have."""
+"""The panels of a motion, each a function of axes and run, and all panels by name."""
 
 from collections.abc import Callable, Sequence
 from math import ceil
@@ -31,7 +31,7 @@ __all__ += [
 ]
 __all__ += ["error_panel", "manipulability_panel", "null_space_panel", "orientation_error_panel", "tip_error_panel"]
 
-NEAR = 0.1  # Of the distance between a joint's bounds.
+NEAR = 0.1  # Relative to the distance between the bounds of a joint.
 SNAPSHOTS = 11
 ROUND = {"solid_capstyle": "round"}
 LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
@@ -40,8 +40,8 @@ LINK = {"lw": 1.8, "marker": "o", "ms": 3.8, "mew": 0.5, **ROUND}
 def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
     """Postures at equal intervals of time, the tip's path and its target, and the tip's axes at the end.
 
-    Of a Robot, path, target and axes of each task that follows a path. An arm in space needs axes made with
-    projection='3d', a planar arm plain ones.
+    For a Robot, path, target and axes of each task that follows a path. An arm in space needs axes with
+    projection='3d', a planar arm axes without a projection.
     """
     t, q = (run.t, run.q) if len(run.t) else (np.zeros(1), run.status.q[None])
     time = Normalize(0.0, float(t[-1]) or 1.0)
@@ -67,7 +67,7 @@ def arm_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def _extent(arm: Arm | Robot, q: Array) -> float:
-    """Size of the largest side of the box about the joints in a posture [m]."""
+    """Largest side of the bounding box of the joints in a posture [m]."""
     points = joint_points(arm, q)
     return float((np.nanmax(points, axis=0) - np.nanmin(points, axis=0)).max())
 
@@ -89,7 +89,7 @@ def draw_target(axes: Any, run: Run, theme: Theme) -> list[Any]:
 
 
 def frame_arm(axes: Any, theme: Theme) -> None:
-    """Give all axes one scale and one distance between ticks, once all is drawn."""
+    """Give all axes one scale and one distance between ticks; call this last."""
     space = axes.name == "3d"
     ends = np.array([axes.get_xlim(), axes.get_ylim(), *([axes.get_zlim()] if space else [])])
     reach = np.ptp(ends, axis=1)
@@ -112,12 +112,12 @@ def frame_arm(axes: Any, theme: Theme) -> None:
         axis.set_ticks(step * np.arange(np.ceil(least / step), np.floor(most / step) + 1))  # No tick in a corner.
         axis.set_pane_color(theme.pane)
         axis.line.set_color(theme.ink)
-        axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # Axes in space offer no other way.
+        axis._axinfo["grid"].update(color=theme.grid, linewidth=0.6)  # 3D axes have no public interface for this.
         axis.labelpad = -5.0
 
 
 def tip_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Norm of the position error and, where the task is a pose, of the orientation error, on a logarithmic axis."""
+    """Norm of the position error and, if the task is a pose, of the orientation error, on a logarithmic axis."""
     pose = run.kind == "pose"
     names = ("[m]", "[rad]") if pose else ("[m]",)
     for name, norms, (colour, dash) in zip(names, run.error_norms(), theme.styles()):
@@ -148,28 +148,28 @@ def _components(axes: Any, run: Run, theme: Theme, error: Array, names: Sequence
 
 
 def position_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint positions, and the bounds that a joint comes near."""
+    """Joint positions, and bounds that are close to a joint."""
     _joints(axes, run, theme, run.q, r"$q$", "", run.limits.lower, run.limits.upper)
 
 
 def velocity_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint velocities, and the bounds that a joint comes near."""
+    """Joint velocities, and bounds that are close to a joint."""
     _joints(axes, run, theme, run.qd, r"$\dot q$", "/s", -run.limits.velocity, run.limits.velocity)
 
 
 def acceleration_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Joint accelerations, and the bounds that a joint comes near."""
+    """Joint accelerations, and bounds that are close to a joint."""
     _joints(axes, run, theme, run.qdd, r"$\ddot q$", "/s²", -run.limits.acceleration, run.limits.acceleration)
 
 
 def joint_names(arm: Arm | Robot) -> list[str]:
-    """The joints' names for a legend; prismatic joints are marked where there are revolute ones too."""
+    """Names of the joints for a legend; prismatic joints are marked if there are also revolute joints."""
     names, units = joint_labels(arm), joint_units(arm)
     return [f"{name} (slides)" if unit == "m" and "rad" in units else name for name, unit in zip(names, units)]
 
 
 def unit_of(runs: Sequence[Run], per: str) -> str:
-    """Unit of a quantity of all joints: 'rad/s', or 'rad/s, m/s' where some are prismatic."""
+    """Unit of a quantity of all joints: 'rad/s', or 'rad/s, m/s' if some joints are prismatic."""
     units = sorted({unit for run in runs for unit in joint_units(run.arm)}, reverse=True)
     return ", ".join(unit + per for unit in units)
 
@@ -177,7 +177,7 @@ def unit_of(runs: Sequence[Run], per: str) -> str:
 def _joints(
     axes: Any, run: Run, theme: Theme, values: Array, symbol: str, per: str, lower: Array, upper: Array
 ) -> None:
-    """A line for each joint, and at each bound that one comes near: in its colour, or in ink where several share it."""
+    """A line for each joint and for each close bound: in the colour of its joint, or in ink for several joints."""
     draw_lines(axes, theme, run.t, values, joint_names(run.arm), f"{symbol} [{unit_of([run], per)}]")
     span = np.where(np.isfinite(upper - lower), upper - lower, 1.0)
     colours = [colour for (colour, _), _ in zip(theme.styles(), lower)]
@@ -193,7 +193,7 @@ def _joints(
 
 
 def scale_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Task scale: the share of the commanded motion that the limits allowed, from 0 to 1; of a stack, of each level."""
+    """Task scale: fraction of the commanded motion that the limits admit, from 0 to 1; for a stack, of each level."""
     if run.stack is not None and run.scales is not None:
         names = [", ".join(task.name for task in level) for level in run.stack.levels]
         draw_lines(axes, theme, run.t, run.scales, names, "task scale")
@@ -207,7 +207,7 @@ def scale_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Norms of the errors of a stack's tasks, lengths and angles each."""
+    """Norms of the errors of a stack's tasks, separate for lengths and angles."""
     for (name, unit, values, _), (colour, dash) in zip(error_parts(run), theme.styles()):
         norms = np.linalg.norm(values, axis=1)
         axes.plot(*envelope(run.t, norms), color=colour, ls=dash, lw=LINE, label=f"{name} [{unit}]")
@@ -217,7 +217,7 @@ def task_error_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """A bar for each time that a joint was on a bound."""
+    """A bar for each interval in which a joint is on a bound."""
     assert run.saturated is not None
     n = run.arm.dof
     ends = np.append(run.t, run.t[-1:])
@@ -232,7 +232,7 @@ def saturation_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def clearance_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """Distance of the two shapes that are nearest to one another, and the margin that is kept."""
+    """Distance between the two nearest shapes, and the margin."""
     assert run.clearance is not None
     clearance = run.options.get("clearance")
     axes.plot(run.t, np.where(np.isfinite(run.clearance), run.clearance, np.nan), color=theme.lines[0], lw=LINE)
@@ -245,7 +245,7 @@ def clearance_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
 
 
 def manipulability_panel(axes: Any, run: Run, theme: Theme = LIGHT) -> None:
-    """√det(JJᵀ), which is 0 in a singular posture (Yoshikawa, 1985), and on its own scale J's least singular value."""
+    """√det(JJᵀ), which is 0 in a singular posture (Yoshikawa, 1985), and the least singular value of J."""
     right = axes.twinx()
     dress(right, theme, "")
     right.grid(False)
@@ -279,7 +279,7 @@ def min_singular_values(run: Run) -> Array:
 def null_space_velocities(run: Run) -> Array:
     """‖(I − J⁺J) qd‖ at each sample, shape (N,)."""
     _, s, Vt = np.linalg.svd(run.jacobians(), full_matrices=False)
-    row_space = (s > 1e-12 * s[:, :1])[..., None] * Vt  # J's rank is less than m in a singular posture.
+    row_space = (s > 1e-12 * s[:, :1])[..., None] * Vt  # In a singular posture, the rank of J is less than m.
     return np.asarray(np.linalg.norm(run.qd - np.einsum("kmi,kmj,kj->ki", row_space, Vt, run.qd), axis=1))
 
 
@@ -311,14 +311,14 @@ OVERVIEW = tuple(name for name in PANELS if not name.startswith("axis"))
 
 
 def choose(run: Run, panels: str | Sequence[str] | None) -> dict[str, Panel]:
-    """The panels asked for, or OVERVIEW, without those that the run has no data for. Raises ValueError."""
+    """The requested panels, by default OVERVIEW, without panels that have no data. Raises ValueError."""
     asked = OVERVIEW if panels is None else (panels,) if isinstance(panels, str) else tuple(panels)
     for name in asked:
         if name not in PANELS:
             raise ValueError(f"panels: {name!r} must be one of {', '.join(PANELS)}")
         if asked.count(name) > 1:
-            raise ValueError(f"panels: {name!r} is given twice")
+            raise ValueError(f"panels: {name!r} is given twice: must be given once")
     chosen = {name: PANELS[name] for name in asked if PANELS[name].fits(run)}
     if not chosen:
-        raise ValueError(f"panels: {asked} leave nothing to draw of this run")
+        raise ValueError(f"panels: {asked}: must have data in this run")
     return chosen

@@ -1,4 +1,4 @@
-"""The style of all figures: colours, dashes, and sizes that suit a paper's column."""
+"""The style of all figures: colours, dashes, and sizes for a column of a paper."""
 
 from collections.abc import Iterator, Sequence
 from itertools import cycle
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-# Okabe and Ito's colours, which colour-blind readers can tell apart. No line on white is drawn in yellow, the last.
+# Okabe and Ito's colours, which colour-blind readers can distinguish. Lines on white do not use yellow, the last.
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#F0E442")
 DASHES = ("-", "--", ":", "-.")
 
@@ -32,7 +32,7 @@ class Theme(NamedTuple):
     fade: Colormap = LinearSegmentedColormap.from_list("fade", ["#C9DDF0", "#5BA3D0", "#08306B"])
 
     def styles(self) -> Iterator[tuple[str, str]]:
-        """Colour and dash of each line: 28 different pairs; neighbours differ in both, also when printed in grey."""
+        """Colour and dash of each line: 28 different pairs. Neighbours differ in both, also in grey print."""
         return zip(cycle(self.lines), cycle(DASHES))
 
 
@@ -51,7 +51,7 @@ DARK = Theme(
 
 
 def sheet(width: float, heights: Sequence[float], title: str, theme: Theme) -> tuple[Figure, list[Any]]:
-    """An empty figure, and its parts one below the other, of these heights [in]."""
+    """An empty figure, and its parts from top to bottom, with these heights [in]."""
     head = TITLE_ROW * (title.count("\n") + 1) if title else 0.0
     figure = Figure((width, head + sum(heights)), dpi=DPI, layout="constrained", facecolor=theme.paper)
     figure.suptitle(title, fontsize=TEXT + 1, color=theme.ink)
@@ -59,7 +59,7 @@ def sheet(width: float, heights: Sequence[float], title: str, theme: Theme) -> t
 
 
 def dress(axes: Any, theme: Theme, heading: str) -> None:
-    """Set background, heading, grid and text sizes, before anything is drawn."""
+    """Set background, heading, grid and text sizes; call this first."""
     axes.set_facecolor(theme.paper)
     axes.set_title(heading, loc="left", fontsize=TEXT, fontweight="bold", color=theme.ink, pad=4.0)
     axes.tick_params(labelsize=TEXT, colors=theme.ink, length=2.5, pad=2.5)

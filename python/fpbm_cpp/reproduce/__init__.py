@@ -1,4 +1,4 @@
-"""The paper's results from beginning to end: 18 motions, figures, tables, errata and claims."""
+"""Reproduction of the paper's results: 18 motions, figures, tables, errata and claims."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ __all__ = ["Reproduction", "reproduce"]
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All runs, tables and claims, a summary in sentences, and the files written."""
+    """All runs, tables and claims, a summary in sentences, and the written files."""
 
     results: list[Result]
     tables: list[Table]
@@ -31,8 +31,8 @@ class Reproduction:
 def reproduce(out: Path, say: Callable[[str], None] = lambda step: None) -> Reproduction:
     """Run all of the paper's cases, and write report.md, fig1.png … fig8.png and fig1.pdf … fig8.pdf to a folder.
 
-    The folder is made where it is missing. Only these 17 files in it are touched; each is written whole or not at all.
-    say is called with a few words at each step. Raises OSError if a file cannot be written.
+    A missing folder is created. Only these 17 files in the folder change; each is written completely or not at all.
+    say is called with a short text at each step. Raises OSError if a file cannot be written.
     """
     out.mkdir(parents=True, exist_ok=True)
     paper = load()

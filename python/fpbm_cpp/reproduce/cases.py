@@ -1,4 +1,4 @@
-"""The paper as data: the arm, the paths, and the 18 motions with their printed and their correct numbers."""
+"""The data of the paper: the arm, the paths, and the 18 motions with printed and correct numbers."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ NAMES = {"circle": "Circle", "lissajous": "Lissajous figure", "tricuspid": "Tric
 
 @dataclass(frozen=True)
 class Case:
-    """One motion of the paper: where and what is printed of it, and an independent solution's last sample."""
+    """One motion of the paper: its printed numbers, and the last sample of an independent solution."""
 
     path: str  # 'circle', 'lissajous' or 'tricuspid'.
     reference_q: Sequence[float]  # [rad]
@@ -33,7 +33,7 @@ class Case:
     figure: int = 0
     printed_qd: Sequence[float] | None = None  # At the end [rad/s].
     printed_error: float | None = None  # The largest [m].
-    misprinted_joint: int = 0  # Whose velocity is a misprint, 1 to n.
+    misprinted_joint: int = 0  # Joint with a misprinted velocity, 1 to n; 0: none.
 
     @property
     def scheme(self) -> Scheme:
@@ -52,7 +52,7 @@ class Paper:
     arm: PlanarArm
     q0: Array
     paths: Mapping[str, Path]
-    errata: Sequence[Mapping[str, Any]]  # A text, with the posture [deg] or the circle's radius [m] that it is about.
+    errata: Sequence[Mapping[str, Any]]  # A text, with its posture [deg] or radius of the circle [m].
     cases: Sequence[Case]
 
     def simulate(self, path: str, scheme: Scheme, **options: Any) -> Run:
@@ -66,7 +66,7 @@ class Paper:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A case and our run of it."""
+    """A case and its run in this package."""
 
     case: Case
     run: Run
@@ -79,7 +79,7 @@ class Result:
 
     @property
     def from_printed(self) -> float | None:
-        """Largest difference of final velocities from the printed ones [rad/s], without misprints."""
+        """Largest difference of final velocities from the printed values [rad/s], without misprints."""
         if self.case.printed_qd is None:
             return None
         good = np.arange(1, len(self.case.printed_qd) + 1) != self.case.misprinted_joint

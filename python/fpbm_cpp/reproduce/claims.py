@@ -1,4 +1,4 @@
-"""The paper's claims, confirmed or corrected, and four findings of our own; every number is computed here."""
+"""The claims of the paper, confirmed or corrected, and findings of our own; all numbers are computed here."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ def check_claims(paper: Paper, results: Sequence[Result]) -> list[Claim]:
 
 
 def _of_figures(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim]:
-    """What the paper says of MAN and FPBM where it shows both."""
+    """Claims of the paper on MAN and FPBM."""
     schemes = (MAN(), fpbm)
     man, ours = (paper.simulate("circle", s, dt=COARSE).error_norms()[0] for s in schemes)
     man_held, ours_held = (paper.simulate("circle", s, dt=COARSE, hold=HOLD).error_norms()[0][-1] for s in schemes)
@@ -40,9 +40,10 @@ def _of_figures(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         "MAN's tip error diverges, FPBM's does not",
         _verdict(bool(man.max() > 10 * ours.max()) and man.argmax() == len(man) - 1 > ours.argmax()),
         f"Circle, the same RK4 with {len(man) - 1} steps (dt = {COARSE} s): MAN's error reaches {man.max():.1e} m, "
-        f"{man.max() / ours.max():.0f} times FPBM's {ours.max():.1e} m. At T MAN's is {man[-1] / man.max():.0%} of its "
-        f"largest, FPBM's {ours[-1] / ours.max():.0%}; after {HOLD:g} s more on the target MAN's is {man_held:.1e} m, "
-        f"FPBM's {ours_held:.1e} m. At 1 kHz the largest errors are {man_fine:.1e} m and {ours_fine:.1e} m.",
+        f"{man.max() / ours.max():.0f} times FPBM's {ours.max():.1e} m. At T, MAN's error is {man[-1] / man.max():.0%} "
+        f"of its largest, FPBM's {ours[-1] / ours.max():.0%}. After {HOLD:g} s more at the target, MAN's error is "
+        f"{man_held:.1e} m, FPBM's {ours_held:.1e} m. At 1 kHz, the largest errors are {man_fine:.1e} m and "
+        f"{ours_fine:.1e} m.",
     )
 
     lower, numbers = _against_man(results, _peak)
@@ -57,12 +58,12 @@ def _of_figures(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
     yield Claim(
         "FPBM's final joint velocity is near zero, MAN's is not",
         _verdict(max(lower.values()) < 0.25),
-        f"Norm of the final joint velocity, rad/s. {numbers}. Near zero is not zero: see below.",
+        f"Norm of the final joint velocity, rad/s. {numbers}. A velocity near zero is not zero: see below.",
     )
 
 
 def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim]:
-    """What the paper says of FPBM alone."""
+    """Claims of the paper on FPBM only."""
     run, *scaled = (paper.simulate("circle", replace(fpbm, weights=c * fpbm.weights)) for c in (1, 2, 1000))
     changes = [max(float(np.abs(getattr(s, a) - getattr(run, a)).max()) for a in ("q", "qd", "qdd")) for s in scaled]
     rows = sorted((r for r in results if r.case.row), key=lambda r: _speed(r.run))
@@ -73,7 +74,7 @@ def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         f"W → 2W changes q, qd and qdd over the whole motion by at most {changes[0]:.2g}, W → 1000W by "
         f"{changes[1]:.2g} (rad, rad/s, rad/s²). Norm of the final joint velocity in Tables 2 and 3, rad/s: "
         f"{' < '.join(f'{r.case.row} {_speed(r.run):.3f}' for r in rows)}. The largest entries of all, "
-        f"{largest.case.weights}, are number {rows.index(largest) + 1} of {len(rows)}: equal entries weight nothing.",
+        f"{largest.case.weights}, are number {rows.index(largest) + 1} of {len(rows)}: equal entries have no effect.",
     )
 
     moved, middle = _moved_on_hold(paper, fpbm), CIRCLES // 2
@@ -81,13 +82,13 @@ def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
     peaks = [_peak(run) for run in runs]
     apart = [float(np.abs(a.q[-1] - b.q[-1]).max()) for a, b in zip(runs, halved)]
     yield Claim(
-        "A final joint velocity near zero is as good as zero",
+        "A final joint velocity near zero is equivalent to zero",
         _verdict(moved < 0.01),
-        f"FPBM of Fig. 2, target held for {HOLD:g} s after T: the tip stays, the joints move on by {moved:.2f} rad. "
-        f"Over {CIRCLES} circles, each from where the last one ended, the peak joint velocity grows from "
-        f"{peaks[0]:.2f} to {max(peaks):.2f} rad/s (circle {np.argmax(peaks) + 1}). The motion becomes unpredictable "
-        f"too: half the step moves the end of circle 1 by {apart[0]:.0e} rad, of circle {middle} by "
-        f"{apart[middle - 1]:.0e} rad, of circle {CIRCLES} by {apart[-1]:.1g} rad. Nothing in the paper damps "
+        f"FPBM of Fig. 2, target at rest for {HOLD:g} s after T: the tip is at rest, the joints move by {moved:.2f} "
+        f"rad. Over {CIRCLES} circles, each from the end of the previous circle, the peak joint velocity grows from "
+        f"{peaks[0]:.2f} to {max(peaks):.2f} rad/s (circle {np.argmax(peaks) + 1}). The motion becomes sensitive to "
+        f"the step: with half the step, the end of circle 1 changes by {apart[0]:.0e} rad, of circle {middle} by "
+        f"{apart[middle - 1]:.0e} rad, of circle {CIRCLES} by {apart[-1]:.1g} rad. The paper has no damping of the "
         "self-motion.",
     )
 
@@ -97,22 +98,23 @@ def _of_remarks(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator
         "FPBM's tip error is about 1e-5 m",
         _verdict(bool(ours.max() > 0.1 * printed.min())),
         f"The printed errors, {printed.min():.1e} to {printed.max():.1e} m, are the tolerance of the paper's variable-"
-        f"step solver: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. They say nothing about α or W.",
+        f"step solver: RK4 at 1 kHz gives {ours.min():.1e} to {ours.max():.1e} m. They contain no "
+        "information on α or W.",
     )
 
 
 def _ours(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim]:
-    """What the paper does not say."""
+    """Findings that are not in the paper."""
     damped = replace(fpbm, null_damping=2.0)
     moved = _moved_on_hold(paper, damped)
     runs = chained(paper, replace(damped, rest_posture=paper.q0, null_stiffness=1.0))
     ends = [float(np.abs(b.q[-1] - a.q[-1]).max()) for a, b in pairwise(runs)]
     yield Claim(
-        "Damping the null space brings the joints to rest and leaves the task alone (ours)",
+        "Null-space damping brings the joints to rest and does not change the task (ours)",
         _verdict(moved < 0.01 and max(ends) < 1e-4),
-        f"With null_damping = 2 s⁻¹ the joints move by {moved:.4f} rad in the same {HOLD:g} s. With the rest posture "
-        f"q(0) as well (null_stiffness = 1 s⁻²) circle 2 ends {ends[0]:.1e} rad from circle 1 and circle 3 "
-        f"{ends[1]:.1e} rad from circle 2; in {CIRCLES} circles no joint velocity is above "
+        f"With null_damping = 2 s⁻¹, the joints move by {moved:.4f} rad in the same {HOLD:g} s. With the rest posture "
+        f"q(0) too (null_stiffness = 1 s⁻²), circle 2 ends {ends[0]:.1e} rad from circle 1, and circle 3 "
+        f"{ends[1]:.1e} rad from circle 2. In {CIRCLES} circles, no joint velocity is above "
         f"{max(map(_peak, runs)):.3f} rad/s and no tip error above {max(run.max_error() for run in runs):.1e} m.",
     )
 
@@ -143,7 +145,7 @@ def _ours(paper: Paper, fpbm: FPBM, results: Sequence[Result]) -> Iterator[Claim
 
 
 def chained(paper: Paper, scheme: Scheme, dt: float = DT) -> list[Run]:
-    """Circles one after another, each from the joint state in which the one before ended."""
+    """Circles one after another, each from the joint state at the end of the previous circle."""
     runs = [paper.simulate("circle", scheme, dt=dt)]
     for _ in range(CIRCLES - 1):
         runs.append(paper.simulate("circle", scheme, dt=dt, q0=runs[-1].q[-1], qd0=runs[-1].qd[-1]))
@@ -151,7 +153,7 @@ def chained(paper: Paper, scheme: Scheme, dt: float = DT) -> list[Run]:
 
 
 def _against_man(results: Sequence[Result], measure: Callable[[Run], float]) -> tuple[dict[str, float], str]:
-    """Ratio of FPBM's largest measure to MAN's for each path of the figures, and a sentence of all measures."""
+    """Ratio of FPBM's largest measure to MAN's for each path of the figures, and a sentence with all measures."""
     shown = of_figures(results)
     ratios, words = {}, []
     for man in (r for r in shown if not r.case.fpbm):

@@ -21,7 +21,7 @@ COLUMNS = "Final joint velocities [rad/s] and largest tip error [m]"
 
 
 def caption(case: Case) -> str:
-    """Path, scheme and parameters in words."""
+    """Caption: path, scheme and parameters."""
     if not case.fpbm:
         return f"{NAMES[case.path]} under MAN: minimum acceleration norm, no feedback"
     p = case.fpbm
@@ -36,16 +36,16 @@ def make_figure(result: Result) -> Figure:
 
 
 def rendered(drawn: Figure, kind: str) -> bytes:
-    """The figure as 'png' or 'pdf': the same bytes every time."""
+    """The figure as 'png' or 'pdf', with reproducible bytes."""
     file = BytesIO()
     drawn.savefig(file, format=kind, metadata={"CreationDate": None} if kind == "pdf" else None)
-    drawn.set_layout_engine("none")  # The second file takes the layout of the first.
+    drawn.set_layout_engine("none")  # The second file has the layout of the first.
     return file.getvalue()
 
 
 @dataclass(frozen=True)
 class Table:
-    """A title, a header and rows of text; the first two columns are words, the others numbers."""
+    """A title, a header and rows of text; the first two columns are words, all others are numbers."""
 
     title: str
     header: tuple[str, ...]
@@ -87,7 +87,7 @@ def make_tables(results: Sequence[Result]) -> list[Table]:
 
 
 def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
-    """Printed values, our values and their differences; only ours where nothing was printed."""
+    """Printed values, our values and their differences; only our values without printed values."""
     case, ours, error = result.case, result.run.qd[-1], result.run.max_error()
     rows = [("ours", *(f"{v:.6f}" for v in ours), f"{error:.1e}")]
     if case.printed_qd is not None:
@@ -101,7 +101,7 @@ def _rows(result: Result, label: tuple[str, str]) -> list[tuple[str, ...]]:
 
 
 def summary(results: Sequence[Result]) -> list[str]:
-    """How far the runs are from the independent solution and from the printed numbers."""
+    """Differences of the runs from the independent solution and from the printed numbers."""
     largest = max(r.from_reference for r in results)
     fpbm, man = (max(r.from_printed or 0.0 for r in results if bool(r.case.fpbm) is kind) for kind in (True, False))
     errors = [r.run.max_error() for r in results]
@@ -152,7 +152,7 @@ def _misprint(result: Result) -> str:
 
 
 def _both_ways(paper: Paper, erratum: Mapping[str, Any]) -> str:
-    """How far from the printed numbers the motion of Fig. 2 ends, with the text's value and with ours."""
+    """Difference of the motion of Fig. 2 from the printed numbers, for the value in the text and for ours."""
     case, circle = paper.figure(2), paper.paths["circle"]
     q0 = np.deg2rad(erratum["q0_degrees"]) if "q0_degrees" in erratum else paper.q0
     if "radius" in erratum:
@@ -160,5 +160,6 @@ def _both_ways(paper: Paper, erratum: Mapping[str, Any]) -> str:
     printed = replace(paper, q0=q0, paths={"circle": circle})
     text, ours = (Result(case, p.simulate(case.path, case.scheme)).from_printed for p in (printed, paper))
     return (
-        f"Fig. 2's final joint velocities are {text:.0e} rad/s off with the text's value, {ours:.0e} rad/s with ours."
+        f"The final joint velocities of Fig. 2 differ by {text:.0e} rad/s for the text's value, by {ours:.0e} rad/s "
+        "for ours."
     )

@@ -1,4 +1,4 @@
-"""Tuning: the parameters of FPBM that suit an arm and a path best."""
+"""Tuning: optimisation of the parameters of FPBM for an arm and a path."""
 
 from .result import Trials, Tuning
 from .tuner import tune

@@ -8,7 +8,7 @@ import numpy as np
 from .._types import Array
 from ..plot.theme import DARK, LIGHT, OKABE_ITO, Theme, dress, sheet
 
-# Without matplotlib, the line before says what to install.
+# Without matplotlib, the line before raises ImportError with the extra to install.
 from matplotlib.figure import Figure  # isort: skip
 
 from .result import Trials, Tuning
@@ -18,7 +18,7 @@ BEST = OKABE_ITO[5]
 
 
 def plot_tuning(tuning: Tuning, *, dark: bool = False) -> Figure:
-    """The Pareto front with best and baseline, the change of the objective by a step, and the best value so far."""
+    """The Pareto front with best and baseline, the change of the objective per step, and the best value so far."""
     theme = DARK if dark else LIGHT
     title = f"{tuning.objective} of {tuning.arm} along {tuning.path!r}"
     wrapped = "\n".join(textwrap.wrap(title, 120, max_lines=2, placeholder=" …"))
@@ -72,7 +72,7 @@ def _convergence(axes: Any, tuning: Tuning, theme: Theme) -> None:
 
 
 def _legend(axes: Any, theme: Theme) -> None:
-    """Legend in one row below the axes, where nothing is drawn."""
+    """Legend in one row below the axes."""
     columns = len(axes.get_legend_handles_labels()[1])
     place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.12), "ncols": columns, "frameon": False}
     axes.legend(**place, fontsize=9, columnspacing=1.2, handlelength=1.6, labelcolor=theme.ink)

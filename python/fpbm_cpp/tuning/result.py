@@ -1,4 +1,4 @@
-"""The result of a tuning: all that was tried, and the best of it."""
+"""The result of a tuning: all trials, and the best trial."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .search import TUNABLE, numbers, pareto_front, tunable, with_numbers
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ALPHA_STEP, STEP = 0.05, 0.1  # The latter as a share of the value.
+ALPHA_STEP, STEP = 0.05, 0.1  # STEP is relative to the value.
 NOT_FINITE = {"+nan": "-", "+inf": "infeasible"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Trials:
-    """T schemes and the results of their motions: arrays of shape (T,), in the order in which they were tried.
+    """T schemes and the results of their motions: arrays of shape (T,), in the order of the trials.
 
     value is the objective, NaN if the motion stopped early; peak_velocity [rad/s] and peak_acceleration [rad/s^2] are
-    those of the fastest joint; error is the tip's largest position error [m] or, where it is a larger number,
+    those of the fastest joint; error is the larger number of the tip's largest position error [m] and largest
     orientation error [rad]. A trial is feasible if its motion is complete, its objective finite, and its error within
     the tolerance.
     """
@@ -45,16 +45,16 @@ class Trials:
         return {name: np.array([getattr(scheme, name) for scheme in self.schemes]) for name in TUNABLE}
 
     def scores(self) -> Array:
-        """The value of each; NaN if it is infeasible."""
+        """The value of each trial; NaN if the trial is infeasible."""
         return np.where(self.feasible, self.value, np.nan)
 
     def peaks(self) -> Array:
-        """Peak velocity and peak acceleration of each, shape (T, 2); NaN if it is infeasible."""
+        """Peak velocity and peak acceleration of each trial, shape (T, 2); NaN if the trial is infeasible."""
         pairs = np.column_stack([self.peak_velocity, self.peak_acceleration])
         return np.where(self.feasible[:, None], pairs, np.nan)
 
     def best(self) -> int:
-        """Index of the first feasible trial of the least value; there must be a feasible one."""
+        """Index of the first feasible trial with the least value; there must be a feasible trial."""
         return int(np.nanargmin(self.scores()))
 
     def __getitem__(self, which: Any) -> Trials:
@@ -73,7 +73,7 @@ def joined(parts: Sequence[Trials]) -> Trials:
 
 
 def sensitivity(scheme: FPBM, value: float, run: Callable[[Sequence[FPBM]], Trials]) -> dict[str, tuple[float, float]]:
-    """What a step down and one up of each number add to a scheme's value; see Tuning.sensitivity."""
+    """Change of a scheme's value for a step down and a step up of each number; see Tuning.sensitivity."""
     steps: dict[tuple[str, int], FPBM] = {}
     for name, number in numbers(scheme).items():
         for sign in (-1, 1):
@@ -88,11 +88,11 @@ def sensitivity(scheme: FPBM, value: float, run: Callable[[Sequence[FPBM]], Tria
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Tuning:
-    """The best scheme found, its sensitivity, and the trials, the baseline first; arm, path, q0, task are the motion.
+    """The best scheme, its sensitivity, and the trials, starting with the baseline; arm, path, q0, task are the motion.
 
-    sensitivity is the change of the objective when one parameter of the best steps down, and up: alpha by 0.05, within
-    [0, 1], all others by 10 %. It is NaN where the parameter cannot step, infinite where the step is infeasible, and
-    empty after an interruption. objective is a name; its unit is empty for a function of the caller's.
+    sensitivity is the change of the objective for a step down and a step up of one parameter of the best scheme: 0.05
+    for alpha, within [0, 1], and 10 % for all others. It is NaN if the parameter cannot step, infinite if the step is
+    infeasible, and empty after an interruption. objective is a name; the unit of a user's function is empty.
     """
 
     trials: Trials
@@ -106,22 +106,22 @@ class Tuning:
 
     @property
     def scheme(self) -> FPBM:
-        """The best of all feasible trials, ready to use."""
+        """The best of all feasible trials."""
         return cast(FPBM, self.trials.schemes[self.trials.best()])
 
     @property
     def value(self) -> float:
-        """The objective of the best."""
+        """The objective of the best scheme."""
         return float(self.trials.value[self.trials.best()])
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The tunable parameters of the best, by FPBM's names."""
+        """The tunable parameters of the best scheme, by the names of FPBM."""
         return tunable(self.scheme)
 
     @property
     def front(self) -> Trials:
-        """The feasible trials that no other beats in both peak velocity and peak acceleration, by peak velocity."""
+        """The Pareto front of peak velocity and peak acceleration: feasible trials, sorted by peak velocity."""
         return self.trials[pareto_front(*self.trials.peaks().T)]
 
     @property
@@ -131,12 +131,12 @@ class Tuning:
 
     @property
     def baseline_value(self) -> float:
-        """The objective of the baseline; NaN if that is infeasible."""
+        """The objective of the baseline; NaN if the baseline is infeasible."""
         return float(self.trials.scores()[0])
 
     @property
     def improvement(self) -> float:
-        """How far the best is below the baseline, as a share of the baseline's value; NaN if that is NaN or 0."""
+        """Decrease from the baseline to the best, relative to the baseline's value; NaN if that value is NaN or 0."""
         before = self.baseline_value
         return (before - self.value) / abs(before) if before else np.nan
 
@@ -162,7 +162,7 @@ class Tuning:
             steps = "".join(f"{NOT_FINITE.get(change, change):>12}" for change in changes)
             lines.append(f"{name:14}{before[name]:12.4g}{value:12.4g}{steps}")
         if self.sensitivity:
-            lines += ["", f"-10 %, +10 %: change of {self.objective} when one parameter changes so (alpha by 0.05)"]
+            lines += ["", f"-10 %, +10 %: change of {self.objective} for this step of one parameter (0.05 for alpha)"]
         return "\n".join(lines)
 
     def __repr__(self) -> str:

@@ -1,7 +1,7 @@
-"""The schemes that a search tries, and searches by CMA-ES (Hansen and Ostermeier, 2001) of the unit cube of these.
+"""The search space of schemes, and searches of its unit cube by CMA-ES (Hansen and Ostermeier, 2001).
 
-A search is an endless generator: it yields points, shape (B, d), and is sent their scores, shape (B,) or (B, 2), NaN
-where a point is infeasible. least() searches for the least score, front() for the Pareto front of two.
+A search is an endless generator: it yields points, shape (B, d), and receives their scores, shape (B,) or (B, 2), NaN
+for an infeasible point. least() searches for the least score, front() for the Pareto front of two scores.
 """
 
 from collections.abc import Generator, Mapping
@@ -18,23 +18,23 @@ from ..schemes import FPBM
 
 TUNABLE = ("alpha", "weights", "k1", "k2", "null_damping")
 
-# k1 and k2 act on the tip's error alone, which is zero without disturbances.
+# Not k1 and k2: they act on the tip error only, which is zero without disturbances.
 SEARCH: dict[str, tuple[float, float]] = {"alpha": (0.0, 1.0), "weights": (0.1, 10.0), "null_damping": (0.01, 10.0)}
 
 Search = Generator[Array, Array, None]
 
-LANES, DEVIATION = 8, 0.3  # A generation fills a processor's lanes, and its first deviation covers the cube.
-ALIKE = 1e-3  # A search starts again elsewhere when a generation's scores differ by less than this share.
-WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Of two scores: how many, the least weight of one, the sum's share.
+LANES, DEVIATION = 8, 0.3  # A generation fills the SIMD lanes, and its first deviation covers the cube.
+ALIKE = 1e-3  # A search restarts at another point if the relative difference of a generation's scores is less.
+WEIGHTINGS, LEAST_WEIGHT, SUM = 4, 0.02, 0.01  # Weightings of two scores, least weight of a score, weight of the sum.
 
 
 def tunable(scheme: FPBM) -> dict[str, Any]:
-    """The parameters of a scheme that can be tuned."""
+    """The tunable parameters of a scheme."""
     return {name: getattr(scheme, name) for name in TUNABLE}
 
 
 def numbers(scheme: FPBM) -> dict[str, float]:
-    """The same with a name for each number: 'weights[0]' and so on."""
+    """The tunable numbers by name: 'weights[0]' and so on."""
     return {
         f"{name}[{i}]" if np.ndim(value) else name: entry
         for name, value in tunable(scheme).items()
@@ -43,7 +43,7 @@ def numbers(scheme: FPBM) -> dict[str, float]:
 
 
 def with_numbers(scheme: FPBM, changes: Mapping[str, float]) -> FPBM:
-    """The scheme with other numbers, by these names."""
+    """The scheme with other values of these numbers."""
     values: dict[str, Any] = {name: np.array(value) for name, value in tunable(scheme).items()}
     for name, number in changes.items():
         parameter, _, index = name.rstrip("]").partition("[")
@@ -54,7 +54,7 @@ def with_numbers(scheme: FPBM, changes: Mapping[str, float]) -> FPBM:
 class Space:
     """The schemes that differ from a baseline in some numbers, one for each point of the unit cube.
 
-    names holds the number of each coordinate. Raises ValueError for what cannot be searched.
+    names has the number of each coordinate. Raises ValueError if the search or the baseline is invalid.
     """
 
     def __init__(self, search: Mapping[str, ArrayLike] | None, baseline: FPBM, dof: int) -> None:
@@ -100,19 +100,19 @@ def _ranges(name: str, given: ArrayLike, count: int) -> Array:
     if not np.all(np.isfinite(ranges)) or not np.all(ranges[..., 0] < ranges[..., 1]):
         raise ValueError(f"{what}: must be finite, with low < high")
     if _bounded(name) and not np.all((ranges >= bounds.low) & (ranges <= bounds.high)):
-        raise ValueError(f"{what}: must lie in [{bounds.low:g}, {bounds.high:g}]")
+        raise ValueError(f"{what}: must be in [{bounds.low:g}, {bounds.high:g}]")
     if not _bounded(name) and not np.all(ranges > 0.0):
         raise ValueError(f"{what}: must be positive, since it is searched on a logarithmic scale")
     return np.array(np.broadcast_to(ranges, (count, 2)))
 
 
 def require_cmaes() -> Any:
-    """The searches' library. Raises ImportError, with what to install, if it is missing."""
+    """The library of the searches. If it is missing, raises ImportError with the extra to install."""
     return extra("cmaes", "tuning", "tune")
 
 
 def least(size: int, seed: int) -> Search:
-    """Search for the least score, first from the cube's middle, then from random points."""
+    """Search for the least score, first from the middle of the cube, then from random points."""
     random = np.random.default_rng(seed)
     search = _begin(np.full(size, 0.5), 2 * LANES, random)
     while True:
@@ -124,11 +124,11 @@ def least(size: int, seed: int) -> Search:
 
 
 def front(size: int, seed: int) -> Search:
-    """Search for the front of two scores: side by side for the least of several weightings of them.
+    """Search for the front of two scores, by parallel searches for the minimum of several weightings of the scores.
 
-    A weighting is a Chebyshev norm of the distance from the best of each score, in units of the front's extent so far.
-    Every point of a front is the least of such a norm, also in its hollows, where weighted sums find nothing (Bowman,
-    1976). A small share of the sum decides between points with equal norms.
+    A weighting is a Chebyshev norm of the distance from the best value of each score, in units of the front's present
+    extent. Each point of a front minimises one of these norms, also in non-convex parts, where weighted sums have no
+    minimum (Bowman, 1976). A small weight of the sum decides between points with equal norms.
     """
     random = np.random.default_rng(seed)
     shares = np.linspace(LEAST_WEIGHT, 1.0 - LEAST_WEIGHT, WEIGHTINGS)
@@ -147,9 +147,10 @@ def front(size: int, seed: int) -> Search:
 
 
 def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
-    """Indices of the points that no other point beats, sorted by x: none is smaller in one and no larger in the other.
+    """Indices of the points that no other point dominates, sorted by x.
 
-    Of equal points only the first counts; a point with a NaN does not.
+    A dominating point is smaller in one score and not larger in the other score. Of equal points, only the first is in
+    the front. Points with a NaN are not in the front.
     """
     order = np.lexsort((y, x))
     order = order[~np.isnan(x[order] + y[order])]
@@ -159,7 +160,7 @@ def pareto_front(x: Array, y: Array) -> NDArray[np.intp]:
 
 
 def _begin(middle: Array, count: int, random: np.random.Generator) -> Any:
-    """A search around a point, in generations of so many points."""
+    """A search around a point, with generations of count points."""
     cube, seed = np.tile([0.0, 1.0], (len(middle), 1)), int(random.integers(2**31))
     return require_cmaes().CMA(middle, DEVIATION, bounds=cube, seed=seed, population_size=count)
 
@@ -169,5 +170,5 @@ def _ask(search: Any) -> Array:
 
 
 def _tell(search: Any, points: Array, scores: Array) -> None:
-    """Tell a search its scores; infeasible points count as worst."""
+    """Give a search its scores; the score of an infeasible point is infinite."""
     search.tell(list(zip(points, np.where(np.isnan(scores), np.inf, scores).tolist())))

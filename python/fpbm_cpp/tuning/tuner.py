@@ -1,4 +1,4 @@
-"""The search for the parameters of a scheme, and what they can be tuned for: a number of its motion, to be small."""
+"""The search for the parameters of a scheme, and its objectives: figures of the motion to minimise."""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -29,18 +29,18 @@ def energy(run: Run) -> float:
 
 
 def limit_distance(run: Run) -> float:
-    """Largest share of its range that a joint with two bounds uses: 0 in the middle, 1 on a bound, more beyond it."""
+    """Largest distance of a joint with two bounds from its middle, in half ranges: 1 on a bound, more beyond."""
     bounded = _bounded(run.limits)
     lower, upper = run.limits.lower[bounded], run.limits.upper[bounded]
     return float(np.max(np.abs(2 * run.q[:, bounded] - (lower + upper)) / (upper - lower)))
 
 
 def _bounded(limits: JointLimits) -> NDArray[np.bool_]:
-    """Which joints have two bounds, and can move between them."""
+    """Which joints have two different bounds."""
     return np.isfinite(limits.lower) & np.isfinite(limits.upper) & (limits.lower < limits.upper)
 
 
-# Unit, and function of a Run; None for a key figure of a sweep, which is faster.
+# Unit, and function of a Run; None for a key figure of a sweep, which is faster to compute.
 OBJECTIVES: dict[str, tuple[str, OfRun | None]] = {
     "peak_velocity": ("rad/s", None),
     "peak_acceleration": ("rad/s²", None),
@@ -51,14 +51,14 @@ OBJECTIVES: dict[str, tuple[str, OfRun | None]] = {
 
 
 def measure(objective: str | OfRun, limits: JointLimits) -> tuple[str, str, OfRun | None]:
-    """Name, unit and function. Raises ValueError if it is unknown, or needs bounds that the limits do not have."""
+    """Name, unit and function. Raises ValueError if the objective is unknown, or needs bounds that limits lack."""
     if callable(objective):
         return getattr(objective, "__name__", type(objective).__name__), "", objective
     if objective not in OBJECTIVES:
         names = ", ".join(map(repr, OBJECTIVES))
         raise ValueError(f"objective = {objective!r}: must be one of {names}, or a function of a Run")
     if objective == "limit_distance" and not np.any(_bounded(limits)):
-        raise ValueError("objective = 'limit_distance': the arm has no joint that is bounded both ways")
+        raise ValueError("objective = 'limit_distance': must have a joint with two bounds, and the arm has none")
     return objective, *OBJECTIVES[objective]
 
 
@@ -85,13 +85,13 @@ def tune(
 ) -> Tuning:
     """Find the parameters of FPBM that minimise an objective, for an arm on a path.
 
-    One half of the trials searches for the least objective, by CMA-ES, the other half for the Pareto front of peak
-    velocity and peak acceleration. The result is the best of all trials, the first of which is the baseline. The same
-    seed gives the same result to the last bit, with any executor.
+    One half of the trials searches for the least objective by CMA-ES, the other half for the Pareto front of peak
+    velocity and peak acceleration. The result is the best of all trials; the first trial is the baseline. Equal seeds
+    give results that are equal to the last bit, with any executor.
 
-    Raises ValueError or TypeError if an argument is wrong, ImportError if the extra 'tune' or what progress=True needs
-    is missing: nothing is run; RuntimeError if no trial is feasible. On Ctrl-C it raises TuneInterrupted, a
-    KeyboardInterrupt whose tuning holds what was found.
+    Raises ValueError or TypeError if an argument is wrong, ImportError if the extra 'tune' or the library for
+    progress=True is missing; nothing is run then. Raises RuntimeError if no trial is feasible. Ctrl-C raises
+    TuneInterrupted, a KeyboardInterrupt whose tuning has the result so far.
 
     Parameters
     ----------
@@ -99,23 +99,23 @@ def tune(
         As for simulate() and sweep().
     objective : str or callable
         'peak_velocity' [rad/s], 'peak_acceleration' [rad/s^2], 'final_velocity' [rad/s], each of the fastest joint;
-        'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest share of its range that a joint uses,
-        0 in the middle and 1 on a bound; or a function of a Run that returns a number. The last three need whole
-        motions, and are slower.
+        'energy', the integral of |qd|^2 [rad^2/s]; 'limit_distance', the largest distance of a joint from the middle of
+        its range, 0 in the middle and 1 on a bound; or a function of a Run that returns a number. The last three need
+        whole motions and are slower.
     limits, **tracking
-        Limits that every motion keeps, and the other options of track() then; without them none are kept.
+        Limits that every motion keeps, and with limits, the other options of track(). Default: no limits.
     search : mapping of str to (low, high), optional
-        The parameters to vary, of 'alpha', 'weights', 'k1', 'k2' and 'null_damping', and their ranges; the others stay
-        as in the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only ratios matter;
-        the others have one range, or n - 1. By default alpha in (0, 1), weights in (0.1, 10), null_damping in
-        (0.01, 10).
+        Ranges of the parameters that vary, among 'alpha', 'weights', 'k1', 'k2' and 'null_damping'; all others are
+        those of the baseline. The scale is logarithmic, except for alpha. The first weight is 1, since only ratios
+        count; the other weights have one range, or n - 1 ranges. Default: alpha in (0, 1), weights in (0.1, 10),
+        null_damping in (0.01, 10).
     baseline : FPBM, optional
-        The scheme to start from and to compare with, W diagonal; all its other options are kept. By default the paper's
-        choice: alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1; of a stack, whose tasks have gains, k1 = k2 = 0.
+        The first scheme, for comparison, with a diagonal W; its other options apply to all trials. Default: the paper's
+        choice, alpha = 0.6, W = diag(1, 2, 3, ...), k1 = k2 = 1; for a stack, whose tasks have gains, k1 = k2 = 0.
     tolerance : float
-        Largest position error of the tip [m], and of its orientation [rad] under 'pose', of a feasible motion.
+        Largest position error of the tip [m], and largest orientation error [rad] under 'pose', of a feasible motion.
     trials, seed : int
-        How many schemes to try, and the seed of the random numbers.
+        Number of schemes to try, and seed of the random numbers.
     """
     start = Parameter("q0", np.ndarray, shape=f"({arm.dof},)").check(q0)
     count = Parameter("trials", int, low=1, whole=True).check(trials)
@@ -168,8 +168,10 @@ def _why_none(tried: Trials, tolerance: float) -> str:
     complete = np.isfinite(tried.value)
     text = f"none of {len(tried)} schemes is feasible: {np.sum(~complete)} stopped early or have no objective"
     if not complete.any():
-        return f"{text}; simulate() says why for {tried.schemes[0]!r}"
-    return f"{text}, and the others err by at least {tried.error[complete].min():.2g}, where tolerance = {tolerance:g}"
+        return f"{text}; simulate() with {tried.schemes[0]!r} shows the cause"
+    return (
+        f"{text}; the least error of the others is {tried.error[complete].min():.2g}, above tolerance = {tolerance:g}"
+    )
 
 
 def trials_of(sweep: Sweep, objective: str, of_run: OfRun | None, tolerance: float) -> Trials:

@@ -1,8 +1,8 @@
 """Pages in the browser: a motion, and an arm that follows a handle. They need the extra 'view'.
 
-The viewer's page asks for a scheme and a time (controls); the viewer makes the motion again; scene and readout draw it.
-The servo's page asks for a target (handle); the loop makes ticks at the pace of the clock; scene and live draw them.
-Both draw what the arm keeps clear of (shapes).
+On the viewer's page, the user selects a scheme and a time (controls). The viewer repeats the motion; scene and readout
+draw it. On the servo's page, the user drags a target (handle). The loop runs ticks in real time; scene and live draw
+them. Both pages draw the shapes of the clearance (shapes).
 """
 
 import os
@@ -29,7 +29,7 @@ __all__ = ["Servo", "Viewer", "servo", "view"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import Servo and Viewer, which need viser, when they are first used."""
+    """Import Servo and Viewer, which need viser, on first use."""
     if name not in ("Servo", "Viewer"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:
@@ -57,16 +57,16 @@ def view(
 ) -> None:
     """Show an arm on its path in the browser, with sliders for the scheme's parameters, until Ctrl-C.
 
-    Prints the page's address. The motion, as for simulate(), is made again whenever the scheme or a parameter is
-    changed on the page; one that stops early is shown as far as it went. Of a stack, the path is that of the task that
-    follows it, and the errors are those of all tasks. fpbm_cpp.viewer.Viewer does not wait.
+    Prints the address of the page. A change of the scheme or of a parameter on the page repeats the motion, which is
+    that of simulate(). A motion that stops early is shown up to the stop. For a stack, the path is that of the task
+    that follows it, and the errors are those of all tasks. fpbm_cpp.viewer.Viewer does not wait.
 
-    urdf is the arm's URDF file, whose meshes are drawn, with the joints that are not the arm's at zero; without it the
+    urdf is the URDF file of the arm. Its meshes are drawn, with all other joints of the file at zero. Without urdf, the
     arm is drawn as rods and cylinders. Only this machine can open the page, unless host is '0.0.0.0' or an address on a
-    network. Port 0 takes a free one.
+    network. Port 0 selects a free port.
 
-    Raises ValueError if an argument is out of range, or the URDF file is not that of the arm: nothing is served then;
-    OSError if the port is in use, or the URDF file cannot be read; ImportError if the extra 'view' is missing.
+    Raises ValueError if an argument is out of range, or if the URDF file is of another arm; nothing is served then.
+    Raises OSError if the port is in use or the URDF file cannot be read, ImportError if the extra 'view' is missing.
     """
     from . import Viewer
 
@@ -91,23 +91,24 @@ def servo(
     port: int = 8080,
     open_browser: bool = True,
 ) -> None:
-    """Show an arm in the browser with a handle at its tip to drag, which it follows live, until Ctrl-C.
+    """Show an arm in the browser with a handle that the tip follows in real time, until Ctrl-C.
 
-    Prints the page's address. The arm is moved by a Tracker, a tick each dt, as many as have passed on the clock: every
-    bound of limits is kept, through singular postures and at the edge of reach. On a machine that is too slow, the arm
-    is late. fpbm_cpp.viewer.Servo does not wait.
+    Prints the address of the page. A Tracker moves the arm with one tick per dt on the clock. All bounds of limits
+    hold, also through singular postures and at the workspace boundary. On a machine that is too slow, the arm is
+    delayed. fpbm_cpp.viewer.Servo does not wait.
 
-    The handle's places, 20 a second, go through targets, a TargetFilter with bounds of one's own. Unless given, the
-    bounds suit the arm's length L: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2, 200 rad/s^3. task, dt,
-    limits, clearance and bounds are those of Tracker, urdf, host and port those of view(). What the arm keeps clear of
-    is drawn translucent, with a line between the nearest shapes; arrows move capsules and boxes of the surroundings,
-    which follow them at 0.3 m/s.
+    The positions of the handle, 20 per second, are the input of targets, a TargetFilter with its own bounds. The
+    default bounds depend on the length L of the arm: L per second, 5 L/s^2, 100 L/s^3 and 2 rad/s, 10 rad/s^2,
+    200 rad/s^3. task, dt, limits, clearance and bounds are those of Tracker; urdf, host and port are those of view().
+    Shapes of the clearance are translucent, with a line between the nearest shapes. Arrows move obstacles that are
+    capsules or boxes, which follow the arrows at 0.3 m/s.
 
-    A stack replaces task, and a Robot needs one. Each of its tasks of a frame has a handle with the task's name, unless
-    the task is relative to another frame: arrows for a position, arcs for an orientation or an axis. The z axis of the
-    handle of an AxisTask is the target direction. targets is then a dictionary of filters for positions and poses.
+    A stack replaces task; a Robot needs a stack. Each frame task has a handle with the name of the task, unless the
+    task is relative to another frame: arrows for a position, arcs for an orientation or an axis. The z axis of the
+    handle of an AxisTask is the target direction. With a stack, targets is a dictionary of filters for positions and
+    poses.
 
-    Raises what Tracker and view() raise, and ValueError where a filter is for another task or tick.
+    Raises the errors of Tracker and view(), and ValueError if a filter is for another task or tick.
     """
     from . import Servo
 

@@ -1,4 +1,4 @@
-"""The page's inputs: the scheme, its parameters, and whether joint limits are kept; the time, and its clock."""
+"""Inputs of the page: the scheme, its parameters, and the joint limits; the time, and its clock."""
 
 import threading
 import time
@@ -19,26 +19,26 @@ RATE = 30.0  # Pictures per second.
 SPEEDS = {"⅒ ×": 0.1, "¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "5 ×": 5.0}
 KINDS = {kind.__name__: kind for kind in SCHEMES.values()}
 GAINS = ("k1", "k2", "k")
-# The numbers that only some schemes have; a slider is made for each.
+# Numbers of some schemes; each has a slider.
 NUMBERS = {
     name: known
-    for kind in reversed(KINDS.values())  # FPBM, which has most, says in which order.
+    for kind in reversed(KINDS.values())  # FPBM has most numbers and defines the order.
     for name, known in parameters(kind).items()
     if known.type is float and name not in parameters(Scheme)
 }
 
 
 def changed(base: Scheme, kind: type[Scheme], values: Mapping[str, Any]) -> Scheme:
-    """A scheme of a kind with these values, as far as it has them, and otherwise the base's. Raises ValueError."""
+    """A scheme of a kind with these values, as far as the kind has them, otherwise the base's. Raises ValueError."""
     known = {**base._values(), **values}
     return kind(**{name: value for name, value in known.items() if name in parameters(kind)})
 
 
 class Controls:
-    """Inputs for the scheme and its parameters; calls `on_change` when one is changed on the page.
+    """Inputs for the scheme and its parameters. A change on the page calls `on_change`.
 
-    limits: those that are kept on request, and whether they are at first; without them nobody is asked. gains: whether
-    schemes have gains; beside a stack, whose tasks have them, they are 0.
+    limits: limits that the page can switch on; limited: the first choice. Without limits, the page has no choice.
+    gains: whether schemes have gains; with a stack, whose tasks have gains, the gains of the scheme are 0.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Controls:
         self._on_change = on_change
         self._hidden = () if gains else GAINS
         with gui.add_folder("Scheme"):
-            self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="The law that resolves the redundancy")
+            self._kind = gui.add_dropdown("scheme", tuple(KINDS), hint="Redundancy resolution scheme")
             self._initial = {name: known.usual if known.required else known.default for name, known in NUMBERS.items()}
             self._initial |= dict.fromkeys(self._hidden, 0.0)
             self._sliders = {name: _add_slider(gui, known, self._initial[name]) for name, known in NUMBERS.items()}
@@ -64,7 +64,7 @@ class Controls:
                     gui.add_slider(name, 0.1, 10.0, step=0.1, initial_value=1.0) for name in joint_labels(arm)
                 ]
             self._limited = gui.add_checkbox(
-                "keep joint limits", limited, visible=_bounded(limits), hint="The bounds of every joint"
+                "keep joint limits", limited, visible=_bounded(limits), hint="Bounds of all joints"
             )
             reset = gui.add_button("reset", color="gray")
         self.take(scheme)
@@ -77,20 +77,20 @@ class Controls:
         return bool(self._limited.value)
 
     def scheme(self) -> Scheme:
-        """The scheme asked for. Raises ValueError if a parameter is out of range."""
+        """The requested scheme. Raises ValueError if a parameter is out of range."""
         values: dict[str, Any] = {name: slider.value for name, slider in self._sliders.items()}
         if not self._dense:
             values["weights"] = np.array([slider.value for slider in self._weights])
         return changed(self._base, KINDS[self._kind.value], values)
 
     def take(self, scheme: Scheme) -> None:
-        """Show a scheme; the next ones keep its options."""
+        """Show a scheme; the following schemes keep its options."""
         self._base = scheme
         self._kind.value = type(scheme).__name__
         for name, slider in self._sliders.items():
             _set(slider, getattr(scheme, name, self._initial[name]))
         weights = getattr(scheme, "weights", np.ones(len(self._weights)))
-        self._dense = weights.ndim == 2  # No slider shows a dense matrix; it stays as it is.
+        self._dense = weights.ndim == 2  # A dense matrix has no sliders and is not changed.
         if not self._dense:
             for slider, weight in zip(self._weights, weights.tolist()):
                 _set(slider, weight)
@@ -122,7 +122,7 @@ def _bounded(limits: JointLimits | None) -> bool:
 
 
 def _add_slider(gui: GuiApi, known: Parameter, initial: float) -> GuiSliderHandle[float]:
-    """A slider from 0 to the parameter's bound or, without one, to ten times its usual value."""
+    """A slider from 0 to the bound of the parameter or, without a bound, to ten times its usual value."""
     most = known.high if isfinite(known.high) else 10.0 * (known.usual or 5.0)
     name = known.name.replace("alpha", "α").replace("_", " ").translate(str.maketrans("12", "₁₂"))
     hint = f"{known.help} [{known.unit}]" if known.unit else known.help
@@ -136,7 +136,7 @@ def _set(slider: GuiSliderHandle[float], value: float) -> None:
 
 
 class Player:
-    """Calls `moved` with the time to show, whenever somebody on the page or the clock changes it."""
+    """Calls `moved` with the time to show, if the user or the clock changes the time."""
 
     def __init__(self, gui: GuiApi, duration: float, moved: Callable[[float], None]) -> None:
         self._moved, self._time, self.end = moved, 0.0, duration
@@ -148,7 +148,7 @@ class Player:
             self._loop = gui.add_checkbox("loop", True)
         self._slider.on_update(self._on_slider)
         self._button.on_click(lambda _: self.pause() if self.playing else self.play())
-        self._lock = threading.RLock()  # Taken before any lock that `moved` takes.
+        self._lock = threading.RLock()  # Acquired before any lock in `moved`.
         self.playing: bool = False
         self._closed = threading.Event()
         self._clock = threading.Thread(target=self._tick, name="fpbm_cpp viewer", daemon=True)
@@ -171,7 +171,7 @@ class Player:
         self._button.label, self._button.icon = "pause", Icon.PLAYER_PAUSE
 
     def pause(self) -> None:
-        with self._lock:  # The clock does not move time after this.
+        with self._lock:  # After this, the clock does not change the time.
             self.playing = False
         self._button.label, self._button.icon = "play", Icon.PLAYER_PLAY
 

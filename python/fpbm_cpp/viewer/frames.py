@@ -1,4 +1,4 @@
-"""Points and frames in space: of the tip, and of the points that tasks have as targets."""
+"""Points and frames in space: of the tip, and of the targets of tasks."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ def in_space(points: Array) -> Array:
 
 
 def frame_of(task: Task, x: Array) -> Array:
-    """The frame of a point of a task, shape (4, 4): z is the direction of an axis; what the point leaves open is 0."""
+    """Frame of a task's point, shape (4, 4): z is the direction of an axis; undetermined coordinates are 0."""
     if task.kind == "position":
         return _frame(np.eye(3), x)
     if task.kind == "orientation":
@@ -26,7 +26,7 @@ def frame_of(task: Task, x: Array) -> Array:
 
 
 def point_of(task: Task, frame: Array, shape: tuple[int, ...]) -> Array:
-    """The point of a task that a frame stands for, in the shape that the task's points have."""
+    """Point of a task from a frame, in the shape of the task's points."""
     if task.kind == "position":
         return frame[: shape[0], 3].copy()
     if task.kind == "orientation":
@@ -37,7 +37,7 @@ def point_of(task: Task, frame: Array, shape: tuple[int, ...]) -> Array:
 
 
 def distances(task: Task, target: Array, now: Array) -> dict[str, float]:
-    """How far a task's frame is from a target, by unit: 'm', 'rad' or both, of the rows that the task selects."""
+    """Distance of a task's frame from a target, by unit 'm', 'rad' or both, for the rows that the task selects."""
     R, linear = now[:3, :3], target[:3, 3] - now[:3, 3]
     if isinstance(task, AxisTask):
         a, b = now[:3, 2], target[:3, 2]

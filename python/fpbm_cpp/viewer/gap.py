@@ -1,4 +1,4 @@
-"""Where two shapes come nearest to one another."""
+"""Nearest points of two shapes."""
 
 from collections.abc import Callable
 
@@ -10,13 +10,13 @@ from ..clearance import Clearance
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 
 Project = Callable[[Array], Array]
-ROUNDS, PARTS = 7, 16  # The gap is convex along a capsule: each round narrows the least of it down to two parts.
+ROUNDS, PARTS = 7, 16  # The gap is convex along a capsule: each round narrows its minimum to two parts.
 
 
 def nearest_points(clearance: Clearance, frames: Array, pair: tuple[str, str]) -> Array | None:
-    """Points on the surfaces of a pair, by name, where they are nearest, shape (2, 3); frames are the links'.
+    """Nearest points on the surfaces of a pair of shapes, given by name, shape (2, 3); frames are those of the links.
 
-    None for the tip and a wall of its box, which are no shapes.
+    None for the tip and a wall of its box, which are not shapes.
     """
     first, second = pair
     others: list[Obstacle] = [each for each in (*clearance.capsules, *clearance.obstacles) if each.name == second]
@@ -25,7 +25,7 @@ def nearest_points(clearance: Clearance, frames: Array, pair: tuple[str, str]) -
 
 
 def _nearest(capsule: Capsule, other: Obstacle, frames: Array) -> tuple[float, Array]:
-    """Distance, and a point of each."""
+    """Distance, and the nearest point of each shape."""
     ends, (project, radius) = core(capsule, frames), _projection(other, frames)
     low, high = 0.0, 1.0
     for _ in range(ROUNDS):
@@ -47,7 +47,7 @@ def core(capsule: Capsule, frames: Array) -> Array:
 
 
 def _projection(shape: Obstacle, frames: Array) -> tuple[Project, float]:
-    """What takes points to the nearest of a shape's core, and how much thicker than its core a shape is."""
+    """Projection of points to the core of a shape, and the radius about the core."""
     if isinstance(shape, HalfSpace):
         normal = shape.normal / np.linalg.norm(shape.normal)
         return lambda x: x - np.maximum(x @ normal - shape.offset, 0.0)[:, None] * normal, 0.0

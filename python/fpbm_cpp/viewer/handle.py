@@ -1,4 +1,4 @@
-"""A handle in the scene that is dragged, and what it stands for: a target of a task."""
+"""A handle to drag in the scene, and its target of a task."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,13 +11,13 @@ from .._types import Array
 from ..tasks import POSITION, ROTATION, FrameTask, RowsTask
 from .frames import frame_of, point_of, selected
 
-ANCHORS = ("bottom-left", "top-left", "bottom-right", "top-right")  # Labels at one place do not cover each other.
-COLOURS = ((230, 60, 60), (60, 170, 60), (60, 90, 230))  # Of axes x, y and z.
-TURNING = {"axis": [2], "orientation": [0, 1, 2]}  # Tasks without a position, and the axes that they turn.
+ANCHORS = ("bottom-left", "top-left", "bottom-right", "top-right")  # Labels at the same place do not cover each other.
+COLOURS = ((230, 60, 60), (60, 170, 60), (60, 90, 230))  # Colours of the axes x, y and z.
+TURNING = {"axis": [2], "orientation": [0, 1, 2]}  # Tasks without a position, and the axes that their handles show.
 
 
 class Handle:
-    """Arrows to drag where a task has a position, arcs to turn where it has an orientation or an axis.
+    """Arrows to drag for a position, arcs to rotate for an orientation or an axis.
 
     Calls `moved` with each new target, in order. Coordinates that the task does not select follow the task's frame.
     """
@@ -39,7 +39,7 @@ class Handle:
         at_tip = task.frame == "tip" and task.offset is None
         look = {"axes_length": 0.4 * size, "axes_radius": 0.02 * size, "visible": not at_tip}  # The tip has axes.
         self._frame = scene.add_frame(f"/frames/{index}", **look)
-        # A node of its own follows the frame: a handle whose position is set while it is turned would jump.
+        # A separate node follows the frame: to set the position of a handle during a rotation would make it jump.
         self._carrier = scene.add_frame(f"/handles/{index}", show_axes=False)
         self._gizmo = scene.add_transform_controls(
             f"/handles/{index}/gizmo",
@@ -56,35 +56,35 @@ class Handle:
             arrow = np.array([[np.zeros(3), size * np.eye(3)[axis]]])
             scene.add_arrows(f"/handles/{index}/gizmo/{axis}", arrow, COLOURS[axis], **widths)
 
-        async def tell(_: Any) -> None:  # What is not async may be called out of order.
+        async def tell(_: Any) -> None:  # Functions that are not async may be called out of order.
             moved(self.target)
 
         self._gizmo.on_update(tell)
 
     def label(self, scene: SceneApi) -> None:
-        """Show the task's name beside it."""
+        """Show the name of the task beside the handle."""
         anchor = ANCHORS[self._index % len(ANCHORS)]
         scene.add_label(f"/handles/{self._index}/gizmo/name", self.task.name, anchor=anchor)
 
     @property
     def target(self) -> Array:
-        """Where it is, shaped as the task's targets are [m, rad]."""
+        """Target of the handle, in the shape of the task's targets [m, rad]."""
         frame = np.eye(4)
         frame[:3, :3], frame[:3, 3] = SO3(self._gizmo.wxyz).as_matrix(), self.position
         return point_of(self.task, frame, self._shape)
 
     @property
     def position(self) -> Array:
-        """Where it is in space [m]."""
+        """Position of the handle in space [m]."""
         return np.asarray(np.array(self._carrier.position, dtype=float) + self._gizmo.position)
 
     def place(self, x: Array) -> None:
-        """Put it on a target."""
+        """Place the handle on a target."""
         frame = frame_of(self.task, x)
         self._gizmo.wxyz, self._gizmo.position = SO3.from_matrix(frame[:3, :3]).wxyz, self._held * frame[:3, 3]
 
     def follow(self, frame: Array) -> None:
-        """Show the task's frame, and follow it in the coordinates that the task leaves free."""
+        """Show the task's frame, and follow the frame in the coordinates that the task leaves free."""
         self._frame.position, self._frame.wxyz = frame[:3, 3], SO3.from_matrix(frame[:3, :3]).wxyz
         self._carrier.position = (1.0 - self._held) * frame[:3, 3]
 
@@ -97,6 +97,6 @@ class Handle:
         return np.array(lines or [(p, self.position)])
 
     def _active(self, planar: bool) -> tuple[bool, bool, bool]:
-        """Axes that it moves along or turns about."""
+        """Axes of translation or rotation of the handle."""
         x, y, z = self._held > 0.0 if self.task.kind == "position" else (True, True, True)
         return bool(x), bool(y), bool(z) and not planar

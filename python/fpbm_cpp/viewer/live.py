@@ -1,4 +1,4 @@
-"""A live arm in words, numbers and curves: how it fares, and its motion of the last ten seconds against its bounds."""
+"""Text, numbers and curves of a live arm: its status, and its motion of the last ten seconds relative to its bounds."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -16,22 +16,22 @@ from .readout import BAD, GOOD, LINES, sentence, table
 from .strip import SECONDS, Strip
 
 FAIR = "#8A6100"
-WHOLE = 0.999  # Scales of levels that are not slowed, with round-off.
-NEAR = 0.01  # To an end of its range [rad].
+WHOLE = 0.999  # Scale of a level that is not slowed, up to round-off.
+NEAR = 0.01  # Distance of a joint to an end of its range [rad].
 COLOURS = {Status.OK: GOOD, Status.DAMPED: FAIR, Status.SLOWED: FAIR, Status.BLOCKED: FAIR}
-# What to do about it here.
+# What the user can do on the page.
 HINTS = {
-    Status.DAMPED: "In all other directions it follows.",
-    Status.SLOWED: "It follows as fast as its joints may.",
-    Status.BLOCKED: "Drag the handle round the nearest shape.",
-    Status.RECOVERING: "Wait until it has reached that posture.",
-    Status.STALLED: "Drag the handle into reach or, where a joint is at its end or a shape is near, round another way.",
+    Status.DAMPED: "The tip follows in all other directions.",
+    Status.SLOWED: "The tip follows as fast as the joint limits admit.",
+    Status.BLOCKED: "Drag the handle around the nearest shape.",
+    Status.RECOVERING: "Wait until the arm is in that posture.",
+    Status.STALLED: "Drag the handle into the workspace, or around a limit or a shape that blocks the arm.",
 }
 NAMES = ("speed", "acceleration", "jerk")
 
 
 class LiveReadout:
-    """How the arm fares, in a sentence, and a table of what is near its bounds."""
+    """Status of the arm in a sentence, and a table of the quantities that are closest to their bounds."""
 
     def __init__(self, gui: GuiApi) -> None:
         self._status = gui.add_html("")
@@ -39,8 +39,8 @@ class LiveReadout:
         self._refused = ""
 
     def refuse(self, reason: str) -> None:
-        """Say why the scheme asked for is not taken, until another one is."""
-        self._refused = f"not taken: {reason}" if reason else ""
+        """Show why the requested scheme is rejected, until another scheme is accepted."""
+        self._refused = f"rejected: {reason}" if reason else ""
 
     def show(self, loop: ServoLoop) -> None:
         self._status.content = sentence(*((self._refused, BAD) if self._refused else _words(loop)))
@@ -48,7 +48,7 @@ class LiveReadout:
 
 
 def _words(loop: ServoLoop) -> tuple[str, str]:
-    """How the arm fares, and a colour."""
+    """Status of the arm, and a colour."""
     if loop.stopped:
         moves = loop.tick is not None and loop.tick.qd.any()
         return ("stopping: every joint brakes" if moves else "stopped: the arm is at rest"), FAIR
@@ -56,7 +56,7 @@ def _words(loop: ServoLoop) -> tuple[str, str]:
     if status is Status.SLOWED and loop.stack is not None and scales is not None and scales[0] > WHOLE:
         late = [task.name for level, scale in zip(loop.stack.levels, scales) if scale < WHOLE for task in level]
         return (
-            f"{', '.join(late) or 'a lower level'}: the levels above and the joint limits leave no more motion.",
+            f"{', '.join(late) or 'a lower level'}: slowed by higher levels and joint limits.",
             FAIR,
         )
     text = f"{message(status)}. {HINTS.get(status, advice(status))}".strip()
@@ -83,14 +83,14 @@ def _rows(loop: ServoLoop) -> list[tuple[str, ...]]:
 
 
 def _scales(loop: ServoLoop) -> list[str]:
-    """What the scale of each level is called."""
+    """Name of the scale of each level."""
     if loop.stack is None:
-        return ["task's scale"]
+        return ["task scale"]
     return [f"scale of {', '.join(task.name for task in level)}" for level in loop.stack.levels]
 
 
 def _distances(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
-    """How far each frame is from its handle."""
+    """Distance of each frame from its handle."""
     for task in loop.tasks:
         if isinstance(task, FrameTask):
             found = distances(task, frame_of(task, loop.target_of(task.name)), loop.frame(task.name))
@@ -98,13 +98,13 @@ def _distances(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
 
 
 def _nearest(loop: ServoLoop) -> Iterator[tuple[str, ...]]:
-    """The two shapes that are nearest to one another, where any are kept apart."""
+    """The nearest pair of shapes, if any pair is checked."""
     if loop.tick is not None and loop.tick.nearest is not None:
         yield "td", "nearest shapes", f"{loop.tick.nearest.distance:.3f} m", " and ".join(loop.tick.nearest.pair)
 
 
 def _on_bounds(loop: ServoLoop) -> list[bool]:
-    """Which joints the last tick had on a bound, or are at an end of their range."""
+    """Joints that were on a bound in the last tick, or are at an end of their range."""
     limits, q = loop.limits, loop.q
     ends = (q < limits.lower + NEAR) | (q > limits.upper - NEAR)
     return list(ends if loop.tick is None else ends | loop.tick.saturated)
@@ -115,7 +115,7 @@ def _percent(share: float) -> str:
 
 
 class StripChart:
-    """The last ten seconds: each quantity of the joint nearest to its bound, and the scale of each level [%]."""
+    """The last ten seconds: each quantity of the joint closest to its bound, and the scale of each level [%]."""
 
     def __init__(self, gui: GuiApi, loop: ServoLoop) -> None:
         known = zip(NAMES, LINES[:1] + LINES[5:6] + LINES[3:4], loop.strip.bounded)

@@ -1,4 +1,4 @@
-"""The scene of a servo: the arm, its handles, and what it keeps clear of."""
+"""The scene of a servo: the arm, its handles, and the shapes of the clearance."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from .scene import TARGET, TIP, Meshes, segments, set_up
 from .shapes import Shapes, centre, draw_bounds
 from .strip import SECONDS
 
-REACH = 0.65  # Of the arm's length, about its base, is in view.
+REACH = 0.65  # Radius of the view about the base, relative to the length of the arm.
 
 
 class LiveScene:
     """The arm, a handle for each task of a frame with lines to it, and the path of the tip in the last ten seconds.
 
-    Of a Robot, the paths of the tasks' frames. A task that is relative to another frame has no handle.
+    For a Robot, the paths of the frames of the tasks. A task that is relative to another frame has no handle.
     """
 
     def __init__(self, server: ViserServer, loop: ServoLoop, meshes: Meshes | None) -> None:
@@ -83,7 +83,7 @@ class LiveScene:
 
 
 def _handles(server: ViserServer, loop: ServoLoop, size: float) -> list[Handle]:
-    """A handle for each task of a frame, with the task's name where there is a stack."""
+    """A handle for each frame task; with a stack, the handle shows the name of the task."""
     handles = []
     own = [task for task in loop.tasks if isinstance(task, FrameTask) and task.reference_frame is None]
     for i, task in enumerate(own):
@@ -97,7 +97,7 @@ def _handles(server: ViserServer, loop: ServoLoop, size: float) -> list[Handle]:
 
 
 def _grips(server: ViserServer, loop: ServoLoop, size: float) -> list[tuple[Array, TransformControlsHandle]]:
-    """Arrows on each obstacle that can be dragged, and where it was given."""
+    """Arrows on each obstacle that can be dragged, and its given place."""
     clearance = loop.clearance
     grips = []
     for i, shape in enumerate(clearance.obstacles if clearance is not None else ()):
@@ -110,7 +110,7 @@ def _grips(server: ViserServer, loop: ServoLoop, size: float) -> list[tuple[Arra
 
 
 def _follow(grip: TransformControlsHandle, loop: ServoLoop, name: str, place: Array) -> None:
-    """Let an obstacle follow its arrows."""
+    """Make an obstacle follow its arrows."""
 
     async def tell(_: Any) -> None:
         loop.drag(name, np.array(grip.position) - place)

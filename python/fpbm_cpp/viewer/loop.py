@@ -1,4 +1,4 @@
-"""The loop behind handles that are dragged: targets in, ticks out, at the pace of a clock, without a page."""
+"""The loop of a servo without its page: targets in, ticks out, in real time."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from .obstacles import Obstacles
 from .strip import Strip
 from .targets import Targets
 
-MOST = 0.1  # Simulated at once [s]: what the clock asks for beyond that is dropped.
-SAID = 0.25  # The status is the worst of this time [s]; a tick is too short to read.
+MOST = 0.1  # Largest simulated time per call [s]; the rest of the elapsed time is dropped.
+SAID = 0.25  # The status is the worst of this time [s], because a tick is too short to read.
 
 
 class ServoLoop:
-    """An arm that follows targets as they come, within its limits: ticks of a Tracker behind TargetFilters.
+    """An arm that follows targets within its limits: ticks of a Tracker with TargetFilters.
 
-    advance() makes as many ticks as have passed on the clock. A machine that is too slow for them makes fewer:
-    simulated time then falls behind the clock, and no bound changes. All calls may come from any thread.
+    advance() runs the ticks that are due on the clock. If the machine is too slow, fewer ticks run: simulated time is
+    then behind the clock, and the bounds are unchanged. Calls may come from any thread.
 
-    A stack replaces task. Each position and pose of the stack has a filter; targets of other tasks are references as
-    they are. At first, a task has its own target x or q, or the target where it starts.
+    A stack replaces task. Each position and pose of the stack has a filter; targets of other tasks are references
+    without a filter. The first target of a task is its own x or q, or its start.
 
-    targets is a filter with bounds of one's own, of a stack a dictionary of filters by name; unless given, the bounds
-    suit the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. The other
-    parameters are Tracker's.
+    targets is a filter with its own bounds, or for a stack, a dictionary of filters by name. The default bounds depend
+    on the length L of the arm: L per second, 5 L/s^2 and 100 L/s^3; 2 rad/s, 10 rad/s^2 and 200 rad/s^3. All other
+    parameters are those of Tracker.
 
-    Raises ValueError as Tracker does, and where a filter is for another task or tick.
+    Raises ValueError as Tracker does, and if a filter is for another task or tick.
     """
 
     def __init__(
@@ -64,25 +64,25 @@ class ServoLoop:
         self._task, self._scheme, self._clock, self._lock = task, scheme, clock, threading.RLock()
         self._q0 = np.array(q0, dtype=float)
         self._obstacles, self.bounds = Obstacles(clearance, dt), tuple(bounds)
-        self._tracker = self._new_tracker(scheme, self._q0)  # Refuses a task or a stack that does not suit.
+        self._tracker = self._new_tracker(scheme, self._q0)  # Rejects an invalid task or stack.
         self._targets = Targets(task, stack, self._tracker.tip, targets, length(arm, self._q0), dt)
-        self._tracker.tick(self._targets.references)  # Refuses a filter that does not suit.
+        self._tracker.tick(self._targets.references)  # Rejects an invalid filter.
         self._said: deque[Status] = deque(maxlen=max(round(SAID / dt), 1))
         self._tick: Tick | None = None
-        self._last: float = 0.0  # When the last ticks were made.
+        self._last: float = 0.0  # Time of the last ticks.
         self.restart()
 
     def push(self, x: ArrayLike, task: str | None = None) -> bool:
-        """A target [m, rad], of a stack for the task of that name: whether it is taken.
+        """Set a target [m, rad]; for a stack, of the task with that name. Returns whether the target is accepted.
 
-        It is not if a number is not finite, R is not a rotation, or a direction is zero.
+        A target is rejected if a number is not finite, R is not a rotation, or a direction is zero.
         """
         with self._lock:
             now = self._clock()
             return self._targets.of(task).push(x, now, self._stamp(now))
 
     def advance(self) -> list[Tick]:
-        """Make the ticks that are due."""
+        """Run the ticks that are due."""
         with self._lock:
             now = self._clock()
             self._targets.repeat(now, self._stamp(now))
@@ -99,7 +99,7 @@ class ServoLoop:
             return ticks
 
     def drag(self, name: str, way: ArrayLike) -> None:
-        """Let an obstacle go to a place this far from where it was given [m], evenly."""
+        """Move an obstacle to this displacement from its given place [m], with limited velocity and acceleration."""
         with self._lock:
             self._obstacles.drag(name, np.array(way, dtype=float))
 
@@ -116,7 +116,7 @@ class ServoLoop:
             self._tracker.resume()
 
     def restart(self) -> None:
-        """Begin anew, at rest where the arm began, with the first targets and obstacles where they were given."""
+        """Restart at rest at the start of the arm, with the first targets, and obstacles at their given places."""
         with self._lock:
             self._obstacles.restart()
             self._tracker = self._new_tracker(self._scheme, self._q0)
@@ -124,7 +124,7 @@ class ServoLoop:
 
     @property
     def scheme(self) -> Scheme:
-        """The scheme. Assign another one to go on with it from the present state; ValueError if it does not suit."""
+        """The scheme. Assign another scheme to continue with it from the present state; ValueError if it is invalid."""
         return self._scheme
 
     @scheme.setter
@@ -143,7 +143,7 @@ class ServoLoop:
 
     @property
     def clearance(self) -> Clearance | None:
-        """What the arm keeps clear of, where it is now."""
+        """The clearance, with its obstacles at their present places."""
         return self._obstacles.clearance
 
     @property
@@ -153,12 +153,12 @@ class ServoLoop:
 
     @property
     def tip(self) -> Any:
-        """The tip, shaped as targets are [m, rad]; of a stack, where each task is, by name."""
+        """The tip, in the shape of targets [m, rad]; for a stack, the point of each task by name."""
         return self._tracker.tip
 
     @property
     def target(self) -> Any:
-        """The newest target; of a stack, that of each task by name."""
+        """The newest target; for a stack, the target of each task by name."""
         return self._targets.x
 
     def target_of(self, task: str) -> Array:
@@ -166,7 +166,7 @@ class ServoLoop:
         return self._targets.of(task).x.copy()
 
     def frame(self, task: str) -> Array:
-        """The frame of the task of that name, shape (4, 4); of an axis, z is its direction."""
+        """The frame of the task of that name, shape (4, 4); for an axis, z is its direction."""
         return frames_of(self.arm, self.q, "tip") if self.stack is None else self._tracker.frame(task)
 
     @property
@@ -181,7 +181,7 @@ class ServoLoop:
 
     @property
     def status(self) -> Status:
-        """The worst of the last ticks, of a quarter of a second."""
+        """The worst status of the last quarter of a second."""
         with self._lock:
             return max(self._said, key=lambda status: status.value, default=Status.OK)
 
@@ -212,7 +212,7 @@ class ServoLoop:
         return self._tracker.tick(self._targets.references)
 
     def _stamp(self, now: float) -> float:
-        """A moment on the ticks' clock, which leaves out what a slow machine drops."""
+        """Time on the clock of the ticks, without the time that a slow machine drops."""
         return self._time + self._owed + min(now - self._last, MOST)
 
     def _begin(self) -> None:
@@ -222,6 +222,6 @@ class ServoLoop:
         levels = 1 if self.stack is None else len(self.stack.levels)
         self.strip: Strip = Strip(self.limits, self.dt, levels)
         self._time: float = 0.0
-        self._owed: float = 0.0  # Time that has passed on the clock, and is less than a tick.
+        self._owed: float = 0.0  # Elapsed time on the clock, less than a tick.
         self._last = self._clock()
         self._targets.restart(self._tracker.tip, self._last)

@@ -1,4 +1,4 @@
-"""Obstacles that are dragged about."""
+"""Obstacles that the user drags."""
 
 import math
 from dataclasses import replace
@@ -12,40 +12,40 @@ from ..clearance import Clearance
 from ..errors import wrong
 from ..obstacle import Cuboid, HalfSpace, Obstacle
 
-SPEED = 0.3  # At most, toward where it is dragged [m/s].
-ACCELERATION = 1.0  # At most, when it sets off, turns and stops [m/s²].
+SPEED = 0.3  # Largest velocity toward the goal [m/s].
+ACCELERATION = 1.0  # Largest acceleration [m/s²].
 
 
 class Obstacles:
-    """What a tracker keeps clear of, whose capsules and boxes in the world go where they are dragged, tick by tick.
+    """Obstacles of a tracker; capsules and boxes move tick by tick to the place to which the user drags them.
 
-    Where nothing is to be kept clear of, nothing can be dragged.
+    Without a clearance, nothing can be dragged.
     """
 
     def __init__(self, clearance: Clearance | None, dt: float) -> None:
         self._first, self._dt = clearance, dt
-        # What is no clearance the tracker refuses.
+        # The tracker rejects an object that is not a clearance.
         self._given: dict[str, Obstacle] = {each.name: each for each in getattr(clearance, "obstacles", ())}
         self.restart()
 
     @property
     def clearance(self) -> Clearance | None:
-        """The clearance, its obstacles where they are now."""
+        """The clearance, with its obstacles at their present places."""
         if self._first is None or not self._moved:
             return self._first
         return replace(self._first, obstacles=[self._moved.get(each.name, each) for each in self._first.obstacles])
 
     def restart(self) -> None:
-        """Back to where they were given."""
+        """Move all obstacles to their given places."""
         self._goals: dict[str, Array] = {}
         self._ways: dict[str, Array] = {}
         self._velocities: dict[str, Array] = {}
         self._moved: dict[str, Obstacle] = {}
 
     def drag(self, name: str, way: Array) -> None:
-        """Let a capsule or a box go to a place this far from where it was given [m], within SPEED and ACCELERATION.
+        """Move a capsule or a box to this displacement from its given place [m], within SPEED and ACCELERATION.
 
-        Raises ParameterError where no obstacle has that name.
+        Raises ParameterError if no obstacle has that name.
         """
         if name not in self._given:
             names = ", ".join(self._given)
@@ -53,7 +53,7 @@ class Obstacles:
         self._goals[name] = np.array(way, dtype=float)
 
     def step(self, tracker: Tracker) -> None:
-        """Move those that are on their way, by a tick."""
+        """Move the obstacles that have a goal, by one tick."""
         for name, goal in [*self._goals.items()]:
             before, velocity = self._ways.get(name, np.zeros(3)), self._velocities.get(name, np.zeros(3))
             left = goal - before
@@ -62,7 +62,7 @@ class Obstacles:
                 way, velocity = goal, np.zeros(3)
                 del self._goals[name]
             else:
-                # Half of the acceleration stops it in time, though a tick late.
+                # With half of the acceleration, it stops in time in spite of a delay of one tick.
                 wanted = left * min(SPEED, math.sqrt(ACCELERATION * distance)) / max(distance, math.ulp(1.0))
                 turn = wanted - velocity
                 velocity = velocity + turn * min(1.0, change / max(float(np.linalg.norm(turn)), math.ulp(1.0)))

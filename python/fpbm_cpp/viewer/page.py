@@ -17,31 +17,31 @@ P = TypeVar("P", bound="Page")
 
 
 class Page(AbstractContextManager["Page"]):
-    """Serves from another thread until it is closed, or until the end of a with block; url is its address.
+    """Serves from another thread until close(), or until the end of a with block; url is the address of the page.
 
-    Raises OSError if the port is in use, ValueError if there is no such host or port.
+    Raises OSError if the port is in use, ValueError if the host or the port is invalid.
     """
 
     def __init__(self, host: str, port: int) -> None:
         _require_free(host, port)
         with _quiet():
             self._server = viser.ViserServer(host, port, label="fpbm_cpp", verbose=False)
-        atexit.register(self.close)  # Before viser's own exit, which prints.
+        atexit.register(self.close)  # Before viser's own exit handler, which prints.
         shown = {"0.0.0.0": "localhost", "::": "localhost"}.get(host, f"[{host}]" if ":" in host else host)
         self.url = f"http://{shown}:{self._server.get_port()}"
-        # The share button would show the page to others, through somebody's server.
+        # The share button would publish the page through a third-party server.
         self._server.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         self._server.gui.main_panel.dock_right()
 
     def wait(self) -> None:
         """Print the address, serve until Ctrl-C, then close."""
         with self, suppress(KeyboardInterrupt):
-            print(f"{self.url}: Ctrl-C ends it.", flush=True)
+            print(f"{self.url}: Ctrl-C stops the server.", flush=True)
             while True:
                 time.sleep(3600.0)
 
     def close(self) -> None:
-        """Stop serving. Closing twice does no harm."""
+        """Stop serving. A second call has no effect."""
         atexit.unregister(self.close)
         with _quiet():
             self._server.stop()
@@ -57,7 +57,7 @@ class Page(AbstractContextManager["Page"]):
 
 
 def _require_free(host: str, port: int) -> None:
-    """Raise OSError if the port cannot be served at; viser would silently take another one."""
+    """Raise OSError if the port is not free; viser would use another port without a message."""
     if not 0 <= port <= 65535:
         raise ValueError(f"port = {port}: must be 0 to 65535")
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
@@ -69,13 +69,13 @@ def _require_free(host: str, port: int) -> None:
         except OSError as error:
             text = f"cannot serve at {host}, port {port}: {error.strerror}"
             if error.errno == errno.EADDRINUSE:
-                text = f"port {port} is in use: choose another one, or 0 for one that is free"
+                text = f"port {port} is in use: choose another port, or 0 for a free port"
             raise OSError(error.errno, text) from None
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep viser's messages off the terminal: it prints them with rich, whether it is to be verbose or not."""
+    """Suppress the messages of viser, which prints them with rich even if verbose is False."""
     console = rich.get_console()
     before, console.quiet = console.quiet, True
     try:

@@ -1,4 +1,4 @@
-"""A run prepared for drawing: its samples and curves."""
+"""A run prepared for drawing: samples and curves."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ FRAMES = 500
 
 
 class Playback:
-    """A run prepared for drawing; one that stopped before its first sample has its start as the only sample.
+    """A run prepared for drawing. If a run stopped before its first sample, its start is the only sample.
 
-    Curves are drawn through F frames: some of the samples, or all. tracks has tip and target for each path, at all
-    samples, shape (N, 3) [m]; the manipulability, shape (F,), is that at the frames. errors has the norms of errors at
-    all samples, shape (N,), and their units, by name.
+    Curves have F frames: some of the samples, or all. tracks has tip and target for each path at all samples, shape
+    (N, 3) [m]; manipulability, shape (F,), is at the frames. errors has the norms of errors at all samples, shape (N,),
+    and their units, by name.
     """
 
     def __init__(self, run: Run, clearance: Clearance | None = None) -> None:
@@ -46,16 +46,16 @@ class Playback:
         return int(np.searchsorted(self.frames, sample, side="right")) - 1
 
     def nearest(self, sample: int) -> Nearest | None:
-        """The two shapes that are nearest to one another at a sample, where any are kept apart."""
+        """The nearest pair of shapes at a sample, if any pair is checked."""
         return None if self.clearance is None else self.clearance.nearest(self.run.arm, self.run.q[sample])
 
     def pose(self, sample: int) -> Array:
-        """The tip's frame at a sample, shape (4, 4); of a Robot, that of the task that follows the first path."""
+        """Frame of the tip at a sample, shape (4, 4); for a Robot, frame of the task that follows the first path."""
         return task_frames(self.run.arm, self.run.q[sample], self.run.tips[0])
 
 
 def _errors(run: Run) -> dict[str, tuple[Array, str]]:
-    """Norms of the errors of the tip; of a stack, of each task."""
+    """Norms of the errors of the tip; for a stack, of each task."""
     if run.stack is None:
         errors = {"tip error": (np.linalg.norm(run.position_error, axis=1), "m")}
         if run.kind == "pose":

@@ -1,4 +1,4 @@
-"""A run in words, numbers and curves: how it ended, figures of the sample shown, and one quantity over time."""
+"""Text, numbers and curves of a run: its status, figures of the shown sample, and one quantity over time."""
 
 import html
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Readout:
-    """How the run ended, in a line, and a table of figures: at a sample, and the worst of the whole motion."""
+    """Status of the run in a line, and a table of figures: at a sample, and the worst of the whole motion."""
 
     def __init__(self, gui: GuiApi) -> None:
         self._status = gui.add_html("")
@@ -33,7 +33,7 @@ class Readout:
         self._say(str(status) if status else stopped, GOOD if status else BAD)
 
     def refuse(self, reason: str) -> None:
-        """Say why the motion asked for cannot be run."""
+        """Show why the requested motion cannot run."""
         self._say(f"not run: {reason}", BAD)
 
     def at(self, sample: int) -> None:
@@ -74,7 +74,7 @@ def table(rows: Iterable[Sequence[str]]) -> str:
 
 
 def quantities(playback: Playback) -> dict[str, tuple[Array, str]]:
-    """Values at the frames, and their unit; in two dimensions those of the joints, which have the joints' unit, too."""
+    """Values at the frames, and their unit; two-dimensional values are of the joints, and have the joints' unit too."""
     run, at = playback.run, playback.frames
     found = {"joint velocities": (run.qd[at], "/s"), "joint accelerations": (run.qdd[at], "/s²")}
     found["joint positions"] = run.q[at], ""
@@ -86,7 +86,7 @@ def quantities(playback: Playback) -> dict[str, tuple[Array, str]]:
 
 
 class Chart:
-    """A chart of the quantity chosen on the page, over the planned duration, with a line at the time shown."""
+    """A chart of the selected quantity over the planned duration, with a line at the shown time."""
 
     def __init__(self, gui: GuiApi, playback: Playback, duration: float) -> None:
         self._playback, self._duration, self._sample = playback, duration, 0

@@ -1,4 +1,4 @@
-"""What is drawn of a run: the scene, and the arm in it."""
+"""The scene of a run, and its arm."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ from .shapes import Shapes, along, draw_bounds
 
 TIP, TARGET, START = (213, 94, 0), (40, 40, 40), (170, 176, 184)
 LINK, JOINT, BASE = (196, 203, 212), (62, 84, 112), (110, 116, 124)
-RADIUS = 0.019  # Of links, as a share of the arm's length.
+RADIUS = 0.019  # Radius of the links, relative to the length of the arm.
 FIELD = 0.7  # Vertical field of view [rad].
-BASE_JOINTS = ("base_x", "base_y", "base_yaw")  # Of Robot.from_urdf(base="planar"), which no file has.
-TOLERANCE = 2e-3  # Between a joint of a URDF file and of the arm [m].
+BASE_JOINTS = ("base_x", "base_y", "base_yaw")  # Joints of Robot.from_urdf(base="planar"), which are not in the file.
+TOLERANCE = 2e-3  # Largest distance between a joint in the URDF file and in the arm [m].
 
 
 class Meshes:
-    """The meshes of a robot's URDF file, as far as they are found; show() puts them into a scene.
+    """The meshes of a robot's URDF file that exist; show() adds them to a scene.
 
-    Raises ValueError if it is not that robot's file, OSError if it cannot be read. Warns once about missing meshes.
+    Raises ValueError if the file is of another robot, OSError if it cannot be read. Warns once about missing meshes.
     """
 
     def __init__(self, urdf: str | os.PathLike[str], arm: Arm | Robot, q: Array) -> None:
         self.file = Path(urdf)
         if isinstance(arm, PlanarArm):
-            raise self._error("must be left out where the arm is planar")
+            raise self._error("must not be given for a planar arm")
         self._arm = arm
         self.robot = self._read()
         there = self.robot.actuated_joint_names
         for name in arm.joint_names:
             if name not in (*there, *BASE_JOINTS):
-                raise self._error(f"has no joint {name!r}, which the arm has; its own: {', '.join(there)}")
+                raise self._error(f"has no joint {name!r} of the arm; joints of the file: {', '.join(there)}")
         self._held = _held(self.robot, arm) if isinstance(arm, Robot) else {}
         self._links = {joint.name: i for i, joint in enumerate(joints_of(arm), 1) if joint.name in self.robot.joint_map}
         self.placement = self._placement(q)
@@ -56,8 +56,8 @@ class Meshes:
         distances = np.linalg.norm((self.placement @ self._frames())[:, :3, 3] - own[:, :3, 3], axis=1)
         worst = int(distances.argmax())
         if distances[worst] > TOLERANCE:
-            joint = f"its joint {list(self._links)[worst]!r} is {distances[worst]:.3g} m from where this arm has it"
-            raise self._error(f"is another arm's: {joint}")
+            joint = f"joint {list(self._links)[worst]!r} is displaced by {distances[worst]:.3g} m from this arm's joint"
+            raise self._error(f"must be of this arm: {joint}")
         self.found = bool(self.robot.scene.geometry)
 
     def show(self, server: ViserServer) -> None:
@@ -67,12 +67,12 @@ class Meshes:
 
     def pose(self, q: Array) -> None:
         self._shown.update_cfg(self.configuration(q))
-        if isinstance(self._arm, Robot):  # Its base may move.
+        if isinstance(self._arm, Robot):  # The base may move.
             self.placement = self._placement(q)
             self._place()
 
     def configuration(self, q: Array) -> Array:
-        """Positions of the file's own joints: those of the robot, and of others where it holds them, or 0."""
+        """Positions of the joints in the file: those of the robot; for others, the fixed position or 0."""
         own = self._held | dict(zip(self._arm.joint_names, q))
         return np.array([own.get(name, 0.0) for name in self.robot.actuated_joint_names])
 
@@ -81,18 +81,18 @@ class Meshes:
         self._root.wxyz = SO3.from_matrix(self.placement[:3, :3]).wxyz
 
     def _placement(self, q: Array) -> Array:
-        """The file's root, seen from the robot's base, which may be another link."""
+        """The root of the file in the frame of the robot's base, which may be another link."""
         self.robot.update_cfg(self.configuration(q))
         first = next(iter(self._links.values()))
         return np.asarray(link_frames(self._arm, q)[first] @ np.linalg.inv(self._frames()[0]))
 
     def _read(self) -> Any:
-        self.file.read_bytes()  # yourdfpy's own error does not say why it cannot be read.
+        self.file.read_bytes()  # yourdfpy does not report why a file cannot be read.
         missing: list[str] = []
         log = logging.getLogger("yourdfpy")
         level = log.level
         try:
-            log.setLevel(logging.CRITICAL)  # It logs several lines for every mesh.
+            log.setLevel(logging.CRITICAL)  # yourdfpy logs several lines for every mesh.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 robot = yourdfpy.URDF.load(str(self.file), filename_handler=partial(self._find, missing=missing))
@@ -113,7 +113,7 @@ class Meshes:
         return fname if found is None else str(found)
 
     def _frames(self) -> Array:
-        """Frames of the joints in the file, seen from its root, as it is posed."""
+        """Frames of the joints in the file, in the frame of its root, for the present configuration."""
         links = (self.robot.joint_map[name].child for name in self._links)
         return np.array([self.robot.get_transform(link, self.robot.base_link) for link in links])
 
@@ -122,7 +122,7 @@ class Meshes:
 
 
 def _held(urdf: Any, robot: Robot) -> dict[str, float]:
-    """Positions at which a robot of a URDF file holds joints of the file [rad, m], by the frames of the links."""
+    """Positions at which a robot fixes joints of its URDF file [rad, m], from the frames of the links."""
     places, held = {each.name: each.offset for each in robot.named_frames}, {}
     for name in urdf.actuated_joint_names:
         joint = urdf.joint_map[name]
@@ -135,7 +135,7 @@ def _held(urdf: Any, robot: Robot) -> dict[str, float]:
 
 
 class Scene:
-    """An arm on its path: show() draws start and target of a run, at() moves the arm to a sample of the run."""
+    """An arm on its path: show() draws start and target of a run, at() moves the arm to a sample."""
 
     def __init__(self, server: ViserServer, playback: Playback, meshes: Meshes | None) -> None:
         run, self._server = playback.run, server
@@ -160,7 +160,7 @@ class Scene:
         self._target.points = np.concatenate(dashed)
 
     def at(self, sample: int) -> None:
-        """Move arm and tip to a sample, and draw the path up to it, of a stack that of the task that is led."""
+        """Move arm and tip to a sample, and draw the path up to this sample; for a stack, the paths of its tasks."""
         playback = self._playback
         pose = playback.pose(sample)
         with self._server.atomic():
@@ -176,7 +176,7 @@ class Scene:
 def set_up(
     server: ViserServer, arm: Arm | Robot, q: Array, meshes: Meshes | None, points: Array
 ) -> tuple[Links | Meshes, FrameHandle, float]:
-    """The arm on the ground, the axes of its tip, and a camera that sees points in space; the radius about these."""
+    """The arm on the ground, the axes of its tip, and the radius of the given points, which the camera shows."""
     shown: Links | Meshes
     if meshes is not None and meshes.found:
         meshes.show(server)
@@ -204,19 +204,19 @@ def rods(arm: Arm | Robot, q: Array) -> Array:
 
 
 def _add_ground(scene: SceneApi, radius: float, planar: bool) -> None:
-    """A grid under the arm, whose cells suit a motion within a ball of this radius."""
+    """A grid under the arm, with cells for a motion within a ball of this radius."""
     cell = 10.0 ** np.floor(np.log10(radius))
     cell = cell / 2 if radius / cell < 3 else cell
     sizes = {"width": 40 * cell, "height": 40 * cell, "cell_size": cell / 2, "section_size": 2 * cell}
-    under = (0.0, 0.0, -(0.1 if planar else 0.002) * radius)  # The joints.
+    under = (0.0, 0.0, -(0.1 if planar else 0.002) * radius)  # Below the joints.
     scene.add_grid("/ground", plane="xy", position=under, shadow_opacity=0.15, **sizes)
 
 
 def _place_camera(server: ViserServer, centre: Array, radius: float, planar: bool) -> None:
-    """Look from above at a planar arm, from the side and above at one in space, with the whole ball in view."""
+    """View a planar arm from above, an arm in space from the side and above, with the whole ball in view."""
     server.scene.set_up_direction("+y" if planar else "+z")
     offset = np.array([0.0, 0.0, 1.0] if planar else [1.0, -1.3, 0.7])
-    room = 1.1 if planar else 0.95  # Seen from the side, the ball about an arm is emptier.
+    room = 1.1 if planar else 0.95  # From the side, the ball about an arm is emptier.
     offset *= room * radius / np.sin(FIELD / 2) / np.linalg.norm(offset)
     camera = server.initial_camera
     camera.fov = FIELD
@@ -224,7 +224,7 @@ def _place_camera(server: ViserServer, centre: Array, radius: float, planar: boo
     camera.up = (0.0, 1.0, 0.0) if planar else (0.0, 0.0, 1.0)
 
     def step_back(client: ClientHandle) -> None:
-        if client.camera.aspect < 1.0:  # On a narrow screen the vertical field of view is not the smaller one.
+        if client.camera.aspect < 1.0:  # On a narrow screen, the horizontal field of view is the smaller one.
             client.camera.position = centre + offset / client.camera.aspect
 
     server.on_client_connect(step_back)

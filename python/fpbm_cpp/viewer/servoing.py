@@ -1,4 +1,4 @@
-"""A page with an arm that follows handles, live: a server, the loop, the parts of the page, and their connections."""
+"""A page with an arm that follows handles in real time: a server, the loop, and the parts of the page."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from .scene import Meshes
 
 
 class Servo(Page):
-    """A page in the browser with an arm that follows a handle at its tip, live, within its joints' limits.
+    """A page in the browser with an arm whose tip follows a handle in real time, within the joint limits.
 
-    Of a stack, each task of a frame has a handle with the name of the task.
+    For a stack, each frame task has a handle with the name of the task.
 
-    Serves from another thread until it is closed, or until the end of a with block; url is the page's address. The
-    parameters are those of fpbm_cpp.servo(), and so are the errors.
+    Serves from another thread until close(), or until the end of a with block; url is the address of the page.
+    Parameters and errors are those of fpbm_cpp.servo().
     """
 
     def __init__(
@@ -61,10 +61,10 @@ class Servo(Page):
         super().__init__(host, port)
         gui = self._server.gui
         self._lock = threading.RLock()
-        with self._lock:  # The page's first events wait until all parts are there.
+        with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = LiveReadout(gui)
-            self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Brake, or follow again")
-            start = gui.add_button("back to start", color="gray", hint="Arm and handles as they were at first")
+            self._button = gui.add_button("stop", color="red", icon=Icon.HAND_STOP, hint="Stop the arm, or continue")
+            start = gui.add_button("back to start", color="gray", hint="Move arm and handles to their start")
             self._chart = StripChart(gui, self._loop)
             self._controls = Controls(gui, arm, scheme, self._on_change, gains=stack is None)
             self._scene = LiveScene(self._server, self._loop, meshes)
@@ -79,10 +79,10 @@ class Servo(Page):
 
     @property
     def target(self) -> Any:
-        """The newest target, shaped as targets are [m, rad]. Assign another one to put the handle there.
+        """The newest target, in the shape of targets [m, rad]. Assign another target to move the handle.
 
-        Of a stack, a dictionary by the names of the tasks, postures included. Assign one of some tasks: the other tasks
-        keep their targets.
+        For a stack, a dictionary by task name, including postures. An assigned dictionary may have some of the tasks;
+        the other tasks keep their targets.
         """
         return self._loop.target
 
@@ -90,7 +90,7 @@ class Servo(Page):
     def target(self, x: ArrayLike | Mapping[str, ArrayLike]) -> None:
         stacked = self._loop.stack is not None
         if isinstance(x, Mapping) != stacked:
-            kind = "a dictionary of points by the names of the tasks" if stacked else "a point of the tip"
+            kind = "a dictionary of points by task names" if stacked else "a point of the tip"
             raise wrong("target", x, f" = {x!r:.80}: must be {kind}")
         for name, point in x.items() if isinstance(x, Mapping) else [(None, x)]:
             if not self._loop.push(point, name):
@@ -100,7 +100,7 @@ class Servo(Page):
 
     @property
     def scheme(self) -> Scheme:
-        """The scheme. Assign another one to go on with it; ValueError if it does not suit the arm."""
+        """The scheme. Assign another scheme to continue with it; ValueError if it is invalid for the arm."""
         return self._loop.scheme
 
     @scheme.setter
@@ -117,7 +117,7 @@ class Servo(Page):
 
     @property
     def tip(self) -> Any:
-        """The tip, shaped as targets are [m, rad]; of a stack, where each task is, by name."""
+        """The tip, in the shape of targets [m, rad]; for a stack, the point of each task by name."""
         return self._loop.tip
 
     @property
@@ -127,14 +127,14 @@ class Servo(Page):
 
     @property
     def status(self) -> Status:
-        """The worst of the last quarter of a second."""
+        """The worst status of the last quarter of a second."""
         return self._loop.status
 
     def stop(self) -> None:
         """Bring every joint to rest as fast as the limits allow."""
         with self._lock:
             self._loop.stop()
-            self._button.label, self._button.color, self._button.icon = "go on", "green", Icon.PLAYER_PLAY
+            self._button.label, self._button.color, self._button.icon = "continue", "green", Icon.PLAYER_PLAY
 
     def resume(self) -> None:
         """Follow the handles again."""
@@ -143,20 +143,20 @@ class Servo(Page):
             self._button.label, self._button.color, self._button.icon = "stop", "red", Icon.HAND_STOP
 
     def restart(self) -> None:
-        """Begin anew: the arm at rest in its first posture, the handles on the first targets."""
+        """Restart with the arm at rest in its first posture, and the handles on the first targets."""
         with self._lock:
             self._loop.restart()
             self._scene.restart(self._loop)
             self.resume()
 
     def close(self) -> None:
-        """Stop serving. Closing twice does no harm."""
+        """Stop serving. A second call has no effect."""
         self._closed.set()
         self._clock.join()
         super().close()
 
     def _on_change(self) -> None:
-        """Go on with the scheme that the page asks for."""
+        """Continue with the scheme that is selected on the page."""
         with self._lock:
             try:
                 self._loop.scheme = self._controls.scheme()

@@ -1,4 +1,4 @@
-"""What an arm keeps clear of, in the scene: capsules on its links, obstacles, and the pair that is nearest."""
+"""Shapes of a clearance in the scene: capsules on the links, obstacles, and the nearest pair."""
 
 from collections.abc import Sequence
 
@@ -20,12 +20,12 @@ from .frames import z_to
 from .gap import nearest_points
 
 BODY, OBSTACLE, GAP = (0, 114, 178), (230, 159, 0), (204, 121, 167)
-FACES = (16, 24)  # Of a capsule, from end to end and around.
+FACES = (16, 24)  # Faces of a capsule, along and around its axis.
 SLAB = 1.5  # A half-space is shown as a square of this half width [m].
 
 
 def draw_bounds(scene: SceneApi, bounds: Sequence[TaskBounds]) -> None:
-    """Draw the box that a position is kept within, where it is bounded on all sides."""
+    """Draw the box of the bounds of a position, if all sides are bounded."""
     for i, each in enumerate(bounds):
         if isinstance(each.task, PositionTask):
             lower, upper = np.array(each.lower_corner), np.array(each.upper_corner)
@@ -35,7 +35,7 @@ def draw_bounds(scene: SceneApi, bounds: Sequence[TaskBounds]) -> None:
 
 
 class Shapes:
-    """Capsules and obstacles, translucent, and a line between the two shapes that are nearest to one another."""
+    """Translucent capsules and obstacles, and a line between the two nearest shapes."""
 
     def __init__(self, scene: SceneApi, arm: Arm | Robot, clearance: Clearance) -> None:
         self._arm = arm
@@ -50,7 +50,7 @@ class Shapes:
         self._gap = scene.add_line_segments("/clear/gap", nothing, GAP, thickness=5.0, thickness_units="screen")
 
     def at(self, clearance: Clearance, q: Array, pair: tuple[str, str] | None) -> None:
-        """Show the arm's capsules in a posture, obstacles where they are now, and the line between a pair by name."""
+        """Show the capsules in a posture, obstacles at their present places, and the line between a pair by name."""
         frames = link_frames(self._arm, q)
         for link, node in self._links.items():
             node.position, node.wxyz = frames[link, :3, 3], SO3.from_matrix(frames[link, :3, :3]).wxyz
@@ -63,14 +63,14 @@ class Shapes:
 
 
 def centre(shape: Obstacle) -> Array:
-    """Where a shape is [m]; of a half-space, the point of its surface that is nearest to the base frame's origin."""
+    """Place of a shape [m]; for a half-space, the point of its surface that is nearest to the base frame's origin."""
     if isinstance(shape, HalfSpace):
         return np.asarray(shape.offset * shape.normal / np.linalg.norm(shape.normal))
     return np.asarray(shape.pose[:3, 3] if isinstance(shape, Cuboid) else (shape.a + shape.b) / 2)
 
 
 def _add(scene: SceneApi, name: str, shape: Obstacle, color: tuple[int, int, int], opacity: float) -> SceneNodeHandle:
-    """A shape where it is given."""
+    """A shape at its given place."""
     looks = {"opacity": opacity, "cast_shadow": False, "position": centre(shape)}
     if isinstance(shape, Capsule):
         way = shape.b - shape.a

@@ -1,4 +1,4 @@
-"""The last ten seconds of a motion, against its bounds."""
+"""The last ten seconds of a motion, relative to its bounds."""
 
 from collections.abc import Sequence
 
@@ -13,11 +13,11 @@ POINTS = 200  # Of a curve.
 
 
 class Strip:
-    """Speed, acceleration and jerk of the joint that is nearest to its bound, as shares of it, and the task's scale.
+    """Speed, acceleration and jerk of the joint closest to its bound, relative to this bound, and the task scale.
 
-    Shares are of all ticks in the last ten seconds, shape (4, N), a row each; 0 where nothing is bounded. A stack has
-    a scale for each of its levels, shape (3 + levels, N). The jerk of a
-    tick is the difference of its mean acceleration from that of the tick before, by the tick.
+    shares has a row for each quantity and a column for each tick of the last ten seconds, shape (4, N); 0 without a
+    bound. A stack has a scale for each level, shape (3 + levels, N). The jerk of a tick is the difference of its mean
+    acceleration from that of the previous tick, divided by the length of a tick.
     """
 
     def __init__(self, limits: JointLimits, dt: float, levels: int = 1) -> None:
@@ -28,7 +28,7 @@ class Strip:
         self._shares = np.empty((3 + levels, 0))
 
     def add(self, ticks: Sequence[Tick]) -> None:
-        """Ticks that follow each other, one at least."""
+        """Add consecutive ticks, at least one."""
         qd, qdd = np.array([tick.qd for tick in ticks]), np.array([tick.qdd for tick in ticks])
         jerk = np.diff(qdd, axis=0, prepend=self._before[None]) / self._dt
         shares = [(np.abs(each) / bound).max(axis=1) for each, bound in zip((qd, qdd, jerk), self._bounds)]
@@ -43,13 +43,13 @@ class Strip:
 
     @property
     def bounded(self) -> tuple[bool, ...]:
-        """Whether any joint has a bound on its speed, its acceleration, its jerk."""
+        """Whether any joint has a bound on speed, acceleration, jerk."""
         return tuple(np.isfinite(self._bounds).any(axis=1).tolist())
 
     def curves(self) -> tuple[Array, Array]:
-        """Times [s], shape (POINTS,), and the worst of the stretch that ends at each, shape (3 + levels, POINTS).
+        """Times [s], shape (POINTS,), and the worst of the interval that ends at each time, shape (3 + levels, POINTS).
 
-        A stretch is always of the same ticks: a peak keeps its height on its way. NaN where nothing was.
+        An interval always has the same ticks, so a peak keeps its height while the chart scrolls. NaN before the start.
         """
         end = self._shares.shape[1] - self._count % self._width
         there = self._shares[:, :end][:, -POINTS * self._width :]

@@ -13,17 +13,17 @@ from .._types import Array
 from ..errors import not_one_of, wrong
 from ..tasks import TASKS, PostureTask, Stack, Task
 
-REPEAT = 0.1  # A handle without news rests: its target is said again after this time [s].
-FILTERED = ("position", "pose")  # Tasks whose targets a filter smooths; those of the others are references as they are.
-ROUND_OFF = 1e-8  # Of a rotation's entries.
-TIP = "tip"  # Name of the only task, where there is no stack.
+REPEAT = 0.1  # A handle without events is at rest: its target is repeated after this time [s].
+FILTERED = ("position", "pose")  # Tasks with a filter for targets; targets of other tasks are references.
+ROUND_OFF = 1e-8  # Of the entries of a rotation.
+TIP = "tip"  # Name of the only task without a stack.
 
 
 class Targets:
-    """Targets of the tasks of a stack, or of the tip's only task, which trackers and pages know without a name.
+    """Targets of the tasks of a stack, or of the tip's only task, which has no name for trackers and pages.
 
-    given: a filter, of a stack some by name; length: of the arm [m], which the bounds of the other filters suit.
-    Raises ParameterError where a filter is for no position or pose of the stack.
+    given: a filter, or for a stack, filters by name. length: length of the arm [m], for the bounds of default filters.
+    Raises ParameterError if a filter is not for a position or pose of the stack.
     """
 
     def __init__(self, task: str, stack: Stack | None, tip: Any, given: Any, length: float, dt: float) -> None:
@@ -43,7 +43,7 @@ class Targets:
 
     @property
     def references(self) -> Any:
-        """What a tracker takes."""
+        """References for a tracker."""
         return self._plain({name: target.reference for name, target in self._targets.items()})
 
     def of(self, task: str | None) -> Target:
@@ -54,13 +54,13 @@ class Targets:
         return self._targets[name]
 
     def restart(self, tip: Any, now: float) -> None:
-        """Begin at rest where the tasks are, toward the targets that they were made with."""
+        """Restart at rest at the points of the tasks, with the targets of their construction."""
         starts = self._by_name(tip)
         for name, target in self._targets.items():
             target.restart(starts[name], now)
 
     def repeat(self, now: float, stamp: float) -> None:
-        """Say targets again of which there is no news, by which a filter knows that they rest."""
+        """Repeat targets without events, which tells a filter that they are at rest."""
         for target in self._targets.values():
             if now - target.heard >= REPEAT:
                 target.push(target.x, now, stamp)
@@ -69,7 +69,7 @@ class Targets:
         if given is None or self._alone:
             return {} if given is None else {TIP: given}
         if not isinstance(given, Mapping):
-            raise wrong("targets", given, ": must be a dictionary of filters by the names of the stack's tasks")
+            raise wrong("targets", given, ": must be a dictionary of filters by task names of the stack")
         able = [task.name for task in self.tasks if task.kind in FILTERED]
         for name in given:
             if name not in able:
@@ -84,12 +84,12 @@ class Targets:
 
 
 class Target:
-    """The newest target of a task, and the reference made of it."""
+    """The newest target of a task, and its reference."""
 
     def __init__(self, task: Task, start: Array, filtered: TargetFilter | None) -> None:
         self._task, self._filter = task, filtered
         self.x: Array = start
-        self.heard: float = 0.0  # When it came.
+        self.heard: float = 0.0  # Time of the target.
 
     @property
     def reference(self) -> TargetFilter | Array:
@@ -104,7 +104,7 @@ class Target:
             self.push(own, now, 0.0)
 
     def push(self, x: ArrayLike, now: float, stamp: float) -> bool:
-        """A target of this moment, and its stamp on the ticks' clock: whether it is taken."""
+        """Set a target, with its stamp on the clock of the ticks. Returns whether the target is accepted."""
         x = np.array(x, dtype=float)
         taken = self._is_sound(x) if self._filter is None else self._filter.push(x, stamp)
         if taken:

@@ -17,11 +17,11 @@ from .scene import Meshes, Scene
 
 
 class Viewer(Page):
-    """A page in the browser with a run, which is simulated again whenever a parameter is changed on the page.
+    """A page in the browser with a run. A change of a parameter on the page repeats the simulation.
 
-    Serves from another thread until it is closed, or until the end of a with block; url is the page's address. All
-    later runs have the first one's arm, path, start, task and limits. The other parameters are those of
-    fpbm_cpp.view(), and so are the errors.
+    Serves from another thread until close(), or until the end of a with block; url is the address of the page. All
+    later runs have the arm, path, start, task and limits of the first run. Other parameters and errors are those of
+    fpbm_cpp.view().
     """
 
     def __init__(
@@ -37,13 +37,13 @@ class Viewer(Page):
         meshes = None if urdf is None else Meshes(urdf, run.arm, playback.run.q[0])
         super().__init__(host, port)
         self._first = run
-        self._asked: tuple[Scheme, bool] | None = None  # What is shown; None if the page asks for something else.
+        self._asked: tuple[Scheme, bool] | None = None  # The shown choice; None after a failed choice on the page.
         self._lock = threading.RLock()
         gui, duration = (
             self._server.gui,
             max(path.duration for path in run.paths.values()) + run.options.get("hold", 0.0),
         )
-        with self._lock:  # The page's first events wait until all parts are there.
+        with self._lock:  # The first events of the page wait until all parts exist.
             self._readout = Readout(gui)
             self._player = Player(gui, duration, self._draw)
             limits, gains = (run.limits, run.scale is not None), run.stack is None
@@ -61,7 +61,7 @@ class Viewer(Page):
 
     @property
     def scheme(self) -> Scheme:
-        """The scheme shown. Assign another one to simulate it at once; ValueError if it does not suit the arm."""
+        """The shown scheme. Assign another scheme to simulate it; ValueError if it is invalid for the arm."""
         return self.run.scheme
 
     @scheme.setter
@@ -73,7 +73,7 @@ class Viewer(Page):
 
     @property
     def time(self) -> float:
-        """The time shown [s]. Assign another one to show it."""
+        """The shown time [s]. Assign another time to show it."""
         return self._player.time
 
     @time.setter
@@ -81,7 +81,7 @@ class Viewer(Page):
         self._player.time = seconds
 
     def play(self) -> None:
-        """Start the clock; at the end of the motion it starts from 0."""
+        """Start the clock; at the end of the motion, the clock restarts from 0."""
         self._player.play()
 
     def pause(self) -> None:
@@ -89,12 +89,12 @@ class Viewer(Page):
         self._player.pause()
 
     def close(self) -> None:
-        """Stop serving. Closing twice does no harm."""
+        """Stop serving. A second call has no effect."""
         self._player.close()
         super().close()
 
     def _on_change(self) -> None:
-        """Simulate the scheme that the page asks for; of several requests at once, the last one counts."""
+        """Simulate the scheme that is selected on the page; of several simultaneous requests, the last counts."""
         with self._lock:
             try:
                 asked = self._controls.scheme(), self._controls.limited
@@ -122,7 +122,7 @@ class Viewer(Page):
 
 
 def rerun(run: Run, scheme: Scheme, limited: bool) -> Run:
-    """The motion of a run under another scheme, if limited within the run's limits or the arm's. Raises ValueError."""
+    """The motion of a run under another scheme; if limited, within the run's or the arm's limits. Raises ValueError."""
     q0 = run.q[0] if len(run.q) else run.status.q
     if limited:
         return track(run.arm, run.path, scheme, q0, task=run.task, **run.options)

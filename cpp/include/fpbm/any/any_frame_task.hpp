@@ -80,7 +80,7 @@ class AnyFrameTask {
       : gains(gains_), frame_(frame), reference_(std::move(reference)), kind_(kind), in_frame_(in_frame) {
     if (kind == FrameCoordinates::kAxis) {
       validation::require_finite("axis", axis);
-      if (!(norm(axis) > 0.0)) validation::reject("axis", " is zero: must point somewhere");
+      if (!(norm(axis) > 0.0)) validation::reject("axis", " is zero: must be a nonzero vector");
       to_axis_ = z_to(axis);
       count_ = 2;
       return;
@@ -91,7 +91,7 @@ class AnyFrameTask {
                               : kind == FrameCoordinates::kOrientation || kind == FrameCoordinates::kPose;
       if (has && selected[static_cast<std::size_t>(row)]) rows_[static_cast<std::size_t>(count_++)] = row;
     }
-    if (count_ == 0) validation::reject("rows", " select no row of the task: must select one");
+    if (count_ == 0) validation::reject("rows", " select no row of the task: must select at least one");
   }
 
   [[nodiscard]] int rows() const noexcept { return count_; }

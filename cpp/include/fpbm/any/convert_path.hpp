@@ -21,10 +21,10 @@ template <typename To, typename From>
     return path;
   } else if constexpr (std::is_same_v<From, PlanarPose> || std::is_same_v<From, Pose>) {
     constexpr bool kPoseWillDo = kFlat == std::is_same_v<From, PlanarPose>;
-    validation::reject("path", std::string(": it rotates the tip, which needs ") +
-                                   (kPoseWillDo ? "task='pose'" : "another kind of arm"));
+    validation::reject(
+        "path", std::string(": rotates the tip, which needs ") + (kPoseWillDo ? "task='pose'" : "another kind of arm"));
   } else if constexpr (kFlat && std::is_same_v<From, Position<3>>) {
-    validation::reject("path", ": it lies in space, and the arm in a plane");
+    validation::reject("path", ": is in space, and the arm is planar: must be a planar path");
   } else if constexpr (std::is_same_v<To, Position<3>>) {
     return AnyPath<To>(InPlane(path, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
   } else if constexpr (std::is_same_v<typename PoseOver<From>::type, To>) {

@@ -237,7 +237,7 @@ class Clearance {
     });
     if (!rail.empty()) {
       validation::reject(argument, ".link = ", link, ": moves with the prismatic joint '", rail,
-                         "', which has no bounds, behind a turning joint: give it lower and upper bounds");
+                         "', which has no bounds, after a revolute joint: give the joint lower and upper bounds");
     }
     validation::reject(argument, ": is too large: its lever about a joint must be finite");
   }

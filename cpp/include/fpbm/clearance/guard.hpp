@@ -55,12 +55,12 @@ class Guard {
         clearance_.nearest_pair(near_pairs_.here(), clearance_.shape_pairs(), clearance_.pairs().size());
     if (!(room >= clearance_.margin())) {
       validation::reject("q0", ": is beyond the bound '" + clearance_.names(clearance_.pairs()[bound]).first +
-                                   "', must be within the bounds of tasks");
+                                   "': must be within the task bounds");
     }
     plan_ = {limits, start, last};
     sweep_ = plan_.sweep(limits, start, start);
     if (!advancement_.keeps_apart(clearance_, near_pairs_, sweep_, time(limits), Pairs::kAtRest)) {
-      validation::reject("qd0", ": too fast for the arm to stop clear of all shapes");
+      validation::reject("qd0", ": is too fast: must be slow enough for the arm to stop before all shapes");
     }
   }
 

@@ -80,7 +80,7 @@ struct AxisBounds {
   [[nodiscard]] static Vector<3, Scalar> unit_vector(const char* name, const Vector<3, Scalar>& vector) {
     validation::require_finite(name, vector);
     const Scalar length = vector.stableNorm();
-    if (!(length > Scalar(0))) validation::fail(name, Scalar(0), "longer: it must point somewhere");
+    if (!(length > Scalar(0))) validation::fail(name, Scalar(0), "a nonzero vector");
     return vector / length;
   }
 };

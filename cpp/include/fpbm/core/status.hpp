@@ -30,18 +30,18 @@ enum class Status : unsigned char {
 /// Description of the status in one sentence.
 [[nodiscard]] constexpr const char* message(Status status) noexcept {
   switch (status) {
-    case Status::kOk: return "all is well";
-    case Status::kCoarse: return "the steps are too long: they give the tip an error that the scheme does not";
-    case Status::kDamped: return "the posture is nearly singular: where the tip can hardly move, its motion is damped";
-    case Status::kSlowed: return "joint limits slow the task, or a lower level has stopped";
-    case Status::kBlocked: return "shapes that the arm keeps clear of, or bounds of tasks, slow the task";
+    case Status::kOk: return "the whole task is executed";
+    case Status::kCoarse: return "the steps are too long: they cause a discretisation error of the tip";
+    case Status::kDamped: return "the posture is nearly singular: motion in the singular directions is damped";
+    case Status::kSlowed: return "joint limits scale the task, or a lower level has stopped";
+    case Status::kBlocked: return "self-collision, obstacles or task bounds limit the task";
     case Status::kRecovering:
-      return "the arm came no nearer to its target: it moves to a posture from which it can reach the target";
-    case Status::kStalled: return "the arm comes no nearer to its target, which may be out of reach: it rests";
-    case Status::kSingular: return "the posture is singular: the tip cannot move in every direction of the task";
-    case Status::kTaskLost:
-      return "the tip has left its reference: the target is out of reach, or the step is too long";
-    case Status::kNotFinite: return "a number is not finite: the joint motion has grown beyond all bounds";
+      return "the arm made no progress toward its target: it moves to a posture from which the target is reachable";
+    case Status::kStalled:
+      return "the arm makes no progress toward its target, which may be unreachable: the arm stops";
+    case Status::kSingular: return "the posture is singular: the task Jacobian is rank-deficient";
+    case Status::kTaskLost: return "the tip has left its reference: the target is unreachable, or the step is too long";
+    case Status::kNotFinite: return "a number is not finite: the joint motion has diverged";
   }
   return "unknown status";
 }
@@ -53,14 +53,14 @@ enum class Status : unsigned char {
     case Status::kCoarse: return "Shorten dt.";
     case Status::kDamped: return "Expect a tip error until the arm has left the singular posture.";
     case Status::kSlowed:
-      return "Expect a tip error until the joints are off their limits, or slow the path. The scales of a stack tell "
-             "which level is slow.";
+      return "Expect a tip error until the joints leave their limits, or slow the path. The scales of a stack show "
+             "which level is limited.";
     case Status::kBlocked:
-      return "Lead the target around the nearest shape, or expect a tip error while a shape or a bound is in the way.";
-    case Status::kRecovering: return "Expect a tip error until the arm has reached that posture.";
-    case Status::kStalled: return "Move the target into reach, or call resume() to try again.";
+      return "Lead the target around the nearest shape, or expect a tip error while shapes or bounds limit the task.";
+    case Status::kRecovering: return "Expect a tip error until the arm is in that posture.";
+    case Status::kStalled: return "Move the target into the workspace, or call resume() to try again.";
     case Status::kSingular:
-      return "Choose another start posture, a path that stays inside the workspace, or weights less far apart.";
+      return "Choose another start posture, a path inside the workspace, or weights with smaller ratios.";
     case Status::kTaskLost: return "Keep the path inside the workspace and away from singular postures, or shorten dt.";
     case Status::kNotFinite: return "Check the start state and the path, lower the gains, or shorten dt.";
   }

@@ -72,9 +72,8 @@ class Limits {
       const Scalar slack = round_off(i, q);
       if (!(std::abs(state.q(i) - q) <= slack)) {
         validation::fail(validation::element("q0", i), state.q(i),
-                         std::isfinite(bounds_.deceleration(i))
-                             ? "where the bound on the joint's velocity is above zero"
-                             : "within the joint's range");
+                         std::isfinite(bounds_.deceleration(i)) ? "where the bound on the joint's velocity is positive"
+                                                                : "within the joint's range");
       }
       const Scalar qd = state.qd(i);
       const Scalar rounding =

@@ -30,7 +30,7 @@ template <Level kLevel, typename Scalar>
   require(bounds.acceleration > Scalar(0), "limits.acceleration", bounds.acceleration, "positive");
   require(bounds.jerk > Scalar(0), "limits.jerk", bounds.jerk, "positive");
   require(!std::isfinite(bounds.jerk) || std::isfinite(bounds.acceleration), "limits.acceleration", bounds.acceleration,
-          "finite where the joint's jerk is bounded: give one");
+          "finite if the joint jerk is bounded: give a bound");
   require(bounds.deceleration > Scalar(0), "limits.deceleration", bounds.deceleration, "positive");
   require(bounds.velocity_offset >= Scalar(0) && std::isfinite(bounds.velocity_offset), "limits.velocity_offset",
           bounds.velocity_offset, "finite and not negative");
@@ -45,7 +45,7 @@ template <Level kLevel, typename Scalar>
     bounds.acceleration = std::min({bounds.acceleration, kPlenty * (speed / tick), most});
   } else if (std::isfinite(bounds.lower) || std::isfinite(bounds.upper) || std::isfinite(bounds.velocity)) {
     require(kLevel == Level::kVelocity, "limits.acceleration", bounds.acceleration,
-            "finite where the joint's position or velocity is bounded: give one");
+            "finite if the joint position or velocity is bounded: give a bound");
     const Scalar speed = std::isfinite(bounds.velocity) ? bounds.velocity : range / tick;
     if (std::isfinite(speed)) bounds.acceleration = Scalar(2) * speed / tick;
   }
@@ -55,7 +55,7 @@ template <Level kLevel, typename Scalar>
   bounds.upper -= short_of;
   bounds.lower += short_of;
   require(bounds.lower < bounds.upper, "limits.velocity_offset", bounds.velocity_offset,
-          "such that the joint may move somewhere");
+          "smaller: it leaves no range for the joint");
   const Scalar delay = std::max(bounds.velocity_offset / bounds.deceleration, tick / Scalar(2));
   bounds.deceleration = std::min({bounds.deceleration, bounds.acceleration, bounds.jerk * delay});
   bounds.velocity_offset = delay * bounds.deceleration;

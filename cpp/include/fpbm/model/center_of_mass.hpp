@@ -13,7 +13,7 @@ void require_mass(const Robot& robot) {
   for (int link = 0; link <= robot.joints(); ++link) {
     if (robot.mass(link).mass > 0) return;
   }
-  validation::reject("robot", ": has no mass, must have masses of links");
+  validation::reject("robot", ": has no mass: give masses of links");
 }
 
 /// Centre of mass of a robot with its base [m], the velocity of the centre [m/s], and J and J̇ of the centre, along the

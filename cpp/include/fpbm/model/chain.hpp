@@ -94,7 +94,7 @@ template <typename Scalar, typename Name>
 void require_joint(const validation::Argument& name, const Joint<Scalar, Name>& joint) {
   require_transform(name + ".placement", joint.placement);
   validation::require_finite(name + ".axis", joint.axis);
-  if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must point somewhere");
+  if (!(norm(joint.axis) > Scalar(0))) validation::reject(name + ".axis", " is zero: must be a nonzero vector");
   require_bounds(name, joint.type, joint.bounds);
 }
 
@@ -121,7 +121,7 @@ Eigen::Index require_chain(const Chain<Scalar, Length>& chain, int n = Eigen::Dy
   const Eigen::Index dof = require_joints(chain);
   for (Eigen::Index i = 0; i < dof; ++i) {
     if (joint_of(chain, i).mimic.joint >= 0) {
-      validation::reject(chain_check::name_of(chain, i), " moves with another: must be in a CoupledArm");
+      validation::reject(chain_check::name_of(chain, i), " is a mimic joint: must be in a CoupledArm");
     }
   }
   return dof;

@@ -119,7 +119,7 @@ class Drives {
     const auto count = static_cast<int>(source.joints.size());
     const auto& [leader, ratio, offset] = joint.mimic;
     if (leader >= count || joint_of(source, leader).mimic.joint >= 0) {
-      validation::fail(name + ".mimic.joint", leader, "the index of a joint with a drive of its own");
+      validation::fail(name + ".mimic.joint", leader, "the index of a joint with its own drive");
     }
     validation::require_finite(name + ".mimic.ratio", ratio);
     validation::require_finite(name + ".mimic.offset", offset);
@@ -139,7 +139,7 @@ class Drives {
     const auto [_, ratio, offset] = joint.mimic;
     if (ratio == Scalar(0)) {
       if (!(bounds.lower <= offset && offset <= bounds.upper)) {
-        validation::fail(name + ".mimic.offset", offset, "within its bounds, since its ratio is 0");
+        validation::fail(name + ".mimic.offset", offset, "within the bounds, since the ratio is 0");
       }
       return;
     }
@@ -153,10 +153,10 @@ class Drives {
     limits_.acceleration(k) = std::min(limits_.acceleration(k), bounds.acceleration / std::abs(ratio));
     limits_.jerk(k) = std::min(limits_.jerk(k), bounds.jerk / std::abs(ratio));
     if (bounds.deceleration < JointBounds<Scalar>::kNone) {
-      validation::fail(name + ".deceleration", bounds.deceleration, "infinite, since the joint follows another");
+      validation::fail(name + ".deceleration", bounds.deceleration, "infinite for a mimic joint");
     }
     if (!(lower < upper)) {
-      validation::fail(leader + ".lower", lower, "below upper = ", upper, " for its followers to keep their bounds");
+      validation::fail(leader + ".lower", lower, "below upper = ", upper, " for its mimic joints to keep their bounds");
     }
   }
 

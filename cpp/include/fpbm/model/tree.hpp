@@ -76,8 +76,7 @@ Eigen::Index require_tree(const Tree<Scalar, Joints, Frames>& tree) {
     const auto& [joint, parent, moved] = tree.joints[i];
     chain_check::require_joint(name, joint);
     if (parent < 0 || parent > static_cast<int>(i)) {
-      validation::fail(name + ".parent", parent, "the number of a link before the joint's own, at most ",
-                       static_cast<int>(i));
+      validation::fail(name + ".parent", parent, "the number of the parent link, at most ", static_cast<int>(i));
     }
     validation::require_non_negative(name + ".moved.mass", moved.mass);
     validation::require_finite(name + ".moved.centre", moved.centre);

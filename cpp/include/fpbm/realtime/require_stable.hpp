@@ -51,18 +51,20 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
     const Scalar share = largest_share<Scalar>([&](Scalar s) { return stable(s, Scalar(0)); });
     const Scalar square = kLevel == Level::kVelocity ? share : share * share;
     if (!(k1 > Scalar(0))) {
-      validation::fail(name2, k2, "at most ", square * k2, " at a tick of ", h, " s: lower it, or shorten the tick");
+      validation::fail(name2, k2, "at most ", square * k2, " at a tick of ", h,
+                       " s: lower the gain, or shorten the tick");
     }
     if (!(k2 > Scalar(0))) {
-      validation::fail(name1, k1, "at most ", share * k1, " at a tick of ", h, " s: lower it, or shorten the tick");
+      validation::fail(name1, k1, "at most ", share * k1, " at a tick of ", h,
+                       " s: lower the gain, or shorten the tick");
     }
     validation::fail(name1, k1, "at most ", share * k1, " with ", name2, " = ", square * k2, " at a tick of ", h,
-                     " s: lower both, or shorten the tick");
+                     " s: lower both gains, or shorten the tick");
   }
   if (integral != Scalar(0) && !stable(Scalar(1), integral)) {
     const Scalar most = integral * largest_share<Scalar>([&](Scalar s) { return stable(Scalar(1), s * integral); });
     validation::fail("integral_gain", integral, "at most ", most, " with the scheme's feedback gains at a tick of ", h,
-                     " s: lower it, or raise ", kLevel == Level::kVelocity ? name2 : name1);
+                     " s: lower the gain, or raise ", kLevel == Level::kVelocity ? name2 : name1);
   }
 }
 
@@ -113,7 +115,7 @@ void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
       if (const Scalar square = tick.dt * tick.dt;
           kLevel == Level::kAcceleration && !(most * square <= Scalar(kSpring))) {
         validation::fail("null_stiffness", most, "at most ", Scalar(kSpring) / square, " at a tick of ", tick.dt,
-                         " s: lower it, or shorten the tick");
+                         " s: lower the gain, or shorten the tick");
       }
       require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", most}, of_null_space);
       require_stable_gains<kLevel, Scalar>({"null_damping", damping, "null_stiffness", least}, of_null_space);

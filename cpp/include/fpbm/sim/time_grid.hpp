@@ -36,7 +36,7 @@ class TimeGrid {
     const double ratio = seconds / dt;
     const double whole = std::fmax(1.0, std::round(ratio));
     if (whole > kMostSteps) {
-      validation::fail("dt", dt, "longer: it asks for more than 1e9 steps");
+      validation::fail("dt", dt, "larger: the grid has more than 1e9 steps");
     }
     constexpr double kRoundOff = 8.0 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
     if (std::abs(ratio - whole) > std::fmax(1e-9, kRoundOff) * whole) {

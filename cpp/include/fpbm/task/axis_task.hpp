@@ -49,7 +49,7 @@ class AxisTask {
            const Vector<3, Scalar>& axis = {Scalar(0), Scalar(0), Scalar(1)})
       : frame(frame_), gains(gains_), axes_(frame_) {
     validation::require_finite("axis", axis);
-    if (!(norm(axis) > Scalar(0))) validation::reject("axis", " is zero: must point somewhere");
+    if (!(norm(axis) > Scalar(0))) validation::reject("axis", " is zero: must be a nonzero vector");
     to_axis_ = z_to(axis);
   }
 

@@ -27,7 +27,7 @@ class InPlane {
     v_ = normalized(v);
     const Scalar cosine = u_(0) * v_(0) + u_(1) * v_(1) + u_(2) * v_(2);
     if (!(cosine * cosine < Scalar(1e-12))) {
-      validation::fail("u v / |u| |v|", cosine, "0: u and v are at right angles");
+      validation::fail("u v / |u| |v|", cosine, "0: u and v must be perpendicular");
     }
   }
 

@@ -58,7 +58,7 @@ template <typename Scalar, int Joints, int Frames>
   }
   std::string known;
   for (const auto& frame : tree.frames) known += " '" + std::string(frame.name) + "'";
-  validation::reject("frame", " = '" + std::string(name) + "': must be one of the tree's:" + known);
+  validation::reject("frame", " = '" + std::string(name) + "': must be a frame of the tree:" + known);
 }
 
 /// Throws std::invalid_argument unless the M entries of a list are different numbers from 0 to count − 1.

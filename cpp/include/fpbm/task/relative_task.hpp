@@ -114,7 +114,7 @@ class SeenFrom {
 template <typename Robot, typename Scalar>
 void require_relative_motion(const Robot& robot, const LinkFrame<Scalar>& frame, const LinkFrame<Scalar>& reference) {
   if (robot.moved_by(frame.link()) == robot.moved_by(reference.link())) {
-    validation::reject("reference_frame", ": moves with the task's frame, must be of another link");
+    validation::reject("reference_frame", ": moves with the task's frame: must be on another link");
   }
 }
 

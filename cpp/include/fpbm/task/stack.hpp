@@ -154,7 +154,7 @@ class Stack {
   /// than the robot has joints, or the first level has no rows.
   template <typename Robot>
   void bind(const Robot& robot) {
-    if (rows(0) == 0) validation::reject("stack", ": its first level has no task: must have one");
+    if (rows(0) == 0) validation::reject("stack", ": the first level has no task: must have one");
     for (int k = 0; k < kLevels; ++k) {
       if (rows(k) > robot.dof()) {
         validation::fail(validation::element("rows of level", k), rows(k), "at most ", robot.dof(),

@@ -41,7 +41,7 @@ class TargetFilter {
         clock_(options.dt, options.timeout, options.start),
         target_(reference_.x, options.dt / Scalar(2), options.timeout, axes_.fastest()) {
     options.require_good();
-    if (!is_point(x0)) validation::reject("x0", ": must be finite, and its R a rotation");
+    if (!is_point(x0)) validation::reject("x0", ": must be finite, with a rotation R");
   }
 
   /// Target [m, rad], observed at a time `stamp` [s] on any clock. Its R is replaced by the nearest rotation. Returns

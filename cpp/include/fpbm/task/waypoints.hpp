@@ -114,7 +114,7 @@ class Waypoints {
 
   static void require_points(const std::vector<Point>& points) {
     if (points.size() < 2) {
-      validation::reject("points", " has ", points.size(), " entries: must have 2 at least");
+      validation::reject("points", " has ", points.size(), " entries: must have at least 2");
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       Scalar numbers[Space::kSize];
@@ -134,7 +134,7 @@ class Waypoints {
     for (std::size_t i = 1; i < times.size(); ++i) {
       if (!(times[i] > times[i - 1]) || !std::isfinite(times[i])) {
         validation::fail(validation::element("times", static_cast<Eigen::Index>(i)), times[i],
-                         "finite and after the one before");
+                         "finite and later than the previous time");
       }
     }
     return times;
@@ -155,7 +155,7 @@ class Waypoints {
       angles[i] = way.template tail<Space::kRows - kLinear>().norm();
       if (!(lengths[i] + angles[i] > Scalar(0))) {
         validation::reject(validation::element("points", static_cast<Eigen::Index>(i)),
-                           ": must differ from the one before");
+                           ": must differ from the previous point");
       }
     }
     const Scalar length = std::accumulate(lengths.begin(), lengths.end(), Scalar(0));
