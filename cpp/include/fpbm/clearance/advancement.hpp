@@ -91,6 +91,8 @@ class Advancement {
   // Of 48,019 stops of random motions among 26 near pairs that 16 advances accept, 8 accept 48,002. The worst tick of a
   // clearance takes 25 % fewer instructions with 8 (bench/README.md, "The longest ticks").
   static constexpr int kAdvances = 8;
+  /// A pair that is proved for this part of the remaining sweep is not checked in the next advance (bench/README.md,
+  /// "The longest ticks").
   static constexpr Scalar kProven = Scalar(0.75);
   static constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
 

@@ -169,18 +169,18 @@ class Clearance {
     return placed;
   }
 
-  /// Places the bodies in a posture. placed: a placement().
+  /// Places the bodies in a posture. placed: a placement(); bodies that were added since are not placed.
   void place(const JointVector& q, Placement& placed) const noexcept {
     robot_.update(q, placed.state);
     placed.set_axes(robot_.joints(), [this](Eigen::Index k) noexcept { return robot_.turns(k); });
     const auto frame = [&](const Body& body) { return placed.state.placement(static_cast<std::size_t>(body.link)); };
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < placed.bodies.size(); ++i) {
       Capsule<Scalar>& body = placed.bodies[i];
       body = bodies_[i].placed_by(frame(bodies_[i]));
       if (bodies_[i].is_direction) body.a = body.b = bodies_[i].point_by(frame(bodies_[i]));
       placed.centres[i] = (body.a + body.b) / Scalar(2);
     }
-    for (std::size_t i = 0; i < speed_bounds_.size(); ++i) {
+    for (std::size_t i = 0; i < placed.speed_points.size(); ++i) {
       const Body& body = speed_bounds_[i].body;
       placed.speed_points[i] = body.point_by(frame(body));
     }

@@ -66,6 +66,7 @@ class Guard {
 
   /// Whether there is nothing to keep clear of.
   [[nodiscard]] bool empty() const noexcept { return clearance_.pairs().empty(); }
+  /// To move obstacles, or to set away(). Bounds that are added after the construction have no effect.
   [[nodiscard]] Clearance& clearance() noexcept { return clearance_; }
   [[nodiscard]] const Clearance& clearance() const noexcept { return clearance_; }
 

@@ -21,7 +21,7 @@ void bound_speeds(const Clearance& clearance, typename Clearance::Placement& pla
   const Vector<N, Scalar> left = kLevel == Level::kAcceleration ? state.qd : (Scalar(1) - late) * state.qd;
   const Vector<N, Scalar> then = left + g * u;
   clearance.place(state.q + h / Scalar(2) * (state.qd + then), placed);
-  for (std::size_t i = 0; i < clearance.speed_bounds().size(); ++i) {
+  for (std::size_t i = 0; i < placed.speed_points.size(); ++i) {
     const auto& bound = clearance.speed_bounds()[i];
     const auto gradient = [&](const Vector<3, Scalar>& n) noexcept {
       const Vector<3, Scalar>& x = placed.speed_points[i];

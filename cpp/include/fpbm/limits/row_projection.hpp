@@ -31,6 +31,7 @@ class RowProjection {
     Cholesky<M, Scalar> cholesky;
     const bool regular = cholesky.factor(gram) == Status::kOk;
     ways_.resize(J.cols(), P);
+    u_.resize(J.cols());
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       JointVector way = column(rows.g, k);  // (JᵀB⁻¹J + I)⁻¹ g
       if (regular) {
@@ -38,6 +39,7 @@ class RowProjection {
         way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - lost.coeff(i); });
       }
       set_column(ways_, k, way);
+      sizes_(k) = gain(k, k);
     }
   }
 
@@ -80,7 +82,8 @@ class RowProjection {
     Scalar worst(0);
     for (Eigen::Index k = 0; k < rows_.count; ++k) {
       const Scalar beyond = rows_.excess(k, u_);
-      const Scalar size = gain(k, k);
+      const Scalar size = sizes_(k);
+      if (!(beyond > Scalar(0))) continue;
       const Scalar round_off = kRoundOff * (std::abs(rows_.b(k)) + rows_.magnitude(k, u_));
       if (!(size > Scalar(0)) || !(beyond > round_off) || !(beyond * beyond > worst * size) || is_active(k)) continue;
       worst = beyond * beyond / size;
@@ -107,7 +110,7 @@ class RowProjection {
       leaving = j;
     }
     const Scalar slope = rows_.along(met_, way);
-    const bool independent = slope > kIndependent * gain(met_, met_) && count_ < kMost;
+    const bool independent = slope > kIndependent * sizes_(met_) && count_ < kMost;
     const Scalar beyond = rows_.excess(met_, u_);
     if (independent && beyond <= length * slope) {
       length = beyond / slope;
@@ -119,26 +122,33 @@ class RowProjection {
     multiplier_ += length;
     for (Eigen::Index j = 0; j < count_; ++j) multipliers_[j] -= length * share(j);
     meets = leaving >= 0;
-    if (!meets) {
-      active_[count_] = met_;
-      multipliers_[count_++] = multiplier_;
-      return true;
-    }
+    meets ? drop(leaving) : add_met();
+    return true;
+  }
+
+  void add_met() noexcept {
+    for (Eigen::Index j = 0; j < count_; ++j) gains_(count_, j) = by_met_(j);
+    gains_(count_, count_) = sizes_(met_);
+    active_[count_] = met_;
+    multipliers_[count_++] = multiplier_;
+  }
+
+  void drop(Eigen::Index leaving) noexcept {
     --count_;
     for (Eigen::Index j = leaving; j < count_; ++j) {
       active_[j] = active_[j + 1];
       multipliers_[j] = multipliers_[j + 1];
+      for (Eigen::Index i = 0; i <= j; ++i) gains_(j, i) = gains_(j + 1, i < leaving ? i : i + 1);
     }
-    return true;
   }
 
   /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, with G the active rows and g that which is met.
-  [[nodiscard]] bool find_shares(Share& share) const noexcept {
+  [[nodiscard]] bool find_shares(Share& share) noexcept {
     if (count_ == 0) return true;
     Matrix<Eigen::Dynamic, Eigen::Dynamic, Scalar> gram(count_, count_);
     for (Eigen::Index j = 0; j < count_; ++j) {
-      share(j) = gain(active_[j], met_);
-      for (Eigen::Index i = j; i < count_; ++i) gram(i, j) = gain(active_[i], active_[j]);
+      share(j) = by_met_(j) = gain(active_[j], met_);
+      for (Eigen::Index i = j; i < count_; ++i) gram(i, j) = gains_(i, j);
     }
     Cholesky<Eigen::Dynamic, Scalar> cholesky;
     if (cholesky.factor(gram) != Status::kOk) return false;
@@ -162,6 +172,9 @@ class RowProjection {
   Scalar multiplier_ = Scalar(0);  ///< Of the row that is met.
   Eigen::Index count_ = 0;
   Eigen::Index active_[kMost];
+  Vector<P, Scalar> sizes_;             ///< gain(k, k)
+  Vector<kMost, Scalar> by_met_;        ///< gain() of the active rows and the row that is met.
+  Matrix<kMost, kMost, Scalar> gains_;  ///< Of the active rows, the lower triangle.
   Scalar multipliers_[kMost];
 };
 
