@@ -77,8 +77,9 @@ class Guard {
   ///   −ṡ T ≤ κ (s − c),        ṡ = gᵀq̇ − nᵀv.
   ///
   /// T is the stopping distance of the planned stop divided by the velocity, plus kSoft. c is the margin plus the part
-  /// of the gap that the stop needs beyond the first-order term gᵀp. The arm therefore stops smoothly at the margin,
-  /// and slides along a surface. κ < 1 leaves slack for the check by Advancement. If s < c, the gap must open:
+  /// of the gap that the stop needs beyond the first-order term gᵀp, where p is the displacement of the stop. The arm
+  /// therefore stops smoothly at the margin, and slides along a surface. κ < 1 leaves slack for the check by
+  /// Advancement. If s < c, the gap must open:
   /// ṡ ≥ (c − s)/(κ (T − kSoft)).
   ///
   /// 1. Bound the joint displacements until rest, and with them the distance within which a pair needs a row.
@@ -105,7 +106,7 @@ class Guard {
     JointSweep<Clearance> fastest = sweep;
     fastest.way = (time / kShare) * drives.rates(fastest_of(limits, state, late));
     // A pair that is farther apart than the displacement bound of `fastest` needs no row. The deviation bound c₀ + c₁ +
-    // c₂ is at most Σ_k r_k x_k Σ_j x_j with x = most.
+    // c₂ is at most Σ_k r_k x_k Σ_j x_j, with x = most and the levers r_k.
     const auto most = (sweep.way.cwiseAbs() + sweep.rest).eval();
     const Scalar turned = most.sum();
     const auto speed = drives.rates(state.qd);
@@ -152,6 +153,7 @@ class Guard {
         const Scalar gap = between ? plane.distance : plane.gap(e);
         const auto gradient = between ? nearest : plane.gradient_of(e);
         const JointVector g = drives.by_drive(gradient);
+        // s − c, without the second-order change of the distance.
         const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
         Scalar allowed = kShare * left / time;
         if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, clearance_.bodies()[pair.first], h);
