@@ -28,8 +28,7 @@ void expect_same_motions(const Scheme& scheme, const TaskGains<>& gains) {
   const PostureTask<4> some{gains, {kShuffled[0], kShuffled[1], kShuffled[2], kShuffled[3]}};
   const PostureTask<3> others{gains, {kShuffled[4], kShuffled[5], kShuffled[6]}};
   TrackerOptions<> options;
-  options.error_bound = 10.0;  // The error of each task is bounded separately, so with a smaller bound, the motions
-                               // would differ.
+  options.error_bound = 10.0;  // Bounds apply to each task: with smaller bounds, the motions would differ.
   for (int seed = 0; seed < trials(20); ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
     Vector<kDof> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};

@@ -128,8 +128,7 @@ TEST(TargetTurn, from_a_motion) {
         };
         for (int target = 0; target < 3; ++target) {
           ASSERT_TRUE(filter.push(turned(random.uniform(0.0, most))));
-          const int ticks = static_cast<int>(random.uniform(0.21, 0.6) / c.dt);  // Longer than the timeout, so that
-                                                                                 // targets are no stream.
+          const int ticks = static_cast<int>(random.uniform(0.21, 0.6) / c.dt);  // Not a stream: exceeds the timeout.
           for (int k = 0; k < ticks; ++k) filter.advance();
         }
         const Transform<> x = turned(random.uniform(0.1 * most, most));

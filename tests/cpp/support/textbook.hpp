@@ -28,8 +28,7 @@ struct Law {
   double stiffness = 0.0;
   Eigen::VectorXd q_rest;
   Eigen::VectorXd c;
-  double singular_radius = 0.0;  ///< Fraction of ‖J‖_F below which the library damps. The functions of this header
-                                 ///< never damp.
+  double singular_radius = 0.0;  ///< Fraction of ‖J‖_F below which the library damps; this header never damps.
   double singular_brake = 0.0;
 };
 
