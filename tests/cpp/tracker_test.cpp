@@ -297,7 +297,7 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   const auto z = NullSpace<7>{}.with_damping(10.0).with_rest_posture(bent(), 25.0);
   const auto stiff = FPBM<7>(0.6, DiagonalWeights<7>(weights), 60.0, 900.0, z);
   auto bounds = panda().limits();
-  bounds.upper(3) = -0.47;  // The stretched elbow must not bend the other way.
+  bounds.upper(3) = -0.47;  // The stretched elbow must not bend in the other direction.
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
   for (const Vector<3>& leap : {Vector<3>(0.5, 0, 0), Vector<3>(0.5, 0.1, 0), Vector<3>(-0.4, 0, -0.3),
                                 Vector<3>(-0.4, 0.1, -0.3), Vector<3>(0, 0, 0.6)}) {
