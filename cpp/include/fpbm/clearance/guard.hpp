@@ -268,8 +268,7 @@ class Guard {
   static constexpr Scalar kSoft = Scalar(0.05);  ///< Part of T beyond the stopping time [s].
   static constexpr Scalar kTail = Scalar(0.2);   ///< τ [s], larger than the usual T/κ (TaskBounds.stop_gently*).
   static constexpr Scalar kShare = Scalar(0.8);  ///< κ
-  static constexpr Scalar kSteps = Scalar(4);    ///< Steps of the advancement along a surface, for the deviation bound
-                                                 ///< of one step.
+  static constexpr Scalar kSteps = Scalar(4);    ///< Steps of the advancement, for the deviation bound of one step.
 
   Clearance clearance_;
   NearPairs<Clearance> near_pairs_;  ///< At the state of rows().
