@@ -22,7 +22,7 @@ template <Level kLevel, int N, typename Scalar = double, int Joints = N>
 class Guard {
  public:
   using Clearance = fpbm::Clearance<N, Scalar, Joints>;
-  static constexpr int kPairs = 16;         ///< Most rows for pairs; the rows with the smallest slack are used.
+  static constexpr int kPairs = 16;         ///< Largest number of rows for pairs: those with the smallest slack.
   static constexpr int kRows = kPairs + 2;  ///< The last rows are for speeds.
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
