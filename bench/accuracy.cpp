@@ -6,8 +6,8 @@
 
 #include "cases.hpp"
 
-// Round-off of the scheme alone: its largest relative error against pseudoinverses in long double, by decades of the
-// condition of J, over states drawn toward singular postures. FPBM (13), with a self-motion that is damped.
+// Round-off error of the scheme alone: the largest relative error compared with pseudoinverses in long double, by
+// decades of the condition number of J, over states near singular postures. FPBM (13) with null-space damping.
 namespace bench {
 namespace {
 
@@ -16,10 +16,10 @@ using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
 constexpr int kDecades = 6;
-constexpr int kStates = 4000;  ///< Of each arm.
+constexpr int kStates = 4000;  ///< For each arm.
 constexpr double kDamping = 2.0;
 
-/// The law as printed. b: the commanded acceleration.
+/// The law as printed. b: commanded acceleration.
 RealVector textbook(const RealMatrix& J, const RealMatrix& Jd, const RealVector& b, const RealVector& xd,
                     const RealVector& z) {
   const auto n = J.cols();
@@ -35,7 +35,7 @@ RealVector textbook(const RealMatrix& J, const RealMatrix& Jd, const RealVector&
   return (1 - alpha) * (pseudoinverse(J) * b) + JWp * (alpha * b - J * u) + u;
 }
 
-/// Draws q toward a posture whose condition is about this, along the gradient of the least singular value.
+/// Moves q toward a posture with about this condition number, along the gradient of the smallest singular value.
 template <typename Kinematics, typename Arm, int N>
 void draw(const Arm& arm, double condition, fpbm::Vector<N>& q) {
   for (int pass = 0; pass < 12; ++pass) {

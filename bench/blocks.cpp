@@ -1,6 +1,6 @@
 #include <cstdint>
 
-// Compiled without coverage, which search_worst.cpp is compiled with.
+// Compiled without coverage, unlike search_worst.cpp.
 namespace bench {
 std::uint64_t executed_blocks = 0;
 }

@@ -6,7 +6,7 @@
 
 #include "fpbm/fpbm.hpp"
 
-// Which arms, tasks and schemes are timed, and the states in which they are asked. The same for every library.
+// Arms, tasks, schemes and states of the benchmarks. The same for every library.
 namespace bench {
 
 /// Links of 1 m.
@@ -27,7 +27,7 @@ struct Planar {
   static fpbm::Vector<N> bent() { return fpbm::Vector<N>::Constant(0.6); }
 };
 
-/// An arm of seven joints in space, of the library's presets.
+/// A spatial arm of seven joints, from the presets of the library.
 template <fpbm::Chain<> (*preset)()>
 struct Preset {
   static constexpr int kDof = 7;
@@ -44,7 +44,7 @@ struct Iiwa14 : Preset<fpbm::presets::iiwa14> {
   static std::string name() { return "iiwa14"; }
 };
 
-/// An arm with a task; where a Scalar is many numbers, as many arms side by side.
+/// An arm with a task. If a Scalar has several lanes, as many arms in lanes.
 template <typename Robot_, typename Space_, typename Scalar_ = double>
 struct Case {
   using Robot = Robot_;
@@ -58,7 +58,7 @@ struct Case {
 };
 using PandaPose = Case<Panda, fpbm::Pose>;
 
-/// Calls visit(case) for each.
+/// Calls visit(case) for each case.
 template <typename Visit>
 void for_each_case(Visit visit) {
   visit(Case<Planar<4>, fpbm::Position<2>>{});
@@ -74,7 +74,7 @@ enum class Law { kMVN, kWMVN, kMAN, kWMVNAcceleration, kBalanced, kFPBM };
 template <Law law>
 using LawConstant = std::integral_constant<Law, law>;
 
-/// Calls visit(LawConstant) for each.
+/// Calls visit(LawConstant) for each law.
 template <typename Visit>
 void for_each_law(Visit visit) {
   visit(LawConstant<Law::kMVN>{});
@@ -95,17 +95,17 @@ constexpr bool is_acceleration(Law law) {
 }
 
 constexpr double kAlpha = 0.6;
-constexpr double kGain = 10.0;  ///< Of the velocity level's feedback.
+constexpr double kGain = 10.0;  ///< Feedback gain at velocity level.
 constexpr double kGain1 = 20.0;
 constexpr double kGain2 = 100.0;
 
-/// W = diag(1, 2, …, n), as the paper has it.
+/// W = diag(1, 2, …, n), as in the paper.
 template <int N>
 fpbm::Vector<N> weights(Eigen::Index dof = N) {
   return fpbm::Vector<N>::LinSpaced(dof, 1.0, static_cast<double>(dof));
 }
 
-/// This library's scheme.
+/// The scheme of this library.
 template <Law law, int N, typename Scalar = double>
 auto scheme(Eigen::Index dof = N) {
   const fpbm::DiagonalWeights<N, Scalar> W(weights<N>(dof).template cast<Scalar>());
@@ -125,8 +125,9 @@ struct Input {
   fpbm::Reference<Space, Scalar> reference;
 };
 
-/// States about a bent posture, scattered by so much [rad], and references near by; the same on every run. Of those,
-/// the first that are wanted. Few enough to stay in the first-level cache, and enough that nothing can be hoisted.
+/// Random states around a bent posture, within ±scatter [rad], that satisfy `wanted`, and references near the tip. The
+/// same in every run. They are few enough to stay in the first-level cache, and enough that no computation can be
+/// hoisted.
 template <typename Space, typename Arm, typename Wanted, int N = Arm::kDof>
 auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted wanted) {
   std::mt19937 generator(1);
@@ -150,14 +151,14 @@ auto inputs(const Arm& arm, const fpbm::Vector<N>& bent, double scatter, Wanted 
   return result;
 }
 
-/// Well away from singular postures.
+/// Far from singular postures.
 template <typename Case>
 auto inputs(Case) {
   const auto any = [](const auto&) { return true; };
   return inputs<typename Case::Space>(Case::Robot::arm(), Case::Robot::bent(), 0.45, any);
 }
 
-/// The case in postures where damping damps.
+/// The case in postures with active damping.
 template <typename Case>
 struct NearSingular : Case {};
 

@@ -10,15 +10,15 @@
 #include "jobs.hpp"
 #include "torch.hpp"
 
-// Under callgrind: a dump for each call, named after its job. See count.py.
-// Under lackey, which traces memory: each call is between two stores to `mark`. See stalls.py, which reads the address
-// of `mark` and the jobs' names from the standard output.
+// Under callgrind: a dump for each call, named after its job (count.py).
+// Under lackey, which traces memory: each call is between two stores to `mark`. stalls.py reads the address of `mark`
+// and the names of the jobs from the standard output.
 namespace bench {
 namespace {
 
 volatile std::uint64_t mark = 0;
 
-/// Jobs that are asked for; none: all.
+/// Selected jobs. If empty: all jobs.
 std::vector<std::string> wanted;
 
 template <typename Job>
@@ -26,7 +26,7 @@ void count(const std::string& row, int calls) {
   if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row) == wanted.end()) return;
   std::printf("%s\n", row.c_str());
   Job job;
-  for (int i = 0; i < calls; ++i) job();  // Libraries are bound at the first.
+  for (int i = 0; i < calls; ++i) job();  // The first call binds the libraries.
   for (int i = 0; i < calls; ++i) {
     CALLGRIND_TOGGLE_COLLECT;
     mark = 1;
@@ -42,7 +42,7 @@ void count_steps(int calls) {
   for_each_law([=](auto law) { count<Step<Ours<Case, law()>>>("step/" + Case::name() + "/" + name(law), calls); });
 }
 
-/// FPBM with damping on, in regular postures and in those where it damps; its kinematics and its scheme.
+/// FPBM with damping enabled, in regular postures and in postures with active damping; its kinematics and its scheme.
 template <typename Case>
 void count_parts(int calls) {
   const std::string row = "/" + Case::name();

@@ -5,7 +5,7 @@
 
 namespace bench {
 
-/// Waist and arms of the Unitree G1, 17 joints, with the frames left_hand and right_hand. Numbers are those of
+/// Waist and arms of the Unitree G1, 17 joints, with the frames left_hand and right_hand. The numbers are from
 /// example-robot-data's g1_29dof_rev_1_0.urdf, which bounds positions and velocities only.
 [[nodiscard]] inline fpbm::Tree<> g1_upper_body() {
   struct Row {

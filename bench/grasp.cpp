@@ -1,12 +1,12 @@
-// Two Pandas hold a tray: random motions whose object path saturates both arms, and how well the relative pose and the
-// bounds are kept.
+// Two Pandas hold a tray: random motions whose object path saturates both arms, and the errors of the relative pose and
+// the bounds.
 //
 //     bench_grasp [motions = 10000] [first = 0] [threads]
 //
-// The relative pose is on the first level, the object's on the second, a posture on the third. Every motion is made
-// twice, the second time with stop() at a random time. bench/grasp_worker.py has the same motions, by the same random
-// numbers. Fails where a relative pose differs from the start's by more than 1e-6 m or rad in any motion, or by more
-// than 1e-9 in more than 1 % of the motions, or where a bound is exceeded by more than 1e-9.
+// The relative pose is on the first level, the pose of the object on the second, a posture on the third. Every motion
+// is executed twice, the second time with stop() at a random time. bench/grasp_worker.py has the same motions with the
+// same random numbers. Fails if a relative pose differs from the start by more than 1e-6 m or rad in any motion, or by
+// more than 1e-9 in more than 1 % of the motions, or if a bound is exceeded by more than 1e-9.
 
 #include <algorithm>
 #include <array>
@@ -28,10 +28,10 @@ using Joints = Vector<14>;
 
 constexpr double kDt = 1e-3;
 constexpr int kTicks = 3000;
-constexpr int kMove = 600;  ///< Ticks from a waypoint to the next; the tray rests at the last.
+constexpr int kMove = 600;  ///< Ticks between waypoints. The tray is at rest at the last waypoint.
 constexpr int kMoves = 4;
 
-/// SplitMix64, which Python computes as easily.
+/// SplitMix64, which is simple to implement in Python too.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -62,7 +62,7 @@ class ObjectPath {
     }
   }
 
-  /// Pose, velocity and acceleration of the displaced position; of the orientation the pose alone.
+  /// Pose, velocity and acceleration of the displaced position. For the orientation, the pose only.
   void set(int tick, const fpbm::Transform<>& start, fpbm::Reference<fpbm::Pose>& reference) const {
     const int k = std::min(tick / kMove, kMoves - 1);
     const double duration = kMove * kDt;
@@ -84,10 +84,10 @@ class ObjectPath {
   std::array<std::array<Vector<3>, 2>, kMoves + 1> at_{{{Vector<3>::Zero(), Vector<3>::Zero()}}};
 };
 
-/// What a motion did.
+/// Results of a motion.
 struct Motion {
   double grasp = 0;              ///< Largest difference of the relative pose [m or rad].
-  std::array<double, 5> excess;  ///< Of q [rad]; Δq, Δ²q, Δ³q and Δ²q̇ as shares of the bounds.
+  std::array<double, 5> excess;  ///< Of q [rad]; of Δq, Δ²q, Δ³q and Δ²q̇ relative to the bounds.
   bool both_saturated = false;   ///< Bounds were active on joints of both arms.
   bool at_rest = true;
   double time = 0;  ///< Of all ticks [ns].
@@ -170,7 +170,7 @@ std::vector<Motion> run_all(int first, int count, int threads, bool stops) {
   return motions;
 }
 
-/// Prints what the motions did. Returns whether they keep what the head of this file says.
+/// Prints the results of the motions. Returns whether they satisfy the conditions at the head of this file.
 bool report(const std::vector<Motion>& motions, int first, const char* name) {
   const auto count = static_cast<double>(motions.size());
   std::vector<double> errors;

@@ -2,8 +2,8 @@
 
 #include "step.hpp"
 
-// Steps of FPBM on arms of n joints, and their kinematics alone, n fixed at compile time or given at run time: rows
-// growth/planar/step/fixed/n, …
+// Steps of FPBM on arms of n joints, and their kinematics alone, with n fixed at compile time or given at run time:
+// rows growth/planar/step/fixed/n, …
 namespace bench {
 
 template <typename Robot, typename Space>

@@ -1,10 +1,10 @@
 #include "growth.hpp"
 
-// Planar arms with positions for tasks, up to the largest that an arm may be.
+// Planar arms with position tasks, up to the largest number of joints.
 namespace bench {
 namespace {
 
-/// A planar arm of n joints, n known at run time.
+/// A planar arm of n joints, with n known at run time.
 template <int n>
 struct Planned : Planar<n> {
   static constexpr int kDof = Eigen::Dynamic;

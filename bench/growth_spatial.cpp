@@ -1,10 +1,10 @@
 #include "growth.hpp"
 
-// Spatial arms with poses for tasks.
+// Spatial arms with pose tasks.
 namespace bench {
 namespace {
 
-/// Links of 0.3 m, each joint's axis at right angles to the last one's.
+/// Links of 0.3 m. Each joint axis is perpendicular to the previous axis.
 template <int N>
 struct Spatial {
   static constexpr int kDof = N;
@@ -26,7 +26,7 @@ struct Spatial {
   static fpbm::Vector<N> bent() { return fpbm::Vector<N>::Constant(0.6); }
 };
 
-/// Such an arm of n joints, n known at run time.
+/// A spatial arm of n joints, with n known at run time.
 template <int n>
 struct Planned : Spatial<n> {
   static constexpr int kDof = Eigen::Dynamic;

@@ -5,21 +5,21 @@
 
 #include "ours.hpp"
 
-// What is timed and counted: objects whose every call does a job once more, on the next of the states in their ring.
+// Jobs that are timed and counted: each call of a job uses the next state of its ring.
 namespace bench {
 
-/// Hands an object to the optimiser's blind spot: it may have been read and changed.
+/// Prevents optimisation: the compiler must assume that the object is read and changed.
 template <typename T>
 void escape(T& object) noexcept {
   asm volatile("" : : "g"(&object) : "memory");
 }
 
-/// No job: what timing and counting add.
+/// An empty job: the overhead of timing and counting.
 struct Nothing {
   void operator()() noexcept { escape(*this); }
 };
 
-/// The states of a case, round and round.
+/// The states of a case in a ring.
 template <typename Case>
 class Ring {
  public:
@@ -34,7 +34,7 @@ class Ring {
   std::size_t turn_ = 0;
 };
 
-/// Kinematics alone: tip and J, and Jd where the scheme wants it.
+/// Kinematics alone: tip and J, and Jd if the scheme needs it.
 template <typename Solver>
 class Move {
  public:
@@ -66,8 +66,8 @@ class Step {
   fpbm::Status status_;
 };
 
-/// The scheme alone, on each state's own kinematics, found beforehand. Of few states, as J and Jd of all would not stay
-/// in the first-level cache.
+/// The scheme alone, with precomputed kinematics of each state. Few states, because J and Jd of all states would not
+/// fit into the first-level cache.
 template <typename Solver>
 class Resolve {
  public:
@@ -99,7 +99,7 @@ class Resolve {
   fpbm::Status status_;
 };
 
-/// One RK4 step of 1 ms along the paper's circle, as rollout() takes it: time goes on from call to call.
+/// One RK4 step of 1 ms along the paper's circle, as in rollout(). Time continues from call to call.
 template <int N, Law law>
 class Rk4Step {
  public:
@@ -143,7 +143,7 @@ class Rk4Step {
   fpbm::Status status_;
 };
 
-/// A scheme that runs a Panda within its limits.
+/// A scheme for a Panda within its limits.
 inline auto damped() {
   auto fpbm = scheme<Law::kFPBM, 7>();
   fpbm.null_space = fpbm::NullSpace<7>().with_damping(2.0);
@@ -158,7 +158,7 @@ auto tracker() {
   return fpbm::Tracker(fpbm::SerialArm<7>(chain), Space{}, damped(), Panda::bent());
 }
 
-/// Slow states, and references at rest near by: what they ask for is within the limits.
+/// Slow states, and references at rest near the tip, so that the limits are not active.
 inline auto calm() {
   auto result = inputs(PandaPose{});
   for (auto& [state, reference] : result) {
@@ -168,7 +168,7 @@ inline auto calm() {
   return result;
 }
 
-/// A tick of 1 ms by the tracker's own state.
+/// A tick of 1 ms from the tracker's own state.
 template <bool kJerk>
 class Tick {
  public:
@@ -183,7 +183,7 @@ class Tick {
   fpbm::Reference<fpbm::Pose> home_ = fpbm::Reference<fpbm::Pose>::hold(loop_.tip());
 };
 
-/// A tick of a tracker that is pressed on its limits: its target jumps every 64 ticks.
+/// A tick of a tracker with active limits: its target jumps every 64 ticks.
 template <typename Space, bool kJerk>
 class LimitedTick {
  public:
@@ -201,7 +201,7 @@ class LimitedTick {
   int turn_ = 0;
 };
 
-/// A Panda among a table, a box, walls and posts, of which 20 pairs and more are within 15 cm of one another.
+/// A Panda among a table, a box, walls and posts, with at least 20 pairs closer than 15 cm.
 inline fpbm::Clearance<7> surroundings() {
   using Vector3 = fpbm::Vector<3>;
   const auto post = [](double x, double y) { return fpbm::Capsule<>{{x, y, 0.2}, {x, y, 1.0}, 0.03}; };
@@ -218,7 +218,7 @@ inline fpbm::Clearance<7> surroundings() {
   return clearance;
 }
 
-/// How many of its pairs are within 15 cm of one another in the bent posture.
+/// Number of its pairs that are closer than 15 cm in the bent posture.
 inline int near_pairs() {
   const auto clearance = surroundings();
   auto placed = clearance.placement();
@@ -228,7 +228,7 @@ inline int near_pairs() {
   return count;
 }
 
-/// A tick in a swing of 10 cm, with and without surroundings to keep clear of.
+/// A tick of a motion that swings by 10 cm, with and without a clearance.
 template <typename Guard>
 class SwingingTick {
  public:
@@ -263,7 +263,7 @@ class SwingingTick {
 using FreeTick = SwingingTick<fpbm::Unguarded>;
 using ClearTick = SwingingTick<fpbm::Guard<fpbm::Level::kAcceleration, 7>>;
 
-/// The answer for a measured state, without bounds on jerk: the states have nothing to do with each other.
+/// The result for a measured state, without bounds on jerk, because consecutive states are unrelated.
 class Measured {
  public:
   void operator()() noexcept {

@@ -4,8 +4,8 @@
 
 #include "step.hpp"
 
-// As many arms side by side as a register has lanes, compiled for one kind of processor: rows
-// part/arm/task/scheme/kind, an arm counting as a call.
+// As many arms as a SIMD register has lanes, compiled for one type of processor. Rows: part/arm/task/scheme/kind, where
+// an arm counts as a call.
 namespace bench {
 
 constexpr int kLanes = static_cast<int>(std::experimental::native_simd<double>::size());
@@ -20,7 +20,7 @@ inline void set_lane(fpbm::Transform<InLanes>& all, std::size_t lane, const fpbm
   set_lane(all.R, lane, one.R);
 }
 
-/// The states that the arm by itself is asked in.
+/// The states of a single arm, distributed to the lanes.
 template <typename Robot, typename Space>
 auto inputs(Case<Robot, Space, InLanes>) {
   const auto each = inputs(Case<Robot, Space>{});
@@ -39,7 +39,7 @@ auto inputs(Case<Robot, Space, InLanes>) {
 
 namespace {
 
-/// Stops where an arm's answer is not to 1e-12 what it is by itself.
+/// Stops if the result of an arm differs from the result of a single arm by more than 1e-12.
 template <typename Robot, typename Space>
 void require_agreement_in_lanes(const std::string& row) {
   Ours<Case<Robot, Space>, Law::kFPBM> alone;

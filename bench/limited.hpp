@@ -9,9 +9,9 @@
 
 #include "jobs.hpp"
 
-// Rows of bench_limited: unlimited/arm/task/bounds/library, kinematics and scheme alone, and limited/…, the same within
-// the joint limits. A solver is a library that does so for one case: move() finds tip, J, Jd and what the scheme asks
-// for, limit() what the joints do of it. Each file of a library adds its own.
+// Rows of bench_limited: unlimited/arm/task/bounds/library for kinematics and scheme alone, and limited/… for the same
+// within the joint limits. A solver is one library for one case: move() computes tip, J, Jd and the desired motion of
+// the scheme, limit() the motion within the limits. Each file of a library adds its own solver.
 namespace bench {
 
 enum class Bounds { kAcceleration, kJerk };
@@ -21,7 +21,7 @@ using BoundsConstant = std::integral_constant<Bounds, bounds>;
 
 constexpr double kTick = 1e-3;
 
-/// Limits of a case's arm: on position, velocity and acceleration, and on jerk where asked for.
+/// Limits of the arm of a case: on position, velocity and acceleration, and on jerk if required.
 template <typename Case>
 fpbm::Limits<fpbm::Level::kAcceleration, Case::kDof> limits(Bounds bounds) {
   auto joints = Case::Robot::arm().limits();
@@ -37,13 +37,13 @@ struct Asked : Input<typename Case::Space, Case::kDof> {
 template <typename Case>
 struct Answer {
   fpbm::Vector<Case::kDof> u;
-  double scale;  ///< Share of the task that is left.
+  double scale;  ///< Task scale.
 };
 
-/// Calls solve(box, from, desired, answer) for each problem that Limiter has: the motion from `from` toward a desired
-/// one within a box, as far as the box allows. Without bounds on jerk this is one problem: from a motion that slows the
-/// arm down. With bounds on jerk there are two: the same within the box in time; then from the last tick's acceleration
-/// toward that answer, within the box of the tick. False if solve() finds no answer.
+/// Calls solve(box, from, desired, answer) for each problem of Limiter: the motion from `from` toward `desired`, as far
+/// as the box admits. Without bounds on jerk, there is one problem, from a motion that slows the arm down. With bounds
+/// on jerk, there are two: the same within the box in time; then from the acceleration of the last tick toward this
+/// result, within the box of the tick. Returns false if solve() finds no solution.
 template <typename Case, int N = Case::kDof, typename Solve>
 bool solve_within(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, const Asked<Case>& asked,
                   const fpbm::Vector<N>& desired, Answer<Case>& answer, Solve&& solve) {
@@ -62,7 +62,7 @@ bool solve_within(const fpbm::Limits<fpbm::Level::kAcceleration, N>& limits, con
   return true;
 }
 
-/// This library's limited step.
+/// A limited step of this library.
 template <typename Case_, Bounds bounds>
 class OursLimited {
  public:
@@ -93,8 +93,7 @@ class OursLimited {
   fpbm::Status status_;
 };
 
-/// Random states, each one from which every joint can still stop, with references that ask for more than the limits
-/// allow. The same on every run.
+/// Random viable states, with references that exceed the limits. The same in every run.
 template <typename Case, Bounds bounds>
 std::vector<Asked<Case>> asked(std::size_t count) {
   constexpr int N = Case::kDof;
@@ -132,17 +131,17 @@ std::vector<Asked<Case>> asked(std::size_t count) {
   return result;
 }
 
-/// What a library makes of 10,000 problems beside this one.
+/// Results of a library on 10,000 problems, compared with this library.
 struct Score {
-  int slowed = 0;    ///< This library cannot do the whole task: as an equality it has no solution.
-  int unsolved = 0;  ///< It gives no answer.
-  int off_line = 0;  ///< The tip leaves the task's line by more than 1e-3 of a radian.
-  int outside = 0;   ///< A joint is beyond its box by more than 1e-6 of its bound.
-  int smaller = 0;   ///< It keeps less of the task, by more than 1 %.
-  int larger = 0;    ///< It keeps more of the task, by more than 1 %.
+  int slowed = 0;    ///< This library scales the task: as an equality, the problem has no solution.
+  int unsolved = 0;  ///< The library finds no solution.
+  int off_line = 0;  ///< The tip leaves the line of the task by more than 1e-3 rad.
+  int outside = 0;   ///< A joint exceeds its box by more than 1e-6 of its bound.
+  int smaller = 0;   ///< The task scale is smaller by more than 1 %.
+  int larger = 0;    ///< The task scale is larger by more than 1 %.
 };
 
-/// The task's line of the last problem of a step, and how far along it this library's saturation goes.
+/// The line of the task in the last problem of a step, and the task scale of this library's saturation.
 template <typename Case>
 struct Line {
   fpbm::Vector<Case::kDof> from;
@@ -199,7 +198,7 @@ Score score() {
   return score;
 }
 
-/// Steps of a solver, with its limits or without.
+/// Steps of a solver, with or without limits.
 template <typename Solver, Bounds bounds, bool kLimits>
 void limited_steps(benchmark::State& bench) {
   using Case = typename Solver::Case;
@@ -233,7 +232,7 @@ void add_limited() {
   });
 }
 
-/// Every case with either kind of bounds.
+/// Every case with both types of bounds.
 template <template <typename, Bounds> class Solver>
 bool add_limited_library() {
   const auto add = [](auto arm_and_task, auto bounds) {

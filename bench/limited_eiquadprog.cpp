@@ -5,13 +5,13 @@
 #include "pinocchio_kinematics.hpp"
 #include "textbook.hpp"
 
-// The joint limits as a quadratic program, on Pinocchio's kinematics and the scheme in Eigen. In each joint's unit, its
-// bound on acceleration, z = (u − from)/unit and g = (desired − from)/unit:
+// The joint limits as a quadratic program, with Pinocchio's kinematics and the scheme in Eigen. In the unit of each
+// joint, its acceleration bound, z = (u − from)/unit and g = (desired − from)/unit:
 //
 //   min ½ ‖z − g‖² + ½ w (1 − s)²,  J z = s J g,  lower ≤ z ≤ upper,  0 ≤ s ≤ 1.
 //
-// The box is this library's, as a QP library brings none, and so is the motion `from` within it. With bounds on jerk
-// there are two such programs a step, as in Limiter (solve_within).
+// The box and the motion `from` in it are this library's, because a QP library has none. With bounds on jerk, a step
+// has two of these programs, as in Limiter (solve_within).
 namespace bench {
 namespace {
 
@@ -35,7 +35,7 @@ class Rt {
   eiquadprog::solvers::RtEiquadprog<n, m, c> solver_;
 };
 
-/// Sizes given at run time, its library compiled.
+/// Sizes given at run time, in the compiled code of the library.
 template <int n, int m, int c>
 class Fast {
  public:

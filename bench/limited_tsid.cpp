@@ -7,8 +7,8 @@
 #include "limited.hpp"
 #include "pinocchio_model.hpp"
 
-// TSID on the same problem in its own way: a task for the tip, as a cost, within its own bounds on the joints, by
-// eiquadprog-fast. It always computes the arm's dynamics too. It has no bounds on jerk.
+// TSID's own method on the same problem: a task for the tip as a cost, within its own bounds on the joints, by
+// eiquadprog-fast. TSID always computes the dynamics of the arm too, and has no bounds on jerk.
 namespace bench {
 namespace {
 
@@ -77,7 +77,7 @@ class Tsid {
   Eigen::VectorXd second_ = Eigen::VectorXd::Zero(6);
 };
 
-/// Stops where a small motion, which no limit is in the way of, does not do the task as this library's does.
+/// Stops if a small motion far from all limits differs from the motion of this library.
 template <typename Case>
 void require_agreement() {
   Tsid<Case, Bounds::kAcceleration> tsid;

@@ -6,11 +6,11 @@
 
 #include "fpbm/fpbm.hpp"
 
-// What the limits cost on top of a Panda pose step (tip, J, Jd and FPBM), and a whole tick of a control loop. Rows:
+// Cost of the limits in addition to a Panda pose step (tip, J, Jd and FPBM), and a whole tick of a control loop. Rows:
 //   step              the step alone
-//   step_limited/0    the same with its limits checked, none of them met
-//   step_limited/1    each state asks for more than the joints can give
-//   measured, tick    Tracker::resolve_measured and Tracker::tick, on references that keep the limits
+//   step_limited/0    the step with its limits checked, none of them active
+//   step_limited/1    each state exceeds the limits of the joints
+//   measured, tick    Tracker::resolve_measured and Tracker::tick, on references within the limits
 
 namespace {
 
@@ -32,7 +32,7 @@ auto scheme() {
   return fpbm::FPBM<7>(0.6, weights, 10.0, 25.0, fpbm::NullSpace<7>{}.with_damping(2.0), fpbm::SingularDamping<>());
 }
 
-/// States about a bent posture, and references so far [m, rad] away.
+/// States around a bent posture, and references at a distance `far` [m, rad].
 std::vector<Input> inputs(double far) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

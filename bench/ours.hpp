@@ -4,7 +4,7 @@
 
 namespace bench {
 
-/// A step of this library, with damping near singular postures or without.
+/// A step of this library, with or without damping near singular postures.
 template <typename Case_, Law law, bool kDamping = false>
 class Ours {
  public:

@@ -1,7 +1,7 @@
 #include "step.hpp"
 #include "torch.hpp"
 
-// What a step of this library is made of, and what is made of steps: rows resolve/…, rk4/…, loop/…
+// Parts of a step of this library, and combinations of steps: rows resolve/…, rk4/…, loop/…
 namespace bench {
 namespace {
 
@@ -22,7 +22,7 @@ void add_resolve() {
   for_each_law([](auto law) { add<Rk4Step<4, law()>>(std::string("rk4/planar4/position/") + name(law)); });
   add<Step<Ours<PandaPose, Law::kFPBM, true>>>("step/panda/pose/fpbm_damped");
   add<Step<TorchSolver>>("step/ur5e/torch/fpbm_damped");
-  // A swing of a Panda by itself, and among shapes of which 26 pairs are within 15 cm of one another.
+  // A swinging Panda alone, and with shapes of which 26 pairs are closer than 15 cm.
   add<FreeTick>("loop/panda/pose/free");
   add<ClearTick>("loop/panda/pose/clear");
   return true;

@@ -7,10 +7,11 @@
 
 namespace bench {
 
-/// Pinocchio's kinematics of a chain of revolute joints about z, in a file of its own, which takes minutes to compile.
+/// Pinocchio's kinematics of a chain of revolute joints about z. In a separate file, because it takes minutes to
+/// compile.
 class PinocchioArm {
  public:
-  /// Linear rows first, in the base frame's axes at the tip.
+  /// Linear rows first, along the axes of the base frame, at the tip.
   struct Motion {
     Eigen::Matrix3d R;
     Eigen::Vector3d p;
@@ -21,7 +22,7 @@ class PinocchioArm {
   explicit PinocchioArm(const fpbm::Chain<>& chain);
   ~PinocchioArm();
 
-  /// Tip and J at q; leaves Jd alone.
+  /// Tip and J at q; does not change Jd.
   const Motion& move(const Eigen::VectorXd& q);
   const Motion& move(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 

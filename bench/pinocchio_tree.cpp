@@ -1,4 +1,4 @@
-// For forwardKinematics() with accelerations; Boost's default is too low where its header is included first.
+// For forwardKinematics() with accelerations. Boost's default is too low if its header is included first.
 #define BOOST_FUSION_INVOKE_MAX_ARITY 10
 
 #include "pinocchio_tree.hpp"
@@ -12,7 +12,7 @@
 namespace bench {
 namespace {
 
-/// As Pinocchio's reader of URDF files adds it.
+/// Adds a joint like Pinocchio's reader of URDF files.
 pinocchio::JointIndex add_joint(pinocchio::Model& model, const fpbm::TreeJoint<>& given) {
   const auto& joint = given.joint;
   const auto parent = static_cast<pinocchio::JointIndex>(given.parent);

@@ -8,10 +8,10 @@
 
 namespace bench {
 
-/// Pinocchio's kinematics of a tree of revolute joints about x, y or z, and J and J̇ of its frames.
+/// Pinocchio's kinematics of a tree of revolute joints about x, y or z, with J and J̇ of its frames.
 class PinocchioTree {
  public:
-  /// Linear rows first, in the base frame's axes at the frame's origin.
+  /// Linear rows first, along the axes of the base frame, at the origin of the frame.
   struct Motion {
     Eigen::Matrix3d R;
     Eigen::Vector3d p;
@@ -20,7 +20,7 @@ class PinocchioTree {
     Eigen::Matrix<double, 6, 1> bias;  ///< J̇q̇
   };
 
-  /// Throws std::invalid_argument where a joint has another axis.
+  /// Throws std::invalid_argument if a joint has another axis.
   explicit PinocchioTree(const fpbm::Tree<>& tree);
   ~PinocchioTree();
 
@@ -28,7 +28,7 @@ class PinocchioTree {
   const std::vector<Motion>& move(const Eigen::VectorXd& q);
   /// Frames, J and J̇.
   const std::vector<Motion>& move_with_rates(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
-  /// Frames, J and J̇q̇, from the accelerations of frames at q̈ = 0.
+  /// Frames, J and J̇q̇, from the accelerations of the frames at q̈ = 0.
   const std::vector<Motion>& move_with_bias(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 
  private:

@@ -7,19 +7,19 @@
 
 #include "worst.hpp"
 
-// Searches for the motions whose ticks execute most basic blocks, which the compiler counts here
-// (-fsanitize-coverage=trace-pc), from random motions uphill, and from the file's own.
+// Searches for the motions whose ticks execute the most basic blocks, which the compiler counts here
+// (-fsanitize-coverage=trace-pc). The search climbs from random motions and from the motions of the file.
 //
 //     bench_search_worst FILE SECONDS [CASE]
 //
-// Prints each case's motion as a line of FILE.
+// Prints the motion of each case as a line of FILE.
 namespace bench {
 
 extern std::uint64_t executed_blocks;  // blocks.cpp
 
 namespace {
 
-/// Most blocks of a tick, and the number of the tick.
+/// Largest number of blocks of a tick, and the number of the tick.
 template <typename Case>
 std::uint64_t cost(const Numbers& numbers, int* at = nullptr) {
   std::uint64_t most = 0;
@@ -32,7 +32,7 @@ std::uint64_t cost(const Numbers& numbers, int* at = nullptr) {
       most = executed_blocks - before;
       if (at != nullptr) *at = tick;
     }
-  } catch (const std::invalid_argument&) {  // The start is not clear of its surroundings.
+  } catch (const std::invalid_argument&) {  // The start is closer to a shape than the margin.
   }
   return most;
 }
@@ -52,7 +52,7 @@ void search(const std::string& file, double seconds) {
   for (int climb = 0; passed() < seconds; ++climb) {
     Numbers numbers(WorstMotion<Case>::kNumbers);
     std::uint64_t reached = 0;
-    if (climb % 4 == 3) {  // Every fourth climb goes on from the highest.
+    if (climb % 4 == 3) {  // Every fourth climb continues from the best motion.
       numbers = best;
       reached = highest;
     }

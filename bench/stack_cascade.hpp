@@ -9,9 +9,9 @@
 //
 //   min ½ ‖J_k u − b_k‖² + ½ ε ‖u − u_{k−1}‖²,  J_i u = J_i u_i for i < k,  lower ≤ u ≤ upper.
 //
-// Formulations: with these equalities (Equalities), or u = u_{k−1} + Z z with Z a basis of the null space of
-// J_1 … J_{k−1} (NullSpaces). The box is Limits::box(), widened by the round-off of u_{k−1}, which thus is feasible. If
-// a program has no answer nevertheless, the level keeps u_{k−1}.
+// There are two formulations: with these equalities (Equalities), or u = u_{k−1} + Z z, where Z is a basis of the null
+// space of J_1 … J_{k−1} (NullSpaces). The box is Limits::box(), widened by the round-off error of u_{k−1}, so that
+// u_{k−1} is feasible. If a program has no solution nevertheless, the level keeps u_{k−1}.
 namespace bench::stack {
 
 constexpr double kRegularisation = 1e-8;
@@ -54,7 +54,7 @@ class Equalities {
  private:
   static constexpr int M0 = Case::kRows;
   static constexpr int M1 = Case::kElbowRows;
-  /// Motion for the posture; none where tip and elbow determine all joints.
+  /// Degrees of freedom of the posture; none if tip and elbow determine all joints.
   static constexpr int kFree = N - M0 - Case::kElbowRank;
 
   template <typename F>
@@ -148,7 +148,7 @@ class NullSpaces {
     return Eigen::Matrix<double, n, n - M>(Q.template rightCols<n - M>());
   }
 
-  /// Adds Z z within the box, z by the program.
+  /// Adds Z z within the box, with z from the program.
   template <typename Program, typename Basis>
   void move(Program& qp, const Basis& Z, const fpbm::Box<N>& box, Joints& u) {
     qp.CI.template topRows<N>() = Z;

@@ -6,12 +6,13 @@
 
 #include "stack_step.hpp"
 
-// A motion of the Panda under a solver: 20 s at 1 kHz. The target of the tip is slow, then faster than the joints, then
-// slow near the base, where joints meet the ends of their ranges, then slow again. It jumps between, and by 5 cm.
+// A motion of the Panda with a solver: 20 s at 1 kHz. The target of the tip is slow, then faster than the joints, then
+// slow near the base, where joints reach the ends of their ranges, then slow again. The target jumps between these
+// phases, and by 5 cm within them.
 namespace bench::stack {
 
 constexpr int kTicks = 20000;
-constexpr double kBack = 0.25;  ///< Of the target near the base [m].
+constexpr double kBack = 0.25;  ///< Displacement of the target toward the base [m].
 
 /// Coordinate, velocity and acceleration of a sine.
 struct Wave {
@@ -62,7 +63,7 @@ class Targets {
       std::get<0>(reference.x) += shift;
     }
     const auto [height, speed, change] = Wave{0.04, 0.5}.at(t);
-    std::get<1>(reference.x)(2) += height - 0.06;  // Within the elbow's reach.
+    std::get<1>(reference.x)(2) += height - 0.06;  // Within the workspace of the elbow.
     reference.xd(M0 + 2) = speed;
     reference.xdd(M0 + 2) = change;
     return reference;
@@ -72,17 +73,17 @@ class Targets {
   typename StackOf<Case>::Point start_;
 };
 
-/// Largest excess over the bounds, errors of level 0, and how much of level 0 the bounds left.
+/// Largest excess over the bounds, errors of level 0, and the part of level 0 that the bounds remove.
 struct Report {
   double position = 0.0;      ///< [rad]
   double velocity = 0.0;      ///< [rad/s]
-  double acceleration = 0.0;  ///< Of differences of velocities [rad/s²].
+  double acceleration = 0.0;  ///< By differences of velocities [rad/s²].
   int position_active = 0;
   int velocity_active = 0;
   int acceleration_active = 0;
-  int limited = 0;            ///< Ticks in which the answer of this library's law is outside the box.
+  int limited = 0;            ///< Ticks in which the law of this library gives a motion outside the box.
   std::vector<double> error;  ///< ‖x ⊖ f(q)‖ of the tip's position [m].
-  std::vector<double> lacks;  ///< ‖J₀u − b₀‖ / ‖b₀‖ where limited.
+  std::vector<double> lacks;  ///< ‖J₀u − b₀‖ / ‖b₀‖ in limited ticks.
 };
 
 template <typename T>

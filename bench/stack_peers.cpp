@@ -3,15 +3,16 @@
 #include "stack_cascade.hpp"
 #include "stack_time.hpp"
 
-// A stack of tasks in C++: this library beside cascades of quadratic programs, as JSON. See stack_peers.py.
+// A stack of tasks in C++: this library and cascades of quadratic programs, as JSON. See stack_peers.py.
 namespace bench::stack {
 namespace {
 
-/// Largest difference of kinematics and of level 0's motion from this library's, of states that no bound limits.
+/// Largest differences from the kinematics of this library and from its motion of level 0, in states without active
+/// bounds.
 struct Difference {
   double kinematics = 0.0;
   double first = 0.0;   ///< Largest ‖J₀(u − u')‖ / ‖J₀u'‖.
-  double second = 0.0;  ///< The same of level 1: the median, as this library damps what level 0 takes away.
+  double second = 0.0;  ///< For level 1: the median, because this library damps the directions that level 0 uses.
 };
 
 template <typename Case, typename Solver>
@@ -73,7 +74,7 @@ void run(int rounds, int passes, bool last) {
     print(cascade.name().c_str(), report, cascade.unsolved());
   });
 
-  // Of all motions, every 7th tick that bounds limit, and every 7th that they do not.
+  // From all motions, every 7th tick with active bounds, and every 7th tick without.
   std::array<std::vector<Asked<Case>>, 2> sets;
   std::array<std::size_t, 2> counts{};
   for (const Asked<Case>& asked : record) {

@@ -1,4 +1,4 @@
-// For forwardKinematics() with accelerations; Boost's default is too low where its header is included first.
+// For forwardKinematics() with accelerations. Boost's default is too low if its header is included first.
 #define BOOST_FUSION_INVOKE_MAX_ARITY 10
 
 #include "stack_pinocchio.hpp"
@@ -22,7 +22,7 @@ struct StackPinocchio::Model {
   pinocchio::Data::Matrix6x tip_J;
   pinocchio::Data::Matrix6x elbow_J;
 
-  /// J: of this frame alone, as Pinocchio leaves the columns of the joints after it unchanged.
+  /// J: of this frame only, because Pinocchio does not change the columns of the joints after the frame.
   void read(pinocchio::FrameIndex frame, pinocchio::Data::Matrix6x& J, Frame& out) {
     constexpr auto kAxes = pinocchio::LOCAL_WORLD_ALIGNED;
     const pinocchio::SE3& pose = pinocchio::updateFramePlacement(model, data, frame);

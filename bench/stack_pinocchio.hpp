@@ -7,10 +7,10 @@
 
 namespace bench {
 
-/// Pinocchio's kinematics of a Panda's tip and elbow, in a separate file, which takes minutes to compile.
+/// Pinocchio's kinematics of the tip and the elbow of a Panda. In a separate file, because it takes minutes to compile.
 class StackPinocchio {
  public:
-  /// A frame: rows of J and J̇ q̇ in the base frame's axes at the frame's origin, linear rows first.
+  /// A frame: rows of J and J̇ q̇ along the axes of the base frame, at the origin of the frame, linear rows first.
   struct Frame {
     Eigen::Matrix3d R;
     Eigen::Vector3d p;

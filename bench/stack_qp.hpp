@@ -24,7 +24,7 @@ struct Rt {
   eiquadprog::solvers::RtEiquadprog<n, m, c> solver;
 };
 
-/// Sizes given at run time, in the library's compiled code.
+/// Sizes given at run time, in the compiled code of the library.
 template <int n, int m, int c>
 struct Fast {
   static constexpr const char* kName = "eiquadprog-fast";

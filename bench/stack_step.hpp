@@ -12,7 +12,7 @@ namespace bench::stack {
 constexpr int N = 7;
 constexpr int kElbow = 4;
 constexpr double kTick = 1e-3;
-constexpr double kK1 = 20.0;   ///< Of tip and elbow [1/s].
+constexpr double kK1 = 20.0;   ///< For tip and elbow [1/s].
 constexpr double kK2 = 100.0;  ///< [1/s²]
 constexpr double kPosture1 = 4.0;
 constexpr double kPosture2 = 4.0;
@@ -24,11 +24,11 @@ inline fpbm::TaskGains<> gains() {
   return {kK1, kK2};
 }
 
-/// The tip's pose, the elbow's position, the posture: tip and elbow determine the motion.
+/// Pose of the tip, position of the elbow, posture: tip and elbow determine the motion.
 struct TipPose {
   static constexpr int kRows = 6;
   static constexpr int kElbowRows = 3;
-  static constexpr int kElbowRank = 1;  ///< Rows of the elbow that the tip leaves free.
+  static constexpr int kElbowRank = 1;  ///< Rows of the elbow in the null space of the tip.
   static std::string name() { return "pose"; }
   static auto stack() {
     return fpbm::Stack(fpbm::PoseTask<>{{fpbm::Robot<N>::kTip}, gains()},
@@ -37,7 +37,7 @@ struct TipPose {
   }
 };
 
-/// The tip's position, the elbow's height, the posture: each level has motion of its own.
+/// Position of the tip, height of the elbow, posture: each level has degrees of freedom of its own.
 struct TipPosition {
   static constexpr int kRows = 3;
   static constexpr int kElbowRows = 1;
@@ -73,7 +73,7 @@ inline Limits limits() {
   return {fpbm::Robot<N>(chain()).limits(), kTick};
 }
 
-/// This library's limited step: kinematics, law and saturation, as in a tick of a tracker.
+/// A limited step of this library: kinematics, law and saturation, as in a tick of a tracker.
 template <typename Case>
 class Ours {
  public:
@@ -103,7 +103,7 @@ class Ours {
   [[nodiscard]] const Joints& desired() const noexcept { return desired_; }
   [[nodiscard]] double scale() const noexcept { return scale_; }
   [[nodiscard]] fpbm::Status status() const noexcept { return status_; }
-  /// J of level 0, rotations in metres.
+  /// J of level 0, with rotations in metres.
   [[nodiscard]] const auto& first_rows() const noexcept { return std::get<0>(kinematics_.levels).J; }
 
  private:

@@ -8,7 +8,7 @@
 
 #include "stack_motion.hpp"
 
-// Times of several solvers on the same states, their calls interleaved.
+// Times of several solvers on the same states, with interleaved calls.
 namespace bench::stack {
 
 /// A function of Asked with a name.
@@ -22,7 +22,7 @@ struct Row {
 struct Times {
   std::vector<double> rounds;  ///< Mean step of each round.
   std::vector<double> calls;   ///< Every call.
-  std::vector<double> least;   ///< Of each state, the least of all calls: without the noise of the machine.
+  std::vector<double> least;   ///< For each state, the smallest of all calls, without the noise of the machine.
 };
 
 inline double now() {
@@ -65,7 +65,7 @@ std::vector<Times> time_rows(const std::vector<Row<Case>>& rows, const std::vect
   return times;
 }
 
-/// A row as JSON. Ratios are to the first row, within a round.
+/// A row as JSON. Ratios are relative to the first row, within a round.
 inline void print(const std::string& name, const Times& times, const Times& ours) {
   std::vector<double> ratios;
   for (std::size_t r = 0; r < times.rounds.size(); ++r) ratios.push_back(times.rounds[r] / ours.rounds[r]);

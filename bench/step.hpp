@@ -8,8 +8,8 @@
 
 #include "jobs.hpp"
 
-// Rows of bench_step: part/arm/task/scheme/library. A solver is a library that does one scheme for one case: move()
-// finds tip, J and Jd of a state, resolve() the joints' motion. Each file of a library adds its own.
+// Rows of bench_step: part/arm/task/scheme/library. A solver is one library with one scheme for one case: move()
+// computes tip, J and Jd of a state, resolve() the joint motion. Each file of a library adds its own solver.
 namespace bench {
 
 template <typename Job>
@@ -19,7 +19,7 @@ void run(benchmark::State& bench) {
   for (auto _ : bench) job();
 }
 
-/// All are to do the same job: stops where an answer differs from this library's by more than 1e-9 of it.
+/// All solvers must do the same job: stops if a result differs from this library's by a relative error above 1e-9.
 template <typename Solver>
 void require_agreement(const std::string& row) {
   using Case = typename Solver::Case;
@@ -47,7 +47,7 @@ void add_step() {
   benchmark::RegisterBenchmark(row.c_str(), run<Step<Solver>>);
 }
 
-/// Every scheme for every case, and the kinematics of each level on their own.
+/// Every scheme for every case, and the kinematics of each level alone.
 template <template <typename, Law> class Solver>
 bool add_library() {
   for_each_case([](auto arm_and_task) {

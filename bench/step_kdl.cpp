@@ -8,7 +8,7 @@
 #include "step.hpp"
 #include "textbook.hpp"
 
-// Orocos KDL: the schemes in Eigen on its kinematics, and its own solvers at the velocity level.
+// Orocos KDL: the schemes in Eigen on its kinematics, and its own solvers at velocity level.
 
 namespace bench {
 namespace {
@@ -20,7 +20,7 @@ KDL::Frame frame(const fpbm::Transform<>& transform) {
   return result;
 }
 
-/// A segment of KDL turns before it goes on: its placement is that of the joint after it.
+/// In KDL, the joint of a segment is before its frame: the frame of a segment is the placement of the next joint.
 KDL::Chain segments(const fpbm::Chain<>& chain) {
   KDL::Chain result;
   result.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), frame(chain.joints[0].placement)));
@@ -69,7 +69,7 @@ class Kdl {
 template <typename Case, Law law>
 using KdlAndEigen = Textbook<Kdl, Case, law>;
 
-/// A solver of KDL's, with the feedback on the tip's pose that it leaves to its caller.
+/// A solver of KDL, with feedback on the tip pose, which KDL does not include.
 template <typename Case_, Law law, typename Solver>
 class KdlAlone {
  public:
@@ -82,7 +82,7 @@ class KdlAlone {
     if constexpr (kDamps) {
       solver_.setLambda(0.0);
       if constexpr (law == Law::kWMVN) {
-        // Its weights M stand for W = M⁻².
+        // KDL's weights M correspond to W = M⁻².
         solver_.setWeightJS(weights<Case::kDof>().cwiseSqrt().cwiseInverse().asDiagonal().toDenseMatrix());
       }
     }

@@ -17,14 +17,14 @@
 
 #include "jobs.hpp"
 
-// How long single calls take, each waited for: percentiles of many, in warm and in cold caches, as JSON. The timer's
-// own time is that of nothing (row "timer"); it is not taken off. In turn with a warm job an empty one is timed that
-// takes as long ("empty_…"): what of a tail is not the job's, but the machine's.
+// Durations of single calls, each waited for: percentiles of many calls, with warm and with cold caches, as JSON. Row
+// "timer" is the duration of no job; it is not subtracted. Alternating with a warm job, an empty job of the same
+// duration is timed ("empty_…"): its tail is caused by the machine, not by the job.
 namespace bench {
 namespace {
 
 #ifdef FPBM_HAS_CLFLUSH
-/// In ticks of the time stamp counter. Fences keep what is timed between the two, and wait for its results.
+/// In ticks of the time stamp counter. Fences keep the timed code between the two reads, and wait for its results.
 struct Clock {
   static std::uint64_t start() noexcept {
     _mm_lfence();
@@ -48,7 +48,7 @@ struct Clock {
 };
 #endif
 
-/// Nanoseconds in a tick of Clock.
+/// Nanoseconds per tick of Clock.
 double tick_length() {
   using std::chrono::steady_clock;
   const auto begin = steady_clock::now();
@@ -59,7 +59,7 @@ double tick_length() {
   return passed.count() / static_cast<double>(last - first);
 }
 
-/// How often each duration was seen. Small, as most are alike: it leaves the caches to what is timed.
+/// Counts of durations. Small, because most durations are similar: the caches are left to the timed code.
 class Histogram {
  public:
   void add(std::uint64_t ticks) {
@@ -71,7 +71,7 @@ class Histogram {
     ++total_;
   }
 
-  /// The least duration that no more than a share of 1 - fraction of all exceed.
+  /// The smallest duration that at most the fraction 1 − `fraction` of all durations exceeds.
   [[nodiscard]] std::uint64_t quantile(double fraction) const {
     auto left = static_cast<std::uint64_t>(fraction * static_cast<double>(total_ - 1));
     for (std::size_t ticks = 0; ticks < counts_.size(); ++ticks) {
@@ -100,8 +100,8 @@ void flush(const void* begin, std::size_t size) noexcept {
   }
 }
 
-/// Out of all caches: the program with its constants and variables, the stack that a call is going to use, and the job.
-/// The system's libraries stay.
+/// Evicts from all caches: the program with its constants and variables, the stack of the next call, and the job. The
+/// libraries of the system are not evicted.
 template <typename Job>
 void evict(const Job& job) noexcept {
   const auto flush_program = [](dl_phdr_info* object, std::size_t, void*) {
@@ -110,7 +110,7 @@ void evict(const Job& job) noexcept {
       if (segment.p_type != PT_LOAD) continue;
       flush(reinterpret_cast<const void*>(object->dlpi_addr + segment.p_vaddr), segment.p_memsz);
     }
-    return 1;  // The program itself is the first.
+    return 1;  // The first object is the program itself.
   };
   dl_iterate_phdr(flush_program, nullptr);
   constexpr std::size_t kStack = 1 << 15;
@@ -120,7 +120,7 @@ void evict(const Job& job) noexcept {
 }
 #endif
 
-/// How often the system took the processor away so far.
+/// Number of involuntary context switches so far.
 long preemptions() noexcept {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -141,7 +141,7 @@ template <typename Job>
   histogram.add(Clock::stop() - start);
 }
 
-/// Does nothing, for a while: arithmetic in a register, without memory or branches that differ.
+/// An empty job of a given duration: arithmetic in a register, without memory accesses and without branches that vary.
 struct Empty {
   int turns = 0;
 
@@ -161,7 +161,7 @@ double median_time(Job& job) {
   return static_cast<double>(histogram.quantile(0.5));
 }
 
-/// One that takes as long as the job.
+/// An empty job with the same duration as the job.
 template <typename Job>
 Empty as_long_as(Job& job) {
   constexpr int kTurns = 1000;
@@ -178,7 +178,7 @@ void print(const char* prefix, const Histogram& histogram, double tick) {
   }
 }
 
-/// Prepares and times the job so many times, the empty one in turn with it where there is one, and prints a row.
+/// Prepares and times the job a number of times, alternating with the empty job if it is given, and prints a row.
 template <typename Job, typename Prepare>
 void time_all(const std::string& row, const char* caches, double calls, Job& job, Empty* empty, Prepare prepare,
               Options& options) {

@@ -5,14 +5,14 @@
 
 #include "cases.hpp"
 
-// The schemes on a peer's kinematics, as one would write them with Eigen: sizes fixed, Cholesky factorisations in place
-// of the paper's pseudoinverses.
+// The schemes on a peer's kinematics, in typical Eigen code: fixed sizes, Cholesky factorisations in place of the
+// paper's pseudoinverses.
 namespace bench {
 
-/// Tip, J and Jd, linear rows first, in the base frame's axes at the tip.
+/// Tip, J and Jd, linear rows first, along the axes of the base frame, at the tip.
 template <typename Case>
 struct Motion {
-  Eigen::Matrix3d R;  ///< For poses alone.
+  Eigen::Matrix3d R;  ///< For poses only.
   Eigen::Vector3d p;
   Eigen::Matrix<double, Case::kRows, Case::kDof> J;
   Eigen::Matrix<double, Case::kRows, Case::kDof> Jd;

@@ -1,6 +1,6 @@
 #include "tree_ticks.hpp"
 
-// Rows that are promised: bench/promises.py.
+// Rows with promises: bench/promises.py.
 namespace bench {
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include "jobs.hpp"
 
-// A UR5e welds with the torch free to turn about its axis: position and axis of the tip on one level, 5 rows.
+// A UR5e welds with a torch that is free to rotate about its axis: position and axis of the tip on one level, 5 rows.
 namespace bench {
 
 inline auto torch_stack() {
@@ -10,7 +10,7 @@ inline auto torch_stack() {
   const fpbm::TaskGains<> gains(kGain1, kGain2);
   return fpbm::Stack(fpbm::TaskLevel(fpbm::PositionTask<>{tip, gains}, fpbm::AxisTask<>(tip, gains)));
 }
-/// The tasks have the feedback.
+/// The tasks include the feedback.
 inline auto torch_scheme() {
   auto scheme = fpbm::Balanced<6>(kAlpha, fpbm::DiagonalWeights<6>(weights<6>()));
   scheme.singular = fpbm::SingularDamping<>();
@@ -31,7 +31,7 @@ inline auto inputs(Torch) {
   return inputs<Torch::Space>(Torch::arm(), Torch::bent(), 0.45, [](const auto&) { return true; });
 }
 
-/// FPBM with damping on, for jobs.hpp.
+/// FPBM with damping enabled, for jobs.hpp.
 class TorchSolver {
  public:
   using Case = Torch;

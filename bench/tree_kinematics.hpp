@@ -7,7 +7,7 @@
 #include "fpbm/fpbm.hpp"
 #include "g1_upper_body.hpp"
 
-// Kinematics of robots of several branches: their frames and J, with J̇, or with J̇q̇.
+// Kinematics of robots with several branches: their frames and J, with J̇ or with J̇q̇.
 namespace bench {
 
 struct TwoPandas {
@@ -23,7 +23,7 @@ struct UpperBody {
 
 enum class Rates { kNone, kJacobian, kBias };
 
-/// States about the middle of the joints' ranges.
+/// States around the middle of the joint ranges.
 template <typename Case>
 [[nodiscard]] std::array<fpbm::State<Case::kDof>, 64> states_of() {
   std::mt19937 generator(1);
@@ -49,7 +49,7 @@ struct FrameMotion {
   fpbm::Vector<6> bias;
 };
 
-/// This library's, of a robot's first two frames.
+/// This library, for the first two frames of a robot.
 template <typename Case>
 class OurTree {
  public:

@@ -9,11 +9,11 @@
 #include "g1_upper_body.hpp"
 #include "jobs.hpp"
 
-// Ticks of stacks on robots of several arms: rows ticks/robot/stack/limited or free. A target swings. The counter
-// `limited` is the share of ticks in which bounds are active.
+// Ticks of stacks on robots with several arms: rows ticks/robot/stack/limited or free. A target swings. The counter
+// `limited` is the fraction of ticks with active bounds.
 namespace bench {
 
-/// Arms of 7 joints, all Pandas, side by side or on a torso that turns and leans.
+/// Arms of 7 joints, all Pandas, side by side or on a torso that rotates and leans.
 template <int Arms, int Torso>
 struct Pandas {
   static constexpr int kDof = 7 * Arms + Torso;
@@ -49,7 +49,7 @@ struct Pandas {
   static fpbm::LinkFrame<> last() { return {kDof, fpbm::presets::panda().tip}; }
 };
 
-/// The G1's upper body, with bounds on accelerations and jerks, which its URDF has not.
+/// The upper body of the G1, with bounds on accelerations and jerks, which its URDF file does not have.
 struct UpperBodyInMotion {
   static constexpr int kDof = 17;
   static std::string name() { return "g1_upper_body"; }
@@ -73,8 +73,8 @@ struct UpperBodyInMotion {
   static fpbm::LinkFrame<> last() { return fpbm::frame_of(tree(), "right_hand"); }
 };
 
-/// Pose of the first hand; position of a joint of the last arm; its hand's axis; posture. Levels in between are left
-/// out first.
+/// Pose of the first hand; position of a joint of the last arm; axis of its hand; posture. With fewer levels, the
+/// levels in between are omitted first.
 template <typename Case, int Levels>
 auto growing_stack() {
   const fpbm::TaskGains<> gains(10.0, 25.0);
@@ -95,7 +95,7 @@ auto two_poses() {
   return fpbm::Stack(fpbm::TaskLevel(fpbm::PoseTask<>{Case::first(), gains}, fpbm::PoseTask<>{Case::last(), gains}));
 }
 
-/// A grasp, the object's pose, a posture.
+/// A grasp, the pose of the object, a posture.
 template <typename Case>
 auto grasp() {
   return fpbm::Stack(fpbm::RelativePoseTask<>{{Case::last(), {400.0, 40000.0}}, Case::first()},
@@ -103,7 +103,7 @@ auto grasp() {
                      fpbm::PostureTask<Case::kDof>{fpbm::TaskGains<>(4.0, 4.0)});
 }
 
-/// Ticks with the target of one pose, the moved one, in a swing. kLimited: whether bounds are active.
+/// Ticks in which the target of pose kMoved swings. kLimited: whether bounds are active.
 template <typename Case, bool kLimited, int kMoved, typename MakeStack>
 void run_ticks(benchmark::State& bench, MakeStack make_stack) {
   constexpr int N = Case::kDof;

@@ -30,7 +30,7 @@ class TreeByPinocchio {
   Eigen::VectorXd qd_;
 };
 
-/// Largest difference from this library's results.
+/// Largest difference from the results of this library.
 template <typename Case>
 double difference() {
   OurTree<Case> ours;

@@ -10,8 +10,8 @@
 #include <valgrind/callgrind.h>
 #endif
 
-// The motions of worst_motions.txt. Times: how long their ticks take, each the least of a number of runs, so that no
-// interruption by the machine counts. Under callgrind: a dump for each tick near the longest, for worst.py.
+// The motions of worst_motions.txt. Times: the duration of each tick is the smallest of several runs, so that
+// interruptions by the machine do not count. Under callgrind: a dump for each tick near the longest, for worst.py.
 //
 //     bench_worst RUNS [FILE]
 namespace bench {
@@ -54,7 +54,7 @@ void count_ticks(const Found& found) {
 }
 #endif
 
-/// Least time of each tick of a motion [ns].
+/// Smallest duration of each tick of a motion [ns].
 template <typename Case>
 std::vector<double> times(const Numbers& numbers, int runs) {
   using Clock = std::chrono::steady_clock;

@@ -10,12 +10,12 @@
 
 #include "tree_ticks.hpp"
 
-// Motions whose ticks take longest. search_worst.cpp finds them, worst_motions.txt has them, worst.cpp measures them,
-// and `fpbm-cpp bench --worst` drives Python's trackers by the same numbers.
+// Motions with the longest ticks. search_worst.cpp finds them, worst_motions.txt contains them, worst.cpp measures
+// them, and `fpbm-cpp bench --worst` runs Python's trackers with the same numbers.
 namespace bench {
 
-/// Numbers in [-1, 1] that make a motion: the start posture, then phases. In each, the target jumps to a place about
-/// the start's and moves on from there at a constant velocity.
+/// Numbers in [-1, 1] that define a motion: the start posture, then phases. In each phase, the target jumps to a pose
+/// near the start pose and continues from there with a constant velocity.
 using Numbers = std::vector<double>;
 
 constexpr int kPhases = 6;
@@ -42,7 +42,7 @@ struct Phase {
   }
 };
 
-/// Moves a target from where it was at the start, s seconds after the jump of a phase.
+/// Moves a target relative to its start pose, s seconds after the jump of a phase.
 inline void move(fpbm::Reference<fpbm::Pose>& target, const fpbm::Transform<>& start, const Phase& phase, double s) {
   const fpbm::Vector<3> angles = phase.turned + s * phase.rates.tail<3>();
   target.x.p = start.p + phase.displacement + s * phase.rates.head<3>();
@@ -54,7 +54,7 @@ inline void move(fpbm::Reference<fpbm::Position<3>>& target, const fpbm::Vector<
   target.x = start + phase.displacement + s * phase.rates.head<3>();
   target.xd = phase.rates.head<3>();
 }
-/// The second task of a stack of a grasp, and the hand and the elbow of other stacks.
+/// For the second task of a stack with a grasp, and for the hand and the elbow of other stacks.
 template <typename... Levels, typename Point>
 void move(fpbm::Reference<fpbm::StackSpace<Levels...>>& target, const Point& start, const Phase& phase, double s) {
   constexpr bool kGrasp =
@@ -77,7 +77,7 @@ class WorstMotion {
     for (std::size_t k = 0; k < kPhases; ++k) phases_.emplace_back(numbers, Case::kDof + k * kPhaseNumbers);
   }
 
-  /// Whether there is a next tick: its target is set then.
+  /// Whether there is a next tick. If so, its target is set.
   [[nodiscard]] bool next() {
     if (phase_ == phases_.size()) return false;
     move(target_, start_, phases_[phase_], 1e-3 * tick_);
@@ -109,7 +109,7 @@ class WorstMotion {
   int tick_ = 0;
 };
 
-/// Within a share of each joint's range, about its middle.
+/// Posture within a fraction of each joint range, around its middle.
 template <int N>
 fpbm::Vector<N> within(const fpbm::JointLimits<N>& limits, const Numbers& numbers, double share) {
   fpbm::Vector<N> q;
@@ -137,7 +137,7 @@ struct WorstPanda {
   static auto tracker(const fpbm::Vector<7>& q) { return fpbm::Tracker(arm(), Space{}, damped(), q); }
 };
 
-/// Among surroundings(), from near a posture that is clear of them.
+/// Among surroundings(), from near a posture that keeps the margin.
 struct WorstClearPanda {
   static constexpr int kDof = 7;
   static std::string name() { return "panda/pose_clear"; }
@@ -156,7 +156,8 @@ struct WorstClearPanda {
   }
 };
 
-/// Stacks of three levels: a Panda with a pose, the position of a joint and a posture, and two that hold an object.
+/// Stacks of three levels: a Panda with a pose, the position of a joint and a posture, and two Pandas that hold an
+/// object.
 template <int Arms>
 struct WorstStack {
   using Robot = Pandas<Arms, 0>;
@@ -195,13 +196,13 @@ void for_each_worst(const F& f) {
   f(WorstStack<2>{});
 }
 
-/// A motion, and the number of its tick that takes longest.
+/// A motion, and the number of its longest tick.
 struct Found {
   Numbers numbers;
   int tick = 0;
 };
 
-/// A case's motion in a file of lines "name tick numbers"; without numbers where it has none.
+/// The motion of a case in a file with lines "name tick numbers". Without numbers if the file has no such line.
 inline Found found_in(const std::string& file, const std::string& name) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

@@ -1,4 +1,4 @@
-#include "support/allocation_watch.hpp"  // Before anything that includes Eigen.
+#include "support/allocation_watch.hpp"  // Before all headers that include Eigen.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@
 #include "support/paper.hpp"
 #include "support/schemes.hpp"
 
-/// A rollout and a control loop allocate nothing, whatever the scheme and the number of joints. Each of the three
-/// watches that check this is seen to catch a planted allocation.
+/// Rollouts and control loops allocate nothing, for every scheme and number of joints. Three watches check this. Each
+/// watch must detect a planted allocation.
 namespace fpbm::test {
 namespace {
 
@@ -35,7 +35,7 @@ struct Watched {
   AllocationCount count;
 };
 
-/// A whole rollout under watch, into buffers of the caller's. `extra` is called at every sample.
+/// A rollout under watch, with buffers of the caller. `extra` is called at every sample.
 template <typename Space, typename Arm, typename Scheme>
 Watched watched_rollout(const Arm& arm, const AnyPath<Space>& path, const Scheme& scheme, const Vector<Arm::kDof>& q0,
                         void (*extra)()) {
@@ -70,7 +70,7 @@ Watched on_the_papers_circle(
   return watched_rollout(paper_arm(), paper_circle(), scheme, paper_start().q, extra);
 }
 
-/// Under a scheme behind AnyScheme: the rollout compiles once for each level, and the scheme in its own size.
+/// Uses AnyScheme: the rollout is compiled once for each level, and the scheme for its own size.
 template <typename Scheme>
 void expect_none_in(const Scheme& scheme, const std::string& name) {
   const AnyScheme<Scheme::kLevel, Position<2>> any(scheme);
@@ -104,7 +104,7 @@ TEST(NoAllocation, in_a_rollout_of_a_size_chosen_at_run_time) {
   expect_none_in_any_scheme<kOpen>();
 }
 
-/// A secondary objective round a scheme.
+/// A secondary objective that wraps a scheme.
 template <typename Arm>
 void expect_none_in_an_ascent(const Arm& arm) {
   constexpr int N = Arm::kDof;
@@ -121,7 +121,7 @@ TEST(NoAllocation, in_secondary_objectives) {
   return Vector<7>{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
 }
 
-/// Arms in space, poses, and every kind of path: waypoints take their memory when they are made.
+/// Arms in space, poses, and all types of paths. Waypoints allocate when they are constructed.
 TEST(NoAllocation, in_space) {
   using Accelerations = AnyScheme<Level::kAcceleration, Pose>;
   const InPlane circle(Path(Circle(0.05), 5.0), Vector<3>::UnitY(), Vector<3>::UnitZ());
@@ -139,7 +139,7 @@ TEST(NoAllocation, in_space) {
   expect_none(watched_rollout(any_arm(chain), path, open, panda_ready(), [] {}), "Panda, coupled");
 }
 
-/// Every call of a control loop, with targets within reach and beyond every limit, and nonsense.
+/// All calls of a control loop, with reachable targets, references that violate all limits, and NaN.
 template <typename Space, typename Arm, typename Scheme, typename Guard = Unguarded>
 void expect_none_in_a_loop(const Arm& arm, const Scheme& scheme, const Guard& guard = {}) {
   constexpr int N = Arm::kDof;
@@ -197,7 +197,7 @@ TEST(NoAllocation, in_a_control_loop) {
   expect_none_in_a_loop<Pose>(fixed, fpbm, Guard<Level::kAcceleration, 7>(clearance));
 }
 
-/// In both lanes its limits are met, so that each tracker ends its ticks by itself.
+/// In both lanes, the limits are active, so that each tracker completes its ticks separately.
 TEST(NoAllocation, in_trackers_side_by_side) {
   using In = Lanes<2>;
   constexpr double kTick = 4e-3;
@@ -241,7 +241,7 @@ TEST(NoAllocation, in_task_levels) {
   EXPECT_LT(second, 1.0);
 }
 
-/// A stack of tasks, pressed against its limits, with a level that is disabled.
+/// A stack of tasks with active limits and a disabled level.
 TEST(NoAllocation, in_a_stack) {
   const Robot<7> robot(presets::panda());
   constexpr int kTip = Robot<7>::kTip;
@@ -263,7 +263,7 @@ TEST(NoAllocation, in_a_stack) {
   EXPECT_GT(slowed, 0);
 }
 
-/// A motion that has to stop does so without an allocation as well.
+/// A motion that must stop does not allocate either.
 TEST(NoAllocation, in_a_rollout_that_fails) {
   const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(3.0, 0.0)), kDuration));
   const Watched watched = watched_rollout(paper_arm(), path, paper_fpbm(), paper_start().q, [] {});
@@ -271,7 +271,7 @@ TEST(NoAllocation, in_a_rollout_that_fails) {
   EXPECT_NE(watched.status, Status::kOk);
 }
 
-/// Plants one allocation at each of the 101 samples, and returns what the watches saw.
+/// Plants one allocation at each of the 101 samples, and returns the counts of the watches.
 AllocationCount planted(void (*allocate)()) {
   return on_the_papers_circle(paper_fpbm(), allocate).count;
 }

@@ -15,7 +15,7 @@
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 
-/// Stacks of tasks that are known at run time move as those of fixed types.
+/// Stacks of tasks that are known at run time give the same motions as stacks of fixed types.
 namespace fpbm::test::any_stack {
 namespace {
 
@@ -64,7 +64,7 @@ template <typename Tracker>
   return Target::hold(tracker.tip());
 }
 
-/// An axis, a place and a height of a link, and a posture, on four levels.
+/// An axis, a position and a height of a link, and a posture, on four levels.
 TEST(AnyStack, moves_as_a_stack_of_fixed_types) {
   auto expected = fixed(Stack(AxisTask<>{{kTip}, kGains}, PositionTask<>{{kTip}, kGains},
                               PositionTask<1>{{4}, kGains, {2}}, PostureTask<7>{TaskGains<>(4.0, 4.0)}));
@@ -87,7 +87,7 @@ TEST(AnyStack, moves_as_a_stack_of_fixed_types) {
   EXPECT_GT(slowed, 10);
 }
 
-/// Tasks side by side, and levels that are left out.
+/// Several tasks on one level, and omitted levels.
 TEST(AnyStack, has_tasks_side_by_side) {
   auto expected =
       fixed(Stack(TaskLevel(PositionTask<>{{kTip}, kGains}, AxisTask<>{{kTip}, kGains}), PoseTask<>{{5}, kGains}));
@@ -145,14 +145,15 @@ TEST(AnyFrameTask, has_the_rows_of_relative_tasks_and_of_the_center_of_mass) {
             "frame = 'lft_tip': must be a frame of the tree: 'torso_tip' 'right_tip' 'left_tip'");
 }
 
-/// A pose whose rotation about the frame's z axis is free.
+/// A pose with a free rotation about the z axis of the frame.
 TEST(AnyStack, has_poses_of_fewer_rows) {
   auto tracker = at_run_time(
       AnyStack(level(frame_task(FrameCoordinates::kPose, kTip, {true, true, true, true, true, false}, true)),
                posture_level(), no_level(), no_level()));
   auto target = holding(tracker);
   const auto tip = std::get<0>(target.x).at;
-  std::get<0>(target.x).at.R = tip.R * rotation(Vector<3>(0.0, 0.0, 1.0));  // Turned about z: already there.
+  std::get<0>(target.x).at.R = tip.R * rotation(Vector<3>(0.0, 0.0, 1.0));  // Rotated about the free z axis: no task
+                                                                            // error.
   std::get<5>(target.x)(6) += 0.5;
   for (int i = 0; i < 8000; ++i) (void)tracker.tick(target);
   const auto reached = std::get<0>(tracker.tip()).at;

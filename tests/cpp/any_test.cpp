@@ -16,7 +16,7 @@
 #include "support/recording.hpp"
 #include "support/schemes.hpp"
 
-/// What is known only at run time gives what the code of fixed size gives, to the last bit.
+/// Types known only at run time give bitwise the same results as code of fixed size.
 namespace fpbm::test::any_laws {
 namespace {
 
@@ -88,7 +88,7 @@ TEST(AnyArm, is_made_of_a_chain_or_of_lengths) {
   EXPECT_NE(complaint([] { (void)any_arm({}); }).find("joints has 0 entries"), std::string::npos);
 }
 
-/// Counts how often it is copied.
+/// Counts its copies.
 struct CountedArm : PlanarArm<4> {
   CountedArm() : PlanarArm<4>(Vector<4>::Ones()) {}
   CountedArm(const CountedArm& other) : PlanarArm<4>(other) { ++copies; }
@@ -105,7 +105,7 @@ TEST(AnyArm, shares_what_it_holds_with_its_copies) {
   expect_same_arm(copy, arm);
 }
 
-/// In regular postures, at a singular one, and with a reference that is not finite.
+/// In regular postures, in a singular posture, and with a reference that is not finite.
 template <typename Space, typename Arm, typename Scheme>
 void expect_same_answers(const Arm& arm, const Scheme& scheme) {
   constexpr int N = Arm::kDof;
@@ -155,7 +155,7 @@ TEST(AnyScheme, is_the_scheme_that_it_holds) {
   expect_same_answers<Position<2>>(PlanarArm<kOpen>(Vector<6>::Ones()), MVN<kOpen>(1.0));
 }
 
-/// Weights of any kind answer as the kind that they hold; subjects.hpp has schemes with each.
+/// AnyWeights gives the results of the weights that it holds. subjects.hpp has schemes with each type of weights.
 TEST(AnyWeights, are_the_weights_that_they_hold) {
   Random random(8);
   const Vector<kOpen> a = random.uniform(6, -1.0, 1.0);
@@ -238,7 +238,8 @@ TEST(AnyPath, is_converted_to_the_space_of_the_task) {
   EXPECT_NE(complaint([&] { (void)convert_path<PlanarPose>(turning); }), "");
 }
 
-/// Whole motions and ticks: the code round the seam is of run-time size, and may round its sums in another order.
+/// Whole motions and ticks. Code outside the type-erased interface is of run-time size, and may round sums in another
+/// order.
 TEST(Any, motions_are_those_of_fixed_size) {
   const AnyArm<Position<2>> arm(paper_arm());
   const AnyPath<Position<2>> path(Path(Circle(0.45), kDuration));

@@ -10,7 +10,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-/// Bad arguments throw std::invalid_argument, and the message names the argument, the index and the value.
+/// Invalid arguments throw std::invalid_argument. The message contains the argument, the index and the value.
 namespace fpbm::test::bad_input_laws {
 namespace {
 
@@ -33,7 +33,7 @@ void expect_refusal(Call&& call, const std::vector<std::string>& words) {
   ADD_FAILURE() << "accepted: " << words.front();
 }
 
-/// A number as messages write it, with snprintf's %g.
+/// A number in the format of messages, snprintf's %g.
 std::string text(double value) {
   if (value == kInf) return "inf";
   if (value == -kInf) return "-inf";
@@ -44,7 +44,7 @@ const std::vector<double> kNotPositive = {0.0, -1.5, kNaN, kInf, -kInf};
 const std::vector<double> kNegative = {-1.5, kNaN, kInf, -kInf};
 const std::vector<double> kNotFinite = {kNaN, kInf, -kInf};
 
-/// " = value:", as it stands in a message.
+/// The part " = value:" of a message.
 std::string value(double bad) {
   return " = " + (bad == 0.0 ? std::string("0:") : text(bad) + ":");
 }
@@ -58,7 +58,7 @@ TEST(BadInput, lengths) {
 }
 
 TEST(BadInput, number_of_joints) {
-  for (const int bad : {0, 1}) {  // No vector holds more than kMaxDof: Eigen asserts.
+  for (const int bad : {0, 1}) {  // More than kMaxDof entries fail an assertion of Eigen.
     expect_refusal([&] { PlanarArm<Eigen::Dynamic>(Open(Open::Ones(bad))); },
                    {"lengths has " + std::to_string(bad) + " entries", "2 to 64"});
   }
@@ -155,7 +155,7 @@ TEST(BadInput, time_grid) {
   EXPECT_EQ(TimeGrid<float>(10.0F, 1e-3F, 0.5F).samples(), 10501);
 }
 
-/// Runs a rollout that must be refused.
+/// Expects that a rollout is rejected.
 template <typename Scheme>
 void expect_rollout_refusal(const Scheme& scheme, const State<Eigen::Dynamic>& start,
                             const std::vector<std::string>& words, double duration = 10.0) {
@@ -177,7 +177,7 @@ TEST(BadInput, start) {
     start = paper_start();
     start.qd(3) = bad;
     expect_rollout_refusal(open_fpbm(), {start.q, start.qd}, {"qd0[3]" + value(bad), "finite"});
-    // At velocity level the start velocity is not read.
+    // At velocity level, the start velocity is not used.
     EXPECT_EQ(recorded(paper_arm(), paper_circle(), MVN<4>(), start, TimeGrid<>(10.0, 0.1)).result.status, Status::kOk);
   }
 }

@@ -13,7 +13,7 @@
 namespace fpbm::test::cholesky_laws {
 namespace {
 
-/// Solves A x = b by a Cholesky whose type is erased; false where it refuses A.
+/// Solves A x = b by a type-erased Cholesky. Returns false if A is rejected.
 using Solve = bool (*)(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
 template <int M, typename Scalar>
@@ -118,14 +118,15 @@ TEST_P(CholeskyOf, refuses_what_is_not_finite) {
   }
 }
 
-/// No scale is too small or too large: pivots are compared with the diagonal.
+/// No scale is too small or too large, because pivots are compared with the diagonal.
 TEST_P(CholeskyOf, is_indifferent_to_scale) {
   Random random(4);
   const Eigen::MatrixXd A = random.positive_definite(GetParam().rows);
   for (const double scale : {1e-30, 1e-6, 1e6, 1e30}) EXPECT_TRUE(GetParam().factors(scale * A)) << scale;
 }
 
-/// Two matrices side by side give the bits that each gives alone, and are refused where either is refused.
+/// Two matrices factorised together give bitwise the results of separate factorisations. They are rejected if either is
+/// rejected.
 template <int M, typename Scalar>
 void expect_pair_to_agree() {
   using Square = Matrix<M, M, Scalar>;

@@ -10,7 +10,8 @@
 
 #include "support/random.hpp"
 
-/// Distances of shapes of all sizes, in general position, parallel, crossing, touching, one in the other, or points.
+/// Distances of shapes of all sizes: in general position, parallel, crossing, touching, one inside the other, or
+/// points.
 namespace fpbm::test::clearance_distance_laws {
 namespace {
 
@@ -25,7 +26,7 @@ class Distances : public ::testing::Test {
   Scalar size() { return static_cast<Scalar>(std::pow(10.0, random_.uniform(-3.0, 1.0))); }
   Vector3 vector() { return random_.uniform(3, -1.0, 1.0).cast<Scalar>(); }
   Vector3 direction() { return vector().normalized(); }
-  /// Whole numbers: what is computed of them is often exactly zero.
+  /// Integers, so that results are often exactly zero.
   Vector3 whole() { return (Scalar(2) * vector()).array().round().matrix(); }
 
   Transform<Scalar> pose() {
@@ -38,7 +39,7 @@ class Distances : public ::testing::Test {
     return {size() * vector(), chance(0.1) ? Vector3(Vector3::Zero()) : Vector3(size() * vector())};
   }
 
-  /// A direction near to the way, or along it.
+  /// A direction that is parallel or nearly parallel to `way`.
   Vector3 near_parallel(const Vector3& way) {
     const Scalar angle = chance(0.3) ? Scalar(0) : static_cast<Scalar>(std::pow(10.0, random_.uniform(-18.0, -1.0)));
     return uniform(-2, 2) * (way + angle * way.norm() * vector());
@@ -48,14 +49,14 @@ class Distances : public ::testing::Test {
 
   Capsule<Scalar> capsule(const Segment<Scalar>& core) { return {core.start, core.start + core.way, radius()}; }
 
-  /// Another segment: anywhere, near parallel, through a point of the first, and with an end there.
+  /// A second segment: anywhere, nearly parallel, through a point of the first segment, or with an end at such a point.
   Segment<Scalar> other(const Segment<Scalar>& first) {
     Segment<Scalar> second = segment();
     if (chance(0.3)) second.way = near_parallel(first.way);
     const Scalar on_second = chance(0.5) ? std::round(uniform(0, 1)) : uniform(0, 1);
     const Scalar on_first = chance(0.5) ? std::round(uniform(0, 1)) : uniform(0, 1);
     if (chance(0.5)) second.start = first.at(on_first) - on_second * second.way;
-    // So near that the difference of the two has few digits.
+    // So near that the difference of the points has few significant digits.
     if (chance(0.5)) second.start += static_cast<Scalar>(std::pow(10.0, random_.uniform(-18.0, -2.0))) * direction();
     return second;
   }
@@ -73,7 +74,7 @@ class Distances : public ::testing::Test {
     Capsule<Scalar> first;
     Cuboid<Scalar> second;
   };
-  /// A box of any shape, flat ones included, and a segment anywhere, in it, through it, or along an edge.
+  /// A box of any shape, possibly flat, and a segment anywhere, inside the box, through the box, or along an edge.
   BoxPair capsule_and_box() {
     Vector3 half{size(), size(), size()};
     if (chance(0.2)) half(0) = Scalar(0);
@@ -86,7 +87,7 @@ class Distances : public ::testing::Test {
     return {placed(capsule(core), at), {at, half}};
   }
 
-  /// How far two shapes lie apart along a unit vector n.
+  /// Gap between two shapes along a unit vector n.
   static Scalar gap(const Capsule<Scalar>& first, const Capsule<Scalar>& second, const Vector3& n) {
     const Scalar low = std::min(n.dot(first.a - second.a), n.dot(first.b - second.a));
     const Scalar high = std::max(Scalar(0), n.dot(second.b - second.a));
@@ -98,7 +99,7 @@ class Distances : public ::testing::Test {
            across.cwiseAbs().dot(second.half) - first.radius;
   }
 
-  /// Distance of a point from a shape, above zero outside.
+  /// Signed distance of a point from a shape, positive outside.
   static Scalar from(const Capsule<Scalar>& shape, const Vector3& point) {
     const Vector3 way = shape.b - shape.a;
     const Scalar t = way.isZero(0) ? Scalar(0)
@@ -126,18 +127,18 @@ class Distances : public ::testing::Test {
   static Scalar extent(const Cuboid<Scalar>& box) { return box.pose.p.norm() + Scalar(2) * box.half.norm(); }
   static Scalar extent(const HalfSpace<Scalar>& solid) { return std::abs(solid.offset); }
 
-  /// What round-off may amount to.
+  /// Bound on the round-off error of a distance.
   template <typename Second>
   static Scalar slack(const Capsule<Scalar>& first, const Second& second) {
     return Scalar(32) * kEpsilon * (extent(first) + extent(second));
   }
-  /// What it may amount to in a normal: all but a quarter of a Scalar's digits count.
+  /// Bound on the error of a gap along the normal: the normal is accurate to three quarters of the digits of Scalar.
   template <typename Second>
   static Scalar slack_of_normal(const Capsule<Scalar>& first, const Second& second) {
     return slack(first, second) + Scalar(4) * std::pow(kEpsilon, Scalar(0.75)) * (extent(first) + extent(second));
   }
 
-  /// Unit normal, points on both surfaces, and points and distance that agree.
+  /// The normal is a unit vector, the points are on both surfaces, and their difference equals distance · normal.
   template <typename Second>
   static void expect_consistent(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                                 const std::string& where) {
@@ -149,8 +150,8 @@ class Distances : public ::testing::Test {
     ASSERT_NEAR(from(second, found.on_second), Scalar(0), tolerance) << where;
   }
 
-  /// The signed distance of convex shapes is the widest gap along any direction. A pair of points as far apart as the
-  /// gap along the normal proves both where they are apart.
+  /// The signed distance of convex shapes is the largest gap over all directions. If the distance of two points, one of
+  /// each shape, equals the gap along the normal, both are optimal.
   template <typename Second>
   void expect_widest_gap(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                          const std::string& where) {
@@ -163,8 +164,8 @@ class Distances : public ::testing::Test {
     }
   }
 
-  /// The distance changes by at most what first moves by, by exactly that away along the normal, and else by normal ·
-  /// v.
+  /// Moving `first` by x along the normal changes the distance by x. Any other displacement changes the distance by at
+  /// most its length, and at the rate normal · v.
   template <typename Second>
   void expect_slope(const Nearest<Scalar>& found, const Capsule<Scalar>& first, const Second& second,
                     const std::string& where) {
@@ -179,7 +180,7 @@ class Distances : public ::testing::Test {
     const Nearest<Scalar> after = nearest(moved(first, h * v), second);
     const Nearest<Scalar> before = nearest(moved(first, -h * v), second);
     const Scalar turn = (after.normal - before.normal).norm();
-    if (turn > Scalar(0.1)) return;  // An edge between.
+    if (turn > Scalar(0.1)) return;  // An edge between: the normal is discontinuous here.
     ++smooth_;
     const Scalar slope = (after.distance - before.distance) / (2 * h);
     ASSERT_NEAR(slope, found.normal.dot(v), turn + tolerance / h) << where;
@@ -231,7 +232,7 @@ TYPED_TEST(Distances, of_a_capsule_and_a_half_space_are_those_of_the_lowest_poin
   }
 }
 
-/// Golden section within golden section: distance is convex in each, so that the least of the least is the least.
+/// Nested golden-section searches. The distance is convex in each parameter, so the result is the global minimum.
 TYPED_TEST(Distances, of_capsules_are_the_least_over_both_cores) {
   using Scalar = TypeParam;
   const auto least = [](auto&& function) {
@@ -251,7 +252,7 @@ TYPED_TEST(Distances, of_capsules_are_the_least_over_both_cores) {
     const Capsule<Scalar> thin{second.a, second.b, Scalar(0)};
     const Scalar apart = least([&](Scalar s) { return this->from(thin, core.at(s)); });
     const Scalar distance = nearest(first, second).distance + first.radius + second.radius;
-    // A search stops where the distance no longer changes by more than round-off.
+    // A search stops if the distance changes by no more than round-off error.
     ASSERT_NEAR(distance, apart, 4 * std::sqrt(this->kEpsilon) * (this->extent(first) + this->extent(second))) << i;
     ASSERT_LE(distance, apart + this->slack(first, second)) << i;
   }
@@ -290,7 +291,7 @@ TYPED_TEST(Distances, stay_in_a_common_motion) {
   }
 }
 
-/// Every pair of segments, and of a segment and a box, among whole numbers: all that can coincide does.
+/// All pairs of segments, and of a segment and a box, with integer coordinates: includes all coincidences.
 TYPED_TEST(Distances, on_a_grid_are_proved_by_points_and_normal) {
   using Scalar = TypeParam;
   std::vector<Vector<3, Scalar>> grid;
@@ -311,7 +312,7 @@ TYPED_TEST(Distances, on_a_grid_are_proved_by_points_and_normal) {
   }
 }
 
-/// Far smaller and far larger than any robot: squares vanish, and yet there is a unit normal.
+/// Sizes far below and far above the size of any robot: squares underflow, but the normal is a unit vector.
 TYPED_TEST(Distances, have_a_unit_normal_at_every_size) {
   using Scalar = TypeParam;
   const Scalar least = std::numeric_limits<Scalar>::denorm_min();

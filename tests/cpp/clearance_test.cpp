@@ -8,7 +8,7 @@
 #include "support/arms.hpp"
 #include "support/bodies.hpp"
 
-/// Levers, distances along motions, and what is sure of them.
+/// Levers, distances along motions, and the check by advancement.
 namespace fpbm::test::clearance_laws {
 namespace {
 
@@ -68,7 +68,7 @@ TEST(Levers, bound_how_far_joints_move_points) {
   }
 }
 
-/// The gradient of the nearest point's gap is that of the distance.
+/// The gradient of the gap at the nearest point equals the gradient of the distance.
 TEST(Separation, its_gradient_is_that_of_the_distance) {
   int compared = 0;
   for (const auto& [name, tree] : robots()) {
@@ -102,7 +102,7 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
   EXPECT_GE(compared, trials(40000));
 }
 
-/// Whether all pairs keep their margin along a sweep from q.
+/// Whether all pairs keep their margin along the trajectory `sweep` from q.
 [[nodiscard]] bool keeps_apart(Clearance<kOpen>& clearance, const Joints& q, const Sweep<kOpen>& sweep) {
   NearPairs<Clearance<kOpen>> near(clearance);
   near.go_to(clearance, q);
@@ -125,7 +125,7 @@ template <typename Scalar>
   return result;
 }
 
-/// From posture to posture, with an obstacle that jumps, the near pairs are those found from distances alone.
+/// From posture to posture, with an obstacle that jumps, NearPairs finds the same pairs as distances alone.
 template <typename Scalar>
 void expect_all_near_pairs() {
   int near_pairs = 0;
@@ -144,7 +144,7 @@ void expect_all_near_pairs() {
       Vector<kOpen, Scalar> q = random.uniform(n, -1.5, 1.5).template cast<Scalar>();
       NearPairs<Clearance<kOpen, Scalar>> near(clearance);
       auto placed = clearance.placement();
-      const double size = std::pow(10.0, random.uniform(-7.0, -1.0));  // Below the round-off of float, up to 0.1 rad.
+      const double size = std::pow(10.0, random.uniform(-7.0, -1.0));  // From below the round-off of float to 0.1 rad.
       const Joints drift = size * random.uniform(n, -1.0, 1.0);
       for (int k = 0; k < 200; ++k) {
         q += drift.template cast<Scalar>();
@@ -181,8 +181,8 @@ TEST(NearPairs, are_those_of_the_distances_in_float) {
   expect_all_near_pairs<float>();
 }
 
-/// Where keeps_apart() says so, no place in the sweep is nearer than the margin; and it says so nearly as often as it
-/// is so.
+/// If keeps_apart() returns true, no sampled posture of the trajectory is closer than the margin. It returns true for
+/// at least 90 % of the trajectories without a sampled violation.
 TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
   int sure = 0;
   int clear = 0;
@@ -198,7 +198,7 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       const Joints unknown = Joints::Constant(n, std::numeric_limits<double>::quiet_NaN());
       Sweep<kOpen> sweep{size * random.uniform(n, -1.0, 1.0), 0.05 * size * random.uniform(n, -1.0, 1.0), none, none,
                          unknown};
-      const bool gains = seed % 5 == 0;  // Joints begin to move, as in a tick.
+      const bool gains = seed % 5 == 0;  // The trajectory includes a tick from rest, as in accepts().
       if (gains) sweep.begun = sweep.way + 2.0 * sweep.tick;
       const Joints either = 0.02 * size * random.uniform(n, -1.0, 1.0);
       if (seed % 2 == 0) sweep.low = either.cwiseMin(0.0);
@@ -224,7 +224,7 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
   std::printf("sure of %d of %d sweeps that are clear\n", sure, clear);
 }
 
-/// Numbers that are none make it unsure.
+/// If a number is NaN or infinite, keeps_apart() returns false.
 TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
   Random random(5);
   auto clearance = surrounded(tree_of(presets::panda()), random);

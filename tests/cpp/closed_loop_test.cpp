@@ -9,7 +9,7 @@
 namespace fpbm::test::closed_loop_laws {
 namespace {
 
-/// Evaluates a loop at X in a good posture and in a singular one; check(X, dX, kinematics, reference, loop).
+/// Evaluates a loop at X in a regular and in a singular posture. Calls check(X, dX, kinematics, reference, loop).
 template <typename Scheme, typename Check>
 void on_the_planar_arm(const Scheme& scheme, Check&& check) {
   using Loop = ClosedLoop<PlanarArm<4>, Scheme, Position<2>>;

@@ -32,7 +32,8 @@ constexpr int kOpen = Eigen::Dynamic;
   return joint;
 }
 
-/// Every third joint, from a random one on, follows one of the others, before or after it, whose middle suits it.
+/// From a random first joint on, every third joint follows another joint, before or after it in the chain. The middle
+/// of its range corresponds to the middle of the range of its leader.
 [[nodiscard]] Chain<> random_coupled_chain(Random& random) {
   Chain<> chain;
   for (int i = 0; i < 9; ++i) chain.joints.push_back(random_joint(random));
@@ -55,7 +56,7 @@ constexpr int kOpen = Eigen::Dynamic;
   return chain;
 }
 
-/// Largest excess of a follower over a bound of its own.
+/// Largest excess of a follower over its own bounds.
 template <typename Result>
 [[nodiscard]] double violation(const Chain<>& chain, const Result& tick) {
   std::vector<Eigen::Index> drive(chain.joints.size());
@@ -73,7 +74,7 @@ template <typename Result>
   return worst;
 }
 
-/// From the middle of the joints' ranges, toward references that jump and that no joint can follow.
+/// Starts in the middle of the joint ranges, with references that jump and that no joint can follow.
 template <typename Scheme>
 void expect_followers_within_bounds(const Chain<>& chain, const Scheme& scheme, Random& random, double& worst) {
   using Space = Position<3>;
@@ -108,7 +109,7 @@ TEST(CoupledArm, keeps_the_bounds_of_those_that_follow) {
   std::printf("%d coupled chains, worst violation %.1e\n", chains, worst);
 }
 
-/// A leader and, before and after it, a follower.
+/// A leader with one follower before it and one after it.
 template <typename Scalar>
 [[nodiscard]] Chain<Scalar> three_joints(const Mimic<Scalar>& mimic, const JointBounds<Scalar>& bounds) {
   Chain<Scalar> chain;

@@ -13,7 +13,7 @@
 #include "fpbm/limits/level_saturation.hpp"
 #include "support/random.hpp"
 
-/// A level that is nearly singular, or nearly contradicts the level above, is damped in the lost directions alone.
+/// A level that is nearly singular, or nearly contradicts the level above, is damped in the lost directions only.
 namespace fpbm::test::damped_level_laws {
 namespace {
 
@@ -34,8 +34,9 @@ struct Problem {
   MatrixXd g = {};
 };
 
-/// Of a number of joints n and of rows m ≤ n − 2, where the smallest singular value of J in the null space of J₁ and in
-/// the units of the joints is `least` times the norm of the others. Sizes of the levels range from 1e-3 to 1e3.
+/// A problem with n joints and m ≤ n − 2 rows. In the null space of J₁ and in the units of the joints, the smallest
+/// singular value of J is `least` times the norm of the other singular values. The sizes of the levels range from 1e-3
+/// to 1e3.
 Problem random_problem(Random& random, Eigen::Index n, Eigen::Index m, double least) {
   const auto matrix = [&](Eigen::Index rows) {
     MatrixXd A(rows, n);
@@ -46,7 +47,7 @@ Problem random_problem(Random& random, Eigen::Index n, Eigen::Index m, double le
   const Eigen::JacobiSVD<MatrixXd> above(problem.J1 * problem.unit.asDiagonal(), Eigen::ComputeFullV);
   const MatrixXd Z = above.matrixV().rightCols(n - 2);
   const Eigen::JacobiSVD<MatrixXd> own(matrix(m) * Z, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  VectorXd sigma = VectorXd::Ones(m) + 0.5 * random.uniform(m, -1.0, 1.0);  // None but the last is small.
+  VectorXd sigma = VectorXd::Ones(m) + 0.5 * random.uniform(m, -1.0, 1.0);  // Only the last one is small.
   sigma(m - 1) = m == 1 ? 1.0 : least * sigma.head(m - 1).norm();
   const double size = std::pow(10.0, random.uniform(-3.0, 3.0));
   problem.J = size * own.matrixU() * sigma.asDiagonal() * own.matrixV().transpose() * Z.transpose() *
@@ -55,7 +56,7 @@ Problem random_problem(Random& random, Eigen::Index n, Eigen::Index m, double le
   return problem;
 }
 
-/// u after the first level, u after the second one; scale and lost directions of the second one.
+/// u after the first level and after the second level; task scale and lost directions of the second level.
 struct Found {
   VectorXd above;
   VectorXd u;
@@ -63,7 +64,7 @@ struct Found {
   double lost;
 };
 
-/// radius < 0: resolve(J, b).
+/// radius < 0: resolve(J, b), without damping.
 template <int N, typename Scalar, int M, int P>
 Found resolved(const Problem& problem, double radius) {
   const auto n = problem.unit.size();
@@ -89,10 +90,10 @@ Found resolved(const Problem& problem, double radius) {
 struct Kind {
   const char* name;
   Eigen::Index rows;
-  Eigen::Index fewest;  ///< Joints.
+  Eigen::Index fewest;  ///< Smallest number of joints.
   Eigen::Index most;
   double epsilon;
-  int further;  ///< Rows beside the box.
+  int further;  ///< Number of rows in addition to the box.
   Found (*resolved)(const Problem&, double);
 };
 void PrintTo(const Kind& kind, std::ostream* out) {
@@ -111,7 +112,7 @@ const Kind kKinds[] = {
 
 class DampedLevel : public ::testing::TestWithParam<Kind> {
  protected:
-  /// law(seed, problem) for many problems, of which least(random) draws the smallest singular value.
+  /// Calls law(seed, problem) for many problems, with the smallest singular value least(random).
   template <typename Least, typename Law>
   static void for_problems(int count, const Least& least, const Law& law) {
     const Kind& kind = GetParam();
@@ -141,7 +142,7 @@ TEST_P(DampedLevel, changes_no_bit_far_from_singular_postures) {
   });
 }
 
-/// With radius 0, also where rows depend on others: the least-squares solution.
+/// With radius 0, the result equals the least-squares solution, even if rows depend on other rows.
 TEST_P(DampedLevel, is_off_with_radius_0) {
   for_problems(
       200, [](Random&) { return 0.0; },
@@ -152,8 +153,8 @@ TEST_P(DampedLevel, is_off_with_radius_0) {
       });
 }
 
-/// However small the singular value is: the motion is at most 1.17 |r|/ε, the higher level does not change, and the
-/// directions that are not lost are done whole.
+/// For any smallest singular value, the motion is at most 1.17 |r|/ε, the higher level does not change, and the
+/// directions that are not lost are executed completely.
 TEST_P(DampedLevel, bounds_the_motion_and_does_what_is_not_lost) {
   double largest = 0.0;
   double disturbed = 0.0;
@@ -181,8 +182,8 @@ TEST_P(DampedLevel, bounds_the_motion_and_does_what_is_not_lost) {
   EXPECT_LE(undone, 1e4 * GetParam().epsilon);
 }
 
-/// Within bounds, from rest and with bounds that allow no motion at all: no bound is exceeded, and the higher level is
-/// as without the damped one.
+/// With bounds, from rest and with bounds that admit no motion: no bound is exceeded, and the higher level is the same
+/// as without the damped level.
 TEST_P(DampedLevel, keeps_all_bounds) {
   const auto least = [](Random& random) { return kRadius * std::pow(10.0, random.uniform(-12.0, 1.0)); };
   for_problems(300, least, [](int seed, Problem& problem) {
@@ -217,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(every, DampedLevel, ::testing::ValuesIn(kKinds), [](con
   return name;
 });
 
-/// A posture of all joints needs no factorisation. Its motion is that of the same rows in another order.
+/// A posture task of all joints needs no factorisation. Its motion does not depend on the order of the rows.
 TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   constexpr Eigen::Index n = 7;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -243,8 +244,8 @@ TEST(DampedLevels, of_a_posture_do_not_depend_on_the_order_of_rows) {
   }
 }
 
-/// A row of the second level turns through a row of the first one: the motion is continuous, also where the two rows
-/// coincide.
+/// A row of the second level rotates through a row of the first level. The motion is continuous, even where the two
+/// rows coincide.
 TEST(DampedLevels, are_continuous_where_rows_of_two_levels_coincide) {
   double largest = 0.0;
   double undamped = 0.0;

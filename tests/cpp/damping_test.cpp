@@ -14,12 +14,12 @@
 #include "support/recording.hpp"
 #include "support/subjects.hpp"
 
-/// Damping near singular postures, of every scheme on every arm and on the Panda, against singular value decompositions
-/// in extended precision.
+/// Damping near singular postures, for every scheme on every arm and on the Panda, compared with singular value
+/// decompositions in extended precision.
 namespace fpbm::test::damping_laws {
 namespace {
 
-/// A subject and a posture in which it is singular, whatever the angle of the first joint.
+/// A subject and a posture in which it is singular for every angle of the first joint.
 struct Place {
   Subject subject;
   Eigen::VectorXd singular;
@@ -31,19 +31,19 @@ void PrintTo(const Place& place, std::ostream* out) {
 
 std::vector<Place> places() {
   std::vector<Place> all;
-  // Stretched arms. Those in space lose two positions at once, or three rows of a pose.
+  // Stretched arms. Arms in space lose two directions of a position, or three rows of a pose.
   for (const Subject& subject : subjects()) all.push_back({subject, Eigen::VectorXd::Zero(subject.dof)});
-  // Stretched: joints 2, 4, 6 and the flange on a line, the offsets of 82.5 and 88 mm on either side of it.
+  // Stretched: joints 2, 4, 6 and the flange on a line, with the offsets of 82.5 and 88 mm on either side.
   const double elbow = -std::atan2(0.0825, 0.316) - std::atan2(0.0825, 0.384);
   const double wrist = kPi + std::atan2(0.0825, 0.384) - std::atan2(0.088, 0.107);
   const Eigen::VectorXd stretched = Eigen::Vector<double, 7>(0.0, -0.4, 0.0, elbow, 0.0, wrist, 0.3);
   for (const Subject& subject : panda_position_subjects()) all.push_back({subject, stretched});
-  // Upright: the axes of joints 1, 3 and 5 are one.
+  // Upright: the axes of joints 1, 3 and 5 coincide.
   for (const Subject& subject : panda_pose_subjects()) all.push_back({subject, Eigen::VectorXd::Zero(7)});
   return all;
 }
 
-/// The places whose round-off is small enough for second differences.
+/// The places whose round-off error is small enough for second differences.
 std::vector<Place> places_in_double() {
   std::vector<Place> all = places();
   all.erase(std::remove_if(all.begin(), all.end(), [](const Place& each) { return each.subject.epsilon > 1e-10; }),
@@ -55,13 +55,13 @@ double least_singular_value(const RealMatrix& J) {
   return static_cast<double>(singular_values(J).tail(1)(0));
 }
 
-/// σ_min / ‖J‖_F, angles by the arm's length: the least radius with which J is damped.
+/// σ_min / ‖J‖_F, with angles scaled by the length of the arm: the smallest radius with which J is damped.
 double distance_to_singular(const Situation& at) {
   const RealMatrix even = at.units.asDiagonal() * at.J;
   return least_singular_value(even) / static_cast<double>(even.norm());
 }
 
-/// Δ / ε² as defined, whose trace is the number of lost directions.
+/// Δ / ε² by its definition. Its trace is the number of lost directions.
 RealMatrix lost_directions(const RealMatrix& J, double radius) {
   const Real edge = static_cast<Real>(radius) * J.norm();
   const auto [sigma, U] = spectrum(J);
@@ -73,13 +73,13 @@ RealMatrix lost_directions(const RealMatrix& J, double radius) {
   return lost;
 }
 
-/// The answer that a damped scheme must give, and the size of the terms that it sums.
+/// The expected result of a damped scheme, and the size of the terms in its sum.
 struct Expected {
   RealVector u;
   double size;
 };
 
-/// The laws as printed, with J⁺ and J_W⁺ damped and the brake in z.
+/// The laws as printed, with damped J⁺ and J_W⁺, and the brake in z.
 Expected damped(const Law& law, const Situation& at) {
   const auto alpha = static_cast<Real>(law.alpha);
   const RealMatrix even = at.units.asDiagonal() * at.J;
@@ -106,11 +106,11 @@ Expected damped(const Law& law, const Situation& at) {
           static_cast<double>((Jp.norm() + JWp.norm()) * b.norm() + (1 + JWp.norm() * at.J.norm()) * v.norm())};
 }
 
-/// Trials in each kind of state.
+/// Trials for each type of state.
 constexpr std::uint32_t kSeeds = 16;
 
 bool same_bits(const RealVector& a, const RealVector& b) {
-  // As double, which they come from: a long double has padding bytes.
+  // Compared as double, the original type: a long double has padding bytes.
   const Eigen::VectorXd x = a.cast<double>();
   const Eigen::VectorXd y = b.cast<double>();
   return x.size() == y.size() &&
@@ -130,7 +130,7 @@ class Damping : public ::testing::TestWithParam<Place> {
     return result;
   }
 
-  /// Calls check(scene, law) in states that are not singular; some of them are nearly so.
+  /// Calls check(scene, law) in states that are not singular. Some are nearly singular.
   template <typename Check>
   static void in_regular_states(Check&& check) {
     for (const Regime regime : {Regime::kRegular, Regime::kNearSingular, Regime::kAtRest}) {
@@ -145,7 +145,7 @@ class Damping : public ::testing::TestWithParam<Place> {
     }
   }
 
-  /// A singular scene: stretched or, where that is singular too, with joints folded back.
+  /// A singular scene: stretched, or with folded joints if the folded posture is singular too.
   static Scene singular_scene(Random& random) {
     Scene scene = random_scene(random, subject(), Regime::kRegular);
     const bool foldable = GetParam().singular.isZero();
@@ -156,7 +156,7 @@ class Damping : public ::testing::TestWithParam<Place> {
     return scene;
   }
 
-  /// Calls check(scene, law) in singular states and at several distances from them.
+  /// Calls check(scene, law) in singular states and at several distances from singular states.
   template <typename Check>
   static void around_singular_states(Check&& check) {
     for (const bool has_null_space : {false, true}) {
@@ -176,11 +176,12 @@ class Damping : public ::testing::TestWithParam<Place> {
     }
   }
 
-  /// Expected round-off in Δ/ε², which is computed from the eigenvalues of JJᵀ.
+  /// Expected round-off error of Δ/ε², which is computed from the eigenvalues of JJᵀ.
   static double round_off(double radius) { return 64.0 * subject().epsilon / (radius * radius); }
 };
 
-/// While σ_min ≥ ε, even by a hair, the answer has the bits that it has without damping. A hair beyond, it is damped.
+/// If σ_min ≥ ε by the smallest margin, the result is bitwise the result without damping. Just below ε, the result is
+/// damped.
 TEST_P(Damping, is_exactly_none_outside_the_radius) {
   in_regular_states([](const Scene& scene, const Law& law) {
     const Outcome plain = resolve(law, scene);
@@ -197,7 +198,7 @@ TEST_P(Damping, is_exactly_none_outside_the_radius) {
   });
 }
 
-/// The answer is that of JW⁻¹Jᵀ + Δ with the brake in the null space, wherever the arm is.
+/// In every state, the result equals the law with JW⁻¹Jᵀ + Δ and the brake in the null space.
 TEST_P(Damping, equals_its_definition) {
   around_singular_states([](const Scene& scene, const Law& law) {
     const Outcome outcome = resolve(law, scene);
@@ -214,7 +215,8 @@ TEST_P(Damping, equals_its_definition) {
   });
 }
 
-/// ‖J⁺‖ ≤ 1.17/ε: the columns of J⁺ are MVN's answers to unit velocities, angles by the arm's length.
+/// ‖J⁺‖ ≤ 1.17/ε: the columns of J⁺ are the results of MVN for unit velocities, with angles scaled by the length of the
+/// arm.
 TEST_P(Damping, bounds_the_joint_velocities) {
   if (subject().takes.acceleration || subject().takes.weights) return;
   around_singular_states([](Scene scene, Law law) {
@@ -232,7 +234,7 @@ TEST_P(Damping, bounds_the_joint_velocities) {
   });
 }
 
-/// There is always a finite answer, down to the least radius that the Scalar resolves.
+/// The result is always finite, down to the smallest radius that the Scalar resolves.
 TEST_P(Damping, always_has_an_answer) {
   around_singular_states([](const Scene& scene, const Law& law) {
     const double smallest = 32.0 * std::sqrt(subject().epsilon);
@@ -245,7 +247,7 @@ TEST_P(Damping, always_has_an_answer) {
   });
 }
 
-/// A state or reference that is not finite is refused, damped or not.
+/// A state or reference that is not finite is rejected, with and without damping.
 TEST_P(Damping, does_not_hide_what_is_not_finite) {
   Random random(1);
   const Law law = with_radius(random_law(random, subject(), true), 0.1);
@@ -264,7 +266,7 @@ TEST_P(Damping, does_not_hide_what_is_not_finite) {
 INSTANTIATE_TEST_SUITE_P(every, Damping, ::testing::ValuesIn(places()),
                          [](const auto& each) { return each.param.subject.name; });
 
-/// The answer along a straight line of postures, q = singular + s direction, which enters the radius at s = ±kEdge.
+/// The result along a straight line of postures, q = singular + s direction, which enters the radius at s = ±kEdge.
 class SmoothDamping : public Damping {
  protected:
   static constexpr double kEdge = 0.2;
@@ -312,15 +314,15 @@ class SmoothDamping : public Damping {
   Eigen::VectorXd direction_;
 };
 
-/// No jump: difference quotients stay bounded as steps shrink.
+/// No jump: difference quotients stay bounded if the steps decrease.
 TEST_P(SmoothDamping, answers_without_a_jump) {
   ASSERT_EQ(at(0.0).status, Status::kDamped);
   ASSERT_EQ(at(1.01 * kEdge).status, Status::kOk) << "the line leaves the radius";
   EXPECT_LE(steepest(5e-4), 1.25 * steepest(2e-3));
 }
 
-/// Two continuous derivatives in the singular posture, where the damping begins, and in between: the second difference
-/// quotients of both sides converge as the step shrinks.
+/// Two continuous derivatives in the singular posture, at the damping radius, and in between: the second difference
+/// quotients of both sides converge if the step decreases.
 TEST_P(SmoothDamping, answers_with_two_continuous_derivatives) {
   for (const double s : {0.0, kEdge, -kEdge, 0.37 * kEdge}) {
     const double coarse = std::max({kink(s, 4e-3), kink(s, 3e-3), kink(s, 2e-3)});
@@ -359,7 +361,7 @@ RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>&
   return real(inverse);
 }
 
-/// Of M singular values in N columns.
+/// M singular values, N columns.
 template <int M_, int N_, typename Scalar_ = double>
 struct Shape {
   static constexpr int M = M_;
@@ -373,8 +375,8 @@ struct Spectra : ::testing::Test {
   static constexpr int N = Shape::N;
   using Number = typename Shape::Scalar;
 
-  /// Calls check(J, random) on matrices with none, some and all but one of their singular values below about scale,
-  /// and down to zero.
+  /// Calls check(J, random) on matrices with none, some, and all but one of their singular values below about `scale`,
+  /// down to zero.
   template <typename Check>
   static void everywhere(double scale, Check&& check) {
     for (std::uint32_t seed = 0; seed < 300; ++seed) {
@@ -405,8 +407,8 @@ struct ShapeNames {
 };
 TYPED_TEST_SUITE(Spectra, Shapes, ShapeNames);
 
-/// ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε, however many directions are lost, and the bound is tight. With weights
-/// ‖W⁻¹Jᵀ(JW⁻¹Jᵀ + Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
+/// ‖Jᵀ(JJᵀ + Δ)⁻¹‖ ≤ 1.17/ε for any number of lost directions, and the bound is tight. With weights, ‖W⁻¹Jᵀ(JW⁻¹Jᵀ +
+/// Δ)⁻¹‖ ≤ 1.28 √cond(W)/ε.
 TYPED_TEST(Spectra, bound_the_damped_inverse) {
   using Fixture = TestFixture;
   using Scalar = typename Fixture::Number;
@@ -428,7 +430,7 @@ TYPED_TEST(Spectra, bound_the_damped_inverse) {
   EXPECT_GT(largest, 1.16);
 }
 
-/// σ_min/√M ≤ bound ≤ σ_min, and 0 where a direction is lost.
+/// σ_min/√M ≤ bound ≤ σ_min, and the bound is 0 if a direction is lost.
 TYPED_TEST(Spectra, have_a_bound_below_the_least_singular_value) {
   using Fixture = TestFixture;
   int lost = 0;
@@ -436,7 +438,7 @@ TYPED_TEST(Spectra, have_a_bound_below_the_least_singular_value) {
     const auto bound = static_cast<double>(least_singular_value_bound(J));
     const double sigma = least_singular_value(real(J));
     const double relative = sigma / static_cast<double>(J.norm());
-    // The bound comes from JJᵀ, where σ² is known to round-off only: σ is known to √epsilon.
+    // The bound is computed from JJᵀ, which has σ² up to round-off error. Therefore σ has the error √epsilon.
     const double round_off = 64.0 * Fixture::kEpsilon / (relative * relative);
     if (relative < 4.0 * Fixture::kEpsilon) {
       EXPECT_LE(bound, 2.0 * std::sqrt(Fixture::kEpsilon) * static_cast<double>(J.norm()));
@@ -449,7 +451,7 @@ TYPED_TEST(Spectra, have_a_bound_below_the_least_singular_value) {
   EXPECT_GT(lost, 0);
 }
 
-/// Cholesky::inverse_trace, which the bound is computed from.
+/// Cholesky::inverse_trace, from which the bound is computed.
 TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
   using Fixture = TestFixture;
   using Gram = Matrix<Fixture::M, Fixture::M, typename Fixture::Number>;
@@ -457,7 +459,7 @@ TYPED_TEST(Spectra, have_the_trace_of_the_inverse) {
   for (int i = 0; i < 100; ++i) {
     const Gram A = random.positive_definite(Fixture::M).template cast<typename Fixture::Number>();
     Cholesky<Fixture::M, typename Fixture::Number> cholesky;
-    if (cholesky.factor(A) != Status::kOk) FAIL();  // g++ warns of an uninitialised factor after ASSERT_EQ.
+    if (cholesky.factor(A) != Status::kOk) FAIL();  // With ASSERT_EQ, g++ warns of an uninitialised factor.
     const auto expected = static_cast<double>(inverse(real(A)).trace());
     EXPECT_NEAR(static_cast<double>(cholesky.inverse_trace()), expected, 256.0 * Fixture::kEpsilon * expected);
   }
@@ -467,7 +469,7 @@ Recording<4> paper_run(Figure figure, const AccelerationScheme<4>& scheme) {
   return recorded(paper_arm(), paper_path(figure), scheme, paper_start(), TimeGrid<>(kDuration, 1e-3));
 }
 
-/// The paper's motions are far from singular: damping changes no bit of them.
+/// The motions of the paper are far from singular: damping changes no bit.
 TEST(DampedMotion, leaves_the_bits_of_the_papers_motions_alone) {
   for (const PaperCase& each : kPaperCases) {
     auto scheme = FPBM<4>(each.alpha, Vector<4>(each.weights.data()), each.k1, each.k2);
@@ -488,7 +490,7 @@ TEST(DampedMotion, leaves_the_bits_of_the_papers_motions_alone) {
   }
 }
 
-/// Calls check(name, scheme) with a scheme of each kind.
+/// Calls check(name, scheme) with a scheme of each type.
 template <typename Check>
 void with_every_scheme(Check&& check) {
   Law law;
@@ -502,7 +504,7 @@ void with_every_scheme(Check&& check) {
       });
 }
 
-/// Least distance to a singular posture of the paper's arm on its way.
+/// Smallest distance to a singular posture along a motion of the paper's arm.
 double nearest_to_singular(const Recording<4>& run) {
   double nearest = 1.0;
   for (const auto& sample : run.samples) {
@@ -513,7 +515,7 @@ double nearest_to_singular(const Recording<4>& run) {
   return nearest;
 }
 
-/// A motion that enters the radius a little reaches its end, and its status says that it was damped.
+/// A motion that enters the radius slightly is completed, and its status reports the damping.
 TEST(DampedMotion, that_enters_the_radius_a_little_reaches_its_end) {
   with_every_scheme([](const std::string& name, auto scheme) {
     SCOPED_TRACE(name);
@@ -531,7 +533,7 @@ TEST(DampedMotion, that_enters_the_radius_a_little_reaches_its_end) {
   });
 }
 
-/// On a circle too large for the workspace, the motion stops where the tip leaves the circle, with any damping.
+/// On a circle larger than the workspace, the motion stops where the tip leaves the circle, with any damping.
 TEST(DampedMotion, that_leaves_its_path_is_stopped) {
   const AnyPath<Position<2>> path(Path(Circle(4.5), 5.0));
   const double fastest = path.sample(2.5).xd.norm();
@@ -555,7 +557,8 @@ TEST(DampedMotion, that_leaves_its_path_is_stopped) {
   });
 }
 
-/// Largest joint speed [rad/s] after 30 s under FPBM toward a point 0.1 m out of reach, in a loop that does not stop.
+/// Largest joint speed [rad/s] after 30 s under FPBM toward a point 0.1 m beyond the workspace, in a loop that does not
+/// stop.
 double speed_at_the_edge(double brake, std::uint32_t seed) {
   Random random(seed);
   const auto arm = paper_arm();
@@ -577,7 +580,7 @@ double speed_at_the_edge(double brake, std::uint32_t seed) {
   return x.col(1).cwiseAbs().maxCoeff();
 }
 
-/// The brake brings an arm whose target is out of reach to rest at the edge of its workspace.
+/// With the brake, an arm with an unreachable target stops at the workspace boundary.
 TEST(DampedMotion, comes_to_rest_at_the_edge) {
   double without_brake = 0.0;
   for (std::uint32_t seed = 0; seed < 5; ++seed) {

@@ -12,13 +12,14 @@
 #include "support/linear_program.hpp"
 #include "support/random.hpp"
 
-/// Degenerate problems of the saturation: the motion that it starts from is on several bounds, several joints meet
-/// their bounds together, joints hardly move the tip or hardly move in the null space. The share of the task is the one
-/// that a linear program finds.
+/// Degenerate problems of the saturation: the start motion is on several bounds, several joints meet their bounds in
+/// one step, or joints hardly move the tip or hardly move in the null space. The task scale equals the result of a
+/// linear program.
 namespace fpbm::test::degenerate_saturation_laws {
 namespace {
 
-/// Problems of each kind and size; FPBM_DEGENERATE sets another number: 11 × 5 × 2000 are 110,000.
+/// Number of problems of each kind and size. FPBM_DEGENERATE sets another number: with 2000, there are 11 × 5 × 2000 =
+/// 110,000 problems.
 [[nodiscard]] int problems_of_each_kind() {
   const char* number = std::getenv("FPBM_DEGENERATE");
   return number != nullptr ? std::atoi(number) : trials(300);
@@ -39,12 +40,13 @@ template <int M, int N>
   return saturation(Box<N>{p.lower, p.upper}, Vector<N>(p.rest), Vector<N>(p.desired));
 }
 
-/// A Jacobian whose null space has the columns of Z for a basis.
+/// A Jacobian whose null space has the columns of Z as a basis.
 [[nodiscard]] Eigen::MatrixXd with_null_space(const Eigen::MatrixXd& Z) {
   return Eigen::FullPivLU<Eigen::MatrixXd>(Z.transpose()).kernel().transpose();
 }
 
-/// Puts rest on some bounds; there the goal stays, moves inward, or is beyond the bound by `beyond`.
+/// Sets `rest` to bounds for some joints. For these joints, the goal stays, is inside the bounds, or exceeds the bound
+/// by `beyond`.
 void put_on_bounds(Random& random, Problem& p, double beyond) {
   for (Eigen::Index i = 0; i < p.rest.size(); ++i) {
     const double draw = random.uniform(0.0, 1.0);
@@ -87,7 +89,7 @@ void put_on_bounds(Random& random, Problem& p, double beyond) {
   }
   if (kind.find("small entries") == 0) {
     Eigen::MatrixXd Z = random.uniform(n, n - m, -1.0, 1.0);
-    // The round-off error of the null space itself, 1e-16, decides on goals as small as its entries.
+    // For goals as small as the entries, the round-off error of the null space, 1e-16, would decide the result.
     const double least = kind == "small entries, small goals" ? -9.0 : -11.0;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (random.uniform(0.0, 1.0) < 0.4) Z.row(i) *= std::pow(10.0, random.uniform(least, -7.0));
@@ -128,7 +130,7 @@ void check(const std::string& kind, Eigen::Index m, Eigen::Index n, int& all, in
     const Eigen::VectorXd task = p.J * (p.desired - p.rest);
     const Eigen::VectorXd done = p.J * (found.u - p.rest);
     ASSERT_LE((done - found.scale * task).norm(), 1e-9 * found.scale * task.norm() + 1e-11 * p.J.norm());
-    // Round-off error of the bounds leaves the optimum of some problems uncertain.
+    // Due to the round-off error of the bounds, the optimum of some problems is uncertain.
     const auto optimum = [&](double slack) {
       const Eigen::VectorXd wider = Eigen::VectorXd::Constant(n, slack);
       return largest_scale(p.J, p.lower - wider, p.upper + wider, p.rest, p.desired, {}, {});
@@ -166,12 +168,12 @@ TEST(DegenerateSaturation, is_optimal) {
   }
 }
 
-/// A basis of a null space is wrong by round-off error. That error moves no other joint: a joint that does not move in
-/// the null space, and is asked to leave its bound by 1e-14, blocks the task.
+/// A basis of a null space has round-off errors, which must not move other joints. If a joint without null-space motion
+/// must leave its bound by 1e-14, the task is blocked.
 TEST(DegenerateSaturation, round_off_error_of_the_basis_moves_no_joint) {
   LevelSpace<3> space(3);
   Matrix<2, 3> levels;
-  levels << 1.0, 0.0, 0.0, 0.0, 1.0, 2e-15;  // The null space: (0, −2e-15, 1).
+  levels << 1.0, 0.0, 0.0, 0.0, 1.0, 2e-15;  // Null space: (0, −2e-15, 1).
   space.add(levels);
   NullSpaceSaturation<Eigen::Dynamic, 3, double> saturation(space, Vector<3>::Ones());
   const Box<3> box{Vector<3>(-1.0, 0.0, -0.04), Vector<3>(1.0, 1.0, 0.0)};

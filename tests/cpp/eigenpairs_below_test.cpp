@@ -12,19 +12,19 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-/// The eigenvalues below a bound are Eigen's, and their vectors are orthonormal eigenvectors, to round-off, at every
-/// rank and scale.
+/// The eigenvalues below a bound equal Eigen's, and their vectors are orthonormal eigenvectors up to round-off, for
+/// every rank and scale.
 namespace fpbm::test::eigenpairs_below_laws {
 namespace {
 
-/// A as its Scalar rounds it, and the eigenpairs that were isolated.
+/// A, rounded to its Scalar, and the eigenpairs found.
 struct Eigenpairs {
   RealMatrix A;
   RealVector values;
   RealMatrix vectors;
 };
 
-/// EigenpairsBelow of a size and a Scalar, types erased.
+/// Type-erased EigenpairsBelow of a size and a Scalar.
 struct ErasedEigen {
   std::string name;
   int rows;
@@ -97,7 +97,7 @@ TEST_P(EigenpairsBelowOf, gram_matrices_of_every_rank_and_scale) {
   }
 }
 
-/// Entries whose squares are not in the range of the Scalar.
+/// Entries whose squares are outside the range of the Scalar.
 TEST_P(EigenpairsBelowOf, matrices_that_are_scaled) {
   const int rows = GetParam().rows;
   const double power = GetParam().epsilon < 1e-10 ? 200.0 : 25.0;

@@ -14,11 +14,11 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// FPBM's tip error obeys ë + k₁ė + k₂e = 0, whatever α, W and z.
+/// The tip error of FPBM satisfies ë + k₁ė + k₂e = 0 for all α, W and z.
 namespace fpbm::test::error_dynamics_laws {
 namespace {
 
-/// The solution of ë + k₁ė + k₂e = 0 from e(0), ė(0), by its characteristic roots.
+/// Solution of ë + k₁ė + k₂e = 0 from e(0), ė(0), by the characteristic roots.
 template <int M>
 Vector<M> closed_form(double k1, double k2, double t, const Vector<M>& e0, const Vector<M>& ed0) {
   const std::complex<double> root = std::sqrt(std::complex<double>(k1 * k1 / 4.0 - k2));
@@ -43,7 +43,7 @@ NullSpace<4> damped() {
   return NullSpace<4>{}.with_damping(2.0);
 }
 
-/// From a start with the wrong velocity, through a rollout: e(0) = 0, ė(0) = xd(0) − J qd(0).
+/// From a wrong start velocity, in a rollout: e(0) = 0, ė(0) = xd(0) − J qd(0).
 TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
   const State<4> start{paper_start().q, Vector<4>(0.01, -0.04, 0.02, 0.03)};
   for (const auto& [k1, k2] : {kUndamped, kUnderdamped, kCritical, kOverdamped, kVelocityOnly, kNone}) {
@@ -64,12 +64,12 @@ TEST(ErrorDynamics, of_a_wrong_start_velocity_are_those_of_the_gains) {
   }
 }
 
-/// From a wrong position as well: RK4 with a reference beside the tip, and random dense weights.
+/// From a wrong start position too: RK4 with an offset reference and random dense weights.
 TEST(ErrorDynamics, of_a_wrong_start_position_are_those_of_the_gains) {
   using Scheme = AccelerationScheme<4, double, DenseWeights<4>>;
   const PlanarArm<4> arm = paper_arm();
   const auto path = paper_circle();
-  const Vector<4> bent(0.3, 0.6, 0.6, 0.6);  // The paper's posture is too straight to reach e0.
+  const Vector<4> bent(0.3, 0.6, 0.6, 0.6);  // The posture of the paper is too straight for e0.
   for (const auto& [k1, k2] : {kUnderdamped, kCritical, kOverdamped}) {
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       SCOPED_TRACE("k1 = " + std::to_string(k1) + ", k2 = " + std::to_string(k2) + ", seed " + std::to_string(seed));
@@ -106,8 +106,8 @@ TEST(ErrorDynamics, of_a_wrong_start_position_are_those_of_the_gains) {
   }
 }
 
-/// Of two levels, in ticks with one acceleration (TickFeedback): up to terms of (k₁h)², from a target that jumps on,
-/// while the level below moves the joints.
+/// Two levels, in ticks with one acceleration (TickFeedback), up to terms of (k₁h)². The target jumps, while the lower
+/// level moves the joints.
 TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
   const Robot<7> robot(presets::panda());
   const auto scheme = Balanced<7>(0.0, UnitWeights{}, NullSpace<7>().with_damping(2.0));
@@ -132,7 +132,7 @@ TEST(ErrorDynamics, of_several_levels_are_those_of_the_gains) {
   }
 }
 
-/// A chain of float.
+/// The chain in float.
 Chain<float> rounded(const Chain<>& chain) {
   const auto to_float = [](const Transform<>& at) {
     Transform<float> result;
@@ -153,7 +153,7 @@ Chain<float> rounded(const Chain<>& chain) {
   return result;
 }
 
-/// In float the feedback does not amplify the round-off error of positions: the joint accelerations vanish.
+/// In float, the feedback does not amplify the round-off error of positions: the joint accelerations become zero.
 TEST(ErrorDynamics, of_several_levels_settle_in_float) {
   const Robot<7, float> robot(rounded(presets::panda()));
   const Stack stack(AxisTask<float>{{Robot<7, float>::kTip}, {200.0F, 10000.0F}},
@@ -174,7 +174,7 @@ TEST(ErrorDynamics, of_several_levels_settle_in_float) {
   }
 }
 
-/// Of two levels, on a circle: the error is of the order of h², with the factor of the corrections of TickFeedback and
+/// Two levels on a circle: the error is of the order of h², with the factor of the corrections of TickFeedback and
 /// TickReferences::middle().
 TEST(ErrorDynamics, of_several_levels_follow_paths) {
   const Robot<7> robot(presets::panda());
@@ -202,7 +202,7 @@ TEST(ErrorDynamics, of_several_levels_follow_paths) {
       const double t = i * dt;
       const auto references = decltype(tracker)::References::of([&](double s) noexcept { return at(t + s); }, dt);
       const Status status = tracker.advance(references).status;
-      if (t < 2.0) continue;  // The start, at rest, is off the circle's velocity.
+      if (t < 2.0) continue;  // The start is at rest, without the velocity of the circle.
       ASSERT_EQ(status, Status::kOk);
       worst = std::max(worst, (std::get<0>(at(t + dt).x) - std::get<0>(tracker.tip())).norm());
     }
@@ -210,7 +210,7 @@ TEST(ErrorDynamics, of_several_levels_follow_paths) {
   }
 }
 
-/// At velocity level ė + k e = 0: an error decays at the rate of the gain.
+/// At velocity level, ė + k e = 0: an error decays at the rate of the gain.
 TEST(ErrorDynamics, at_velocity_level_are_a_decay) {
   const PlanarArm<4> arm = paper_arm();
   const auto scheme = WMVN<4>(paper_weights(), 3.0);

@@ -12,8 +12,8 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// A motion that leaves the workspace ends with a status, in time, and its samples are good. A motion well inside
-/// reaches its end.
+/// A motion that leaves the workspace ends with a status in time, and its samples are accurate. A motion well inside
+/// the workspace is completed.
 namespace fpbm::test::failure_laws {
 namespace {
 
@@ -21,10 +21,10 @@ namespace {
 struct Task {
   Eigen::VectorXd lengths;
   Eigen::VectorXd q0;
-  Vector<2> way;  ///< Of a line.
+  Vector<2> way;  ///< Displacement of the line [m].
   double duration;
   double dt;
-  std::uint32_t seed;  ///< Of the weights.
+  std::uint32_t seed;  ///< For the weights.
 };
 
 struct Ending {
@@ -53,7 +53,7 @@ Vector<kOpen> weights(const Task& task) {
   return Random(task.seed).uniform(task.q0.size(), 0.5, 8.0);
 }
 
-/// A scheme on an arm of dof joints.
+/// A scheme on an arm with `dof` joints.
 struct Contender {
   std::string name;
   int dof;
@@ -100,7 +100,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
       const Eigen::VectorXd q0 = random.uniform(n, -2.0, 2.0);
       const double direction = random.uniform(-kPi, kPi);
       const double reach = lengths.sum();
-      // Longer than the workspace is wide: leaves it from any start.
+      // Longer than the diameter of the workspace: leaves it from any start.
       const Vector<2> way = 2.5 * reach * Vector<2>(std::cos(direction), std::sin(direction));
       const Task task{lengths, q0, way, 5.0, dt, seed};
       const Ending ending = GetParam().run(task);
@@ -119,7 +119,7 @@ TEST_P(Failure, ends_a_line_that_leaves_the_workspace) {
   }
 }
 
-/// From a singular start nothing is recorded.
+/// From a singular start, no sample is recorded.
 TEST_P(Failure, refuses_a_singular_start) {
   const int n = GetParam().dof;
   for (const double direction : {0.0, 0.3}) {
@@ -139,7 +139,7 @@ TEST_P(Failure, refuses_a_singular_start) {
   }
 }
 
-/// From a well bent posture the tip moves a fifth of a link in any direction without a false alarm.
+/// From a well-bent posture, the tip moves by a fifth of a link in any direction without a false alarm.
 TEST_P(Failure, does_not_stop_a_motion_well_inside_the_workspace) {
   const int n = GetParam().dof;
   for (const double dt : {1e-3, 1e-2, 0.1}) {
@@ -164,10 +164,10 @@ TEST_P(Failure, does_not_stop_a_motion_well_inside_the_workspace) {
 INSTANTIATE_TEST_SUITE_P(every, Failure, ::testing::ValuesIn(contenders()),
                          [](const auto& each) { return each.param.name; });
 
-/// What the steps' length made of a motion: errors in largest entries of J, its lever arms.
+/// Effect of the step length on a motion. Errors are relative to the largest entry of J, its longest lever arm.
 struct Accuracy {
   Status status;
-  double error = 0.0;  ///< Largest of the tip, each over the lever arm there.
+  double error = 0.0;  ///< Largest tip error, relative to the lever arm of the sample.
 };
 
 template <Level kLevel, typename Space>
@@ -186,8 +186,8 @@ struct AccuracyTally {
   int coarse = 0;
 };
 
-/// From rest on the path, the tip error is the steps' alone. Where it exceeds 1e-4 lever arms the motion says so, and
-/// nowhere else.
+/// From rest on the path, the step length is the only cause of a tip error. The status reports a coarse step exactly if
+/// the error exceeds 1e-4 lever arms.
 template <typename Space>
 void expect_the_truth(const AnyArmFor<Space>& arm, const AnyPath<Space>& path, double dt, Random& random,
                       AccuracyTally& tally) {
@@ -242,7 +242,8 @@ TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
   std::printf("%d motions fine, %d of too long a step\n", tally.fine, tally.coarse);
 }
 
-/// Where the start's velocity is not the path's, the error that follows is the scheme's.
+/// If the start velocity differs from the velocity of the path, the status does not attribute the error to the step
+/// length.
 TEST(StepLength, is_not_blamed_for_a_wrong_start) {
   int wrong = 0;
   for (int seed = 0; seed < 200; ++seed) {

@@ -9,16 +9,16 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// Toward targets that it cannot reach an arm comes as near as it can, and rests there.
+/// If the target is unreachable, the arm moves as near to the target as it can, and stops.
 namespace fpbm::test::far_targets_laws {
 namespace {
 
 constexpr int N = Eigen::Dynamic;
 constexpr int kSeconds = 40;
-/// Of each arm; docs/realtime.md says what 144 give.
+/// For each arm. docs/realtime.md has the results of 144 targets.
 const int kTargets = trials(6, 3);
 
-/// Of each joint, in place of the arm's own where these are infinite.
+/// The limits of an arm, reduced to finite bounds for each joint.
 [[nodiscard]] JointLimits<N> bounded(JointLimits<N> limits, double acceleration) {
   for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
     limits.lower(i) = std::max(limits.lower(i), -2.8);
@@ -31,7 +31,7 @@ const int kTargets = trials(6, 3);
 
 struct Outcome {
   double speed;   ///< Of any joint in the last two seconds [rad/s].
-  int reversals;  ///< Of any joint's acceleration, tick by tick.
+  int reversals;  ///< Sign changes of the acceleration of any joint from tick to tick.
 };
 
 template <typename Space, typename Arm, typename Scheme>
@@ -111,7 +111,8 @@ template <typename Space, typename Arm, typename Scheme>
   return false;
 }
 
-/// Toward random postures' tips, with small velocities too: what an arm reaches that never gives up, it reaches.
+/// Targets are tips of random postures, also with small velocities. If an arm without stall detection reaches a target,
+/// the arm with stall detection reaches the target too.
 template <typename Space, typename Arm>
 void expect_no_target_lost(const Arm& arm) {
   for (int k = 0; k < kTargets; ++k) {
@@ -145,7 +146,7 @@ TEST(FarTargets, are_no_targets_within_reach) {
   expect_no_target_lost<Pose>(any_arm(presets::ur5e()));
 }
 
-/// Two links of 1 m, their target 1 m beyond their reach.
+/// Two links of 1 m, with a target 1 m beyond the workspace.
 struct Stall : ::testing::Test {
   static constexpr double kTick = 1e-3;
 
@@ -202,7 +203,7 @@ TEST_F(Stall, begins_after_its_time_without_progress) {
     for (int i = 0; i < 40000; ++i) {
       const auto tick = ticks(tracker, beyond, kTick);
       if (tick.status == Status::kStalled) break;
-      waited = tick.error.norm() < least - 4e-3 ? 0.0 : waited + kTick;  // 0.002 arm lengths of 2 m.
+      waited = tick.error.norm() < least - 4e-3 ? 0.0 : waited + kTick;  // 0.002 times the arm length of 2 m.
       if (waited == 0.0) least = tick.error.norm();
     }
     EXPECT_NEAR(waited, seconds, 0.01);

@@ -16,13 +16,13 @@
 #include "fpbm/task/relative_task.hpp"
 #include "support/random.hpp"
 
-/// Two arms hold an object: limits, and a stop with keep_first_level, do not break the grasp.
+/// Two arms hold an object. Limits, and a stop with keep_first_level, do not break the grasp.
 namespace fpbm::test {
 namespace {
 
 constexpr double kTick = 1e-3;
 
-/// Largest excess over the bounds on position, velocity, acceleration and jerk by differences of positions.
+/// Largest excess over the bounds on position, velocity, acceleration and jerk, by differences of positions.
 class Excess {
  public:
   Excess(const JointLimits<14>& bounds, const Vector<14>& q) : bounds_(bounds) { last_.fill(q); }
@@ -47,12 +47,12 @@ class Excess {
 };
 
 struct Motion {
-  double error = 0.0;   ///< Largest of the grasp [m] or [rad], of the tracker's own states.
+  double error = 0.0;   ///< Largest error of the grasp in the states of the tracker [m] or [rad].
   double excess = 0.0;  ///< Over the bounds.
   double speed = 0.0;   ///< At the end [rad/s].
 };
 
-/// An object held by two Pandas jumps from target to target for a second or two; then the robot stops.
+/// An object held by two Pandas jumps between targets for one to two seconds. Then the robot stops.
 template <typename Scheme>
 [[nodiscard]] Motion stopped(const Scheme& scheme, const TaskGains<>& grasp, const TaskGains<>& object,
                              const TaskGains<>& posture, int seed, bool keep) {
@@ -123,7 +123,7 @@ TEST(Grasp, outlasts_a_stop_by_velocity) {
   EXPECT_LT(worst, 1e-5);
 }
 
-/// One arm: the tip's pose stays where it is, while the self-motion comes to rest.
+/// One arm: the pose of the tip does not change, while the self-motion decays to rest.
 TEST(Grasp, a_stop_keeps_the_pose_of_one_arm) {
   const Robot<7> robot(presets::panda());
   TrackerOptions<> options;
@@ -145,7 +145,7 @@ TEST(Grasp, a_stop_keeps_the_pose_of_one_arm) {
   EXPECT_FALSE(failed(tracker.tick(target).status));
 }
 
-/// A stop does not move a task of the first level to a target that it has not reached, nor to one that is not finite.
+/// A stop does not move a task of the first level to a target that is far away or not finite.
 TEST(Grasp, a_stop_leaves_a_far_target) {
   const Robot<7> robot(presets::panda());
   TrackerOptions<> options;

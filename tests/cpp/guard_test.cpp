@@ -14,7 +14,7 @@
 #include "support/bodies.hpp"
 #include "support/wild_reference.hpp"
 
-/// An arm that keeps clear of shapes: no pair comes nearer than its margin, whatever is asked for.
+/// The guard: for every reference, no pair comes closer than its margin.
 namespace fpbm::test::guard_laws {
 namespace {
 
@@ -35,13 +35,13 @@ template <Level kLevel>
 using GuardedTracker = Tracker<AnyArm<Position<3>>, Position<3>, decltype(scheme<kLevel>()), Guard<kLevel, kOpen>>;
 
 struct Run {
-  double nearest = 1e9;  ///< Least distance beyond the margin.
-  double joints = 0.0;   ///< Largest excess over a bound of a joint, relative to it.
+  double nearest = 1e9;  ///< Smallest distance beyond the margin [m].
+  double joints = 0.0;   ///< Largest relative excess over a joint bound.
   int blocked = 0;
   int ticks = 0;
 };
 
-/// A random start clear of all shapes, and as many obstacles as leave one.
+/// A random start posture that keeps the margin to all shapes, among three random obstacles.
 struct Scene {
   Clearance<kOpen> clearance;
   Vector<kOpen> q;
@@ -65,7 +65,7 @@ struct Scene {
   }
 }
 
-/// Pulls an arm about with wild references and with ones that go straight through the shapes.
+/// Moves an arm with jumping references and with references that pass through the shapes.
 template <Level kLevel>
 void pull(const Chain<>& chain, std::uint32_t seed, int ticks, Run& run) {
   Random random(seed);
@@ -137,7 +137,7 @@ void expect_to_keep_clear() {
       ASSERT_GE(run.nearest, -kSlack) << name << ", seed " << seed;
     }
     EXPECT_LE(run.joints, 1e-9) << name;
-    if (kSeeds >= 10) {  // A few may meet nothing.
+    if (kSeeds >= 10) {  // With few seeds, an arm may meet no shape.
       EXPECT_GE(run.blocked, run.ticks / 50) << name;
     }
     std::printf("%s: nearest %.1e beyond the margin, joints' bounds %.1e, blocked %d of %d ticks\n", name.c_str(),
@@ -158,7 +158,7 @@ using PandaTracker = GuardedTracker<Level::kAcceleration>;
   return (Vector<7>() << 0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785).finished();
 }
 
-/// A Panda's tracker of positions, at rest in the ready posture, with a hand of 10 cm.
+/// Tracker of positions for a Panda with a hand of 10 cm, at rest in the ready posture.
 [[nodiscard]] auto panda_tracker(const std::vector<Obstacle<>>& obstacles) {
   const Chain<> chain = presets::panda();
   const Panda arm = any_arm(chain);
@@ -177,7 +177,7 @@ struct Slide {
   int held = 0;
 };
 
-/// Swings along y at x, from the second second on.
+/// Moves the target sinusoidally along y at a constant x. Errors and jerk are measured from 2 s on.
 template <typename Tracker_>
 [[nodiscard]] Slide swing(Tracker_&& tracker, double x) {
   const Vector<3> home = tracker.tip();
@@ -208,8 +208,8 @@ template <typename Tracker_>
   return slide;
 }
 
-/// With a target beyond a wall the tip slides along it: its error is in the wall's normal, and no joint chatters, where
-/// self-motion could gain a little as well as where it cannot.
+/// If the target is behind a wall, the tip slides along the wall: the error is normal to the wall. No joint chatters,
+/// whether self-motion can reduce the error slightly or not.
 TEST(Guard, slides_along_a_wall) {
   const auto wall_at = [](double x) { return Obstacle<>{"wall", HalfSpace<>{-Vector<3>::UnitX(), -x}}; };
   for (const double x : {0.36, 0.48}) {
@@ -227,7 +227,7 @@ TEST(Guard, slides_along_a_wall) {
   }
 }
 
-/// A post that comes at the hand is given way to, and the tip returns once it is gone.
+/// The hand avoids a moving post, and the tip returns after the post has passed.
 TEST(Guard, gives_way_to_a_post) {
   for (const double speed : {0.1, 0.25, 0.5}) {
     const auto post_at = [](double y) { return Capsule<>{{0.35, y, 0.3}, {0.35, y, 1.0}, 0.03}; };
@@ -251,8 +251,8 @@ TEST(Guard, gives_way_to_a_post) {
   }
 }
 
-/// Posts that cross the work space anywhere but at the first axis do not touch an arm with a hand of many capsules,
-/// which has more rows then than there is room for.
+/// Posts that cross the workspace anywhere except at the first axis do not touch an arm. Its hand has many capsules, so
+/// that more rows apply than a tick can use.
 TEST(Guard, gives_way_to_posts_from_all_sides) {
   const Chain<> chain = presets::panda();
   auto capsules = presets::capsules::panda();
@@ -306,8 +306,8 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
   }
 }
 
-/// An arm that a shape has driven off its target stalls and rests; gives way as the shape comes on, without haste; and
-/// goes back once it has left, not before.
+/// An arm that an obstacle displaces from its target stalls at rest. If the obstacle moves on, the arm moves away at
+/// low speed. The arm returns only after the obstacle has left.
 TEST(Guard, goes_back_when_a_shape_leaves) {
   const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
   auto tracker = panda_tracker({{"post", post_at(-0.7)}});
@@ -332,7 +332,7 @@ TEST(Guard, goes_back_when_a_shape_leaves) {
   EXPECT_LE((tracker.tip() - home.x).norm(), 1e-3);
 }
 
-/// An arm to which a shape has jumped nearer than its margin, or into it, goes out again, and only out.
+/// If an obstacle jumps closer than the margin, or into the arm, the arm only moves away from it.
 TEST(Guard, goes_out_of_a_shape_that_jumped) {
   for (const double nearer : {1e-6, 1e-3, 8e-3, 0.03}) {
     const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
@@ -357,7 +357,7 @@ TEST(Guard, goes_out_of_a_shape_that_jumped) {
   }
 }
 
-/// Self-motion that keeps a distance leaves the tip where it is.
+/// Null-space motion away from shapes does not move the tip.
 TEST(Guard, self_motion_keeps_away_in_time) {
   const Chain<> chain = presets::panda();
   const std::vector<Obstacle<>> post = {{"post", Capsule<>{{0.2, 0.3, 0.0}, {0.2, 0.3, 1.0}, 0.05}}};
@@ -387,7 +387,7 @@ TEST(Guard, self_motion_keeps_away_in_time) {
   EXPECT_LE(error, 1e-4);
 }
 
-/// Walls for the tip hold, and no other part of the arm heeds them.
+/// Position bounds of the tip hold, and do not apply to other parts of the arm.
 TEST(Guard, keeps_the_tip_within_its_box) {
   const Chain<> chain = presets::panda();
   const Panda arm = any_arm(chain);
@@ -410,7 +410,7 @@ TEST(Guard, keeps_the_tip_within_its_box) {
   }
 }
 
-/// Where nothing but limits of the joints hinders it, the tip is as fast as it may be and no faster.
+/// If only joint limits restrict the motion, the tip moves at its speed bound and not faster.
 template <Level kLevel>
 void expect_slow_tip() {
   for (const auto& chain :
@@ -447,7 +447,7 @@ TEST(Guard, keeps_the_tip_s_speed) {
   expect_slow_tip<Level::kVelocity>();
 }
 
-/// Both hands of two Pandas jump to places that are 0.2 m apart, across one another: with and without a torso.
+/// Both hands of two Pandas jump between targets 0.2 m apart, across each other, with and without a torso.
 template <int N, Level kLevel>
 void expect_arms_apart(bool with_torso) {
   const Tree<> tree = two_pandas(with_torso);

@@ -3,7 +3,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-/// A hold after a path: the reference may jump at T, and the motion stays exact on both sides.
+/// A hold after a path: the reference may jump at T, and the motion is accurate before and after T.
 namespace fpbm::test::hold_laws {
 namespace {
 
@@ -28,7 +28,7 @@ void expect_exact_hold(const Path& path, const Scheme& scheme) {
             1e-15);
 }
 
-/// The paper's time law ends with a step of acceleration, from about 0.14 m/s² to zero.
+/// The time law of the paper ends with a step of the acceleration, from about 0.14 m/s² to zero.
 TEST(Hold, is_exact_after_a_jump_of_acceleration) {
   ASSERT_GT(paper_circle().sample(kDuration).xdd.norm(), 0.1);
   expect_exact_hold(paper_circle(), paper_fpbm());
@@ -36,7 +36,7 @@ TEST(Hold, is_exact_after_a_jump_of_acceleration) {
   expect_exact_hold(paper_tricuspid(), paper_fpbm());
 }
 
-/// Constant speed ends with a step of velocity, which only a velocity-level scheme can follow.
+/// Constant speed ends with a step of the velocity, which only a velocity-level scheme can follow.
 TEST(Hold, is_exact_after_a_jump_of_velocity_at_velocity_level) {
   const AnyPath<Position<2>> path(Path(Circle(0.45), kDuration, ConstantSpeed{}));
   ASSERT_GT(path.sample(kDuration).xd.norm(), 0.1);
@@ -44,14 +44,14 @@ TEST(Hold, is_exact_after_a_jump_of_velocity_at_velocity_level) {
   expect_exact_hold(path, WMVN<4>(paper_weights(), 5.0));
 }
 
-/// Without a hold the last sample belongs to the motion.
+/// Without a hold, the last sample belongs to the motion.
 TEST(Hold, of_no_length_leaves_the_reference_in_motion_at_T) {
   const auto run = recorded(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), TimeGrid<>(kDuration, 1e-3));
   ASSERT_EQ(run.result.status, Status::kOk);
   EXPECT_EQ(run.samples.back().reference.xdd, paper_circle().sample(kDuration).xdd);
 }
 
-/// A rollout in float equals the one in double up to the round-off of its 10 000 steps.
+/// A rollout in float equals the rollout in double up to the round-off error of its 10 000 steps.
 TEST(Float, follows_the_papers_circle) {
   const PlanarArm<4, float> arm(Vector<4, float>::Ones());
   const Path<Circle<float>> path(Circle<float>(0.45F), 10.0F);

@@ -19,7 +19,7 @@ constexpr int kOpen = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 constexpr double kSlack = 1e-9;
 
-/// One joint with random bounds, whose jerk takes 2 ms to 0.3 s to bring its acceleration to the bound.
+/// One joint with random bounds. Its acceleration needs 2 ms to 0.3 s from zero to its bound.
 template <typename Scalar>
 [[nodiscard]] JointLimits<1, Scalar> random_bounds(Random& random) {
   auto bounds = JointLimits<1, Scalar>::none(1);
@@ -30,7 +30,7 @@ template <typename Scalar>
   return bounds;
 }
 
-/// What a joint is asked for: constant, jumping, pushing against its bounds, or a stiff spring between them.
+/// Desired acceleration of a joint: constant, jumping, against the bounds, or a stiff spring between them.
 [[nodiscard]] double asked(int trial, int tick, const JointLimits<1>& bounds, const State<1>& state, Random& random) {
   const double most = bounds.acceleration(0);
   switch (trial % 4) {
@@ -50,8 +50,8 @@ struct Worst {
   double jerk = 0.0;
 };
 
-/// Drives one joint, every third from rest on a bound. The excess is relative to the bound, that of a position to the
-/// range.
+/// Drives one joint; every third trial starts at rest on a bound. The excess is relative to the bound, for a position
+/// relative to the range.
 template <Level kLevel>
 [[nodiscard]] Worst drive_one_joint(int trials) {
   Worst worst;
@@ -105,7 +105,8 @@ TEST(Jerk, one_joint_keeps_all_bounds_whatever_it_is_asked_for) {
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }
 
-/// Pushed against its end all the time, a joint comes to rest on it: once it brakes, its velocity falls all the way.
+/// A joint that is always pushed toward its end comes to rest there. After braking starts, its velocity decreases
+/// monotonically.
 template <Level kLevel, typename Scalar>
 void expect_to_rest_at_the_end() {
   constexpr auto kH = static_cast<Scalar>(kTick);
@@ -136,7 +137,7 @@ TEST(Jerk, a_joint_pushed_against_its_end_does_not_tremble) {
   expect_to_rest_at_the_end<Level::kVelocity, double>();
 }
 
-/// Every viable state is one from which the brake keeps all bounds, near an end and at any scale.
+/// From every viable state, braking keeps all bounds, near an end and at any scale.
 template <Level kLevel>
 void expect_to_stop_from_viable_states() {
   int stopped = 0;
@@ -169,7 +170,7 @@ TEST(Jerk, every_viable_state_can_be_stopped) {
   expect_to_stop_from_viable_states<Level::kVelocity>();
 }
 
-/// The quickest stop in ticks is at most a tick longer than the quickest one in continuous time.
+/// The shortest stop in ticks is at most one tick longer than the shortest stop in continuous time.
 TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(20000)); ++seed) {
     Random random(seed);
@@ -183,7 +184,7 @@ TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
     Vector<1> last(random.uniform(-0.999, 0.999) * A);
     if (J * kTick >= 2.0 * A) continue;
 
-    // The stop's jerk is -J until -peak, then 0, then J, for a velocity that is left once a has been let go above 0.
+    // The jerk of the stop is −J until −peak, then 0, then J, if the velocity is positive after a is reduced to zero.
     const double s = state.qd(0) + last(0) * std::abs(last(0)) / (2.0 * J) < 0.0 ? -1.0 : 1.0;
     const double v = s * state.qd(0);
     const double a = s * last(0);
@@ -206,7 +207,7 @@ TEST(Jerk, a_joint_stops_as_quickly_as_its_bounds_allow) {
   }
 }
 
-/// Largest excess of x over a bound, relative to it; less what a finite difference of positions has of round-off.
+/// Largest relative excess of x over a bound, minus the round-off error of a finite difference of positions.
 template <int N>
 [[nodiscard]] double excess(const Vector<N>& x, const Vector<N>& bound, double round_off = 0.0) {
   double most = 0.0;
@@ -216,7 +217,7 @@ template <int N>
   return most;
 }
 
-/// The last four commands: their differences are what a robot sees.
+/// The last four commands. Their differences are the motion that a robot receives.
 template <int N>
 class Commands {
  public:
@@ -238,7 +239,8 @@ class Commands {
   std::deque<Vector<N>> q_;
 };
 
-/// From rest, every other joint of every fourth start on a bound, toward references that jump and lie, to rest again.
+/// From rest, with every second joint of every fourth start on a bound, toward references that jump and have
+/// inconsistent velocities and accelerations, and to rest again.
 template <typename Space, typename Arm, typename MakeScheme>
 void roll(const Arm& arm, JointLimits<Arm::kDof> given, MakeScheme&& make_scheme, int motions) {
   constexpr int N = Arm::kDof;
@@ -313,7 +315,7 @@ TEST(Jerk, all_bounds_hold_at_every_tick_until_rest) {
   roll_schemes<Pose>(fixed, fixed.limits(), trials(60));
 }
 
-/// A step of the target is followed along the same line as without a bound on jerk, and nearly as soon.
+/// A step of the target is followed along the same line as without a bound on jerk, and nearly as fast.
 TEST(Jerk, a_step_is_followed_along_its_line) {
   const auto follow = [](double jerk) {
     Chain<> chain = presets::panda();
@@ -342,7 +344,7 @@ TEST(Jerk, a_step_is_followed_along_its_line) {
   }
 }
 
-/// A bound that takes the acceleration from one end to the other in a tick changes no bit.
+/// A jerk bound that admits the full range of acceleration in one tick changes no bit.
 TEST(Jerk, without_a_bound_every_bit_stays) {
   const auto move = [](double jerk) {
     Chain<> chain = presets::panda();
@@ -360,7 +362,7 @@ TEST(Jerk, without_a_bound_every_bit_stays) {
   EXPECT_EQ(free.qd, same.qd);
 }
 
-/// An envelope of the velocity near an end of the range holds as well.
+/// A velocity envelope of a manufacturer near the ends of the range holds too.
 TEST(Jerk, a_maker_s_envelope_holds_too) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-2.75010, 2.75010, 2.62, 10.0, 5000.0, 0.30, 6.0});
@@ -383,7 +385,7 @@ TEST(Jerk, a_maker_s_envelope_holds_too) {
   }
 }
 
-/// resolve_measured() bounds jerk against its own last answer, whatever is measured.
+/// resolve_measured() bounds the jerk with respect to its previous result, for any measured state.
 TEST(Jerk, answers_for_measured_states_do_not_jump) {
   const SerialArm<7> arm(presets::panda());
   JointLimits<7> bounds = arm.limits();
@@ -406,7 +408,7 @@ TEST(Jerk, answers_for_measured_states_do_not_jump) {
   }
 }
 
-/// Joints measured beyond a bound return within all others, and stay.
+/// Joints measured beyond a bound return while keeping all other bounds, and stay within their bounds.
 TEST(Jerk, joints_measured_beyond_a_bound_return) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(500)); ++seed) {
     Random random(seed);

@@ -15,7 +15,7 @@
 namespace fpbm::test::kinematics_laws {
 namespace {
 
-/// Tip, J and Jd of an arm whose type is erased.
+/// Tip, J and Jd of a type-erased arm.
 using Evaluate = Situation (*)(const Eigen::VectorXd& lengths, const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 
 template <typename Arm>
@@ -40,7 +40,7 @@ struct ErasedArm {
   int dof;
   double epsilon;
   Evaluate evaluate;
-  Evaluate evaluate_in_double;  ///< For difference quotients, for which a float has too few digits.
+  Evaluate evaluate_in_double;  ///< For difference quotients, because float has too few digits.
 };
 
 void PrintTo(const ErasedArm& arm, std::ostream* out) {
@@ -88,7 +88,8 @@ class PlanarKinematics : public ::testing::TestWithParam<ErasedArm> {
   }
 };
 
-/// Tip, J and Jd are sums of n terms of known size; the round-off of each is that of the sum of angles in it.
+/// Tip, J and Jd are sums of n terms of known size. The round-off error of each term is the round-off error of its sum
+/// of angles.
 TEST_P(PlanarKinematics, equals_the_plain_formula) {
   everywhere([](const Eigen::VectorXd& lengths, const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
     const Situation out = GetParam().evaluate(lengths, q, qd);
@@ -101,13 +102,13 @@ TEST_P(PlanarKinematics, equals_the_plain_formula) {
   });
 }
 
-/// J is the derivative of f, and Jd that of J along qd, by central differences.
+/// J is the derivative of f, and Jd the derivative of J along qd, by central differences.
 TEST_P(PlanarKinematics, differentiates_as_J_and_Jd_say) {
   everywhere([](const Eigen::VectorXd& lengths, const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
     constexpr double kStep = 1e-5;
     const Situation out = GetParam().evaluate(lengths, q, qd);
     const auto at = [&](const Eigen::VectorXd& posture) { return GetParam().evaluate_in_double(lengths, posture, qd); };
-    // Truncation h²/6 · |f‴| and round-off ε/h of the difference, then the round-off of the arm itself.
+    // Truncation error h²/6 · |f‴| and round-off error ε/h of the difference, and the round-off error of the arm.
     const double rate = 1.0 + qd.cwiseAbs().sum();
     const double own = GetParam().epsilon * (1.0 + q.cwiseAbs().sum());
     const auto tolerance = static_cast<Real>(lengths.sum() * (1e-9 * std::pow(rate, 3) + own * rate));
@@ -121,7 +122,7 @@ TEST_P(PlanarKinematics, differentiates_as_J_and_Jd_say) {
   });
 }
 
-/// Two neighbours of a vector, read and written at once; beyond its end is zero, and nothing is written.
+/// Two adjacent entries of a vector, read and written together. Beyond its end, zero is read and nothing is written.
 template <int N, typename Scalar>
 void expect_neighbours() {
   Vector<N, Scalar> from(5);

@@ -9,7 +9,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// Each lane computes what its motion gives by itself, whatever happens in the other lanes.
+/// Each lane computes the same motion as a single motion, whatever the other lanes contain.
 namespace fpbm::test::lanes_laws {
 namespace {
 
@@ -72,7 +72,7 @@ TEST(Lanes, have_the_rotation_vector_of_each) {
   }
 }
 
-/// Schemes in lanes and the scheme of each lane, with different parameters in each.
+/// A scheme in lanes with different parameters, and the scheme of each lane.
 template <int N>
 struct Schemes {
   Vector<N, In> weights;
@@ -110,7 +110,7 @@ In whole(const In& x) {
   return x;
 }
 
-/// One evaluation of a scheme on kLanes arms at once, and of each by itself.
+/// Evaluates a scheme on kLanes arms together, and on each arm alone.
 template <typename Space, typename Arm>
 void expect_each_to_be_resolved(const Arm& arm, double radius) {
   constexpr int N = Arm::kDof;
@@ -156,7 +156,7 @@ void expect_each_to_be_resolved(const Arm& arm, double radius) {
         if (status == Status::kOk && (radius == 0.0 || !answer.hasNaN())) {
           ++regular;
           EXPECT_LE((answer - expected).norm(), 1e-15 * condition * condition * expected.norm());
-        } else {  // In lanes, wherever damping cannot be ruled out the answer is NaN.
+        } else {  // In lanes, the result is NaN if damping cannot be excluded.
           ++left;
           EXPECT_TRUE(answer.hasNaN()) << message(status);
         }
@@ -178,7 +178,7 @@ TEST(Lanes, leave_a_nearly_singular_posture_to_the_code_that_damps) {
   expect_each_to_be_resolved<Position<2>>(PlanarArm<4>(Vector<4>(1.0, 0.8, 0.6, 0.4)), 0.2);
 }
 
-/// Last posture and summary of motions from several starts, side by side.
+/// Last posture and summary of motions from several starts, in lanes.
 struct Motions {
   Vector<4, In> q;
   MotionSummary<In> summary;
@@ -197,7 +197,7 @@ Motions run(const std::array<Vector<4>, kLanes>& starts, double radius) {
 TEST(Lanes, run_each_motion_as_by_itself) {
   const Vector<4> bent(0.3, 0.8, 0.6, 0.5);
   const Vector<4> other(0.1, 1.2, -0.7, 0.9);
-  const Vector<4> outstretched(0.4, 0.01, -0.01, 0.02);  // Half a metre further out is out of reach.
+  const Vector<4> outstretched(0.4, 0.01, -0.01, 0.02);  // A point half a metre further is unreachable.
 
   const PlanarArm<4> arm(Vector<4>::Ones());
   const auto scheme = FPBM<4>(0.6, DiagonalWeights<4>(Vector<4>::Ones()), 10.0, 25.0);
@@ -212,7 +212,7 @@ TEST(Lanes, run_each_motion_as_by_itself) {
   EXPECT_LE((lane_of<4, 1>(healthy.q, 0) - alone(bent).last.q).norm(), 1e-12);
   EXPECT_LE((lane_of<4, 1>(healthy.q, 1) - alone(other).last.q).norm(), 1e-12);
 
-  // To the last bit, in any lane, whatever happens in the others.
+  // Bitwise, in any lane, whatever the other lanes contain.
   const Motions left = run({bent, outstretched}, 0.25);
   const Motions right = run({outstretched, bent}, 0.25);
   EXPECT_EQ((lane_of<4, 1>(left.q, 0)), (lane_of<4, 1>(healthy.q, 0)));

@@ -5,7 +5,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-/// The lemmas of the paper, in extended precision: they check the textbook, which the other tests rely on.
+/// The lemmas of the paper, in extended precision. They check the textbook formulas, on which the other tests rely.
 namespace fpbm::test::lemma_laws {
 namespace {
 
@@ -15,7 +15,7 @@ struct Subject {
   Situation at;
 };
 
-/// Calls check(subject) on random arms and weights, diagonal and dense.
+/// Calls check(subject) on random arms with diagonal and dense weights.
 template <typename Check>
 void everywhere(Check&& check) {
   for (const int n : {2, 3, 4, 7, 12}) {

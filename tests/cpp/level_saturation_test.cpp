@@ -12,8 +12,8 @@
 #include "support/linear_program.hpp"
 #include "support/random.hpp"
 
-/// Tasks in strict priority within a box: each scale is the largest there is, no level disturbs one before it, and no
-/// bound is exceeded.
+/// Tasks in strict priority within a box: each task scale is the largest possible, no level disturbs a higher level,
+/// and no bound is exceeded.
 namespace fpbm::test::level_saturation_laws {
 namespace {
 
@@ -31,9 +31,9 @@ struct Problem {
   Eigen::VectorXd most = {};
 };
 
-/// Levels as SNS-IK's test of several tasks draws them (runTest_snsIk_acc_mt.m): of motions within the box, of which
-/// two in five are too large by up to ten times. odd: with rows that are zero, repeat or depend on others, and levels
-/// of sizes from 1e-4 to 1e4.
+/// Levels as in SNS-IK's test of several tasks (runTest_snsIk_acc_mt.m): of motions within the box, of which two in
+/// five are too large by a factor of up to ten. odd: with rows that are zero, repeat or depend on other rows, and with
+/// level sizes from 1e-4 to 1e4.
 [[nodiscard]] Problem random_problem(Random& random, Eigen::Index n, int levels, bool odd) {
   Problem problem;
   problem.lower = random.uniform(n, -1.1, -0.1);
@@ -103,8 +103,8 @@ template <int N, typename Scalar, int P>
   return answer_as<Eigen::Dynamic, double, 0>(problem);
 }
 
-/// The motion that a level asks for after u, by Eigen's decompositions; the rows of all levels so far; and whether the
-/// level can be done where there are no bounds.
+/// The desired motion of a level after u, by Eigen's decompositions; the rows of all levels up to this level; and
+/// whether the level is feasible without bounds.
 struct Asked {
   Eigen::VectorXd desired;
   Eigen::MatrixXd all;
@@ -115,7 +115,7 @@ struct Asked {
   const Eigen::Index n = u.size();
   const Eigen::VectorXd unit = (problem.upper - problem.lower) / 2.0;
   Eigen::MatrixXd all(0, n);
-  const auto add = [&](const Eigen::MatrixXd& rows) {  // Each at length 1, so that a threshold is the same for all.
+  const auto add = [&](const Eigen::MatrixXd& rows) {  // Unit rows, so that one threshold applies to all.
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const double length = rows.row(i).norm();
       if (length == 0.0) continue;
@@ -148,10 +148,10 @@ struct Asked {
 struct Tally {
   int levels = 0;
   int limited = 0;
-  double short_of = 0.0;   ///< Of the largest scale.
-  double beyond = 0.0;     ///< A bound.
-  double disturbed = 0.0;  ///< J u of a level by those after it, as a share of |J|.
-  double off = 0.0;        ///< J u − b of a level done whole, as a share of |b| + |J|.
+  double short_of = 0.0;   ///< Largest scale − scale found.
+  double beyond = 0.0;     ///< Excess over a bound.
+  double disturbed = 0.0;  ///< Change of J u of a level by lower levels, relative to |J|.
+  double off = 0.0;        ///< J u − b of a level with scale 1, relative to |b| + |J|.
 };
 
 void check(const Problem& problem, const Answer& found, Tally& tally) {
@@ -211,7 +211,7 @@ TEST(LevelSaturation, so_with_many_joints) {
   expect_priorities("many joints", 32, trials(200), true, false);
 }
 
-/// A lower level, feasible or not, leaves the motion of those before as it is.
+/// For one level, the result is the saturation of a single task.
 TEST(LevelSaturation, of_one_level_is_the_saturation_of_a_task) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(200)); ++seed) {
     Random random(seed);
@@ -247,7 +247,7 @@ TEST(LevelSaturation, float_keeps_the_box) {
   }
 }
 
-/// A level that is not finite is left out; the others are as without it.
+/// A level that is not finite is omitted. The other levels are the same as without it.
 TEST(LevelSaturation, a_level_that_is_not_finite_stops_alone) {
   Random random(3);
   Problem problem = random_problem(random, 7, 3, false);

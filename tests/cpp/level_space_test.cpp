@@ -10,21 +10,21 @@
 
 #include "support/random.hpp"
 
-/// The null space of levels of rows, beside a singular value decomposition.
+/// The null space of levels of rows, compared with a singular value decomposition.
 namespace fpbm::test {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A unit vector at right angles to the rows of A, and a share of it.
+/// A random unit vector perpendicular to the rows of A.
 [[nodiscard]] VectorXd outside(const MatrixXd& A, Random& random) {
   const VectorXd x = random.uniform(A.cols(), -1.0, 1.0);
   const VectorXd left = x - A.transpose() * A.transpose().colPivHouseholderQr().solve(x);
   return left / left.norm();
 }
 
-/// Three rows, then five rows below them: one depends on the rows above, one also on its own level, and one has a
+/// Three rows, then five rows below them. One row depends on the rows above, one also on its own level, and one has a
 /// remainder of `gap`. Units differ from row to row.
 template <int M1, int M2, int N, typename Scalar>
 void expect_as_by_svd(Eigen::Index n, double gap, double tolerance) {
@@ -40,7 +40,7 @@ void expect_as_by_svd(Eigen::Index n, double gap, double tolerance) {
     MatrixXd independent(3, n);
     independent << below.row(1), below.row(2), below.row(3);
     const VectorXd z = Z * random.uniform(n - 3, -1.0, 1.0);
-    // The y of least norm with the same rows: the part of z in the span of the rows' projections.
+    // The y of least norm with the same rows: the component of z in the span of the projected rows.
     const MatrixXd projected = independent * Z;
     const VectorXd expected = Z * projected.completeOrthogonalDecomposition().solve(independent * z);
 

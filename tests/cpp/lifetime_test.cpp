@@ -8,7 +8,7 @@
 #include "fpbm/singular/damping.hpp"
 #include "support/paper.hpp"
 
-/// What a class refers to outlives it: a temporary, which would not, is refused where the program is compiled.
+/// A class that keeps a reference accepts no temporary: the compiler rejects it.
 namespace fpbm::test::lifetime_laws {
 namespace {
 
@@ -28,7 +28,7 @@ TYPED_TEST(Lifetimes, of_a_gram_matrix_spans_its_jacobian) {
   EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, const J>));
   EXPECT_FALSE((std::is_constructible_v<Gram, const Damping&, Transposed>));  // Would be converted to a temporary.
 
-  // The damping is two numbers, which it keeps.
+  // The damping is two numbers, of which Gram keeps a copy.
   J jacobian = J::Identity();
   jacobian(2, 2) = TypeParam(0.125);
   auto damping = Damping(TypeParam(0.5), TypeParam(2));
@@ -47,7 +47,7 @@ TYPED_TEST(Lifetimes, of_an_anchored_path_spans_the_path) {
   EXPECT_FALSE((std::is_constructible_v<Anchored, const Way, const Point&>));
 }
 
-/// In braces, which is the only way to make one, a temporary lives as long as the loop.
+/// In braces, the only form in which a loop can be constructed, a temporary lives as long as the loop.
 TYPED_TEST(Lifetimes, of_a_closed_loop_spans_arm_and_scheme) {
   using Arm = PlanarArm<4, TypeParam>;
   using Scheme = AccelerationScheme<4, TypeParam>;

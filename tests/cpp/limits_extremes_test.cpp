@@ -7,8 +7,8 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// Bounds hold whatever numbers they are given as: an acceleration or a velocity far beyond what a tick can use,
-/// DBL_MAX say, is as good as none.
+/// Bounds hold for numbers of any size. Bounds on acceleration or velocity far above the largest change per tick, for
+/// example DBL_MAX, are treated as unbounded.
 namespace fpbm::test::limits_extremes_laws {
 namespace {
 
@@ -19,7 +19,7 @@ constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
   return std::pow(10.0, random.uniform(low, high));
 }
 
-/// Any positive number, of ordinary size (1) or not; the largest there is, and infinity where that is allowed.
+/// Any positive number: of ordinary size (1), of another size, the largest number, or infinity if permitted.
 template <typename Scalar>
 [[nodiscard]] Scalar any_size(Random& random, Scalar ordinary, bool infinite) {
   const double kind = random.uniform(0.0, 1.0);
@@ -30,7 +30,7 @@ template <typename Scalar>
   return ordinary * static_cast<Scalar>(power_of_ten(random, 0.0, most - 1.0));
 }
 
-/// Bounds on one joint, of any unit, near zero or far from it.
+/// Bounds on one joint, of any unit, near zero or far from zero.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] JointLimits<1, Scalar> any_bounds(Random& random) {
   const double unit = power_of_ten(random, -3.0, random.uniform(0.0, 1.0) < 0.5 ? 3.0 : 9.0);
@@ -61,7 +61,7 @@ template <Level kLevel, typename Scalar>
   return next;
 }
 
-/// How far a tick passes its own two ends, at constant acceleration.
+/// Position of the turning point in a tick of constant acceleration. If there is none, the position at the end.
 template <typename Scalar>
 [[nodiscard]] Scalar turning_point(const State<1, Scalar>& from, const State<1, Scalar>& to, Scalar tick) {
   const Scalar before = from.qd(0);
@@ -107,7 +107,7 @@ TEST(LimitsOfAnySize, hold_at_and_between_ticks) {
   expect_bounds_to_hold<Level::kVelocity, float>();
 }
 
-/// A joint that may accelerate harder may do all that it could before, in every state that was viable.
+/// A larger bound on the acceleration admits all motions of the smaller bound, in every state that was viable.
 template <Level kLevel, typename Scalar>
 void expect_more_to_allow_more() {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(3000)); ++seed) {
@@ -140,8 +140,8 @@ TEST(LimitsOfAnySize, allow_more_where_joints_accelerate_harder) {
   expect_more_to_allow_more<Level::kVelocity, float>();
 }
 
-/// An arm whose joints must keep their positions only moves, and keeps them; a target out of reach presses it on its
-/// bounds.
+/// An arm whose joints have position bounds only moves and keeps these bounds. An unreachable target presses the arm
+/// against its bounds.
 template <typename Scalar, typename Scheme>
 void expect_arm_to_keep_positions(const Scheme& scheme, Scalar velocity, Scalar acceleration) {
   SCOPED_TRACE(::testing::Message() << "velocity " << velocity << ", acceleration " << acceleration);

@@ -7,15 +7,16 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// A measured state may lie beyond a bound: the joint comes back as fast as its bounds on velocity and acceleration
-/// allow, and comes to rest there, or goes on inside. The other joints go on with the task.
+/// A measured state may be beyond a bound. Then the joint returns as fast as its bounds on velocity and acceleration
+/// admit, and comes to rest on the bound or continues inside. The other joints continue the task.
 namespace fpbm::test::limits_outside_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
 
-/// Time in which a joint can come to rest on its bound, or at least pass it, from y beyond it, with a velocity away
-/// from it: away from rest at most speeding up, cruising, slowing down.
+/// Shortest time in which a joint returns to its bound from a distance y beyond, with a velocity `away` from the bound.
+/// The joint stops, accelerates toward the bound, cruises and brakes. It comes to rest on the bound, or passes the
+/// bound if it cannot stop in time.
 [[nodiscard]] double least_time(double y, double away, double velocity, double acceleration) {
   double time = 0.0;
   if (away > 0.0) {
@@ -84,13 +85,13 @@ TEST(Outside, joints_return_as_fast_as_they_may) {
       before = tick.qdd(joint);
     }
   }
-  // The tip's task goes on meanwhile, and nothing chatters afterwards.
+  // The task of the tip continues meanwhile, and no joint chatters afterwards.
   EXPECT_GE(scale / static_cast<double>(outside), 0.8);
   EXPECT_LE(jumps, trials(3000) / 10);
 }
 
-/// After stop() a joint beyond its bound comes to rest like the others, in the least time where measured states are
-/// exact; it does not set out for the bound.
+/// After stop(), a joint beyond its bound comes to rest like the other joints, in the shortest time if measured states
+/// are exact. It does not move to its bound.
 TEST(Outside, joints_come_to_rest_when_told_to_stop) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
@@ -101,7 +102,7 @@ TEST(Outside, joints_come_to_rest_when_told_to_stop) {
                             Vector<Eigen::Dynamic>(kReady), options);
     const auto hold = Reference<Position<3>>::hold(tracker.tip());
     tracker.stop();
-    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D, and the filter's time constant.
+    const double slow = delay == 0 ? kTick : 1.5 * 0.0243;  // D, and the time constant of the filter.
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
       Random random(seed);
       const auto joint = static_cast<Eigen::Index>(seed % 7);
@@ -122,7 +123,7 @@ TEST(Outside, joints_come_to_rest_when_told_to_stop) {
   }
 }
 
-/// At a bound and a hair beyond it nothing kicks; nor is there any step from inside to outside.
+/// At a bound and slightly beyond it, the acceleration does not jump. It is continuous from inside to outside.
 template <Level kLevel, typename Scalar>
 void expect_no_kick() {
   for (std::uint32_t seed = 0; seed < 1000; ++seed) {
@@ -151,8 +152,8 @@ TEST(Outside, nothing_kicks_at_a_bound) {
   expect_no_kick<Level::kVelocity, float>();
 }
 
-/// A joint that is pressed on its bound, measured with noise, accelerates within its bound and strays as far as the
-/// noise.
+/// A joint that is pushed against its bound and measured with noise keeps its acceleration bound. Its deviation is as
+/// large as the noise.
 TEST(Outside, noise_about_a_bound_does_no_harm) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();

@@ -11,7 +11,7 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// Bounds on positions, velocities and accelerations hold at every tick, and there is always a motion that keeps them.
+/// Bounds on positions, velocities and accelerations hold at every tick, and a feasible motion always exists.
 #include "support/wild_reference.hpp"
 
 namespace fpbm::test::limits_laws {
@@ -49,7 +49,7 @@ template <Level kLevel, int N>
   return state;
 }
 
-/// Largest excess of a tick over a bound; negative where it keeps them all.
+/// Largest excess of a tick over a bound; negative if all bounds hold.
 template <int N, typename Result>
 [[nodiscard]] double violation(const JointLimits<N>& bounds, const State<N>& before, const Result& tick) {
   const Vector<N> change = (tick.qd - before.qd) / kTick;
@@ -59,8 +59,8 @@ template <int N, typename Result>
                    (change.cwiseAbs() - bounds.acceleration).maxCoeff()});
 }
 
-/// Largest excess over the bounds on velocity and acceleration by differences of the commanded positions of two ticks,
-/// the first of which began at q; negative where they keep both. Less the round-off of such differences.
+/// Largest excess over the bounds on velocity and acceleration, by differences of the commanded positions of two ticks,
+/// the first of which starts at q, minus the round-off error of these differences. Negative if both bounds hold.
 template <int N>
 [[nodiscard]] double violation_by_differences(const JointLimits<N>& bounds, const Vector<N>& q, const Vector<N>& before,
                                               const Vector<N>& now) {
@@ -73,7 +73,8 @@ template <int N>
          round_off;
 }
 
-/// σ of a tick is the bound from JJᵀ, whichever factorisation reports σ. The round-off of JJᵀ limits the agreement.
+/// σ of a tick equals the bound from JJᵀ, for every factorisation that reports σ. The round-off error of JJᵀ limits the
+/// agreement.
 template <typename Space, typename Arm>
 void expect_sigma(const Arm& arm, const Vector<Arm::kDof>& q, double sigma) {
   Kinematics<Space, Arm::kDof> kinematics;
@@ -92,8 +93,8 @@ struct Tally {
   double worst = -std::numeric_limits<double>::infinity();
 };
 
-/// From random starts, toward references that change ten times and violate every limit. Every state on the way is one
-/// that another tracker could start from.
+/// From random starts, toward references that change ten times and violate every limit. Another tracker can start from
+/// every state of these motions.
 template <typename Space, typename Arm, typename MakeScheme>
 void roll(const Arm& arm, const JointLimits<Arm::kDof>& bounds, MakeScheme&& make_scheme, int rollouts, Tally& tally) {
   constexpr int N = Arm::kDof;
@@ -135,8 +136,8 @@ template <int N>
   return random.uniform(dof, 0.5, 5.0);
 }
 
-/// Rolls under every scheme of the paper. The Tracker's code depends on the level alone: MVN and MAN come as WMVN and
-/// Balanced with equal weights, which is what they are.
+/// Rolls under every scheme of the paper. The code of the Tracker depends on the level only: MVN and MAN are WMVN and
+/// Balanced with equal weights.
 template <typename Space, typename Arm>
 void roll_every_scheme(const char* name, const Arm& arm, const JointLimits<Arm::kDof>& bounds, int rollouts) {
   constexpr int N = Arm::kDof;
@@ -195,7 +196,7 @@ TEST(Limits, of_a_tick_are_within_the_bounds) {
   expect_boxes_within_bounds<Level::kAcceleration>();
 }
 
-/// 12,000 rollouts in all with FPBM_ALL_TRIALS.
+/// 12,000 rollouts in total with FPBM_ALL_TRIALS.
 TEST(Limits, hold_on_a_planar_arm) {
   Random random(7);
   roll_every_scheme<Position<2>>("planar, 4 joints", PlanarArm<4>(Vector<4>::Ones()), narrow_limits<4>(4, random),
@@ -224,7 +225,7 @@ TEST(Limits, hold_on_arms_without_redundancy) {
                                  narrow_limits<Eigen::Dynamic>(2, random), trials(125));
 }
 
-/// The Panda's last joint turns about the tip: whatever the others cannot do, it stays at rest.
+/// The last joint of the Panda rotates about the tip. It stays at rest, whatever the other joints cannot do.
 TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   constexpr int N = Eigen::Dynamic;
   const AnyArm<Position<3>> arm = any_arm(presets::panda());
@@ -232,7 +233,7 @@ TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
       FPBM<N>(0.6, (Vector<N>(7) << 8, 8, 4, 4, 2, 1, 1).finished(), 20.0, 100.0, NullSpace<N>{}.with_damping(2.0));
   const Vector<N> range = arm.limits().upper - arm.limits().lower;
   double fastest = 0.0;
-  // 349 drove it with 20 rad/s² where saturation took steps that were mostly round-off.
+  // With seed 349, saturation steps that were mostly round-off error drove the joint with 20 rad/s².
   for (int seed = 349; seed < 349 + trials(100); ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
     const Vector<N> q0 = arm.limits().lower + random.uniform(7, 0.3, 0.7).cwiseProduct(range);
@@ -244,8 +245,8 @@ TEST(Limits, do_not_drive_a_joint_that_cannot_move_the_tip) {
   EXPECT_LE(fastest, 1e-3);
 }
 
-/// One joint, driven toward its end as hard as its box allows, comes to rest there. Once it brakes, its velocity falls
-/// all the way: no chatter.
+/// A joint that is driven toward its end as hard as its box admits comes to rest there. After braking starts, its
+/// velocity decreases monotonically: no chatter.
 TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-1.0, 1.0, 2.0, 10.0});
@@ -271,7 +272,7 @@ TEST(Limits, bring_a_joint_to_rest_at_its_end_without_chatter) {
   EXPECT_NEAR(state.qd(0), 0.0, 1e-6);
 }
 
-/// From every viable state the box is not empty, and both of its ends lead to viable states.
+/// For every viable state, the box is not empty, and both of its ends lead to viable states.
 template <Level kLevel>
 void expect_invariance() {
   for (std::uint32_t seed = 0; seed < 20000; ++seed) {
@@ -282,7 +283,7 @@ void expect_invariance() {
     const auto box = limits.box(state);
     ASSERT_TRUE((box.lower.array() <= box.upper.array()).all()) << "seed " << seed;
     for (const double share :
-         {1e-6, 1.0 - 1e-6}) {  // Near the ends of the box: round-off may take the ends themselves out of it.
+         {1e-6, 1.0 - 1e-6}) {  // Near the ends of the box, because round-off error may move the ends outside.
       const Vector<3> u = (1.0 - share) * box.lower + share * box.upper;
       State<3> next = state;
       if constexpr (kLevel == Level::kAcceleration) {
@@ -303,8 +304,8 @@ TEST(Limits, leave_a_viable_motion_from_every_viable_state) {
   expect_invariance<Level::kVelocity>();
 }
 
-/// A joint may begin at rest on either end of its range, and is neither pushed beyond it nor off it, whatever its units
-/// and the tick.
+/// A joint may start at rest on either end of its range. It is not pushed beyond the end or off it, for all units and
+/// ticks.
 template <Level kLevel, typename Scalar>
 void expect_rest_on_both_ends(const JointBounds<>& joint, double seconds) {
   auto bounds = JointLimits<1, Scalar>::none(1);
@@ -347,7 +348,7 @@ TEST(Limits, allow_rest_on_the_ends_of_every_range) {
   for (JointBounds<>& joint : joints) {
     if (!std::isfinite(joint.lower)) continue;
     if (!std::isfinite(joint.acceleration)) joint.acceleration = 10.0;
-    const double unit = std::pow(10.0, random.uniform(-3.0, 3.0));  // Small arms, and others in millimetres.
+    const double unit = std::pow(10.0, random.uniform(-3.0, 3.0));  // Small arms, and arms in millimetres.
     for (double* bound : {&joint.lower, &joint.upper, &joint.velocity, &joint.acceleration}) *bound *= unit;
     const double tick = std::pow(10.0, random.uniform(-4.0, -2.0));
     expect_rest_on_both_ends<Level::kAcceleration, double>(joint, tick);
@@ -362,7 +363,7 @@ TEST(Limits, allow_rest_on_the_ends_of_every_range) {
   EXPECT_NE(complaint([&] { limits.require_viable({Vector<1>(0.0), Vector<1>(0.3 + 1e-12)}); }), "");
 }
 
-/// Position-dependent velocity bounds of the kind that Franka prescribes for its FR3.
+/// Velocity bounds that depend on position, as Franka prescribes them for the FR3.
 TEST(Limits, keep_velocity_bounds_that_depend_on_position) {
   auto bounds = JointLimits<1>::none(1);
   bounds.set(0, {-2.75010, 2.75010, 2.62, 10.0, JointBounds<>::kNone, 0.30, 6.0});

@@ -11,7 +11,7 @@
 #include "support/recording.hpp"
 #include "support/textbook.hpp"
 
-/// w = √det(JJᵀ), its gradient, and schemes that climb it.
+/// w = √det(JJᵀ), its gradient, and schemes with manipulability ascent.
 namespace fpbm::test::manipulability_laws {
 namespace {
 
@@ -28,7 +28,7 @@ Real manipulability_as_written(const Arm& arm, const Vector<Arm::kDof>& q) {
   return manipulability_as_written(J);
 }
 
-/// Two links of 1 m: w = |sin q₂|, which a determinant would give without a correct digit here.
+/// Two links of 1 m: w = |sin q₂|. Here, a determinant would not have a correct digit.
 TEST(Manipulability, keeps_its_digits_near_singular_postures) {
   const PlanarArm<2> arm(Vector<2>::Ones());
   Kinematics<Position<2>, 2> kinematics;
@@ -43,7 +43,8 @@ TEST(Manipulability, keeps_its_digits_near_singular_postures) {
     const PlanarArm<4> straight(Vector<4>(1.0, 0.8, 0.6, 0.4));
     EXPECT_EQ(manipulability_gradient<Position<2>>(straight, Vector<4>(turn, 0.0, 0.0, 0.0)), Vector<4>::Zero());
   }
-  // J's condition here is 17, and J Jᵀ, which is solved, has its square; the last digits are each processor's own.
+  // The condition number of J is 17 here. The linear system with J Jᵀ has its square. The last digits depend on the
+  // processor.
   constexpr double kRoundOff = 17 * 17 * std::numeric_limits<double>::epsilon();
   EXPECT_NEAR(manipulability_gradient<Position<2>>(arm, Vector<2>(0.4, 0.3))(1), std::cos(0.3), kRoundOff);
 }
@@ -73,14 +74,14 @@ TEST(Manipulability, is_the_root_of_the_determinant_and_its_gradient_the_slope) 
   });
 }
 
-/// The answers of a scheme, u alone and with an ascent, whose gradient is known.
+/// u of a scheme alone and with an ascent, for a known gradient.
 void expect_ascent(const RealMatrix& J, const RealVector& own, const RealVector& u, const RealVector& gradient) {
   const RealMatrix N_E = RealMatrix::Identity(J.cols(), J.cols()) - pseudoinverse(J) * J;
   EXPECT_LE((u - own - 3 * N_E * gradient).norm(), 1e-11L * (1 + own.norm()));
   EXPECT_LE((J * (u - own)).norm(), 1e-12L * (1 + own.norm()));
 }
 
-/// u + gain N∇w with the projector N = I − J⁺J formed, at either level; J u is that of the scheme alone.
+/// u + gain N∇w with the explicit projector N = I − J⁺J, at either level. J u is the same as for the scheme alone.
 template <typename Space, typename Arm>
 void expect_ascents(const Arm& arm) {
   using Joints = Vector<Eigen::Dynamic>;
@@ -107,7 +108,7 @@ void expect_ascents(const Arm& arm) {
   }
 }
 
-/// Of what each arm and task space has, only the gradient enters, which the law above covers.
+/// Arms and task spaces enter through the gradient only, which the law above covers.
 TEST(ManipulabilityAscent, equals_the_textbook) {
   for (const int dof : {4, 6}) expect_ascents<Position<2>>(any_planar_arm(Vector<Eigen::Dynamic>::Ones(dof)));
   for (const Chain<>& chain : {presets::panda(), panda_on_rail(), coupled_panda()}) {
@@ -151,7 +152,7 @@ TEST(ManipulabilityAscent, refuses_what_makes_no_sense) {
   EXPECT_NE(complaint([&] { ManipulabilityAscent(narrow, arm, 1.0).require_dof(4); }), "");
 }
 
-/// Where the scheme fails, it fails with the same status and leaves u alone.
+/// If the scheme fails, the ascent returns the same status and does not change u.
 TEST(ManipulabilityAscent, hands_failures_on) {
   const PlanarArm<4> arm = paper_arm();
   const auto attempt = [&](const Vector<4>& q, const Vector<2>& x) {
@@ -169,8 +170,8 @@ TEST(ManipulabilityAscent, hands_failures_on) {
   EXPECT_EQ(attempt(paper_start().q, Vector<2>(kPi / 0.0, 2.0)), Status::kNotFinite);
 }
 
-/// After a circle and a hold, at either level, w is at the maximum that the self-motion can reach, and the tip has kept
-/// its path.
+/// After a circle and a hold, at either level, w is at its maximum over the self-motion, and the tip has followed its
+/// path.
 template <typename Scheme>
 void expect_to_climb(const Scheme& scheme, double gain) {
   const PlanarArm<4> arm = paper_arm();

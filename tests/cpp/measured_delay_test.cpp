@@ -14,8 +14,8 @@
 #include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
 
-/// resolve_measured() for states that are some ticks old, quantised and noisy: after stop() the arm comes to rest, and
-/// no bound is exceeded.
+/// resolve_measured() for states that are several ticks old, quantised and noisy: after stop(), the arm comes to rest,
+/// and no bound is exceeded.
 namespace fpbm::test::measured_delay_laws {
 namespace {
 
@@ -25,16 +25,16 @@ constexpr double kSlack = 1e-6;  // [rad]
 
 using Joints = Vector<kOpen>;
 
-/// An arm whose state is measured late.
+/// An arm whose state is measured with a delay.
 template <int N>
 class LateArm {
  public:
-  /// oldest: age of the measured states at most [ticks].
+  /// oldest: largest age of the measured states [ticks].
   LateArm(const State<N>& start, int oldest) : state_(start), oldest_(oldest) {}
 
   [[nodiscard]] const State<N>& state() const noexcept { return state_; }
 
-  /// The state some ticks ago.
+  /// The state `age` ticks ago.
   [[nodiscard]] const State<N>& late(int age) const noexcept {
     return age == 0 || past_.empty() ? state_
                                      : past_[past_.size() - std::min(past_.size(), static_cast<std::size_t>(age))];
@@ -55,8 +55,8 @@ class LateArm {
 
 /// Errors of the measured states.
 struct Sensor {
-  double step;   // Of the positions, which are rounded to it [rad].
-  double noise;  // Of the velocities, either way [rad/s].
+  double step;   // Positions are rounded to multiples of it [rad].
+  double noise;  // Largest error of velocities, in both directions [rad/s].
 
   template <int N>
   [[nodiscard]] State<N> operator()(const State<N>& state, Random& random) const {
@@ -69,7 +69,8 @@ struct Sensor {
 
 constexpr std::array<Sensor, 3> kSensors{Sensor{0.0, 0.0}, Sensor{1e-5, 1e-3}, Sensor{1e-4, 1e-3}};
 
-/// Bounds of a preset: without those on jerk, with the maker's where he gives some, with long ramps.
+/// Bounds of a preset: without bounds on jerk, with the manufacturer's bounds on jerk if they exist, or with long
+/// ramps.
 [[nodiscard]] JointLimits<kOpen> bounds_of(const AnyArm<Position<3>>& arm, int kind) {
   JointLimits<kOpen> bounds = arm.limits();
   if (kind == 0) bounds.jerk.setConstant(std::numeric_limits<double>::infinity());
@@ -92,9 +93,10 @@ void expect_within(const JointLimits<kOpen>& bounds, const State<kOpen>& state, 
   ASSERT_LE((state.qd.cwiseAbs() - bounds.velocity).maxCoeff(), 1e-9 + sensor.noise);
 }
 
-/// Moves fast toward targets that jump, until stop(): within a second no acceleration exceeds 1 % of its bound.
+/// Moves fast toward targets that jump, until stop(). Within one second after stop(), every acceleration is below 1 %
+/// of its bound.
 ///
-/// busiest: raised to the greatest of their shares.
+/// busiest: raised to the largest of these fractions.
 template <typename Space>
 void expect_to_stop(const presets::Preset& preset, int kind, int delay, int age, const Sensor& sensor,
                     double& busiest) {
@@ -164,7 +166,8 @@ TEST(MeasuredDelay, every_preset_stops) {
   }
 }
 
-/// The null space presses a joint on its bound: it comes to rest there. Whether the joint came to its bound.
+/// The null-space motion pushes a joint against its bound, and the joint comes to rest there. Returns whether the joint
+/// was at its bound.
 [[nodiscard]] bool rests_on_bound(const presets::Preset& preset, int kind, int age, const Sensor& sensor) {
   const AnyArm<Position<3>> arm = any_arm(preset.chain());
   JointLimits<kOpen> bounds = bounds_of(arm, kind);

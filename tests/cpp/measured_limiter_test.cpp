@@ -9,12 +9,12 @@
 #include "fpbm/realtime/measured_limiter.hpp"
 #include "support/random.hpp"
 
-/// Limits of one joint whose measured state is late.
+/// Limits of one joint whose state is measured with a delay.
 namespace fpbm::test::measured_limiter_laws {
 namespace {
 
-/// One joint that is driven at random, or always toward a bound, under all delays, ticks and jerks; the age of its
-/// measured state changes from tick to tick.
+/// One joint that is driven at random, or always toward a bound, with all delays, ticks and jerks. The age of the
+/// measured state may change from tick to tick.
 template <typename Scalar>
 void expect_bounds_at_any_age(std::uint32_t seed, int delay, Scalar tick) {
   using Joints = Vector<2, Scalar>;
@@ -26,7 +26,7 @@ void expect_bounds_at_any_age(std::uint32_t seed, int delay, Scalar tick) {
   };
   const Scalar range = power(-1.0, 0.7);
   const Scalar acceleration = any(2.0, 20.0);
-  auto bounds = JointLimits<2, Scalar>::none(2);  // The second joint has none, and stays where it is.
+  auto bounds = JointLimits<2, Scalar>::none(2);  // The second joint is unbounded, and does not move.
   bounds.set(0, {-range, range, power(-2.0, 0.7), acceleration, JointBounds<Scalar>::kNone});
   if (seed % 4 != 0) bounds.jerk(0) = acceleration / (tick * power(0.3, 2.0));
   if (seed % 3 == 0) {
@@ -78,19 +78,19 @@ TEST(MeasuredLimiter, no_bound_is_exceeded_at_any_age) {
   }
 }
 
-/// A loop on a joint whose state is measured late: q̈ = α y − β q̇, where y = r − q is the distance to a bound, or β q̇
-/// alone.
+/// A loop on a joint whose state is measured with a delay: q̈ = α y − β q̇, where y = r − q is the distance to a bound,
+/// or q̈ = −β q̇.
 struct Loop {
   double position;      // α h²
   double velocity;      // β h
-  double filter = 1.0;  // Share of a change of the answer that is made in a tick.
+  double filter = 1.0;  // Fraction of a change of the result that is applied in a tick.
 
   struct Course {
-    double last;    ///< Largest state of the last tenth.
-    double beyond;  ///< Farthest beyond the bound.
+    double last;    ///< Largest state in the last tenth of the ticks.
+    double beyond;  ///< Largest distance beyond the bound.
   };
 
-  /// From rest at y = 1, or at a speed of 1, where accelerations are gain times the commanded ones.
+  /// From rest at y = 1, or with a velocity of 1. The accelerations are `gain` times the commanded accelerations.
   [[nodiscard]] Course run(double gain, int age, int ticks) const {
     const bool bound = position > 0.0;
     std::vector<double> y(static_cast<std::size_t>(ticks + 1), bound ? 1.0 : 0.0);
@@ -112,7 +112,7 @@ struct Loop {
   }
   [[nodiscard]] bool stable(double gain, int age) const { return run(gain, age, 6000).last < 0.5; }
 
-  /// Largest gain from 1 on at which it is stable.
+  /// Largest gain ≥ 1 with which the loop is stable.
   [[nodiscard]] double gain_margin(int age) const {
     double low = 1.0;
     double high = 64.0;
@@ -122,7 +122,7 @@ struct Loop {
     }
     return low;
   }
-  /// Largest age at which it is stable [ticks].
+  /// Largest age with which the loop is stable [ticks].
   [[nodiscard]] int oldest() const {
     int age = 0;
     while (age < 400 && stable(1.0, age + 1)) ++age;
@@ -130,9 +130,9 @@ struct Loop {
   }
 };
 
-/// The table of docs/realtime.md: gain margins at the declared age, and the largest age. Up to the declared age no loop
-/// but the filtered one changes the sign of what it brings to zero, even where the robot accelerates 1.28 times as
-/// much.
+/// The table of docs/realtime.md: gain margins at the declared age, and the largest stable age. Up to the declared age,
+/// no loop overshoots except the filtered loop, even if the accelerations of the robot are 1.28 times the commanded
+/// accelerations.
 TEST(MeasuredLimiter, has_stability_margins) {
   constexpr double kMargin = 1.5;
   const double rest = 1.0 + std::sqrt(0.5);

@@ -12,7 +12,7 @@
 namespace fpbm::test::null_basis_laws {
 namespace {
 
-/// null_basis of a size and a Scalar, types erased.
+/// Type-erased null_basis of a size and a Scalar.
 struct ErasedBasis {
   std::string name;
   Eigen::Index rows;
@@ -34,7 +34,7 @@ ErasedBasis erased(const std::string& name, Eigen::Index rows = M, Eigen::Index 
 
 class NullBasisOf : public ::testing::TestWithParam<ErasedBasis> {
  protected:
-  /// AZ = 0 and ZᵀZ = I, to 45 epsilon: 1e-14 in double.
+  /// AZ = 0 and ZᵀZ = I, up to 45 epsilon: 1e-14 in double.
   static void expect_basis(const Eigen::MatrixXd& A) {
     const Eigen::MatrixXd Z = GetParam().of(A);
     const Eigen::Index nullity = A.cols() - A.rows();
@@ -57,7 +57,7 @@ TEST_P(NullBasisOf, is_orthonormal_and_annihilated) {
   }
 }
 
-/// Rows that are linearly dependent, to round-off or exactly; rows and columns of zeros; a zero matrix.
+/// Rows that are linearly dependent, exactly or up to round-off; rows and columns of zeros; a zero matrix.
 TEST_P(NullBasisOf, is_so_at_every_rank) {
   const Eigen::Index m = GetParam().rows;
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
@@ -79,7 +79,7 @@ TEST_P(NullBasisOf, is_so_at_every_rank) {
   }
 }
 
-/// While a row shrinks to zero, and also where its square underflows.
+/// A row that decreases to zero, also if its square underflows.
 TEST_P(NullBasisOf, is_so_while_a_row_fades) {
   Random random(1);
   const Eigen::MatrixXd A = random_matrix(random);

@@ -11,13 +11,13 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// Secondary motions that depend on the state alone.
+/// Secondary motions that depend on the joint state only.
 namespace fpbm::test::null_space_laws {
 namespace {
 
 constexpr double kNone = JointBounds<>::kNone;
 
-/// Liégeois' H as printed.
+/// H of Liégeois as printed.
 double centring_cost(const JointLimits<4>& limits, const Vector<4>& q) {
   double H = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -105,7 +105,7 @@ TEST(NullSpace, refuses_what_makes_no_sense) {
             std::string::npos);
 }
 
-/// After a circle and a hold, the joints are nearer to their middle, and the tip has kept its path.
+/// After a circle and a hold, the joints are nearer to the middle of their ranges, and the tip has followed its path.
 TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
   JointLimits<4> limits = JointLimits<4>::none(4);
   limits.lower = Vector<4>(-2.0, -2.0, -2.0, -2.0);
@@ -122,7 +122,7 @@ TEST(NullSpace, centring_brings_the_joints_to_the_middle) {
 }
 
 /// Repetitive motion planning: with the start posture as rest posture, at a rate of 2/s at either level, the arm does
-/// not drift from circle to circle. Without it, the arm drifts.
+/// not drift from circle to circle. Without a rest posture, the arm drifts.
 template <typename Scheme>
 double drift_in_third_circle(const Scheme& scheme) {
   const TimeGrid<> grid(kDuration, 5e-3);

@@ -7,7 +7,7 @@
 
 #include "support/recording.hpp"
 
-/// The paper's figures and tables.
+/// The figures and tables of the paper.
 namespace fpbm::test::paper_laws {
 namespace {
 
@@ -37,7 +37,7 @@ TEST_P(PaperCases, end_as_in_the_independent_solution) {
   if (expected.k2 > 0.0) {
     EXPECT_LE(run.max_error(), 1e-12);
   } else {
-    // α = k₁ = k₂ = 0 is MAN (8): MAN() must give the same.
+    // α = k₁ = k₂ = 0 is MAN (8): MAN() must give the same result.
     expect_final(expected, recorded(paper_arm(), paper_path(expected.figure), MAN<4>(), paper_start(), grid()));
   }
 }
@@ -54,7 +54,7 @@ TEST(Paper, man_amplifies_the_tip_error_and_fpbm_does_not) {
   ASSERT_EQ(fpbm.result.status, Status::kOk);
   EXPECT_GT(man.max_error(), 10.0 * fpbm.max_error());
 
-  // It still grows at T: the largest error is the last.
+  // The error still grows at T: the last error is the largest.
   const double last_tenth = 0.9 * kDuration;
   EXPECT_EQ(man.max_error(), man.max_error(last_tenth));
   EXPECT_EQ(man.max_error(), man.samples.back().error.norm());

@@ -10,14 +10,14 @@
 #include "fpbm/task/path.hpp"
 #include "support/random.hpp"
 
-/// The clock of a path follower keeps to its path's time, whenever it is paused and resumed.
+/// The clock of a path follower follows the path time, for all sequences of pauses and resumes.
 namespace fpbm::test::path_follower_laws {
 namespace {
 
 template <typename Scalar>
 using Road = Path<Line<2, Scalar>, ConstantSpeed>;
 
-/// Along a straight line at 1 m/s, where x is the path time, xd the clock's rate and xdd its slope.
+/// A straight line at 1 m/s: x is the path time, xd the rate of the clock, and xdd the derivative of the rate.
 template <typename Scalar>
 PathFollower<Road<Scalar>> follower(Scalar ramp) {
   constexpr auto kLong = Scalar(256);  // A power of two: no round-off.
@@ -45,8 +45,8 @@ class PathFollowers : public ::testing::Test {
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(PathFollowers, Scalars, );
 
-/// Calls at random, more often within a ramp than after it: the rate stays within 0 and 1, and neither it nor its slope
-/// jumps. |ṙ| ≤ 1.5/ramp and |r̈| ≤ 8/ramp², whatever the calls.
+/// Random calls, more often within a ramp than after it. The rate stays between 0 and 1, and neither the rate nor its
+/// derivative jumps: |ṙ| ≤ 1.5/ramp and |r̈| ≤ 8/ramp² for all calls.
 TYPED_TEST(PathFollowers, keep_their_rate_within_0_and_1) {
   Random random(11);
   for (const double ramp : {0.01, 0.125, 0.5, 2.0}) {
@@ -76,7 +76,7 @@ TYPED_TEST(PathFollowers, keep_their_rate_within_0_and_1) {
         ASSERT_LE(std::abs(now.rd), slope * (1.0 + 8.0 * this->kEpsilon)) << where;
         ASSERT_GE(now.p, before.p) << where;
         ASSERT_NEAR(now.p, expected.p, round_off) << where;
-        // The change over a tick by the mean value theorem, and the way by the trapezium rule.
+        // The change in a tick by the mean value theorem, and the path time by the trapezoidal rule.
         ASSERT_NEAR(now.r, before.r + dt * before.rd, bend * dt * dt / 2.0 + 64.0 * this->kEpsilon) << where;
         ASSERT_NEAR(now.rd, before.rd, (bend * dt) * (1.0 + 1e-4) + 64.0 * this->kEpsilon * slope) << where;
         ASSERT_NEAR(now.p, before.p + dt * (before.r + now.r) / 2.0, bend * dt * dt * dt / 8.0 + round_off) << where;
@@ -86,7 +86,7 @@ TYPED_TEST(PathFollowers, keep_their_rate_within_0_and_1) {
   }
 }
 
-/// A call that asks for what is under way already changes nothing, bit for bit.
+/// Repeated calls have no effect: bitwise the same motion.
 TYPED_TEST(PathFollowers, do_nothing_when_called_again) {
   Random random(12);
   for (int sequence = 0; sequence < trials(200); ++sequence) {
@@ -112,7 +112,7 @@ TYPED_TEST(PathFollowers, do_nothing_when_called_again) {
   }
 }
 
-/// A transition takes a ramp from rest or full speed, and up to a quarter more where it turns another round.
+/// A transition takes one ramp from rest or full speed, and up to 1.25 ramps if it reverses another transition.
 TYPED_TEST(PathFollowers, are_there_within_a_ramp_and_a_quarter) {
   const auto arrives = [this](const auto& follower, double within, double rate) {
     const double grace = 1.0 + 64.0 * this->kEpsilon;
@@ -140,7 +140,7 @@ TYPED_TEST(PathFollowers, are_there_within_a_ramp_and_a_quarter) {
   }
 }
 
-/// From full speed to rest and back, each in half a ramp's way.
+/// From full speed to rest and back: during each ramp, the path time advances by half a ramp.
 TYPED_TEST(PathFollowers, take_half_a_ramps_way_to_rest) {
   for (const double ramp : {0.01, 0.5, 2.0}) {
     auto one = follower(static_cast<TypeParam>(ramp));

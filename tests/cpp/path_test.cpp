@@ -17,7 +17,7 @@ namespace {
 
 using Sample2 = Reference<Position<2>>;
 
-/// A shape under a time law, types erased, in the Scalar under test and in double.
+/// A type-erased shape with a time law, in the Scalar under test and in double.
 struct ErasedPath {
   std::string name;
   bool closed;
@@ -76,7 +76,7 @@ std::vector<ErasedPath> paths() {
 
 class Paths : public ::testing::TestWithParam<ErasedPath> {
  protected:
-  static constexpr double kSteep = 20.0;  ///< Upper bound on the slopes of the shapes above in s [m].
+  static constexpr double kSteep = 20.0;  ///< Upper bound on the slopes of the shapes above with respect to s [m].
 };
 
 TEST_P(Paths, differentiate_as_xd_and_xdd_say) {
@@ -94,7 +94,7 @@ TEST_P(Paths, are_the_same_in_every_scalar) {
     const Sample2 at = GetParam().sample(t);
     const Sample2 expected = GetParam().sample_in_double(t);
     const double round_off = 16.0 * GetParam().epsilon;
-    // The round-off of s counts most, and each derivative of a shape is steeper than the one before.
+    // The round-off error of s is the largest, and each derivative of a shape is steeper than the previous derivative.
     EXPECT_LE((at.x - expected.x).norm(), round_off * kSteep) << "t = " << t;
     EXPECT_LE((at.xd - expected.xd).norm(), round_off * kSteep) << "t = " << t;
     EXPECT_LE((at.xdd - expected.xdd).norm(), round_off * kSteep * kSteep / kT) << "t = " << t;

@@ -11,15 +11,16 @@
 #include "fpbm/task/posture_task.hpp"
 #include "support/random.hpp"
 
-/// A level that is a posture of all joints has no matrices (PostureRows). The same rows on a level of two tasks have.
+/// A level that is a posture task of all joints has no matrices (PostureRows). The same rows on a level of two tasks
+/// have matrices.
 namespace fpbm::test {
 namespace {
 
 constexpr int kDof = 7;
 constexpr std::array<int, kDof> kShuffled{4, 0, 6, 2, 5, 1, 3};
 
-/// Motions of a posture in any order of joints, and of the same posture as two tasks side by side, within the limits.
-/// The levels are enabled and disabled.
+/// Motions of a posture task with any order of joints, and of the same posture as two tasks on one level, within the
+/// limits. The levels are enabled and disabled.
 template <typename Scheme>
 void expect_same_motions(const Scheme& scheme, const TaskGains<>& gains) {
   const Robot<kDof> robot(presets::panda());
@@ -27,7 +28,7 @@ void expect_same_motions(const Scheme& scheme, const TaskGains<>& gains) {
   const PostureTask<4> some{gains, {kShuffled[0], kShuffled[1], kShuffled[2], kShuffled[3]}};
   const PostureTask<3> others{gains, {kShuffled[4], kShuffled[5], kShuffled[6]}};
   TrackerOptions<> options;
-  options.error_bound = 10.0;  // A bound on the error of each task: the motions would differ.
+  options.error_bound = 10.0;  // Bounds apply to each task: with smaller bounds, the motions would differ.
   for (int seed = 0; seed < trials(20); ++seed) {
     Random random(static_cast<std::uint32_t>(seed));
     Vector<kDof> q0{0.0, -0.6, 0.0, -2.4, 0.0, 1.8, 0.785};

@@ -13,8 +13,8 @@
 #include "fpbm/model/presets.hpp"
 #include "fpbm/model/robot_presets.hpp"
 
-/// Capsules of presets.hpp's arms: on every link, apart where the arm is at home, and not too large. That they contain
-/// the links, tests/python/test_preset_capsules.py checks.
+/// Capsules of the arms of presets.hpp: on every link, apart in the home postures, and not too large.
+/// tests/python/test_preset_capsules.py checks that they contain the links.
 namespace fpbm::test::preset_capsules_laws {
 namespace {
 
@@ -38,8 +38,8 @@ std::vector<Case> every_preset() {
   return cases;
 }
 
-/// Postures in degrees that makers and planners start from: Franka's ready one; KUKA's and Kinova's home, UR's home and
-/// the one that its manuals show.
+/// Start postures of manufacturers and planners in degrees: Franka's ready posture, the home postures of KUKA, Kinova
+/// and UR, and the posture in the manuals of UR.
 std::vector<Vector<kOpen>> homes(const std::string& name) {
   const auto all = [](const std::vector<Vector<7>>& postures) {
     return std::vector<Vector<kOpen>>(postures.begin(), postures.end());
@@ -94,7 +94,7 @@ TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
   }
 }
 
-/// Neighbours share the joint between them: a gap there would let something through.
+/// Capsules of adjacent links touch. With a gap at the joint, an obstacle could pass between them.
 TEST(PresetCapsules, neighbours_touch) {
   for (const Case& arm : every_preset()) {
     const Robot<kOpen> robot(arm.chain);

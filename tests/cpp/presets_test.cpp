@@ -12,8 +12,8 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// The arms of presets.hpp against models from other sources and in a control loop as they come, and
-/// Denavit-Hartenberg tables against products of their factors.
+/// The arms of presets.hpp, compared with models from other sources and run in a control loop with default settings,
+/// and Denavit-Hartenberg tables, compared with products of their factors.
 namespace fpbm::test::presets_laws {
 namespace {
 
@@ -137,8 +137,7 @@ TEST(Presets, iiwa14_agrees_with_other_models) {
 }
 
 /// Poses: the joint frames of mujoco_menagerie's gen3.xml, by Pinocchio 4.1.0, and table 94 of the User Guide, R07, as
-/// it is printed: rounded to 0.1 mm. Bounds of position: menagerie's; of acceleration: ros_kortex,
-/// hard_joint_limits.yaml.
+/// printed, rounded to 0.1 mm. Bounds on position: menagerie; on acceleration: ros_kortex, hard_joint_limits.yaml.
 TEST(Presets, gen3_agrees_with_other_models) {
   const Chain<> gen3 = presets::gen3();
   const Vector<7> home = kDegree * Vector<7>(0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0);
@@ -186,7 +185,8 @@ TEST(Presets, gen3_agrees_with_other_models) {
 }
 
 /// Poses: the joint frames of ur_description, default_kinematics.yaml, from base_link_inertia to tool0, as products of
-/// NumPy matrices. Bounds: ur_description, joint_limits.yaml, but for its elbow, which it halves for planners.
+/// NumPy matrices. Bounds: ur_description, joint_limits.yaml, except for the elbow, whose range is halved there for
+/// planners.
 void expect_universal_robot(const Chain<>& arm, const Vector<6>& speeds) {
   const JointLimits<6> limits = SerialArm<6>(arm).limits();
   expect_both_ways<6>(limits.lower, limits.upper, Vector<6>::Constant(2.0 * kHalfTurn), 1e-15);
@@ -232,7 +232,8 @@ TEST(Presets, ur10e_agrees_with_other_models) {
   expect_universal_robot(ur10e, {120.0, 120.0, 180.0, 180.0, 180.0, 180.0});
 }
 
-/// The posture farthest from singular ones, of a hundred in the middle of the joints' ranges.
+/// The posture with the largest distance to singular postures, of a hundred random postures in the middle of the joint
+/// ranges.
 Vector<kOpen> open_posture(const AnyArm<Position<3>>& arm) {
   const Vector<kOpen> lower = arm.limits().lower.cwiseMax(-3.0);
   const Vector<kOpen> upper = arm.limits().upper.cwiseMin(3.0);
@@ -269,7 +270,7 @@ void expect_to_reach_a_near_target(const AnyArm<Position<3>>& arm, const Scheme&
   EXPECT_LE(Space::template difference<double>(target.x, tracker.tip()).norm(), 1e-3);
 }
 
-/// With the bounds that it comes with, at both levels.
+/// With the bounds of the preset, at both levels.
 TEST(Presets, run_in_a_control_loop_as_they_come) {
   for (const presets::Preset& known : presets::kAll) {
     SCOPED_TRACE(known.name);
@@ -300,7 +301,7 @@ Eigen::Matrix4d about(int axis, double angle) {
   return T;
 }
 
-/// Rz Tz Tx Rx for classic tables and Rx Tx Rz Tz for modified ones, factor by factor.
+/// Rz Tz Tx Rx for classic tables and Rx Tx Rz Tz for modified tables, factor by factor.
 TEST(DenavitHartenberg, tip_is_the_product_of_its_rows) {
   constexpr int kX = 0;
   constexpr int kZ = 2;

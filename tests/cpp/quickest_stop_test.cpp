@@ -9,7 +9,7 @@
 
 #include "support/random.hpp"
 
-/// The closed form of the quickest stop against motion along it, for bounds and states of every size.
+/// The closed form of the shortest stop, compared with the motion along the stop, for bounds and states of every size.
 namespace fpbm::test::quickest_stop_laws {
 namespace {
 
@@ -21,11 +21,11 @@ class QuickestStops : public ::testing::Test {
   struct Case {
     QuickestStop<Scalar> stop;
     AxisState<Scalar> state;
-    Scalar duration;  ///< Of the stop, at most.
-    Scalar size;      ///< Of positions on the way, for round-off.
+    Scalar duration;  ///< Upper bound on the duration of the stop.
+    Scalar size;      ///< Size of the positions during the stop, for the round-off error.
   };
 
-  /// Bounds that differ by up to ten orders of magnitude, and velocities from far below A²/J to far above it.
+  /// Bounds that differ by up to ten orders of magnitude, and velocities from far below A²/J to far above A²/J.
   Case next() {
     const auto power = [this](double most) {
       return static_cast<Scalar>(std::pow(10.0, random_.uniform(-most, most)));
@@ -47,7 +47,7 @@ class QuickestStops : public ::testing::Test {
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(QuickestStops, Scalars, );
 
-/// Simpson's rule is exact between two changes of the jerk, of which there are three.
+/// Simpson's rule is exact between two changes of the jerk. There are three changes.
 TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_says) {
   using Scalar = TypeParam;
   constexpr int kSteps = 400;
@@ -55,7 +55,7 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_sa
     const auto [stop, start, duration, size] = this->next();
     const auto where = "case " + std::to_string(i);
     const Scalar h = duration / kSteps;
-    const Scalar bend = stop.jerk * h;  // What a changes by in a step.
+    const Scalar bend = stop.jerk * h;  // Change of the acceleration in a step.
     Scalar way(0);
     AxisState<Scalar> now = stop.ahead(start, Scalar(0));
     ASSERT_NEAR(now.q, start.q, 64 * this->kEpsilon * size) << where;
@@ -82,7 +82,7 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_sa
   }
 }
 
-/// Later on the stop the rest of the stop is the same.
+/// From every later state of the stop, the remaining stop is the same.
 TYPED_TEST(QuickestStops, go_on_as_they_began) {
   using Scalar = TypeParam;
   for (int i = 0; i < trials(10000); ++i) {
@@ -95,7 +95,7 @@ TYPED_TEST(QuickestStops, go_on_as_they_began) {
   }
 }
 
-/// An acceleration u over a tick from (v, a = u): the larger it is, the farther the stop ends.
+/// A tick with the acceleration u, then a stop from (v, a = u): the larger u is, the farther the stop ends.
 TYPED_TEST(QuickestStops, end_farther_the_more_the_axis_accelerates) {
   using Scalar = TypeParam;
   for (int i = 0; i < trials(2000); ++i) {
@@ -137,7 +137,7 @@ TYPED_TEST(QuickestStops, of_an_axis_at_rest_leave_it_alone) {
   EXPECT_EQ(later.a, TypeParam(0));
 }
 
-/// The root of a cube is found as far as the rounds allow, and never overshot.
+/// The root of a cubic is found as accurately as the number of rounds admits, and is never exceeded.
 TYPED_TEST(QuickestStops, find_the_largest_below_zero) {
   using Scalar = TypeParam;
   for (int i = 0; i < trials(1000); ++i) {

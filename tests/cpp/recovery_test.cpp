@@ -12,7 +12,7 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// An arm whose target leaves the workspace and comes back follows the target back; it rests while the target is
+/// An arm whose target leaves the workspace and returns follows the target back. The arm is at rest while the target is
 /// unreachable.
 namespace fpbm::test::recovery_laws {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 constexpr int N = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 
-/// Of each arm, level and kind of motion. FPBM_MOTIONS=40 for the figures of docs/realtime.md.
+/// For each arm, level and type of motion. FPBM_MOTIONS=40 gives the numbers of docs/realtime.md.
 [[nodiscard]] int motions() {
   const char* given = std::getenv("FPBM_MOTIONS");
   return given != nullptr ? std::atoi(given) : trials(2);
@@ -38,7 +38,7 @@ struct Subject {
   return all;
 }
 
-/// A posture in the middle of the ranges, and a displacement of the tip that leads out of the workspace as a rule.
+/// A posture in the middle of the ranges, and a displacement of the tip that usually leads out of the workspace.
 struct Start {
   Vector<N> q;
   Vector<6> out;
@@ -55,7 +55,7 @@ struct Start {
   return {q, out};
 }
 
-/// Worst excess over the bounds on position, velocity, acceleration and jerk, each as a share of the bound.
+/// Largest excess over the bounds on position, velocity, acceleration and jerk, relative to the bounds.
 struct Excess {
   const JointLimits<N> bounds;
   Vector<N> last;
@@ -85,7 +85,7 @@ using Velocity = std::integral_constant<Level, Level::kVelocity>;
   return WMVN<N>(Vector<N>(Vector<N>::Ones(n)), 5.0);
 }
 
-/// A target that a person moves: by jumps, or dragged in two seconds behind a filter, and 20 times a second.
+/// A target that a person moves: by jumps, or dragged in two seconds behind a filter with 20 messages per second.
 struct Target {
   Target(const Transform<>& x0, bool dragged_) : dragged(dragged_), filter(x0, {0.8, 5.0, 100.0, 1.5, 8.0, 300.0}) {}
 
@@ -146,7 +146,7 @@ TEST(Recovery, brings_arms_back_at_velocity_level) {
   expect_return(Velocity{});
 }
 
-/// Unreachable targets: at rest, without a recovery where the arm has come nearest at once.
+/// With unreachable targets, all arms come to rest. The number of recoveries is printed.
 TEST(Recovery, leaves_arms_at_rest_while_the_target_is_unreachable) {
   for (const Subject& subject : subjects()) {
     const auto arm = any_arm(subject.chain);
@@ -179,7 +179,7 @@ TEST(Recovery, leaves_arms_at_rest_while_the_target_is_unreachable) {
   }
 }
 
-/// Two links, whose target stays out of reach: no recovery.
+/// Two links with an unreachable target: no recovery.
 TEST(Recovery, does_not_begin_while_the_target_stays_out_of_reach) {
   auto bounds = JointLimits<N>::none(2);
   for (int i = 0; i < 2; ++i) bounds.set(i, {-2.5, 2.5, 2.0, 10.0});
@@ -195,8 +195,8 @@ TEST(Recovery, does_not_begin_while_the_target_stays_out_of_reach) {
   EXPECT_EQ(tick.status, Status::kStalled);
 }
 
-/// A joint on its velocity envelope blocks the task of this FR3. Along the envelope the tip approaches its target at 2
-/// mm/s, for 80 s.
+/// A joint on its velocity envelope blocks the task of this FR3. Along the envelope, the tip would approach its target
+/// at 2 mm/s for 80 s.
 TEST(Recovery, a_blocked_arm_stops_crawling) {
   const auto arm = any_arm(presets::fr3());
   const Vector<N> q0 = Vector<7>(0.5103, 0.1993, 0.5043, -1.6654, 0.8065, 1.2024, 0.1491);
@@ -212,7 +212,7 @@ TEST(Recovery, a_blocked_arm_stops_crawling) {
   EXPECT_LE(speed, 1e-3);
 }
 
-/// During a recovery stop() and a reference that is not finite brake the arm; afterwards it comes back all the same.
+/// During a recovery, stop() and a reference that is not finite brake the arm. Afterwards, the arm returns.
 TEST(Recovery, is_left_by_stop_and_by_nonsense) {
   const auto arm = any_arm(presets::panda());
   int recoveries = 0;
@@ -237,13 +237,13 @@ TEST(Recovery, is_left_by_stop_and_by_nonsense) {
     EXPECT_TRUE(tick.qd.isZero(0.0)) << k;
     loop.resume();
     for (int i = 0; i < 30000; ++i) tick = loop.tick(home);
-    // As in expect_return(): where limits slow the arm, no error below 2e-3 starts a recovery (StallDetector).
+    // As in expect_return(): if limits slow the arm, no error below 2e-3 starts a recovery (StallDetector).
     EXPECT_LT(tick.error.norm(), 1e-3) << k;
   }
   EXPECT_GE(recoveries, 2);
 }
 
-/// A target at rest causes finitely many recoveries, whatever the memory holds.
+/// A static target causes finitely many recoveries, for every content of the memory.
 TEST(Recovery, ends_for_every_target) {
   const auto arm = any_arm(presets::panda());
   for (int k = 0; k < motions(); ++k) {

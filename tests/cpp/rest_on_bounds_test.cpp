@@ -7,8 +7,8 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// An arm that starts at rest with a joint exactly on its bound stays there: round-off neither pushes the joint off nor
-/// shakes the arm.
+/// An arm that starts at rest with a joint exactly on its bound stays there: round-off error neither pushes the joint
+/// off the bound nor excites the arm.
 namespace fpbm::test::rest_on_bounds_laws {
 namespace {
 
@@ -38,7 +38,7 @@ template <typename Scalar>
   return result;
 }
 
-/// Somewhere in the middle of the joints' ranges, with one joint on a bound.
+/// A posture in the middle of the joint ranges, with one joint on a bound.
 template <typename Scalar>
 [[nodiscard]] Vector<kOpen, Scalar> posture(const JointLimits<kOpen, Scalar>& bounds, Eigen::Index joint, bool upper) {
   const Vector<kOpen, Scalar> lower = bounds.lower.cwiseMax(Scalar(-3));
@@ -50,7 +50,7 @@ template <typename Scalar>
   return q;
 }
 
-/// In double behind one type, whose trackers other tests have, too.
+/// In double, one type, whose trackers other tests use too.
 template <typename Scalar>
 [[nodiscard]] auto arm_of(const Chain<>& chain) {
   if constexpr (std::is_same_v<Scalar, double>) {
@@ -68,7 +68,7 @@ void expect_to_stay(const Arm& arm, const Scheme& scheme, const Vector<kOpen, Sc
   CompiledTracker tracker(arm, Position<3>{}, scheme, q0, options);
   const auto hold = Reference<Position<3>, Scalar>::hold(tracker.tip());
   const Scalar slack = Scalar(4) * kEpsilon<Scalar> * q0.cwiseAbs().maxCoeff();
-  // At velocity level the least motion is a digit of q within a tick.
+  // At velocity level, the smallest motion is one digit of q in a tick.
   const Scalar least = Scheme::kLevel == Level::kVelocity ? slack / dt / dt : Scalar(0);
   for (int i = 0; i < trials(200); ++i) {
     const auto tick = tracker.tick(hold);
@@ -81,7 +81,7 @@ void expect_to_stay(const Arm& arm, const Scheme& scheme, const Vector<kOpen, Sc
   }
 }
 
-/// The null space drives one joint against its bound, and other joints as they come: that one stays where it is.
+/// The null-space motion drives one joint against its bound, and moves other joints. The joint stays on its bound.
 template <typename Scalar, typename Arm>
 void expect_not_to_be_pressed_off(const Arm& arm, const Vector<kOpen, Scalar>& q0, Eigen::Index joint, Scalar way) {
   const Vector<kOpen, Scalar> ones = Vector<kOpen, Scalar>::Ones(q0.size());

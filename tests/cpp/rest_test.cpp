@@ -3,7 +3,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-/// Self-motion: none of the paper's schemes damps it; the secondary motion z does.
+/// Self-motion: no scheme of the paper damps the self-motion; the secondary motion z does.
 namespace fpbm::test::rest_laws {
 namespace {
 
@@ -12,7 +12,7 @@ Recording<4> circle_and_hold(const NullSpace<4>& null_space) {
                   TimeGrid<>(kDuration, 1e-3, 30.0));
 }
 
-/// Largest travel of any joint during the hold [rad].
+/// Largest displacement of any joint during the hold [rad].
 double travel_during_hold(const Recording<4>& run) {
   return (run.result.last.q - run.samples[10000].q).cwiseAbs().maxCoeff();
 }
@@ -33,7 +33,7 @@ TEST(Rest, is_reached_with_damping) {
   EXPECT_LE(run.max_error(), 1e-12) << "the task is not disturbed";
 }
 
-/// Circle after circle, the arm repeats its motion with a rest posture; without one it drifts.
+/// With a rest posture, the arm repeats its motion from circle to circle. Without a rest posture, the arm drifts.
 TEST(Rest, posture_makes_circles_repeat) {
   const TimeGrid<> grid(kDuration, 5e-3);
   const auto chain = [&](const NullSpace<4>& null_space, auto&& each) {

@@ -21,7 +21,7 @@ constexpr int kOpen = Eigen::Dynamic;
   return {random.uniform(3, -0.4, 0.4), rotation(Vector<3>(random.uniform(3, -1.5, 1.5)))};
 }
 
-/// A tree of so many joints: some prismatic, some that follow others, each carried by any link before it.
+/// A random tree: some joints are prismatic, some follow others, and each joint is carried by any earlier link.
 [[nodiscard]] Tree<> random_tree(Random& random, int joints, double branching, double following) {
   Tree<> tree;
   const auto chance = [&](double p) { return random.uniform(0.0, 1.0) < p; };
@@ -63,9 +63,9 @@ struct Textbook {
   std::vector<double> qd;
   std::vector<Eigen::Index> drive;
   std::vector<Transform<>> frames = {Transform<>()};
-  std::vector<Vector<3>> axes;  ///< Of joints, in the base frame.
+  std::vector<Vector<3>> axes;  ///< Joint axes in the base frame.
   std::vector<Vector<3>> w = {Vector<3>::Zero()};
-  std::vector<Vector<3>> v = {Vector<3>::Zero()};  ///< Of the frames' origins.
+  std::vector<Vector<3>> v = {Vector<3>::Zero()};  ///< Velocities of the origins of the frames.
 
   Textbook(const Tree<>& tree, const Vector<kOpen>& drives, const Vector<kOpen>& rates) : drive(tree.joints.size()) {
     Eigen::Index k = 0;
@@ -160,7 +160,7 @@ TEST(Tree, has_the_kinematics_of_its_links) {
   EXPECT_LT(errors.Jd, 2e-12 * kMaxDof);
 }
 
-/// Two Pandas side by side, their sizes known at compile time.
+/// Two Pandas side by side, with sizes known at compile time.
 TEST(Tree, of_fixed_size_is_that_of_run_time_size) {
   const Tree<> tree = two_pandas(false);
   Errors errors;

@@ -7,14 +7,14 @@
 #include "fpbm/limits/task_given_up.hpp"
 #include "support/random.hpp"
 
-/// The motion within rows that changes a task least.
+/// The motion that satisfies the rows and changes a task least.
 namespace fpbm::test::row_projection_laws {
 namespace {
 
 constexpr int kRows = 6;
 
-/// Against the optimality conditions of the problem: u − desired = −H⁻¹ Gᵀλ with λ ≥ 0, and λ = 0 where a row is not
-/// met. Rows may be alike, or parallel to the task's.
+/// Optimality conditions of the problem: u − desired = −H⁻¹ Gᵀλ with λ ≥ 0, and λ = 0 for inactive rows. Rows may be
+/// equal, or parallel to rows of the task.
 template <typename Scalar>
 void expect_optimal(double tolerance) {
   int met = 0;
@@ -54,7 +54,7 @@ void expect_optimal(double tolerance) {
     const Eigen::Matrix3d prices = static_cast<double>(mu) * B.template cast<double>().inverse();
     const Eigen::MatrixXd H = Jd.transpose() * prices * Jd + static_cast<double>(mu) * Eigen::MatrixXd::Identity(7, 7);
     const Eigen::VectorXd force = H * (desired - u).template cast<double>();  // Gᵀλ
-    // The least change of force that multipliers of met rows leave, by cycling through them.
+    // The smallest remainder of `force` after subtracting multiples of active rows, by cycling through the rows.
     Eigen::VectorXd left = force;
     Eigen::VectorXd lambda = Eigen::VectorXd::Zero(rows.count);
     for (int round = 0; round < 20000 && left.norm() > tolerance * force.norm() / 10.0; ++round) {
@@ -76,7 +76,7 @@ TEST(RowProjection, is_optimal) {
   expect_optimal<float>(2e-2);
 }
 
-/// Rows that exclude one another leave no motion: it says so and returns numbers.
+/// Contradictory rows admit no motion: the projection reports it and returns finite numbers.
 TEST(RowProjection, says_where_rows_exclude_one_another) {
   Rows<7, 2> rows;
   rows.g.col(0) = Vector<7>::Ones();
@@ -89,8 +89,7 @@ TEST(RowProjection, says_where_rows_exclude_one_another) {
   EXPECT_FALSE(projection.solved);
 }
 
-/// What lies ahead of the tip takes of the task what goes along its normal, whatever other rows of the same surface
-/// say.
+/// A surface ahead of the tip changes the task only along its normal, for all other rows of the same surface.
 TEST(TaskGivenUp, is_along_a_surface_s_normal) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(2000)); ++seed) {
     Random random(seed);
@@ -105,7 +104,7 @@ TEST(TaskGivenUp, is_along_a_surface_s_normal) {
     rows.count = 1 + seed % 2;
     const double mu = 1e-12;
     const Vector<3> second = (J * J.transpose()).inverse() * J * rows.g.col(1);
-    if (second.dot(normal) < 0.3) continue;  // The first one's change is not enough for the second.
+    if (second.dot(normal) < 0.3) continue;  // The change for the first row is not sufficient for the second row.
     const Vector<3> change = task_given_up(J, mu, rows, desired).change;
     EXPECT_LE((change + normal).norm(), 1e-9) << "seed " << seed;
     const Matrix<Eigen::Dynamic, Eigen::Dynamic> open_J = J;
@@ -116,8 +115,8 @@ TEST(TaskGivenUp, is_along_a_surface_s_normal) {
   }
 }
 
-/// How much self-motion could do for a row: all, where the row does not move the task; nothing, where it only does
-/// that.
+/// Share of the correction that is null-space motion: 1 if the row does not move the task, 0 if the row only moves the
+/// task.
 TEST(TaskGivenUp, knows_what_self_motion_could_do) {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(200)); ++seed) {
     Random random(seed);
@@ -137,7 +136,7 @@ TEST(TaskGivenUp, knows_what_self_motion_could_do) {
   }
 }
 
-/// Where rows take nothing, or no motion of the task helps, nothing is given up.
+/// If the rows admit the motion, or no change of the task helps, the change of the task is zero.
 TEST(TaskGivenUp, is_nothing_where_rows_admit_the_motion) {
   const Matrix<3, 7> J = Random(1).uniform(3, 7, -1.0, 1.0);
   Rows<7, 2> rows;

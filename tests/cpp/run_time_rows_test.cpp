@@ -4,7 +4,7 @@
 #include "fpbm/scheme/schemes.hpp"
 #include "support/random.hpp"
 
-/// Rows of a number that is known at run time: the motions are those of the same rows of a fixed number.
+/// A number of rows that is known at run time: the motions equal the motions with a fixed number of rows.
 namespace fpbm::test::run_time_rows {
 namespace {
 
@@ -24,7 +24,7 @@ template <int M>
           {problem.reference.x, problem.reference.xd, problem.reference.xdd}};
 }
 
-/// rank: the last rows repeat the first ones but for 1e-3 of a random row.
+/// rank: the last rows repeat the first rows, plus 1e-3 of a random row.
 template <int M>
 [[nodiscard]] Problem<M> random_problem(Random& random, int rank) {
   const auto matrix = [&] {

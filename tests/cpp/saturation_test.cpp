@@ -11,13 +11,14 @@
 #include "support/arms.hpp"
 #include "support/linear_program.hpp"
 
-/// Saturation in the null space does as much of the task as a linear program, along the task's line, within the box.
+/// Saturation in the null space reaches the task scale of a linear program, along the line of the task and within the
+/// box.
 namespace fpbm::test::saturation_laws {
 namespace {
 
 constexpr int kRows = 6;
 
-/// A box, a motion to rest inside it, and a desired motion.
+/// A box, a start motion `rest` inside the box, and a desired motion.
 struct Problem {
   Eigen::MatrixXd J;
   Eigen::VectorXd lower;
@@ -63,7 +64,7 @@ template <int M, int N, typename Scalar>
   }
 }
 
-/// Bounds of random widths about 0, a fifth of them with rest on them, and a desired motion mostly too large.
+/// Bounds of random widths around 0, a fifth of them active at `rest`, and a desired motion that is mostly too large.
 void fill(Random& random, Problem& problem) {
   const Eigen::Index n = problem.J.cols();
   problem.lower = random.uniform(n, -3.0, -0.5);
@@ -82,10 +83,10 @@ struct Tally {
   const char* name;
   int all = 0;
   int slowed = 0;
-  int apart = 0;  ///< By more than 1e-6.
+  int apart = 0;  ///< Number of scales that differ by more than 1e-6.
   int passes = 0;
-  double least = 1.0;  ///< s as a share of the linear program's.
-  double off = 0.0;    ///< Of the task's line [rad].
+  double least = 1.0;  ///< Smallest s, relative to the scale of the linear program.
+  double off = 0.0;    ///< Largest deviation from the line of the task [rad].
   double beyond_rows = 0.0;
 
   void check(const Problem& problem) {
@@ -101,7 +102,7 @@ struct Tally {
         largest_scale(problem.J, problem.lower, problem.upper, problem.rest, problem.desired, problem.G, problem.most);
     const Eigen::VectorXd task = problem.J * (problem.desired - problem.rest);
     const Eigen::VectorXd done = problem.J * (found.u - problem.rest);
-    // Round-off of the sums in J u stands beside the angle where little of the task is left.
+    // If the task scale is small, the round-off error of the sums in J u adds to the angle.
     const double round_off = 1e-14 * problem.J.norm() * (problem.upper - problem.lower).norm();
     const double away = (done - found.scale * task).norm();
     off = std::max(off, (away - round_off) / std::max(found.scale * task.norm(), 1e-300));
@@ -153,7 +154,7 @@ TEST(Saturation, is_optimal_on_arms) {
   }
 }
 
-/// From the last tick's acceleration, in the boxes of Limits, of all widths down to none.
+/// From the acceleration of the last tick, in the boxes of Limits, of all widths down to zero.
 template <typename Space, typename Arm>
 void check_jerk(const char* name, const Arm& arm, int count) {
   constexpr int N = Eigen::Dynamic;
@@ -191,7 +192,7 @@ TEST(Saturation, is_optimal_with_bounds_on_jerk) {
   }
 }
 
-/// Random rows, a third of which rest is on; some are repeated, and some are a joint's own.
+/// Random rows. `rest` is on a third of the rows; some rows are repeated, and some bound a single joint.
 template <typename Space, typename Arm>
 void check_rows(const char* name, const Arm& arm, int count) {
   Random random(11);
@@ -247,8 +248,8 @@ TEST(Saturation, is_optimal_at_every_rank) {
   }
 }
 
-/// Random problems of the kind that the tests of SNS-IK draw (RethinkRobotics-opensource/sns_ik), each with a share of
-/// the task that is known to be feasible: J q̈ + J̇ q̇ = s ẍ at acceleration level, J q̇ = s ẋ at velocity level.
+/// Random problems like those of the tests of SNS-IK (RethinkRobotics-opensource/sns_ik), each with a task scale that
+/// is known to be feasible: J q̈ + J̇ q̇ = s ẍ at acceleration level, J q̇ = s ẋ at velocity level.
 struct SnsBounds {
   double J;
   double least;
@@ -280,7 +281,7 @@ void check_sns(const SnsBounds& like) {
     const double known = std::min(1.0, random.uniform(0.2, 1.2));
     const Eigen::VectorXd task = (problem.J * u + drift) / known;
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> J(problem.J);
-    if (like.drift > 0.0) {  // A rest motion that cancels the drift, where the box holds one.
+    if (like.drift > 0.0) {  // A start motion that cancels the drift, if the box contains one.
       problem.desired = J.solve(-drift);
       const auto rest = saturate(problem);
       if (rest.scale < 1.0) continue;

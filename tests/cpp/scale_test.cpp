@@ -7,15 +7,15 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// A tick that says kOk with scale 1 has done the whole task, and one that says less has not.
+/// A tick with kOk and scale 1 executes the whole task. A tick with a smaller scale does not.
 namespace fpbm::test::scale_laws {
 namespace {
 
 constexpr int N = Eigen::Dynamic;
 constexpr double kTick = 1e-3;
 
-/// Toward steps of the target, at rest in between, at velocity level with every gain that a tick of 1 ms can follow.
-/// The share is that of the task's velocity at the tick's start, whose direction changes by k h within it.
+/// Steps of the target from rest, at velocity level, with all gains that a tick of 1 ms can follow. The reference is
+/// the task velocity at the start of the tick, whose direction changes by k h within the tick.
 template <typename Space, typename Arm>
 void expect_ok_to_be_ok(const std::string& name, const Arm& arm, const Vector<N>& q0) {
   int ticks = 0;

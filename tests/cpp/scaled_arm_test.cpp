@@ -7,18 +7,18 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// An arm of another size, or in other units, does the same in proportion.
+/// An arm of another size, or in other units, moves in proportion.
 namespace fpbm::test::scaled_arm_laws {
 namespace {
 
-/// Statuses of all ticks, the joints' way, and the largest error of the position, in arm lengths.
+/// Statuses of all ticks, the joint displacements, and the largest position error in arm lengths.
 struct Course {
   std::vector<Status> statuses;
   Vector<Eigen::Dynamic> q;
   double error = 0.0;
 };
 
-/// Through a singular posture, to a target out of reach and back, then along a circle.
+/// Through a singular posture to an unreachable target and back, then along a circle.
 template <typename Space, typename Arm, typename Scheme>
 [[nodiscard]] Course run(const Arm& arm, const Scheme& scheme, const Vector<Eigen::Dynamic>& q0, double factor) {
   constexpr int N = Arm::kDof;

@@ -18,7 +18,7 @@
 #include "fpbm/task/posture_task.hpp"
 #include "support/random.hpp"
 
-/// Rows of a lower level, scaled: a singular value says what the higher levels leave of a direction.
+/// Scaled rows of a lower level: a singular value is the part of a direction that the higher levels do not use.
 namespace fpbm::test {
 namespace {
 
@@ -28,7 +28,7 @@ constexpr double kPosture = 0.3;  ///< ρ
   return Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues();
 }
 
-/// Sizes, units and singular postures.
+/// For several sizes, units and singular postures.
 template <int M, int N>
 void expect_scaled(Eigen::Index m, Eigen::Index n) {
   for (int seed = 0; seed < trials(200); ++seed) {
@@ -58,7 +58,7 @@ TEST(ScaledLevel, has_the_singular_values_of_its_docstring) {
   expect_scaled<Eigen::Dynamic, Eigen::Dynamic>(6, 24);
 }
 
-/// A diagonal level needs no factor: its answer is that of the same rows in another order.
+/// A diagonal level needs no factor. Its result does not depend on the order of the rows.
 TEST(ScaledLevel, of_a_posture_does_not_depend_on_the_order_of_rows) {
   Random random(1);
   const Vector<7> entries = random.uniform(7, 0.5, 1.5);
@@ -72,7 +72,7 @@ TEST(ScaledLevel, of_a_posture_does_not_depend_on_the_order_of_rows) {
   EXPECT_LT((level.r - Vector<7>(other.r.reverse())).norm(), 1e-12);
 }
 
-/// Rows that are zero or not finite stay as they are.
+/// Rows that are zero or not finite do not change.
 TEST(ScaledLevel, leaves_rows_without_a_factor) {
   Matrix<2, 7> J = Matrix<2, 7>::Zero();
   EXPECT_EQ((ScaledLevel<2, 7, double>(J, Vector<2>(1.0, 2.0)).r), Vector<2>(1.0, 2.0));
@@ -80,7 +80,7 @@ TEST(ScaledLevel, leaves_rows_without_a_factor) {
   EXPECT_EQ((ScaledLevel<2, 7, double>(J, Vector<2>(1.0, 2.0)).r), Vector<2>(1.0, 2.0));
 }
 
-/// A position below the axis of a Panda's tip jumps or moves out of the workspace, and comes back.
+/// A position below the axis of the tip of a Panda jumps or moves out of the workspace, and returns.
 TEST(ScaledLevel, a_position_is_reached_again) {
   constexpr int kTip = Robot<7>::kTip;
   const Robot<7> robot(presets::panda());

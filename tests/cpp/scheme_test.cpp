@@ -34,15 +34,15 @@ class SchemeLaws : public ::testing::TestWithParam<Subject> {
     }
   }
 
-  /// The answer to a scene that the subject must resolve.
+  /// The result for a scene that the subject must resolve.
   static Outcome resolved(const Law& law, const Scene& scene) {
     Outcome outcome = GetParam().resolve(law, scene);
     EXPECT_EQ(outcome.status, Status::kOk);
     return outcome;
   }
 
-  /// Expected round-off in u. The schemes solve with JJᵀ and JW⁻¹Jᵀ, whose condition is that of J squared; and each
-  /// term is rounded, which may be larger than the sum.
+  /// Expected round-off error of u. The condition numbers of JJᵀ and JW⁻¹Jᵀ enter, which are squares of the condition
+  /// number of J. The round-off error of a term may be larger than the sum.
   static double tolerance(const Law& law, const Situation& at) {
     const RealMatrix Winv = inverse(real(law.W));
     const double relative = 8.0 * GetParam().epsilon *
@@ -55,7 +55,7 @@ class SchemeLaws : public ::testing::TestWithParam<Subject> {
   }
 };
 
-/// The answers are those of (3), (5) to (9), (13) and (16) as printed.
+/// The results equal (3), (5) to (9), (13) and (16) as printed.
 TEST_P(SchemeLaws, equals_the_textbook) {
   everywhere([](const Scene& scene, const Law& law) {
     const Outcome outcome = resolved(law, scene);
@@ -63,7 +63,7 @@ TEST_P(SchemeLaws, equals_the_textbook) {
   });
 }
 
-/// J qd = v and J qdd = b: the task first, whatever the weights, the balance and z.
+/// J qd = v and J qdd = b: the task has priority for all weights, balances and z.
 TEST_P(SchemeLaws, moves_the_tip_as_commanded) {
   everywhere([](const Scene& scene, const Law& law) {
     const auto [status, u, at] = resolved(law, scene);
@@ -71,7 +71,7 @@ TEST_P(SchemeLaws, moves_the_tip_as_commanded) {
   });
 }
 
-/// J N_W = 0 (Lemma 2): z does not change the task; and where there is a null space it changes u.
+/// J N_W = 0 (Lemma 2): z does not change the task. If a null space exists, z changes u.
 TEST_P(SchemeLaws, a_secondary_motion_leaves_the_task_alone) {
   everywhere([](const Scene& scene, const Law& law) {
     if (!law.has_null_space) return;
@@ -98,7 +98,7 @@ TEST_P(SchemeLaws, only_the_ratios_of_the_weights_matter) {
   });
 }
 
-/// A straight arm cannot move its tip along its links: the scheme refuses and leaves u alone.
+/// A straight arm cannot move its tip along its links: the scheme rejects the state and does not change u.
 TEST_P(SchemeLaws, a_singular_posture_is_refused) {
   everywhere([](Scene scene, const Law& law) {
     for (const double direction : {0.0, 0.3, 2.0}) {
@@ -111,7 +111,7 @@ TEST_P(SchemeLaws, a_singular_posture_is_refused) {
   });
 }
 
-/// A state or reference that is not finite gives a status, and u is left alone.
+/// For a state or reference that is not finite, the scheme returns a status and does not change u.
 TEST_P(SchemeLaws, what_is_not_finite_is_refused) {
   const Subject& subject = GetParam();
   const bool acceleration = subject.takes.acceleration;

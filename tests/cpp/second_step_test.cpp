@@ -12,15 +12,15 @@
 #include "support/linear_program.hpp"
 #include "support/random.hpp"
 
-/// The second step of limits with bounds on jerk, and its degenerate problems: the motion that it starts from is on
-/// bounds, and its goal may be on the same bounds. The share of the task is the one that a linear program finds.
+/// The second step of limits with bounds on jerk, and its degenerate problems: the start motion is on bounds, and its
+/// goal may be on the same bounds. The task scale equals the result of a linear program.
 namespace fpbm::test::second_step_laws {
 namespace {
 
-/// Slack of the linear program's bounds, in their own units: the round-off error of an envelope's bound.
+/// Slack of the bounds in the linear program, in their own units: the round-off error of the bound of an envelope.
 constexpr double kSlack = 1e-12;
 
-/// Problems on each kind of arm and task; FPBM_SECOND_STEPS sets another number: 12 × 8334 are 100,000.
+/// Number of problems for each type of arm and task. FPBM_SECOND_STEPS sets another number: 12 × 8334 are 100,000.
 [[nodiscard]] int problems_of_each_kind() {
   const char* number = std::getenv("FPBM_SECOND_STEPS");
   return number != nullptr ? std::atoi(number) : trials(600);
@@ -29,9 +29,9 @@ constexpr double kSlack = 1e-12;
 struct Tally {
   std::string name;
   int all = 0;
-  int below = 0;    ///< By more than 1e-6.
-  int frozen = 0;   ///< s = 0, where the linear program has more.
-  int blocked = 0;  ///< s = 0
+  int below = 0;    ///< Number of scales below the optimum by more than 1e-6.
+  int frozen = 0;   ///< Number with s = 0, although the optimum is larger.
+  int blocked = 0;  ///< Number with s = 0.
   double worst = 0.0;
 
   void add(double scale, double most) {
@@ -62,7 +62,7 @@ struct Law {
         k2(random.uniform(10.0, 100.0)),
         null_damping(random.uniform(0.0, 4.0)) {}
 
-  /// J u = task, near a motion in the null space.
+  /// The motion nearest to a null-space motion with J u = task.
   [[nodiscard]] Eigen::VectorXd motion(const Eigen::MatrixXd& J, const Eigen::VectorXd& task,
                                        const Eigen::VectorXd& near) const {
     const Eigen::MatrixXd way = inverse_weights.asDiagonal() * J.transpose();
@@ -71,7 +71,7 @@ struct Law {
   }
 };
 
-/// The goal of the second step, as the first one gives it; s of both steps.
+/// The goal of the second step, as determined by the first step; s of both steps.
 template <Level kLevel, int M>
 struct SecondStep {
   Box<7> box;
@@ -103,7 +103,7 @@ struct SecondStep {
   }
 };
 
-/// Circles that ask for too much, as long as it takes to meet so many second steps.
+/// Circles that exceed the limits, until the given number of second steps has occurred.
 template <typename Space, Level kLevel>
 void check_motions(const std::string& name, const Chain<>& chain, double jerk_per_acceleration) {
   constexpr int M = Space::kRows;
@@ -157,8 +157,8 @@ void check_motions(const std::string& name, const Chain<>& chain, double jerk_pe
           return largest_scale(J, step.box.lower - wider, step.box.upper + wider, step.from, step.goal, {}, {});
         };
         double best = optimum(kSlack);
-        // The optimum is concave in the slack: this is at least the optimum without slack, without the share of an
-        // ill-conditioned optimum that is proportional to the slack.
+        // The optimum is concave in the slack. Therefore this value is at least the optimum without slack, without the
+        // part of an ill-conditioned optimum that is proportional to the slack.
         if (motion.scale / step.first < best - 1e-6) best = 2.0 * optimum(kSlack / 2.0) - best;
         tally.add(motion.scale / step.first, best);
       }

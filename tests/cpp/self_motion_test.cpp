@@ -10,12 +10,12 @@
 #include "fpbm/linalg/row_factor.hpp"
 #include "support/make_subjects.hpp"
 
-/// J taken apart without JJᵀ, by its one self-motion and by its rows, against pseudoinverses in extended precision: the
-/// condition of J enters the round-off once.
+/// Factorisations of J without JJᵀ, by its one self-motion and by its rows, compared with pseudoinverses in extended
+/// precision: the condition number of J enters the round-off error once.
 namespace fpbm::test::self_motion_laws {
 namespace {
 
-/// Of M rows of J, the last kTurns_ angular, and N joints.
+/// J with M rows, of which the last kTurns_ are angular, and N joints.
 template <int M_, int N_, int kTurns_, typename Scalar_ = double>
 struct Shape {
   static constexpr int M = M_;
@@ -32,8 +32,8 @@ struct ShapeNames {
   }
 };
 
-/// Random J whose least singular value is near what is asked for: the last row of its lengths is nearly another one.
-/// Axes have the length 1.
+/// Random J whose smallest singular value is near `least`: the last of its linear rows is nearly equal to another row.
+/// Axes are unit vectors.
 template <typename Shape>
 Matrix<Shape::M, Shape::N, typename Shape::Scalar> random_jacobian(Random& random, double least) {
   constexpr int kLengths = Shape::M - Shape::kTurns;
@@ -48,7 +48,7 @@ struct Factors : ::testing::Test {
   using Scalar = typename Shape::Scalar;
   static constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
 
-  /// Calls check(J, random, round_off), the last as a share of what is computed.
+  /// Calls check(J, random, round_off). round_off: relative to the result.
   template <typename Check>
   static void everywhere(Check&& check) {
     for (std::uint32_t seed = 0; seed < 400; ++seed) {
@@ -73,8 +73,8 @@ using WithSelfMotion = ::testing::Types<Shape<2, 3, 0>, Shape<3, 4, 1>, Shape<5,
                                         Shape<6, 7, 3>, Shape<6, 7, 3, float>>;
 TYPED_TEST_SUITE(SelfMotions, WithSelfMotion, ShapeNames);
 
-/// J v = 0; J y = b, of one b and of two; sᵀg for J s = t is tᵀμ for Jᵀμ = g; the trace of (JJᵀ)⁻¹; and no σ_min is
-/// below its bound.
+/// J v = 0; J y = b, for one b and for two; sᵀg for J s = t equals tᵀμ for Jᵀμ = g; the trace of (JJᵀ)⁻¹; and the
+/// bounds are below σ_min.
 TYPED_TEST(SelfMotions, are_found_with_every_kind_of_factor) {
   using S = typename TypeParam::Scalar;
   constexpr int M = TypeParam::M;
@@ -128,7 +128,7 @@ struct RowFactors : Factors<Shape> {};
 using OfRows = ::testing::Types<Shape<2, 4, 0>, Shape<3, 7, 0>, Shape<6, 6, 3>, Shape<6, 9, 3>, Shape<3, 7, 0, float>>;
 TYPED_TEST_SUITE(RowFactors, OfRows, ShapeNames);
 
-/// A⁺b, and a motion without its part in the span of A's rows.
+/// A⁺b, and a motion without its component in the span of the rows of A.
 TYPED_TEST(RowFactors, solve_without_the_square_of_the_condition) {
   using S = typename TypeParam::Scalar;
   constexpr int M = TypeParam::M;
@@ -151,7 +151,7 @@ TYPED_TEST(RowFactors, solve_without_the_square_of_the_condition) {
   });
 }
 
-/// A row that is another one is lost, whatever its size; what is not finite is not called singular.
+/// A row that equals another row is lost, for every size. Entries that are not finite are not reported as singular.
 TYPED_TEST(RowFactors, refuse_what_has_no_factor) {
   using S = typename TypeParam::Scalar;
   constexpr int M = TypeParam::M;
@@ -170,10 +170,10 @@ TYPED_TEST(RowFactors, refuse_what_has_no_factor) {
   });
 }
 
-/// Every scheme on a planar arm of three joints, which the laws of schemes do not have.
+/// Every scheme on a planar arm of three joints, which the laws of schemes do not cover.
 class ThreeJoints : public ::testing::TestWithParam<Subject> {};
 
-/// The law p + γ v is the textbook's; and damping changes no bit of it outside its radius, however near.
+/// The law p + γ v equals the textbook, and damping changes no bit outside its radius, at any distance.
 TEST_P(ThreeJoints, move_by_the_law_of_one_self_motion) {
   for (const bool has_null_space : {false, true}) {
     for (std::uint32_t seed = 0; seed < 100; ++seed) {

@@ -14,7 +14,7 @@
 #include "support/random.hpp"
 #include "support/textbook.hpp"
 
-/// Serial arms against finite differences, products of transforms and planar arms.
+/// Serial arms, compared with finite differences, products of transforms and planar arms.
 namespace fpbm::test::serial_arm_laws {
 namespace {
 
@@ -33,7 +33,7 @@ std::vector<Joint<>> random_chain(Random& random, int dof) {
   return joints;
 }
 
-/// Central differences of tip, by ⊖, and of J, along qd.
+/// Central differences of the tip, by ⊖, and of J, along qd.
 template <int N, typename Space>
 void expect_derivatives(const SerialArm<N>& arm, const Vector<N>& q, const Vector<N>& qd) {
   constexpr double kStep = 1e-6;
@@ -70,7 +70,8 @@ TEST(SerialArm, jacobians_are_derivatives) {
   for (const int dof : {1, 3, 9, kMaxDof}) expect_derivatives_of_random_chains<Eigen::Dynamic>(dof);
 }
 
-/// Column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], where that of J is [lᵢ; aᵢ]: with J from the arm at q alone.
+/// Column i of Jd is [wᵢ × lᵢ + aᵢ × uᵢ; wᵢ × aᵢ], where column i of J is [lᵢ; aᵢ] (docs/equations.md, "Time derivative
+/// of J"). J is computed from the arm at q.
 template <int N>
 void expect_rate_from_columns(int dof) {
   Random random(static_cast<std::uint32_t>(dof));
@@ -114,7 +115,7 @@ TEST(SerialArm, rate_of_J_follows_from_J_alone) {
   for (const int dof : {2, 3, 9, kMaxDof}) expect_rate_from_columns<Eigen::Dynamic>(dof);
 }
 
-/// An arm of other numbers is the same arm, to their round-off; so is one of N known at run time.
+/// An arm in another Scalar, or with N known at run time, is the same arm up to round-off.
 template <int N, typename Scalar>
 void expect_same_arm(const Chain<>& chain, Random& random) {
   const SerialArm<Eigen::Dynamic> arm(chain);
@@ -201,7 +202,7 @@ TEST(SerialArm, a_planar_arm_is_one) {
   }
 }
 
-/// J qdd + Jd qd is the acceleration that (13) commands, for a pose too.
+/// J qdd + Jd qd is the acceleration that (13) commands, also for a pose.
 TEST(SerialArm, fpbm_gives_the_tip_its_commanded_acceleration) {
   constexpr int N = 7;
   Random random(3);
@@ -235,12 +236,13 @@ TEST(Rotation, vector_and_matrix_are_inverse_to_each_other) {
       EXPECT_LE((R * r - r).norm(), 1e-14);
     }
   }
-  // At π itself both signs are right.
+  // At π, both signs are correct.
   const Matrix<3, 3> half = rotation(Vector<3>(0.0, kHalfTurn, 0.0));
   EXPECT_NEAR(rotation_vector(half).cwiseAbs()(1), kHalfTurn, 1e-14);
 }
 
-/// R_x R_yᵀ, not formed where it is a small turn, has the rotation vector of the matrix that is formed.
+/// The rotation vector of R_x R_yᵀ, computed without the matrix for small angles, equals the rotation vector of the
+/// matrix.
 template <typename Scalar>
 void expect_the_vector_between() {
   const auto epsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());

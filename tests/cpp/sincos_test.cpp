@@ -13,9 +13,9 @@ namespace {
 
 constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
 
-/// The angle less k quarter turns, by π/2 in three parts: the long double functions of some systems, as mingw-w64's,
-/// lose digits at large angles. The first two parts are doubles of 33 bits, which no long double takes for others, and
-/// exact times k.
+/// Sine and cosine of the angle minus k quarter turns, with π/2 in three parts, because the long double functions of
+/// some systems (mingw-w64) lose digits at large angles. The first two parts are doubles of 33 bits, which are exact in
+/// every long double, also multiplied by k.
 SinCos<long double> reference(double angle) {
   const auto k = static_cast<long double>(std::lround(angle / static_cast<double>(kHalfPi)));
   const long double r =
@@ -30,7 +30,7 @@ SinCos<long double> reference(double angle) {
   }
 }
 
-/// Largest absolute error of sine and cosine of an angle, by itself and as the first of a vector.
+/// Largest absolute error of the sine and cosine of an angle, alone and as the first entry of a vector.
 double error_at(double angle) {
   const SinCos<double> alone = sincos(angle);
   const Vector<3> angles(angle, 0.5, -1.0);
@@ -50,7 +50,7 @@ double worst_over(double range, int samples) {
   Random random(7);
   double worst = 0.0;
   for (int i = 0; i < samples; ++i) {
-    // Two draws: Random gives floats, whose 24 bits would leave the low bits of an angle zero.
+    // Two random numbers: Random returns floats, whose 24 bits would leave the low bits of an angle zero.
     const double angle = random.uniform(-range, range) + random.uniform(-1.0, 1.0) * 1e-7 * range;
     worst = std::max(worst, error_at(std::clamp(angle, -range, range)));
   }
@@ -66,7 +66,7 @@ TEST(SinCos, is_exact_to_round_off_in_reach) {
   }
 }
 
-/// There the reduction of the angle cancels most, and the quadrant changes.
+/// At these angles, the reduction has the largest cancellation, and the quadrant changes.
 TEST(SinCos, is_exact_at_multiples_of_a_quarter_turn) {
   double worst = 0.0;
   for (int k = -318000; k <= 318000; k += 7) {
@@ -83,7 +83,7 @@ TEST(SinCos, falls_back_beyond_its_reach) {
   for (const double angle : {std::nextafter(ReducedSinCos::kReach, 1e9), 1e6, -1e9, 1e15, 1e300}) {
     EXPECT_LE(error_at(angle), 2e-16) << angle;
   }
-  // One angle out of reach sends the whole vector through the slow code, to the same round-off.
+  // If one angle is out of range, the slow code computes the whole vector, with the same round-off error.
   const Vector<3> angles(1.0, 1e9, -2.0);
   Vector<3> sines;
   Vector<3> cosines;
@@ -133,7 +133,7 @@ TEST(SinCos, of_float_is_exact_to_round_off) {
       worst = std::max(worst, float_error_at(static_cast<float>(random.uniform(-range, range))));
     }
   }
-  for (int k = -5200; k <= 5200; ++k) {  // There the reduction of the angle cancels most, and the quadrant changes.
+  for (int k = -5200; k <= 5200; ++k) {  // Here, the reduction has the largest cancellation, and the quadrant changes.
     for (const double offset : {-0.5, 0.0, 0.5}) {
       worst = std::max(worst, float_error_at(static_cast<float>((k + offset) * static_cast<double>(kHalfPi))));
     }

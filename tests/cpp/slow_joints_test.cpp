@@ -11,9 +11,9 @@
 #include "support/arms.hpp"
 #include "support/compiled_tracker.hpp"
 
-/// Joints of any speed, down to those whose velocity bound V is below J h², the change of velocity in one tick of jerk
-/// J, keep their bounds; every motion within box() leads from a viable state to a viable one; and require_viable()
-/// accepts these states in spite of round-off.
+/// Joints of any speed keep their bounds, down to joints whose velocity bound V is below J h², the change of velocity
+/// in one tick with the jerk J. Every motion within box() leads from a viable state to a viable state, and
+/// require_viable() accepts these states despite round-off error.
 namespace fpbm::test::slow_joints_laws {
 namespace {
 
@@ -22,7 +22,7 @@ constexpr int kOpen = Eigen::Dynamic;
 template <typename Scalar>
 constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
 
-/// A number from low to high > 0, uniform in its logarithm.
+/// A random number from low to high, both positive, with a uniform logarithm.
 [[nodiscard]] double spread(Random& random, double low, double high) {
   return std::exp(random.uniform(std::log(low), std::log(high)));
 }
@@ -32,7 +32,7 @@ struct Joint1 {
   double tick;
 };
 
-/// Bounds from units of the tick: J h for accelerations, J h² for velocities, J h³ for positions.
+/// Bounds in units of the tick: J h for accelerations, J h² for velocities, J h³ for positions.
 [[nodiscard]] Joint1 random_joint(std::uint32_t seed, Random& random) {
   constexpr double kTicks[] = {1e-3, 3e-3, 2e-2};
   const double h = seed % 4 < 3 ? kTicks[seed % 4] : spread(random, 1e-4, 5e-2);
@@ -60,13 +60,13 @@ template <typename Scalar>
   return all.cast<Scalar>().joint(0);
 }
 
-/// Within a bound, up to the round-off of a scale.
+/// Whether |value| ≤ bound, up to the round-off error of `scale`.
 template <typename Scalar>
 [[nodiscard]] bool within(Scalar value, Scalar bound, Scalar scale) {
   return std::abs(value) <= bound + Scalar(16) * kEpsilon<Scalar> * (bound + scale);
 }
 
-/// A joint in a loop of ticks, that picks a share of its box each time.
+/// A joint in a loop of ticks. Each tick selects a motion in the box.
 template <Level kLevel, typename Scalar>
 class Driven {
  public:
@@ -82,7 +82,7 @@ class Driven {
     return complaint([&] { limits_.require_viable(state_, last_); });
   }
 
-  /// share: 0 for the box's lower end, 1 for its upper end.
+  /// share: 0 for the lower end of the box, 1 for the upper end.
   void tick(double share) {
     const Scalar h = limits_.tick();
     const auto box = limits_.box(state_, last_);
@@ -134,7 +134,7 @@ class Driven {
   Single last_;
 };
 
-/// The limits of a random joint; none where Limits refuses them or has no bound on jerk left.
+/// The limits of a random joint. Empty if Limits rejects the bounds, or does not use the bound on jerk.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] std::optional<Limits<kLevel, 1, Scalar>> random_limits(std::uint32_t seed, Random& random) {
   const Joint1 joint = random_joint(seed, random);
@@ -146,7 +146,7 @@ template <Level kLevel, typename Scalar>
   return limits;
 }
 
-/// Pushes against an end, jumps between both ends of the box, or picks at random.
+/// Pushes against an end, jumps between both ends of the box, or selects at random.
 [[nodiscard]] double share_of(std::uint32_t seed, int tick, Random& random) {
   switch (seed / 4 % 6) {
     case 0: return 1.0;
@@ -186,7 +186,7 @@ TEST(SlowJoints, keep_their_bounds_whatever_they_are_asked_for) {
   expect_to_keep_bounds<Level::kVelocity, float>();
 }
 
-/// A random state, as often as not as far toward the upper end as its velocity and acceleration allow.
+/// A random state. Most states are as near to the upper end as their velocity and acceleration admit.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] Driven<kLevel, Scalar> random_state(const Limits<kLevel, 1, Scalar>& limits, Random& random) {
   const JointBounds<Scalar> bounds = limits.bounds().joint(0);
@@ -237,7 +237,7 @@ TEST(SlowJoints, stay_viable_from_every_viable_state) {
   expect_viable_states_to_lead_to_viable_ones<Level::kVelocity, float>();
 }
 
-/// At rest on the upper end the joint may go either way in time.
+/// At rest on the upper end, the joint can move off the end in box_in_time(), but not beyond it.
 template <Level kLevel>
 void expect_time_to_leave_the_end() {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(trials(2000)); ++seed) {
@@ -256,7 +256,7 @@ TEST(SlowJoints, may_leave_an_end_that_they_rest_on) {
   expect_time_to_leave_the_end<Level::kVelocity>();
 }
 
-/// Random bounds of an arm's joints, with and without jerks and velocity envelopes.
+/// Random bounds of the joints of an arm, with and without bounds on jerk and velocity envelopes.
 [[nodiscard]] Chain<> with_random_bounds(Chain<> chain, Random& random) {
   for (Joint<>& joint : chain.joints) {
     JointBounds<>& bounds = joint.bounds;
@@ -274,7 +274,7 @@ TEST(SlowJoints, may_leave_an_end_that_they_rest_on) {
   return chain;
 }
 
-/// The kinds of arms that trackers are compiled for.
+/// The arm types for which trackers are compiled.
 template <typename Scalar>
 [[nodiscard]] auto arm_of(const Chain<>& chain) {
   if constexpr (std::is_same_v<Scalar, double>) {

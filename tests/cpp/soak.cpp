@@ -4,9 +4,9 @@
 
 #include "fpbm/fpbm.hpp"
 
-/// Circles for a day at 1 kHz, 8.64e7 ticks, or for the number of ticks given: from the second one on the posture at
-/// the end of each must be the same, to 1e-6 rad. And a tenth of that among shapes, of which a wall cuts off a part of
-/// the circle: no pair may be nearer than its margin. Prints the largest differences.
+/// Runs circles for a day at 1 kHz, 8.64e7 ticks, or for a given number of ticks. From the second circle on, the
+/// posture at the end of each circle must be the same, to 1e-6 rad. Then runs a tenth of the ticks with a clearance,
+/// where a wall cuts off a part of the circle: no pair may be closer than its margin. Prints the largest differences.
 namespace {
 
 using namespace fpbm;
@@ -16,7 +16,7 @@ struct Soaked {
   long circles = 0;
   double drift = 0.0;
   double error = 0.0;
-  double nearest = 1e9;  ///< Beyond the margin.
+  double nearest = 1e9;  ///< Beyond the margin [m].
   bool failed = false;
 };
 

@@ -34,7 +34,7 @@ std::vector<typename Space::template Point<double>> random_points(Random& random
   return points;
 }
 
-/// xd is the rate of x by ⊖, and xdd that of xd, except where xdd steps.
+/// xd is the derivative of x by ⊖, and xdd the derivative of xd, except at steps of xdd.
 template <typename Path>
 void expect_exact_derivatives(const Path& path, const std::vector<double>& steps_at = {}) {
   using Space = typename Path::Space;
@@ -130,7 +130,8 @@ TEST(Waypoints, pass_every_point_on_time) {
   expect_waypoints<Pose>();
 }
 
-/// A spline of least jerk has continuous jerk and snap: one-sided differences of acceleration agree across each knot.
+/// A minimum-jerk spline has continuous jerk and snap: one-sided differences of the acceleration agree across each
+/// knot.
 TEST(Spline, has_four_continuous_derivatives) {
   Random random(6);
   std::vector<Vector<2>> points;
@@ -143,7 +144,7 @@ TEST(Spline, has_four_continuous_derivatives) {
   for (std::size_t i = 1; i + 1 < times.size(); ++i) {
     constexpr double kStep = 1e-3;
     const auto at = [&](int steps) { return Vector<2>(spline.at(times[i] + steps * kStep).xdd); };
-    // Within a piece the acceleration is a cubic, which four points determine.
+    // Within a piece, the acceleration is a cubic, which four points determine.
     const auto jerk = [&](int way) {
       return Vector<2>((-11 * at(0) + 18 * at(way) - 9 * at(2 * way) + 2 * at(3 * way)) / (6 * way * kStep));
     };
@@ -173,7 +174,7 @@ TEST(Waypoints, turn_through_more_than_half_a_turn) {
   EXPECT_NEAR(turned, 4 * kPi, 1e-4);
 }
 
-/// The fastest path within the bounds exceeds none of them and nearly reaches one.
+/// The fastest path within the bounds exceeds no bound and nearly reaches one.
 TEST(Waypoints, keep_their_bounds) {
   Random random(2);
   for (int trial = 0; trial < 20; ++trial) {
@@ -205,14 +206,14 @@ TEST(Sequence, is_one_path_and_then_the_other) {
   EXPECT_LE((both.sample(3.0).x.p - Vector<3>(0.1, 0.0, 0.3)).norm(), 1e-15);
   const Matrix<3, 3> turned = rotation(Vector<3>(0.5, 0, 0)) * rotation(Vector<3>(0, 0, 1.0));
   EXPECT_LE((both.sample(3.0).x.R - turned).norm(), 1e-14);
-  // Where xdd steps, a step of an integrator stays within its piece.
+  // At a step of xdd, a step of an integrator stays within its piece.
   EXPECT_LE((both.sample(2.0, 1.99).xdd - first.sample(2.0).xdd).norm(), 0.0);
   EXPECT_LE((both.sample(2.0, 2.0).xdd - second.sample(0.0).xdd).norm(), 0.0);
   EXPECT_GT((first.sample(2.0).xdd - second.sample(0.0).xdd).norm(), 0.1);
 }
 
-/// MAN, which corrects nothing, tracks a sequence to round-off although its acceleration steps: no step of RK4
-/// straddles the joint between the pieces.
+/// MAN has no feedback, and tracks a sequence to round-off although its acceleration steps: no step of RK4 contains the
+/// transition between the pieces.
 TEST(Sequence, is_integrated_piece_by_piece) {
   const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
   const Path circle(Circle(0.2), 2.0);
@@ -225,7 +226,7 @@ TEST(Sequence, is_integrated_piece_by_piece) {
   EXPECT_LE(worst, 1e-10);
 }
 
-/// A step of the reference's velocity, on the way or at its end, is not taken for a lost task.
+/// A step of the reference velocity, within the path or at its end, is not reported as a lost task.
 TEST(Sequence, may_step_in_velocity) {
   const PlanarArm<4> arm({1.0, 1.0, 1.0, 1.0});
   const Path circle(Circle(0.2), 4.0, ConstantSpeed{});

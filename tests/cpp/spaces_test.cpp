@@ -32,7 +32,7 @@ TEST(Spaces, difference_and_displace_are_inverse_to_each_other) {
   }
 }
 
-/// Near half a turn the error is near π and points along the axis, to the last digits; at π its sign may change.
+/// Near half a turn, the error is near π and along the axis, to the last digits. At π, its sign may change.
 TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
   Random random(2);
   for (const double short_of : {1e-1, 1e-4, 1e-8, 1e-12}) {
@@ -41,7 +41,7 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
       const Matrix<3, 3> R = rotation(Vector<3>(random.uniform(3, -1.8, 1.8)));
       const Transform<> x{Vector<3>::Zero(), rotation(Vector<3>((kPi - short_of) * axis)) * R};
       const Vector<3> e = Pose::difference<double>(x, {Vector<3>::Zero(), R}).tail<3>();
-      // Within round-off of π both signs are the same rotation.
+      // Within round-off of π, both signs are the same rotation.
       const double sign = e.dot(axis) > 0.0 || short_of > 1e-10 ? 1.0 : -1.0;
       EXPECT_LE((e - sign * (kPi - short_of) * axis).norm(), 1e-13) << short_of;
       EXPECT_NEAR(e.norm(), kPi - short_of, 1e-14);
@@ -73,7 +73,7 @@ TEST(PlanarArm, has_a_pose) {
   }
 }
 
-/// A mimic joint's column of J is added to its leader's, and J and Jd are the derivatives.
+/// The column of J of a mimic joint is added to the column of its leader, and J and Jd are the derivatives.
 TEST(CoupledArm, moves_its_mimic_joints) {
   Chain<> chain = presets::panda();
   chain.joints[3].mimic = {1, -2.0, 0.4};
@@ -121,7 +121,7 @@ TEST(CoupledArm, moves_its_mimic_joints) {
   EXPECT_THROW(SerialArm<7>{chain}, std::invalid_argument);
 }
 
-/// The Panda holds its orientation along a circle, or turns, for 10 s at 1 kHz.
+/// The Panda holds its orientation along a circle, or rotates, for 10 s at 1 kHz.
 TEST(PoseTask, is_tracked_from_a_consistent_start) {
   const SerialArm<7> arm(presets::panda());
   const State<7> start{{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785}, Vector<7>::Zero()};
@@ -148,12 +148,12 @@ TEST(PoseTask, is_tracked_from_a_consistent_start) {
   expect_tracked(WithRotation(circle), Balanced<7>(0.0, ones));
 }
 
-/// From any start, a path out of reach ends before it leaves the ball that the flange cannot leave. The tip is never
-/// further from its reference than one step, and every sample is finite.
+/// From any start, a motion along an unreachable path ends before it leaves the ball of all flange positions. The tip
+/// is never farther from its reference than one step, and every sample is finite.
 TEST(PoseTask, that_leaves_the_workspace_ends) {
   const SerialArm<7> arm(presets::panda());
   const JointLimits<7>& limits = arm.limits();
-  constexpr double kReach = 1.2;  // Longer than all links in a row, from the shoulder at 0.333 m.
+  constexpr double kReach = 1.2;  // Longer than the sum of all links, from the shoulder at 0.333 m.
   Random random(7);
   const auto expect_end = [&](const auto& scheme, const auto& path, double speed) {
     State<7> start{Vector<7>::Zero(), Vector<7>::Zero()};
@@ -194,8 +194,8 @@ TEST(PoseTask, that_leaves_the_workspace_ends) {
   }
 }
 
-/// From a start at rest, 0.6 rad and 5 cm off: position errors obey ë + k₁ė + k₂e = 0, and so do orientation errors
-/// where the target is at rest. Where the target turns, the orientation error decays at the same rate.
+/// From a start at rest, with errors of 0.6 rad and 5 cm: position errors satisfy ë + k₁ė + k₂e = 0, and so do
+/// orientation errors if the target is at rest. If the target rotates, the orientation error decays at the same rate.
 TEST(PoseTask, converges_at_the_rate_of_its_gains) {
   using Arm = SerialArm<7>;
   using Scheme = AccelerationScheme<7>;
@@ -232,7 +232,7 @@ TEST(PoseTask, converges_at_the_rate_of_its_gains) {
       if (rate == 0.0) {
         ASSERT_LE((e.tail<3>() - fading * e0.tail<3>()).norm(), 1e-9) << t;
       } else {
-        // ė starts with the target's angular velocity.
+        // The initial ė is the angular velocity of the target.
         ASSERT_LE(e.tail<3>().norm(), 2.0 * (e0.tail<3>().norm() + rate / 2) * std::exp(-2.0 * t)) << t;
       }
     }

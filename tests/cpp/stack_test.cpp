@@ -20,7 +20,7 @@
 #include "support/bodies.hpp"
 #include "support/random.hpp"
 
-/// Stacks of tasks in strict priority: tasks are what they say they are, no level disturbs a higher one, and no bound
+/// Stacks of tasks in strict priority: tasks have their documented rows, no level disturbs a higher level, and no bound
 /// is exceeded.
 namespace fpbm::test::stack_laws {
 namespace {
@@ -44,7 +44,7 @@ constexpr double kTick = 1e-3;
   return q;
 }
 
-/// Tip level, position, height of the elbow, posture.
+/// Axis alignment of the tip, position, height of the elbow, posture.
 [[nodiscard]] auto level_tip() {
   const TaskGains<> gains(10.0, 25.0);
   return Stack(AxisTask<>{{kTip}, gains}, PositionTask<>{{kTip}, gains}, PositionTask<1>{{4}, gains, {2}},
@@ -147,7 +147,7 @@ void expect_derivatives(const Robot<N, double, Joints>& robot, Task task) {
     EXPECT_LT((here.S * here.xd - here.rows.J * qd).norm(), 1e-12);
     EXPECT_LT((here.rows.Jd - Jd).norm(), 1e-7);
     if constexpr (kIsAxis<Task>) {
-      // Of the angular velocity at right angles to the axis.
+      // Of the angular velocity perpendicular to the axis.
       const auto turning = [&](const At& state) { return Vector<3>(state.xd - state.xd.dot(state.x) * state.x); };
       const Vector<3> rate = (turning(at(q + h * qd, qd)) - turning(at(q - h * qd, qd))) / (2.0 * h);
       EXPECT_LT((here.rows.Jd * qd - here.S * rate).norm(), 1e-7);
@@ -155,7 +155,7 @@ void expect_derivatives(const Robot<N, double, Joints>& robot, Task task) {
   }
 }
 
-/// Of every link: even and odd numbers of joints before the link, with and without prismatic joints.
+/// For every link: even and odd numbers of joints before the link, with and without prismatic joints.
 template <int N>
 void expect_derivatives_of_all_tasks(const Chain<>& chain) {
   const Robot<N> robot(chain);
@@ -182,7 +182,8 @@ TEST(Task, has_the_rows_of_its_point_s_derivative) {
   expect_derivatives_of_all_tasks<Eigen::Dynamic>(panda_on_rail());
 }
 
-/// Frames of two arms, of the torso that carries both, and of one arm; a link that moves both moves nothing.
+/// Frames of two arms, of the torso that carries both, and of one arm. A joint that moves both frames does not
+/// contribute.
 template <int N, int Joints>
 void expect_derivatives_of_relative_tasks(const Tree<>& tree) {
   const Robot<N, double, Joints> robot(tree);
@@ -241,7 +242,7 @@ TEST(Direction, difference_turns_one_to_the_other) {
     EXPECT_LT(std::abs(d.dot(y)), 1e-12);
   }
 }
-/// From 1e-8 to 0.5 rad, where the series ends at 0.125 rad, and of vectors of any length.
+/// From 1e-8 to 0.5 rad, where the series is used up to 0.125 rad, and for vectors of any length.
 TEST(Direction, difference_is_the_rotation_vector_of_small_angles) {
   Random random(5);
   for (int trial = 0; trial < trials(1000); ++trial) {
@@ -327,7 +328,7 @@ void expect_no_interference() {
                   (levels.first * (two.u - one.u)).norm() / unit, (levels.second * (three.u - two.u)).norm() / unit});
     const Box<7> box = limits.box(state, last);
     EXPECT_TRUE(box.contains(three.u));
-    // Rows are kept as far as the motion without jerk keeps them.
+    // Rows are satisfied as far as the motion without jerk satisfies them.
     const Vector<7> steady = kLevel == Level::kAcceleration ? last : Vector<7>(state.qd + kTick * last);
     const Vector<7> from = rows.near(box.nearest(steady), box);
     for (int k = 0; k < rows.count; ++k) {
@@ -375,7 +376,7 @@ TEST(Stack, no_level_disturbs_a_higher_one) {
   }
 }
 
-/// A cup is carried level while the position, the elbow and the posture meet their limits.
+/// A cup is carried upright while the position, the elbow and the posture reach their limits.
 TEST(Stack, keeps_its_first_level_while_lower_ones_are_limited) {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
   auto tracker = stack_tracker(panda(), level_tip(), balanced(), q0);
@@ -399,7 +400,7 @@ TEST(Stack, keeps_its_first_level_while_lower_ones_are_limited) {
   EXPECT_LT(away, 1e-6);
 }
 
-/// Excess over the bounds on position, velocity, acceleration and jerk by differences of q, as shares of the bounds.
+/// Excess over the bounds on position, velocity, acceleration and jerk by differences of q, relative to the bounds.
 template <int N>
 class Excess {
  public:
@@ -448,7 +449,7 @@ constexpr int kOpen = Eigen::Dynamic;
           {"planar", planar}};
 }
 
-/// Bounds that leave no joint without one.
+/// Finite bounds for all joints.
 [[nodiscard]] JointLimits<kOpen> finite(JointLimits<kOpen> limits) {
   for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
     limits.lower(i) = std::max(limits.lower(i), -3.0);
@@ -459,8 +460,8 @@ constexpr int kOpen = Eigen::Dynamic;
   return limits;
 }
 
-/// Targets that jump, conflict, and cannot be reached: bounds hold, the robot comes to rest, and stops when told to.
-/// A third of the motions begin with a joint on its bound.
+/// Targets that jump, conflict, and are unreachable: bounds hold, the robot comes to rest, and stops on command. In a
+/// third of the motions, a joint starts on its bound.
 template <typename Tasks, typename Scheme>
 void expect_to_keep_bounds(const std::string& name, const Chain<>& chain, const Tasks& stack, const Scheme& scheme) {
   using Space = typename Tasks::Space;
@@ -529,7 +530,7 @@ TEST(Stack, keeps_every_bound_and_comes_to_rest_by_velocity) {
   }
 }
 
-/// Two trackers of one stack move alike to a random target near the start.
+/// Two trackers of one stack move identically to a random target near the start.
 template <typename Tracker, typename Other>
 void expect_same_motion(Tracker tracker, Other other, std::uint32_t seed) {
   Random random(seed);
@@ -544,8 +545,8 @@ void expect_same_motion(Tracker tracker, Other other, std::uint32_t seed) {
   }
 }
 
-/// Six joints, a position and an axis: fixed sizes resolve the level by its self-motion, other sizes by the rows of J.
-/// Two robots, both levels, regular postures.
+/// Six joints, a position and an axis: code of fixed size resolves the level by its self-motion, other code by the rows
+/// of J. Two robots, both levels, regular postures.
 TEST(Stack, of_a_position_and_an_axis_moves_by_its_self_motion) {
   const auto stack_of = [](const TaskGains<>& gains) {
     return Stack(TaskLevel(PositionTask<>{{kTip}, gains}, AxisTask<>{{kTip}, gains}));
@@ -573,7 +574,7 @@ TEST(Stack, of_a_position_and_an_axis_moves_by_its_self_motion) {
   }
 }
 
-/// The cup's tasks with references, for the laws below.
+/// The tasks of a cup with references, for the tests below.
 struct Cup {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
   decltype(stack_tracker(panda(), level_tip(), balanced(), Vector<7>())) tracker;
@@ -596,7 +597,7 @@ struct Cup {
   [[nodiscard]] double away() const { return (std::get<1>(tracker.tip()) - place.x).norm(); }
 };
 
-/// Each task follows its own source, here a path and a filter of targets.
+/// Each task has its own source of references, here a path and a target filter.
 TEST(Stack, has_a_source_of_references_for_each_task) {
   const TaskGains<> gains(20.0, 100.0);
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
@@ -616,7 +617,7 @@ TEST(Stack, has_a_source_of_references_for_each_task) {
   EXPECT_NEAR(follower.time(), 3.0, 1e-9);
 }
 
-/// A task that cannot be done stops and says so, and follows its target again when the target comes back.
+/// An infeasible task stops with scale 0, and follows its target again when the target returns.
 TEST(Stack, says_which_level_has_stopped) {
   Cup cup(Vector<3>(0.6, 0.8, 0.2));
   cup.run(20000);
@@ -631,7 +632,8 @@ TEST(Stack, says_which_level_has_stopped) {
   EXPECT_EQ(cup.tick().scales[1], 1.0);
 }
 
-/// The angle of an axis to its target obeys θ̈ + k₁θ̇ + k₂θ = 0, while lower levels turn the frame about the axis.
+/// The angle of an axis to its target satisfies θ̈ + k₁θ̇ + k₂θ = 0, while lower levels rotate the frame about the axis
+/// (docs/equations.md, "Axis of a frame").
 TEST(Stack, no_rotation_about_an_axis_disturbs_the_axis) {
   const TaskGains<> gains(10.0, 25.0);
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
@@ -651,7 +653,7 @@ TEST(Stack, no_rotation_about_an_axis_disturbs_the_axis) {
   EXPECT_GT(spin, 0.2);
 }
 
-/// The integral of a task that has stopped moves nothing.
+/// The integral of a stopped task causes no motion.
 TEST(Stack, a_stopped_task_has_no_integral) {
   TrackerOptions<> options;
   options.integral_gain = 5.0;
@@ -663,7 +665,7 @@ TEST(Stack, a_stopped_task_has_no_integral) {
   EXPECT_LT(cup.away(), 1e-4);
 }
 
-/// What holds lower levels while the robot stops or fails is forgotten: the same targets are reached afterwards.
+/// The state that holds lower levels during a stop or a failure is discarded: the same targets are reached afterwards.
 TEST(Stack, goes_on_after_a_stop_and_after_a_failure) {
   for (const bool fails : {false, true}) {
     Cup cup(Vector<3>(0.0, 0.1, 0.0));
@@ -685,7 +687,7 @@ TEST(Stack, goes_on_after_a_stop_and_after_a_failure) {
   }
 }
 
-/// An integral of the error is not spoiled by a lower level without a finite reference.
+/// A lower level without a finite reference does not corrupt the integral of the error.
 TEST(Stack, an_integral_outlasts_a_reference_that_is_not_finite) {
   TrackerOptions<> options;
   options.integral_gain = 5.0;
@@ -699,7 +701,7 @@ TEST(Stack, an_integral_outlasts_a_reference_that_is_not_finite) {
   EXPECT_EQ(cup.tick().scales[2], 1.0);
 }
 
-/// A coordinate that a task does not select has no error: a target for the height alone may lie anywhere.
+/// A coordinate that a task does not select has no error: the other coordinates of a height target are arbitrary.
 TEST(Stack, coordinates_that_are_not_selected_have_no_error) {
   TrackerOptions<> options;
   options.integral_gain = 5.0;
@@ -713,8 +715,8 @@ TEST(Stack, coordinates_that_are_not_selected_have_no_error) {
   }
 }
 
-/// What the integral adds to the reference's acceleration after 10 s of errors: 0.01 rad of an axis, and of a place on
-/// the level below, of which the limits left a share.
+/// Contribution of the integral to the reference acceleration after 10 s of errors: 0.01 rad of an axis, and `place` on
+/// the level below, whose task scale is `share`.
 [[nodiscard]] Vector<6> integral(const Vector<3>& place, double share) {
   using Space = Stack<TaskLevel<AxisTask<>>, TaskLevel<PositionTask<>>>::Space;
   TrackerOptions<> options;
@@ -732,7 +734,8 @@ TEST(Stack, coordinates_that_are_not_selected_have_no_error) {
   return correction(Reference<Space>::hold(Space::origin<double>())).xdd;
 }
 
-/// An error of a lower level that stays does not weaken the integral of a higher one. Each has the whole bound.
+/// A steady-state error of a lower level does not reduce the integral of a higher level. Each integral has the whole
+/// bound.
 TEST(Stack, has_an_integral_for_each_task) {
   const double missing = std::numeric_limits<double>::quiet_NaN();
   const Vector<3> far(0.0, 0.09, 0.0);
@@ -742,7 +745,7 @@ TEST(Stack, has_an_integral_for_each_task) {
   EXPECT_NEAR(integral(Vector<3>::Constant(missing), 1.0)(0), 0.1, 1e-9);
 }
 
-/// Answers to measured states, one tick old, keep the first level while limits slow the others.
+/// With measured states that are one tick old, the first level is kept while limits slow the other levels.
 TEST(Stack, resolves_measured_states) {
   Cup cup(Vector<3>(0.1, 0.2, -0.1));
   auto targets =
@@ -793,7 +796,7 @@ TEST(Stack, a_level_without_a_finite_reference_stops_alone) {
   EXPECT_EQ(tracker.tick(upright, place, height, posture).scales[2], 1.0);
 }
 
-/// Levels are enabled and disabled while the robot moves: no bound is exceeded, and what is enabled is done.
+/// Levels are enabled and disabled while the robot moves: no bound is exceeded, and enabled levels are executed.
 TEST(Stack, levels_are_enabled_and_disabled_at_run_time) {
   const Vector<7> q0{0.0, -0.3, 0.0, -2.2, 0.0, 2.0, 0.785};
   auto tracker = stack_tracker(panda(), level_tip(), balanced(), q0);
@@ -817,10 +820,10 @@ TEST(Stack, levels_are_enabled_and_disabled_at_run_time) {
   tracker.enable(1, false);
   tracker.enable(2, false);
   tilt = std::max(tilt, run(6000));
-  EXPECT_LT((tracker.state().q - q0).norm(), 0.05);  // The posture brings it back.
+  EXPECT_LT((tracker.state().q - q0).norm(), 0.05);  // The posture task moves the robot back.
   EXPECT_GT(away(), 0.2);
   tracker.enable(1, true);
-  for (int i = 0; i < 20; ++i) {  // Restless.
+  for (int i = 0; i < 20; ++i) {  // Frequent changes.
     tracker.enable(2 + i % 2, i % 3 == 0);
     tilt = std::max(tilt, run(50));
   }

@@ -6,13 +6,14 @@
 #include "fpbm/limits/stop_plan.hpp"
 #include "support/arms.hpp"
 
-/// Stops that are known to their end.
+/// Stopping trajectories that are known to their end.
 namespace fpbm::test::stop_plan_laws {
 namespace {
 
 constexpr double kTick = 1e-3;
 
-/// Its shares add up to the whole velocity, its way is that of the ticks, and its steps keep deceleration and jerk.
+/// The shares add up to the whole velocity, the displacement equals the sum over the ticks, and the steps keep the
+/// bounds on deceleration and jerk.
 TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
   Random random(1);
   for (int trial = 0; trial < trials(3000); ++trial) {
@@ -41,12 +42,13 @@ TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
 }
 
 struct Worst {
-  double bounds = 0.0;    ///< Excess over a joint's bounds, relative to them.
-  double envelope = 0.0;  ///< Of a velocity beyond a maker's envelope [rad/s].
-  double sweep = 0.0;     ///< Of a place beyond the sweep [rad].
+  double bounds = 0.0;    ///< Relative excess over the bounds of a joint.
+  double envelope = 0.0;  ///< Excess of a velocity over a manufacturer's envelope [rad/s].
+  double sweep = 0.0;     ///< Distance of a posture beyond the displacements of Sweep [rad].
 };
 
-/// Least s·way + t·tick + rest, over the sweep, less a place seen; along one direction of joint space.
+/// Smallest s·way + t·tick + rest of a trajectory, minus the displacement of a posture, along one direction g of joint
+/// space. Positive if the posture is outside.
 [[nodiscard]] double beyond(const Sweep<Eigen::Dynamic>& sweep, const Eigen::VectorXd& g,
                             const Eigen::VectorXd& place) {
   const double least = std::min(g.dot(sweep.way), 0.0) + std::min(g.dot(sweep.tick), 0.0) +
@@ -54,7 +56,7 @@ struct Worst {
   return least - g.dot(place);
 }
 
-/// Moves an arm at random within its limits, and now and then follows the plan to rest.
+/// Moves an arm at random within its limits, and sometimes follows the plan to rest.
 template <Level kLevel>
 void stop_at_random(const Chain<>& chain, std::uint32_t seed, Worst& worst) {
   using Joints = Vector<Eigen::Dynamic>;
@@ -78,7 +80,7 @@ void stop_at_random(const Chain<>& chain, std::uint32_t seed, Worst& worst) {
       worst.bounds =
           std::max({worst.bounds, (state.q(i) - bounds.upper(i)) / range, (bounds.lower(i) - state.q(i)) / range,
                     std::abs(state.qd(i)) / bounds.velocity(i) - 1.0, std::abs(qdd(i)) / bounds.acceleration(i) - 1.0});
-      if (std::isfinite(bounds.deceleration(i))) {  // A maker's envelope, in velocities.
+      if (std::isfinite(bounds.deceleration(i))) {  // A manufacturer's envelope, in velocities.
         const double from_end = std::min(bounds.upper(i) - state.q(i), state.q(i) - bounds.lower(i));
         const double c = bounds.velocity_offset(i);
         const bool outward =

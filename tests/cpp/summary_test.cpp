@@ -11,7 +11,7 @@
 #include "support/random.hpp"
 #include "support/recording.hpp"
 
-/// A summary of a motion equals what its samples give, all of them kept.
+/// The summary of a motion equals the values from all its samples.
 namespace fpbm::test::summary_laws {
 namespace {
 
@@ -76,7 +76,7 @@ void expect_differences(const Samples<Space, N>& samples, const MotionSummary<>&
   EXPECT_NEAR(summary.final_acceleration, slope(last - 1, last), 1e-9 * peak);
 }
 
-/// Of samples that no arm has to make: the laws of a summary know neither arm nor path.
+/// For arbitrary samples: the laws of a summary do not depend on an arm or a path.
 template <typename Space, int N>
 void expect_summaries(Eigen::Index dof) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -110,7 +110,7 @@ TEST(Summary, equals_what_the_samples_give) {
   expect_summaries<Position<3>, 7>(7);
 }
 
-/// Gains that the step does not resolve well, so that there is an error.
+/// With gains that the step does not resolve well, so that an error occurs.
 TEST(Summary, equals_what_a_motion_gives) {
   const AnyPath<Position<2>> path(Path(Line<2>(Vector<2>(0.002, 0.002)), 0.2));
   const TimeGrid<> grid(path.duration(), 0.01, 0.1);
@@ -124,7 +124,7 @@ TEST(Summary, equals_what_a_motion_gives) {
   expect_differences<Position<2>, 4>(at_velocity_level, differences);
 }
 
-/// At constant speed the largest slopes of qd may be those at the ends.
+/// At constant speed, the largest slopes of qd may be at the ends.
 TEST(Summary, counts_the_slopes_at_the_ends) {
   const AnyPath<Position<2>> path(Path(Circle(0.45), 1.0, ConstantSpeed{}));
   for (const double dt : {0.1, 0.01}) {
@@ -149,7 +149,7 @@ TEST(Summary, of_nothing_is_empty) {
   EXPECT_EQ(summary.manipulability, std::numeric_limits<double>::infinity());
 }
 
-/// A recorder can end the motion, and the samples before are good.
+/// A recorder can end the motion. The samples before the end are valid.
 TEST(Rollout, ends_where_the_recorder_says_so) {
   int seen = 0;
   const auto result = rollout(paper_arm(), paper_circle(), paper_fpbm(), paper_start(), TimeGrid<>(kDuration, 1e-2),

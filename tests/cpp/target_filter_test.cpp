@@ -14,7 +14,7 @@
 #include "support/compiled_tracker.hpp"
 #include "support/random.hpp"
 
-/// What a filter makes of targets keeps every bound whatever they are, and arrives where they are.
+/// The reference of a filter keeps every bound for all messages, and arrives at the target.
 namespace fpbm::test::target_filter_laws {
 namespace {
 
@@ -27,7 +27,7 @@ struct Kind {
   using T = Scalar;
 };
 
-/// Any point of a space, not farther than some metres and, as a rule, radians.
+/// A random point of a space, within several metres and usually within several radians.
 template <typename Space, typename Scalar>
 typename Space::template Point<Scalar> random_point(Random& random, double size) {
   if constexpr (std::is_same_v<Space, Pose>) {
@@ -53,8 +53,8 @@ TargetBounds<Scalar> random_bounds(Random& random) {
   return bounds;
 }
 
-/// Goes tick by tick, and checks that velocity, acceleration and jerk keep their bounds, by what the filter says and by
-/// the way of each tick.
+/// Advances tick by tick, and checks the bounds on velocity, acceleration and jerk, by the values of the reference and
+/// by the displacement of each tick.
 template <typename Space, typename Scalar>
 class Watched {
  public:
@@ -88,7 +88,8 @@ class Watched {
     }
   }
 
-  /// Goes until it rests at a point to the last bit (an angle in the plane to round-off); how many ticks that took.
+  /// Advances until the reference rests at a point, bitwise (an angle in the plane: up to round-off). Returns the
+  /// number of ticks.
   int reach(const typename Filter::Point& x, int most) {
     for (int k = 0; k < most; ++k) {
       advance();
@@ -120,7 +121,7 @@ using Kinds = ::testing::Types<Kind<Position<2>, double>, Kind<Position<3>, floa
                                Kind<Pose, double>, Kind<Pose, float>>;
 TYPED_TEST_SUITE(TargetFilters, Kinds, );
 
-/// From rest and from any motion, under any bounds, whatever was wanted before.
+/// From rest and from any motion, under any bounds, for all previous targets.
 TYPED_TEST(TargetFilters, come_to_rest_on_the_last_target) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -145,7 +146,7 @@ TYPED_TEST(TargetFilters, come_to_rest_on_the_last_target) {
   }
 }
 
-/// Lies of every kind leave it within its bounds, and the next target in order is reached.
+/// Invalid messages of all types do not violate the bounds, and the next valid target is reached.
 TYPED_TEST(TargetFilters, keep_their_bounds_whatever_is_pushed) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -189,7 +190,7 @@ TYPED_TEST(TargetFilters, keep_their_bounds_whatever_is_pushed) {
   }
 }
 
-/// A target that moves evenly, seen at 30 Hz, up to 10 ms late, one in ten lost.
+/// A target with constant velocity, seen at 30 Hz with a delay of at most 20 ms. One message in ten is lost.
 TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -198,7 +199,7 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
   for (int i = 0; i < trials(20); ++i) {
     SCOPED_TRACE("trial " + std::to_string(i));
     TargetFilterOptions<Scalar> options;
-    // A camera's clock, that is learnt: then the first stamp is punctual, so that it is known when all were seen.
+    // The clock of the camera is estimated. The first stamp is not delayed, so that the time of every message is known.
     const double epoch = i % 2 == 0 ? 5000.0 : 0.0;
     if (i % 2 != 0) options.start = 0.0;
     const auto x0 = random_point<Space, Scalar>(random, 1.0);
@@ -209,7 +210,7 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
     const auto lag = [&](double t) {
       return Space::template difference<Scalar>(target(t), watched.filter.reference().x).cwiseAbs().maxCoeff();
     };
-    std::vector<std::pair<double, double>> seen;  // When it comes, and of when it is.
+    std::vector<std::pair<double, double>> seen;  // Arrival time and stamp.
     for (int k = 0; k < 120; ++k) {
       if (k == 0 || random.uniform(0.0, 1.0) >= 0.1)
         seen.emplace_back(k / 30.0 + (k == 0 ? 0.0 : random.uniform(0.0, 0.02)), k / 30.0);
@@ -224,7 +225,7 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
       ASSERT_LE(lag(ticks * 1e-3), most) << ticks;
       ASSERT_NO_FATAL_FAILURE(watched.advance());
     }
-    // At rest within its stopping time after the timeout, and it turns round nowhere.
+    // The filter is at rest within its stopping time after the timeout, and never reverses.
     const double last = seen.back().second + 0.2;
     const Scalar slowest = Scalar(0.4) / 3 + Scalar(3) / 100;  // v/A + A/J
     const Twist onward = watched.filter.reference().xd;
@@ -242,7 +243,7 @@ TYPED_TEST(TargetFilters, do_not_lag_behind_a_stream) {
   }
 }
 
-/// A joystick: the velocity is reached as fast as the bounds allow, and left after the timeout.
+/// A joystick: the velocity is reached as fast as the bounds admit, and reduced to zero after the timeout.
 TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -271,7 +272,8 @@ TYPED_TEST(TargetFilters, go_at_a_velocity_until_the_timeout) {
   EXPECT_LT(watched.reach(x0, 10000), 10000);
 }
 
-/// A tick's way of less than the point's last bit adds up, but for a last bit a tick to either side: √ticks of them.
+/// Displacements per tick below the last bit of the point accumulate, up to errors of one last bit in each tick of
+/// either sign: √ticks last bits.
 TYPED_TEST(TargetFilters, go_slower_than_a_bit_a_tick) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -290,7 +292,7 @@ TYPED_TEST(TargetFilters, go_slower_than_a_bit_a_tick) {
   }
 }
 
-/// A float's round-off does not add up to a matrix that is no rotation.
+/// In float, round-off errors do not accumulate to a matrix that is not a rotation.
 TEST(TargetFilter, turns_for_minutes) {
   TargetFilter<Pose, float> filter({}, {0.5F, 3.0F, 100.0F, 1.5F, 8.0F, 300.0F});
   for (int k = 0; k < trials(300000); ++k) {
@@ -301,7 +303,7 @@ TEST(TargetFilter, turns_for_minutes) {
   EXPECT_LE((R.transpose() * R - Matrix<3, 3, float>::Identity()).cwiseAbs().maxCoeff(), 1e-6F);
 }
 
-/// Within a tick the reference is the motion that the next tick goes on from.
+/// Within a tick, the reference is the motion from which the next tick continues.
 TYPED_TEST(TargetFilters, tell_what_is_ahead_within_the_tick) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
@@ -320,7 +322,7 @@ TYPED_TEST(TargetFilters, tell_what_is_ahead_within_the_tick) {
     EXPECT_EQ(filter.ahead(Scalar(0)).xd, start.xd);
     filter.advance();
     EXPECT_EQ(filter.reference().xdd, end.xdd);
-    // Simpson's rule, whose error is what a change of the jerk within the tick makes.
+    // Simpson's rule: the change of the jerk within the tick is its only error.
     const auto way = Space::template difference<Scalar>(end.x, start.x);
     const auto simpson = (options.dt / 6 * (start.xd + 4 * middle.xd + end.xd)).eval();
     const Scalar slack =
@@ -364,7 +366,7 @@ TYPED_TEST(TargetFilters, promise_not_to_throw) {
   static_assert(noexcept(std::declval<Filter&>().reset(std::declval<Point>())));
 }
 
-/// From rest to a target at rest: never beyond it, and the position's third differences are within the bound on jerk.
+/// From rest to a target at rest: no overshoot, and third differences of the position are within the bound on jerk.
 TEST(TargetFilter, does_not_overshoot) {
   Random random(47);
   for (int i = 0; i < trials(300); ++i) {
@@ -385,7 +387,7 @@ TEST(TargetFilter, does_not_overshoot) {
   }
 }
 
-/// Half a turn and more, each time by the shorter way.
+/// Half a turn and more: each rotation is the smaller one.
 TEST(TargetFilter, turns_by_the_shorter_way) {
   Watched<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
   planar.filter.push({0.0, 0.0, -3.0});
@@ -401,7 +403,7 @@ TEST(TargetFilter, turns_by_the_shorter_way) {
   EXPECT_LT(spatial.reach(turned, 3000), 3000);
 }
 
-/// A jump of the target is no velocity, and a third point of an even motion is enough.
+/// A jump of the target does not count as a velocity. Three points of a motion with constant velocity are sufficient.
 TEST(TargetFilter, takes_no_jump_for_a_velocity) {
   StreamedTarget<Position<2>, double> target({0.0, 0.0}, 5e-4, 0.2, {1.0, 1.0});
   const auto push = [&](double x, double elapsed) {
@@ -410,20 +412,20 @@ TEST(TargetFilter, takes_no_jump_for_a_velocity) {
   };
   EXPECT_EQ(push(0.0, 9.0), 0.0);
   EXPECT_EQ(push(0.0, 0.03), 0.0);
-  EXPECT_EQ(push(0.5, 0.03), 0.0);               // A jump,
-  EXPECT_EQ(push(0.5, 0.03), 0.0);               // at rest again.
-  EXPECT_EQ(push(0.503, 0.03), 0.0);             // It begins to move,
-  EXPECT_NEAR(push(0.505, 0.02), 0.1, 1e-12);    // evenly,
-  EXPECT_NEAR(push(0.506, 0.0001), 0.1, 1e-12);  // too soon for a quotient,
+  EXPECT_EQ(push(0.5, 0.03), 0.0);               // A jump.
+  EXPECT_EQ(push(0.5, 0.03), 0.0);               // At rest again.
+  EXPECT_EQ(push(0.503, 0.03), 0.0);             // The target starts to move,
+  EXPECT_NEAR(push(0.505, 0.02), 0.1, 1e-12);    // with constant velocity.
+  EXPECT_NEAR(push(0.506, 0.0001), 0.1, 1e-12);  // Too soon for a difference quotient.
   EXPECT_NEAR(push(0.508, 0.0299), 0.1, 1e-12);
-  EXPECT_EQ(push(0.505, 0.03), 0.0);  // turns round,
+  EXPECT_EQ(push(0.505, 0.03), 0.0);  // The target reverses,
   EXPECT_NEAR(push(0.415, 0.03), -0.1, 1e-12);
   EXPECT_NEAR(push(-0.415, 0.03), -1.0, 1e-12);  // and is too fast.
-  EXPECT_EQ(push(-0.8, 0.3), 0.0);               // News after too long.
+  EXPECT_EQ(push(-0.8, 0.3), 0.0);               // A message after a long pause.
 }
 
-/// A learnt clock counts the least delayed stamp as punctual, follows one that drifts, and is never ahead of it by more
-/// than it lost.
+/// A learnt clock treats the least delayed stamp as not delayed, and follows a clock that drifts. Its error is at most
+/// 0.2 ms.
 TEST(StampClock, learns_from_the_least_delayed) {
   Random random(48);
   for (const double drift : {-5e-5, 0.0, 5e-5}) {
@@ -486,7 +488,7 @@ TEST(TargetFilter, refuses_bad_numbers_by_name) {
   EXPECT_NO_THROW(TargetFilter<Position<2>>({0.0, 0.0}, TargetBounds<>{0.5, 3.0, 1.0}));
 }
 
-/// An arm follows what the filter makes of a jump.
+/// An arm follows the reference of the filter after a jump of the target.
 TEST(TargetFilter, leads_a_tracker) {
   const PlanarArm<4> arm({1, 1, 1, 1});
   const auto scheme = FPBM<4>(0.6, Vector<4>(Vector<4>::Ones()), 10.0, 25.0, NullSpace<4>{}.with_damping(2.0));
@@ -502,7 +504,7 @@ TEST(TargetFilter, leads_a_tracker) {
   tracker.stop();
   filter.push(start);
   for (int k = 0; k < 3000; ++k) tracker.tick(filter);
-  EXPECT_EQ(filter.reference().x, start);  // It went on.
+  EXPECT_EQ(filter.reference().x, start);  // The filter continues.
 }
 
 }  // namespace

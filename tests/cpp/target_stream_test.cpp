@@ -10,7 +10,7 @@
 #include "fpbm/task/target_filter.hpp"
 #include "support/random.hpp"
 
-/// Streams of targets from real senders: clocks that drift, jump and restart, and orientations that were rounded.
+/// Streams of targets from real senders: clocks that drift, jump and restart, and rounded orientations.
 namespace fpbm::test::target_stream_laws {
 namespace {
 
@@ -20,7 +20,7 @@ TargetBounds<Scalar> bounds() {
   return {Scalar(0.5), Scalar(3), Scalar(100), Scalar(1.5), Scalar(8), Scalar(300)};
 }
 constexpr double kTick = 1e-3;
-constexpr double kWindow = 10.0;  ///< Longest memory of the learnt clock [s], as documented.
+constexpr double kWindow = 10.0;  ///< Window of the estimated clock [s], as documented.
 
 /// Largest deviation of RᵀR from the identity.
 template <typename Scalar>
@@ -37,7 +37,7 @@ Transform<Scalar> rounded(const Vector<3>& turn, int decimals) {
   return x.cast<Scalar>();
 }
 
-/// Orientations with 4 to 7 decimals: velocity, acceleration and jerk by differences of R stay within the bounds.
+/// Orientations with 4 to 7 decimals: velocity, acceleration and jerk, by differences of R, stay within the bounds.
 TEST(TargetStream, rounded_orientations_keep_the_bounds) {
   for (int decimals = 4; decimals <= 7; ++decimals) {
     Random random(5);
@@ -52,7 +52,7 @@ TEST(TargetStream, rounded_orientations_keep_the_bounds) {
       Vector<3> w = Vector<3>::Zero();
       Vector<3> wd = Vector<3>::Zero();
       for (int k = 0; k < 4000; ++k) {
-        if (k == 3000) {  // The same orientation farther away: no rotation at all.
+        if (k == 3000) {  // The same orientation farther away: no rotation.
           x.p(0) = 0.1;
           ASSERT_TRUE(filter.push(x));
         }
@@ -78,7 +78,8 @@ TEST(TargetStream, rounded_orientations_keep_the_bounds) {
   }
 }
 
-/// Deviations of RᵀR up to 1e-4 are corrected, larger ones and reflections rejected; a rotation keeps its bits.
+/// Deviations of RᵀR up to 1e-4 are corrected; larger deviations and reflections are rejected. A rotation does not
+/// change bitwise.
 template <typename Scalar>
 void expect_orthonormal_targets() {
   Random random(6);
@@ -94,7 +95,7 @@ void expect_orthonormal_targets() {
     EXPECT_EQ(filter.reference().x.R, R);
     ASSERT_TRUE(filter.reset({Vector<3, Scalar>::Zero(), near}));
     EXPECT_LE(skew<Scalar>(filter.reference().x.R), kRound);
-    // The nearest rotation: a stretch along an axis does not turn it.
+    // The nearest rotation: a scaling along an axis does not rotate it.
     EXPECT_LE((filter.reference().x.R - R).cwiseAbs().maxCoeff(), kRound);
     Matrix<3, 3, Scalar> far = R;
     far.col(1) *= Scalar(1.0002);
@@ -109,14 +110,14 @@ TEST(TargetStream, orientations_become_orthonormal) {
   expect_orthonormal_targets<float>();
 }
 
-/// A target at 0.1 m/s back and forth, 30 times a second.
+/// A target that moves at 0.1 m/s back and forth, 30 times a second.
 Vector<2> zigzag(double t) {
   const double phase = std::fmod(t, 8.0);
   return {0.1 * (phase < 4.0 ? phase : 8.0 - phase), 0.0};
 }
 
-/// A sender's clock that is off by up to 1e-3 either way: the error is at most drift × window × speed, and what jitter
-/// adds.
+/// A clock of the sender with a drift of up to ±1e-3: the error is at most drift × window × speed, plus the effect of
+/// jitter.
 TEST(TargetStream, follows_a_clock_that_drifts) {
   for (const double jitter : {0.0, 0.02}) {
     for (const double drift : {0.0, -5e-5, 5e-5, -2e-4, 2e-4, -5e-4, 5e-4, -1e-3, 1e-3}) {
@@ -148,7 +149,7 @@ TEST(TargetStream, follows_a_clock_that_drifts) {
   }
 }
 
-/// A stream at 30 Hz of an even motion.
+/// A stream at 30 Hz of a motion with constant velocity.
 template <typename Space, typename Scalar>
 class Stream {
  public:
@@ -161,7 +162,8 @@ class Stream {
     return Space::template displace<Scalar>(Space::template origin<Scalar>(),
                                             Vector<Space::kRows, Scalar>::Constant(Scalar(0.1 * t)));
   }
-  /// Runs to t; stamps are ahead of the sender's time by offset. How many messages were rejected.
+  /// Runs to the time `until`. Stamps are ahead of the time of the sender by `offset`. Returns the number of rejected
+  /// messages.
   int run(double until, double offset) {
     int rejected = 0;
     for (; ticks * kTick < until; ++ticks) {
@@ -225,7 +227,7 @@ TYPED_TEST(TargetStreams, a_first_stamp_from_the_future_does_not_block) {
   }
 }
 
-/// A clock that restarts at 0, or is set forward or back: followed within the timeout and three messages.
+/// A clock that restarts at 0, or is set forward or back: the stream is followed within the timeout and three messages.
 TYPED_TEST(TargetStreams, a_clock_that_is_set_anew_is_learnt_anew) {
   for (const double step : {-1e5, -3600.0, -1.0, -0.3, 0.3, 1.0, 3600.0, 1e7}) {
     Stream<typename TypeParam::Space, typename TypeParam::Scalar> stream;
@@ -236,7 +238,7 @@ TYPED_TEST(TargetStreams, a_clock_that_is_set_anew_is_learnt_anew) {
   }
 }
 
-/// A silence, in which the sender's clock stands still, starts anew or goes on.
+/// After a silence, the clock of the sender continues or restarts. The stream is followed in both cases.
 TYPED_TEST(TargetStreams, a_silence_does_not_block) {
   for (const double step : {-1e5, -20.0, 0.0, 0.01, 5.0, 100.0}) {
     Stream<typename TypeParam::Space, typename TypeParam::Scalar> stream;
@@ -248,14 +250,15 @@ TYPED_TEST(TargetStreams, a_silence_does_not_block) {
   }
 }
 
-/// Old messages are rejected however many: duplicates, bursts in order, reordered ones, a second sender's.
+/// Any number of old messages is rejected: duplicates, bursts in order, reordered messages, and messages of a second
+/// sender.
 TEST(TargetStream, old_messages_stay_rejected) {
   Random random(8);
   StampClock<double> clock(kTick, 0.2, {});
   double newest = -1.0;
   for (int k = 0; k < trials(60000); ++k) {
     const double t = k * kTick;
-    if (k % 10 == 0) {  // 100 Hz, up to 0.1 s late: reordered by up to ten places.
+    if (k % 10 == 0) {  // 100 Hz, up to 0.1 s late: reordered by up to ten positions.
       const double stamp = t - random.uniform(0.0, 0.1);
       ASSERT_EQ(clock.hear(stamp).has_value(), stamp > newest || k == 0) << k;
       newest = std::max(newest, stamp);

@@ -7,7 +7,7 @@
 #include "fpbm/task/target_filter.hpp"
 #include "support/random.hpp"
 
-/// How long a TargetFilter takes for a change of orientation, against the largest angle alone.
+/// Time in which a TargetFilter changes the orientation, compared with the largest angle alone.
 namespace fpbm::test::target_turn_laws {
 namespace {
 
@@ -43,7 +43,7 @@ int ticks_alone(double angle, const Case& c) {
   return 200000;
 }
 
-/// From rest an orientation rotates about a fixed axis, in the time of its largest angle alone; up to π.
+/// From rest, an orientation rotates about a fixed axis, in the time of its largest angle alone, up to π.
 template <typename Scalar>
 void expect_least_time(const Case& c, int seeds) {
   const auto bounds = bounds_of<Scalar>(c);
@@ -83,7 +83,7 @@ void expect_least_time(const Case& c, int seeds) {
                !(filter.reference().x.R == x.R && filter.reference().xd.isZero(0) && filter.reference().xdd.isZero(0)));
       largest = std::max(largest, static_cast<double>(ticks) / alone);
       late = std::max(late, ticks - alone);
-      // Round-off of the orientation is corrected at the end, from rest to rest within the bound on jerk.
+      // The round-off error of the orientation is corrected at the end, from rest to rest within the bound on jerk.
       const double round_off = 8.0 * static_cast<double>(kEpsilon) * (1.0 + kTwoPi / 2);
       const int correction = static_cast<int>(4.0 * std::cbrt(round_off / (2.0 * c.jerk)) / c.dt);
       EXPECT_LE(ticks, alone + 1 + correction) << c.name << ", " << angle << " about " << axis.transpose();
@@ -100,7 +100,7 @@ TEST(TargetTurn, from_rest_takes_the_largest_angles_time) {
   }
 }
 
-/// Ticks in which one angle that moves comes to rest at a target.
+/// Ticks in which one moving angle comes to rest at a target.
 int ticks_alone(AxisState<double> state, double target, const Case& c) {
   const TimeOptimalAxis<double> axis{c.velocity, {c.acceleration, c.jerk}};
   for (int k = 0; k < 200000; ++k) {
@@ -110,7 +110,7 @@ int ticks_alone(AxisState<double> state, double target, const Case& c) {
   return 200000;
 }
 
-/// From a motion, up to 1.5 rad: against the slowest of the three angles alone from the same motion.
+/// From a motion, up to 1.5 rad: compared with the slowest of the three angles alone from the same motion.
 TEST(TargetTurn, from_a_motion) {
   for (const Case& c : kCases) {
     for (const double most : {0.3, 1.5}) {
@@ -128,7 +128,7 @@ TEST(TargetTurn, from_a_motion) {
         };
         for (int target = 0; target < 3; ++target) {
           ASSERT_TRUE(filter.push(turned(random.uniform(0.0, most))));
-          const int ticks = static_cast<int>(random.uniform(0.21, 0.6) / c.dt);  // Not a stream: more than the timeout.
+          const int ticks = static_cast<int>(random.uniform(0.21, 0.6) / c.dt);  // Not a stream: exceeds the timeout.
           for (int k = 0; k < ticks; ++k) filter.advance();
         }
         const Transform<> x = turned(random.uniform(0.1 * most, most));

@@ -10,7 +10,7 @@
 #include "support/arms.hpp"
 #include "support/wild_reference.hpp"
 
-/// Bounds on coordinates of tasks: a wall for any point of the robot, a cone for any axis, a speed.
+/// Bounds of tasks: a wall for any point of the robot, a cone for any axis, and a speed.
 namespace fpbm::test::task_bounds_laws {
 namespace {
 
@@ -44,14 +44,14 @@ template <Level kLevel>
           Guard<kLevel, kOpen>(clearance)};
 }
 
-/// A frame on a link, from the clearance's own kinematics of another object.
+/// A frame on a link. Its pose is independent of the kinematics of the clearance.
 struct Frame {
   LinkFrame<> frame;
   Chain<> chain;
 
   Frame(const Chain<>& chain_, int link, const Transform<>& offset) : frame(link, offset), chain(chain_) {}
 
-  /// By products of the joints' transformations, without Robot.
+  /// By products of the transformations of the joints, without Robot.
   [[nodiscard]] Transform<> at(const Vector<kOpen>& q) const {
     Transform<> pose;
     const auto count = frame.link() == kTip ? static_cast<Eigen::Index>(chain.joints.size()) : frame.link();
@@ -74,13 +74,13 @@ struct Frame {
 };
 
 struct Excess {
-  double place = -1.0;  ///< Beyond a wall [m], and a cone [rad]: below zero inside.
+  double place = -1.0;  ///< Excess over a wall [m], and over a cone [rad]. Negative inside.
   double angle = -10.0;
   double joints = 0.0;
   int blocked = 0;
 };
 
-/// Pulls an arm about, with walls for a point of a link and a cone for an axis of another one.
+/// Moves an arm with jumping references. Walls bound a point of a link, and a cone bounds an axis of another link.
 template <Level kLevel>
 [[nodiscard]] Excess pull(const Chain<>& chain, std::uint32_t seed, int ticks) {
   Random random(seed);
@@ -166,7 +166,7 @@ TEST(TaskBounds, hold_at_every_tick) {
   expect_bounds_hold<Level::kVelocity>(trials(12) + 3);
 }
 
-/// A point that is pulled straight at a wall brakes with the deceleration asked for, and comes to rest at the wall.
+/// A point that moves straight toward a wall brakes with the given deceleration, and comes to rest at the wall.
 template <Level kLevel>
 void expect_gentle_stop() {
   const Chain<> chain = presets::panda();
@@ -192,7 +192,7 @@ void expect_gentle_stop() {
     (void)tracker.tick(target);
     const double now = (tracker.tip()(1) - y) / kTick;
     y += kTick * now;
-    if (k % 20 == 0) {  // Over some ticks: by velocity, differences over one tick are coarse.
+    if (k % 20 == 0) {  // Over several ticks: by velocity, differences over one tick are inaccurate.
       if (before > 0.0) hardest = std::max(hardest, (before - now) / (20 * kTick));
       before = now;
     }
@@ -213,7 +213,7 @@ TEST(TaskBounds, stop_gently_before_a_wall) {
   expect_gentle_stop<Level::kVelocity>();
 }
 
-/// The speed of an axis, and of one coordinate of a point of a link, is kept where the joints' bounds admit it.
+/// The speed of an axis, and of one coordinate of a point of a link, is kept if the joint bounds admit it.
 TEST(TaskBounds, keep_speeds) {
   const Chain<> chain = presets::panda();
   const AnyArm<Position<3>> arm = any_arm(chain);
@@ -255,7 +255,7 @@ TEST(TaskBounds, keep_speeds) {
   EXPECT_GE(fastest[1], 0.99 * 0.2);
 }
 
-/// Bounds are refused with what is wrong.
+/// Invalid bounds are rejected, and the message names the error.
 TEST(TaskBounds, name_what_is_wrong) {
   const Chain<> chain = presets::panda();
   const auto with = [&](const auto& bounds) {

@@ -7,18 +7,18 @@
 #include "support/recording.hpp"
 #include "support/subjects.hpp"
 
-/// Theorem 1: the weighted minimum velocity norm (7), differentiated, is (9).
+/// Theorem 1: the time derivative of the weighted minimum velocity norm (7) is (9).
 namespace fpbm::test::theorem_laws {
 namespace {
 
-/// Pairs among the subjects: those with weights and in double.
+/// Number of pairs among the subjects with weights and in double.
 #ifdef FPBM_FEW_TYPES
 constexpr std::size_t kPairs = 9;
 #else
 constexpr std::size_t kPairs = 13;
 #endif
 
-/// Subjects of (7), each with that of (9) on the same arm and weights.
+/// Subjects of (7), each with the subject of (9) on the same arm with the same weights.
 std::vector<std::pair<Subject, Subject>> pairs() {
   std::vector<std::pair<Subject, Subject>> all;
   for (const Subject& velocity : subjects()) {
@@ -31,7 +31,7 @@ std::vector<std::pair<Subject, Subject>> pairs() {
   return all;
 }
 
-/// At one instant: along qd = J_W⁺xd, with xd changing at xdd, the derivative of (7) is (9).
+/// At one instant: along qd = J_W⁺xd, with the derivative xdd of xd, the derivative of (7) is (9).
 TEST(Theorem1, is_true_at_every_instant) {
   EXPECT_EQ(pairs().size(), kPairs);
   for (const auto& pair : pairs()) {
@@ -62,7 +62,7 @@ TEST(Theorem1, is_true_at_every_instant) {
   }
 }
 
-/// Over a whole motion from a consistent start, both give the same.
+/// Over a whole motion from a consistent start, both give the same result.
 template <typename Weights, typename Arm, typename Path>
 void expect_same_motion(const Arm& arm, const Path& path, const Weights& weights, Vector<Arm::kDof> q0) {
   constexpr int N = Arm::kDof;
@@ -86,7 +86,7 @@ TEST(Theorem1, is_true_over_the_papers_circle) {
   expect_same_motion(paper_arm(), paper_circle(), paper_weights(), paper_start().q);
 }
 
-/// From a start in motion, which the paper's time law does not have, with dense weights.
+/// From a start in motion, which the time law of the paper does not have, with dense weights.
 TEST(Theorem1, is_true_from_a_start_in_motion) {
   const Vector<7> q0 = Vector<7>::Constant(0.25);
   const DenseWeights<7> weights(Matrix<7, 7>(Random(5).positive_definite(7)));

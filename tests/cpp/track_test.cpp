@@ -8,7 +8,7 @@
 #include "support/paper.hpp"
 #include "support/recording.hpp"
 
-/// A whole motion of a tracker is its ticks, one after another.
+/// A whole motion of a tracker equals its ticks, one after another.
 namespace fpbm::test::track_laws {
 namespace {
 
@@ -59,7 +59,7 @@ TEST(Track, is_tick_after_tick) {
   }
 }
 
-/// Far from every limit it is the rollout; within narrow limits it keeps them.
+/// Far from every limit, the motion equals the rollout. Within narrow limits, the limits hold.
 TEST(Track, keeps_the_limits_and_is_a_rollout_far_from_them) {
   const auto record = [](double velocity) {
     auto tracker = make_tracker(velocity);

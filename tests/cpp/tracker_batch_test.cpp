@@ -14,14 +14,14 @@
 #include "fpbm/core/lanes.hpp"
 #include "fpbm/fpbm.hpp"
 
-/// Trackers side by side in lanes move as each does by itself.
+/// Trackers in SIMD lanes move like single trackers.
 namespace fpbm::test::tracker_batch_laws {
 namespace {
 
 constexpr int kLanes = 2;
 using In = Lanes<kLanes>;
 
-/// Schemes of one level, with other parameters in each lane, and all of them in lanes.
+/// Schemes of one level with different parameters, one for each lane, and one scheme for all lanes.
 template <Level kLevel, int N>
 struct Laws {
   static Vector<N> weights(double lane) { return Vector<N>::LinSpaced(1.0, 2.0 + lane); }
@@ -99,7 +99,7 @@ struct Subject {
   static constexpr Level kLevel = kLevel_;
 };
 
-/// Motions of a subject, side by side and each by itself.
+/// Motions of a subject, in lanes and alone.
 template <typename Subject>
 struct Motions {
   using Case = typename Subject::Case;
@@ -130,7 +130,7 @@ struct Motions {
     return TrackerBatch(Case::arm().template cast<In>(), Space{}, Laws<kLevel, N>::side_by_side(), trackers);
   }
 
-  /// A motion of all in lanes, and of each alone, compared sample by sample. Returns the worst status of any.
+  /// Compares a motion in lanes with the motions alone, sample by sample. Returns the worst status.
   static Status expect_agreement(const Starts& starts, double size, double velocity, double tolerance,
                                  const TrackerOptions<>& options) {
     const auto path = Case::path(size);
@@ -172,7 +172,7 @@ class TrackerBatchLaws : public testing::Test {};
 #ifdef FPBM_FEW_TYPES
 using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda<Pose>, Level::kAcceleration>>;
 #else
-// Both levels, every kind of J's factor (two rows, several joints to spare, one to spare), each once.
+// Both levels, and each type of factorisation of J once (two rows, several redundant joints, one redundant joint).
 using Subjects = testing::Types<Subject<Planar, Level::kVelocity>, Subject<Panda<Position<3>>, Level::kAcceleration>,
                                 Subject<Panda<Pose>, Level::kAcceleration>>;
 #endif
@@ -184,7 +184,7 @@ TYPED_TEST(TrackerBatchLaws, move_freely_as_each_by_itself) {
   auto options = All::options();
   EXPECT_EQ(All::expect_agreement({Case::start(0.0), Case::start(0.1)}, 0.03, 50.0, 1e-12, options), Status::kOk);
   options.integral_gain = 0.5;
-  options.error_bound = 1e-5;  // Some errors are beyond it.
+  options.error_bound = 1e-5;  // Some errors exceed it.
   EXPECT_EQ(All::expect_agreement({Case::start(0.0), Case::start(0.1)}, 0.03, 50.0, 1e-12, options), Status::kOk);
 }
 
@@ -198,7 +198,7 @@ TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
 
   auto impatient = options;
   impatient.stall_time = 0.03;
-  EXPECT_EQ(All::expect_agreement(starts, 5.0, 0.5, 1e-9, impatient), Status::kStalled);  // Out of reach.
+  EXPECT_EQ(All::expect_agreement(starts, 5.0, 0.5, 1e-9, impatient), Status::kStalled);  // Unreachable.
 
   const auto limits = All::limits(0.2);
   auto all = All::batch(All::trackers(starts, 0.2, options));
@@ -214,7 +214,7 @@ TYPED_TEST(TrackerBatchLaws, keep_their_limits_as_each_by_itself) {
   EXPECT_GT(fastest, 0.199);
 }
 
-/// Each tick from equal states. A long motion on limits with bounds on jerk amplifies round-off errors.
+/// Each tick starts from equal states, because a long motion on limits with bounds on jerk amplifies round-off errors.
 TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
@@ -228,7 +228,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
                                                                             all.trackers()[1].tip()};
       PathFollower follower(path, Space::template origin<double>());
       Sample<Space, N, In> sample;
-      double difference = 0.0;  // Of accelerations, as a share of their bound.
+      double difference = 0.0;  // Of accelerations, relative to their bound.
       int limited = 0;
       for (int k = 0; k < All::grid().samples(); ++k) {
         const auto ahead = [&follower](double seconds) noexcept { return follower.ahead(seconds); };
@@ -255,7 +255,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
   }
 }
 
-/// To the last bit, in any lane, whatever happens in the others.
+/// Bitwise, in any lane, whatever the other lanes contain.
 TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;
@@ -280,7 +280,7 @@ TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
   }
 }
 
-/// Where damping acts in every tick, all of them are made by the trackers themselves: with the same bits.
+/// If damping acts in every tick, the trackers compute all ticks themselves: bitwise the same result.
 TYPED_TEST(TrackerBatchLaws, leave_nearly_singular_postures_to_each) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;

@@ -17,10 +17,10 @@
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
-/// The options of a tracker act on every scheme: damping, and refusal of gains that a tick cannot integrate.
+/// The options of a tracker apply to every scheme: damping, and rejection of gains that a tick cannot integrate.
 namespace fpbm::test::tracker_options_laws {
 
-/// A scheme that knows no damping, and one that keeps what it is given.
+/// A scheme without damping, and a scheme that keeps its settings.
 struct Undampable {
   static constexpr Level kLevel = Level::kAcceleration;
   static constexpr int kDof = Eigen::Dynamic;
@@ -98,7 +98,7 @@ struct Motion {
   double moved = 0.0;  ///< In the last quarter.
 };
 
-/// Draws the tip to a point for some seconds.
+/// Moves the tip toward a point for some seconds.
 template <typename Tracker>
 [[nodiscard]] Motion drawn(Tracker tracker, const Vector<3>& displacement, double seconds) {
   auto target = Reference<Pose>::hold(tracker.tip());
@@ -120,7 +120,7 @@ void expect_same(const Motion& one, const Motion& two, const std::string& what) 
   for (std::size_t i = 0; i < one.q.size(); ++i) ASSERT_EQ(one.q[i], two.q[i]) << what << ", tick " << i;
 }
 
-/// Drawn out of reach, an arm is damped as by the same scheme with damping of its own, to the last bit.
+/// With an unreachable target, the options damp an arm bitwise like a scheme with its own damping.
 TEST(TrackerOptions, damp_schemes_of_run_time_type) {
   const Vector<3> far(1.5, 0.3, 0.2);
   const SingularDamping<> singular;
@@ -152,7 +152,7 @@ TEST(TrackerOptions, damp_schemes_in_wrappers) {
   expect_same(own, given, "wrapped");
 }
 
-/// Of a scheme without damping of the null space, for a motion that is within limits.
+/// For a scheme without null-space damping, and a motion within the limits.
 TEST(TrackerOptions, bring_the_self_motion_to_rest) {
   const Vector<3> near(-0.05, 0.15, 0.1);
   for (const Preset& preset : redundant()) {
@@ -161,7 +161,7 @@ TEST(TrackerOptions, bring_the_self_motion_to_rest) {
     EXPECT_LE(usual.moved, 1e-5) << preset.name;
     const Motion none = drawn(tracker_of(preset, Accelerations(fpbm(7)), with_null_damping(0.0)), near, 20.0);
     EXPECT_GE(none.speed, 1e-4) << preset.name << ": this motion shows nothing";
-    // A rest posture alone swings for ever.
+    // With a rest posture only, the motion oscillates without decay.
     const auto spring = NullSpace<kOpen>().with_rest_posture(preset.posture(), 4.0);
     EXPECT_LE(drawn(tracker_of(preset, Accelerations(fpbm(7, spring))), near, 20.0).speed, 1e-6) << preset.name;
   }
@@ -199,7 +199,7 @@ TEST(TrackerOptions, need_a_scheme_that_takes_damping) {
   EXPECT_EQ(given, 0.0);
 }
 
-/// What a tracker says of a scheme at a tick; empty where the tracker accepts it.
+/// The message with which a tracker rejects a scheme, or an empty string.
 template <typename Law>
 [[nodiscard]] std::string refusal(const Law& law, double dt, double integral_gain = 0.0, double null_damping = 2.0) {
   TrackerOptions<> options;
@@ -222,7 +222,7 @@ template <typename Law>
   return at == std::string::npos ? 0.0 : std::strtod(message.c_str() + at + text.size(), nullptr);
 }
 
-/// refuse(make): make(value) makes a message for a value. It has the largest value that is accepted, to 0.1 %.
+/// Checks that the message make(value) for a large value contains the largest accepted value, to 0.1 %.
 template <typename Make>
 void expect_a_limit(const std::string& name, double limit, const Make& make) {
   const std::string message = make(3.0 * limit);
@@ -237,7 +237,7 @@ void expect_a_limit(const std::string& name, double limit, const Make& make) {
 
 TEST(TickGains, beyond_what_a_tick_integrates_are_refused) {
   const Joints ones = Joints::Ones(7);
-  constexpr double kRealAxis = 2.785293563;  // Where RK4's 1 + z + z²/2 + z³/6 + z⁴/24 is 1 again.
+  constexpr double kRealAxis = 2.785293563;  // RK4's 1 + z + z²/2 + z³/6 + z⁴/24 is 1 again.
   for (const double dt : {1e-3, 4e-3, 0.02}) {
     expect_a_limit("null_damping", kRealAxis / dt, [&](double value) { return refusal(fpbm(7, damped(value)), dt); });
     expect_a_limit("null_damping", kRealAxis / dt, [&](double value) { return refusal(fpbm(7), dt, 0.0, value); });
@@ -265,7 +265,7 @@ TEST(TickGains, an_integral_beyond_Routh_is_refused) {
   for (const double dt : {1e-3, 4e-3, 0.02}) {
     const std::string message = refusal(fpbm(7), dt, 1000.0);
     const double most = number_after(message, "integral_gain = 1000: must be at most ");
-    EXPECT_LE(most, 250.0);  // k₁k₂, less what the tick costs.
+    EXPECT_LE(most, 250.0);  // k₁k₂, minus the effect of the tick.
     EXPECT_GE(most, 250.0 * (1.0 - 12.0 * dt));
     EXPECT_EQ(refusal(fpbm(7), dt, most), "");
     const double most_velocity = number_after(refusal(wmvn(7), dt, 100.0 / dt), "must be at most ");
@@ -275,7 +275,7 @@ TEST(TickGains, an_integral_beyond_Routh_is_refused) {
   EXPECT_NE(refusal(MAN<kOpen>(), 1e-3, 1.0).find("integral_gain = 1: must be at most 0"), std::string::npos);
 }
 
-/// is_stable_…() says whether the ticks of an error decay, for any gains and in float, too.
+/// is_stable_…() returns whether errors decay from tick to tick, for any gains and in float too.
 TEST(TickGains, are_stable_if_and_only_if_errors_decay) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> size(-2.0, 0.7);
@@ -284,7 +284,7 @@ TEST(TickGains, are_stable_if_and_only_if_errors_decay) {
     const double x1 = std::pow(10.0, size(random));
     const double x2 = std::pow(10.0, 2.0 * size(random) - 0.5);
     const double x3 = trial % 2 == 0 ? 0.0 : std::pow(10.0, 3.0 * size(random) - 1.5);
-    // The tick as a matrix for e, ė and the integral; its power of 2³⁰.
+    // The tick as a matrix for e, ė and the integral; its 2³⁰th power.
     const auto growth = [&](bool mean) {
       Matrix<3, 3> power;
       for (int column = 0; column < 3; ++column) {
@@ -321,8 +321,8 @@ TEST(TickGains, are_stable_if_and_only_if_errors_decay) {
   EXPECT_TRUE(is_stable_velocity(0.0));
 }
 
-/// Of several levels: is_stable_acceleration_of_levels() says the same of ticks by TickFeedback,
-/// is_stable_…_of_middle() of ticks that continue the last tick's motion to their middle.
+/// For several levels: is_stable_acceleration_of_levels() for ticks by TickFeedback, and is_stable_…_of_middle() for
+/// ticks that continue the motion of the last tick to their middle.
 TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> size(-2.0, 0.3);
@@ -343,7 +343,7 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
       EXPECT_EQ(claimed, end <= 1e-2) << "law " << law << ": " << x1 << " " << x2 << " " << x3;
       stable[law] += end <= 1e-2 ? 1 : 0;
     };
-    // Of e, ė and the acceleration (e and the velocity) of the last tick, and the integral.
+    // For e, ė and the acceleration of the last tick (or e and the velocity), and the integral.
     Matrix<4, 4> task = Matrix<4, 4>::Zero();
     Matrix<3, 3> null_space = Matrix<3, 3>::Zero();
     Matrix<3, 3> velocity = Matrix<3, 3>::Zero();
@@ -362,7 +362,7 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
     }
     expect(0, is_stable_velocity_of_middle(x1, x3), velocity.topLeftCorner(2 + integral, 2 + integral));
     expect(1, is_stable_acceleration_of_middle(x1, x2), null_space);
-    // Gains that RK4 does not damp are refused before.
+    // Gains that RK4 does not damp are rejected earlier.
     if (is_stable_acceleration(x1, x2)) {
       expect(2, is_stable_acceleration_of_levels(x1, x2, x3), task.topLeftCorner(3 + integral, 3 + integral));
     }
@@ -380,7 +380,7 @@ TEST(TickGains, of_several_levels_are_stable_if_and_only_if_errors_decay) {
   }
 }
 
-/// A tick by TickFeedback multiplies errors by e^(λh), up to terms of (λh)⁵: λ² + k₁λ + k₂ = 0.
+/// A tick by TickFeedback multiplies errors by e^(λh), up to terms of (λh)⁵, where λ² + k₁λ + k₂ = 0.
 TEST(TickGains, of_several_levels_have_the_roots_of_the_gains) {
   for (const double x1 : {0.01, 0.1, 0.3, 0.9}) {
     for (const double ratio : {0.1, 0.25, 1.0}) {
@@ -403,7 +403,7 @@ TEST(TickGains, of_several_levels_have_the_roots_of_the_gains) {
   }
 }
 
-/// With critical damping the tip stays, and the arm comes to rest.
+/// With critical damping, the tip does not move, and the arm comes to rest.
 TEST(TickGains, a_stiff_rest_posture_leaves_the_task_alone) {
   const Preset panda = redundant()[0];
   for (const double dt : {1e-3, 0.02}) {

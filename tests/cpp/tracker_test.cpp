@@ -12,7 +12,7 @@
 #include "support/panda_answers.hpp"
 #include "support/recording.hpp"
 
-/// A tracker follows, slows down, pauses, stops, comes to rest at the edge of its reach and comes back.
+/// A tracker follows, slows down, pauses, stops, comes to rest at the workspace boundary and returns.
 namespace fpbm::test::tracker_laws {
 namespace {
 
@@ -72,7 +72,7 @@ template <typename Space>
   return reference;
 }
 
-/// A tick, checked against the bounds.
+/// A tick with a check of the bounds.
 template <typename AnyTracker, typename Goal>
 auto checked_tick(AnyTracker& tracker, Goal& goal) {
   const auto bounds = tracker.arm().limits();
@@ -94,7 +94,7 @@ template <typename Result>
          a.saturated == b.saturated && a.sigma == b.sigma;
 }
 
-/// Of the library's own class, whose members are looked up here and not called.
+/// For the class of the library. Its members are only looked up, not called.
 TEST(Tracker, promises_not_to_throw) {
   using Own = Tracker<SerialArm<7>, Pose, AccelerationScheme<7>>;
   using Follower = PathFollower<AnyPath<Pose>>;
@@ -109,7 +109,7 @@ TEST(Tracker, promises_not_to_throw) {
   look(nullptr, nullptr, Reference<Pose>::hold({}), bent());
 }
 
-/// Far from every limit a tick is a step of RK4, to the last bit.
+/// Far from every limit, a tick is bitwise a step of RK4.
 TEST(Tracker, takes_the_steps_of_a_rollout) {
   const auto path = turning_circle();
   std::vector<Vector<7>> q;
@@ -128,7 +128,7 @@ TEST(Tracker, takes_the_steps_of_a_rollout) {
     ASSERT_LE((tick.q - q[static_cast<std::size_t>(i) + 1]).cwiseAbs().maxCoeff(), 1e-13) << i;
     ASSERT_LE(tick.error.norm(), 1e-11);
   }
-  EXPECT_EQ(follower.time(), 4.0);  // Exactly, whatever the number of ticks.
+  EXPECT_EQ(follower.time(), 4.0);  // Exact for any number of ticks.
 }
 
 TEST(Tracker, gives_the_same_bits_for_the_same_inputs) {
@@ -168,7 +168,7 @@ TEST(Tracker, reaches_targets_that_change) {
   expect_to_reach_changing_targets<Position<3>>(settling_velocity<kOpen>());
 }
 
-/// The tip stays on its path while the clock pauses and resumes, also when it resumes before it has paused.
+/// The tip stays on its path while the clock pauses and resumes, also if it resumes before the pause is complete.
 TEST(Tracker, pauses_and_resumes_on_its_path) {
   auto tracker = panda_tracker(settling());
   PathFollower follower(turning_circle(), tracker.tip(), 0.5);
@@ -198,8 +198,8 @@ TEST(Tracker, pauses_and_resumes_on_its_path) {
   EXPECT_LE(Pose::difference<double>(follower.ahead(0.0).x, tracker.tip()).norm(), 1e-9);
 }
 
-/// In every phase the reference's velocity is the derivative of its position, and its acceleration that of its
-/// velocity.
+/// In every phase, the reference velocity is the derivative of the position, and the reference acceleration is the
+/// derivative of the velocity.
 TEST(Tracker, follows_paths_smoothly) {
   PathFollower follower(circle(), Vector<3>(0.1, 0.2, 0.3), 0.5);
   const double h = 1e-5;
@@ -222,7 +222,8 @@ TEST(Tracker, follows_paths_smoothly) {
   }
 }
 
-/// A stop is as quick as the slowest joint's acceleration allows, and keeps the joints' path straight.
+/// The slowest joint determines the duration of a stop, by its acceleration bound. The path of the joints stays
+/// straight.
 template <typename Scheme>
 void expect_to_stop(const Scheme& scheme) {
   auto tracker = panda_tracker(scheme);
@@ -254,7 +255,8 @@ TEST(Tracker, stops_on_request_and_goes_on) {
   expect_to_stop(settling_velocity());
 }
 
-/// Led to a target out of reach, the arm passes the outstretched, singular posture, rests at the edge and comes back.
+/// With an unreachable target, the arm passes the stretched, singular posture, comes to rest at the workspace boundary,
+/// and returns.
 template <typename Space, typename Scheme>
 void expect_to_come_back(const char* name, const Scheme& scheme) {
   for (const double forward : {0.4, 0.6, 0.9, 3.0}) {
@@ -288,14 +290,14 @@ TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
   expect_to_come_back<Position<3>>("MVN, position", settling_velocity<kOpen>());
 }
 
-/// Where limits allow only a small part of what a stiff feedback asks for, the answer for a measured state still
-/// changes smoothly: accelerations hardly ever jump to and fro.
+/// If limits admit only a small part of the desired acceleration of a stiff feedback, the result for a measured state
+/// still changes smoothly: accelerations rarely alternate.
 TEST(Tracker, does_not_chatter_out_of_reach) {
   const Vector<7> weights = (Vector<7>() << 8, 8, 4, 4, 2, 1, 1).finished();
   const auto z = NullSpace<7>{}.with_damping(10.0).with_rest_posture(bent(), 25.0);
   const auto stiff = FPBM<7>(0.6, DiagonalWeights<7>(weights), 60.0, 900.0, z);
   auto bounds = panda().limits();
-  bounds.upper(3) = -0.47;  // The outstretched elbow: it must not bend the other way.
+  bounds.upper(3) = -0.47;  // The stretched elbow must not bend in the other direction.
   const Limits<Level::kAcceleration, 7> limits(bounds, kTick);
   for (const Vector<3>& leap : {Vector<3>(0.5, 0, 0), Vector<3>(0.5, 0.1, 0), Vector<3>(-0.4, 0, -0.3),
                                 Vector<3>(-0.4, 0.1, -0.3), Vector<3>(0, 0, 0.6)}) {
@@ -323,8 +325,8 @@ TEST(Tracker, does_not_chatter_out_of_reach) {
   }
 }
 
-/// The answer for an exact measured state is the scheme's where no limit is near, and within the box elsewhere. The
-/// tracker's own state does not change.
+/// For an exact measured state, the result equals the result of the scheme if no limit is near, and is within the box
+/// otherwise. The state of the tracker does not change.
 TEST(Tracker, answers_for_a_measured_state) {
   TrackerOptions<> exact;
   exact.measured_delay = 0;
@@ -343,7 +345,7 @@ TEST(Tracker, answers_for_a_measured_state) {
     scheme.singular = SingularDamping<>();
     const Vector<6> error = Pose::difference<double>(target.x, kinematics.tip);
     auto near = target;
-    Vector<6> seen = error;  // The feedback sees a tenth of the arm's length, and of a radian.
+    Vector<6> seen = error;  // The feedback is bounded to a tenth of the arm length, and to 0.1 rad.
     seen.head<3>() *= std::min(1.0, 0.1 * kinematics.length / error.head<3>().norm());
     seen.tail<3>() *= std::min(1.0, 0.1 / error.tail<3>().norm());
     near.x = Pose::displace<double>(kinematics.tip, seen);
@@ -369,7 +371,7 @@ TEST(Tracker, answers_for_a_measured_state) {
   EXPECT_EQ(lost.qdd, Vector<7>(Vector<7>::Zero()));
 }
 
-/// The integral removes the error that a constant disturbance leaves, and does not wind up.
+/// The integral removes the steady-state error of a constant disturbance, and does not wind up.
 TEST(Tracker, removes_the_error_of_a_constant_bias) {
   Vector<7> bias;
   bias << 0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1;
@@ -381,7 +383,7 @@ TEST(Tracker, removes_the_error_of_a_constant_bias) {
     for (int i = 0; i < ticks; ++i) {
       const bool blocked = i * kTick < blocked_until;
       const auto tick = tracker.resolve_measured(state.q, state.qd, blocked ? moved(home, 0.08) : home);
-      if (blocked) continue;  // Something holds the arm.
+      if (blocked) continue;  // The arm is blocked.
       state.q += kTick * state.qd;
       state.qd += kTick * (tick.qdd + bias);
       error = tick.error.norm();
@@ -393,7 +395,7 @@ TEST(Tracker, removes_the_error_of_a_constant_bias) {
   EXPECT_LE(steady_error(50.0, 115000, 100.0), 1e-6);
 }
 
-/// While the reference is not finite, the arm brakes and the status says why. After that it goes on.
+/// While the reference is not finite, the arm brakes, and the status reports the reason. Afterwards, the arm continues.
 template <typename Scheme>
 void expect_to_brake_on_nonsense(const Scheme& scheme) {
   auto tracker = panda_tracker(scheme);

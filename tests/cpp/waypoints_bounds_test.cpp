@@ -8,7 +8,7 @@
 #include "fpbm/task/waypoints.hpp"
 #include "support/random.hpp"
 
-/// Waypoints::within: no bound is exceeded between samples, and the path is as fast as promised.
+/// Waypoints::within: no bound is exceeded between samples, and the path is as fast as documented.
 namespace fpbm::test::waypoints_bounds_laws {
 namespace {
 
@@ -51,8 +51,8 @@ TipBounds<Scalar> random_bounds(Random& random, bool turns) {
   return bounds;
 }
 
-/// Largest share of a bound that a path uses, of the roots of accelerations' shares, which scale with time as
-/// velocities' do; by dense samples, and closer ones around the largest.
+/// Largest fraction of a bound that a path uses, by dense samples and closer samples around the maximum. For
+/// accelerations, the square root of the fraction, which scales with time like the fraction of a velocity.
 template <typename Path, typename Scalar>
 double largest_share(const Path& path, const TipBounds<Scalar>& bounds) {
   using Space = typename Path::Space;
@@ -91,7 +91,7 @@ template <typename Space, typename Scalar>
 void expect_bounds_between_samples(const char* name) {
   Random random(11);
   double worst = 0.0;
-  double slowest = 0.0;  // Of the shortest duration, but for the rounding up to 0.01 s.
+  double slowest = 0.0;  // Relative to the shortest duration, without the rounding up to 0.01 s.
   for (int trial = 0; trial < trials(200); ++trial) {
     const auto points = random_points<Space, Scalar>(random);
     const auto bounds = random_bounds<Scalar>(random, Space::kTurns > 0);

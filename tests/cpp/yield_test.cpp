@@ -9,13 +9,13 @@
 #include "support/arms.hpp"
 #include "support/random.hpp"
 
-/// When the motion of a task leaves the task's direction.
+/// Conditions under which the motion of a task deviates from the direction of the task.
 namespace fpbm::test::yield_laws {
 namespace {
 
 using Joints = Vector<7>;
 
-/// A demand far beyond the bounds keeps its direction, however large, where the posture does not lose the direction.
+/// A desired motion of any size beyond the bounds keeps its direction, unless the posture loses the direction.
 template <Level kLevel>
 void expect_direction() {
   const auto limits = Limits<kLevel, 7>(SerialArm<7>(presets::panda()).limits(), 1e-3);

@@ -17,7 +17,7 @@
 namespace fpbm::test {
 namespace {
 
-// Constant-initialised, so that even the allocations before main() find them ready.
+// Constant-initialised, so that they are valid for allocations before main().
 thread_local bool watching = false;
 thread_local AllocationCount counted;
 
@@ -50,7 +50,7 @@ const bool AllocationWatch::kSeesMalloc = true;
 
 }  // namespace fpbm::test
 
-// The C family: glibc lets a program define its own, and keeps the originals under these names.
+// The C family: in glibc, a program can define its own functions. The originals keep these names.
 #ifndef FPBM_TEST_SANITIZED
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -94,7 +94,7 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept
 
 namespace {
 
-/// What all forms of new come to. Goes round the watch on malloc, so that each watch sees its own.
+/// Implements all forms of new. It bypasses the watch on malloc, so that each watch counts only its own allocations.
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
   fpbm::test::counted.by_new += fpbm::test::watching ? 1 : 0;
 #ifdef FPBM_TEST_SANITIZED

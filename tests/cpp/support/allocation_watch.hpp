@@ -1,7 +1,8 @@
 #pragma once
 
-/// Eigen can report its allocations: before each it asserts that a flag allows it, and this program counts where that
-/// fails. Include this header before any of Eigen's, which the macros below change.
+/// Eigen can report its allocations: before each allocation, Eigen asserts that a flag permits it. This program counts
+/// the failures of this assertion. Include this header before all headers of Eigen, because the macros below change
+/// them.
 #ifdef EIGEN_CORE_MODULE_H
 #error "allocation_watch.hpp must come before Eigen"
 #endif
@@ -9,7 +10,7 @@
 namespace fpbm::test {
 void count_eigen_assertion() noexcept;
 
-/// Whether the text of an assertion is that of the one before an allocation. The others are left out: they take long to
+/// Whether the text of an assertion belongs to an allocation. The other assertions are omitted: they take long to
 /// compile, and other builds check them.
 constexpr bool is_about_allocation(const char* text) noexcept {
   for (const char* expected = "is_malloc_allowed()"; *expected != '\0'; ++expected, ++text) {
@@ -31,16 +32,16 @@ constexpr bool is_about_allocation(const char* text) noexcept {
 
 namespace fpbm::test {
 
-/// Allocations seen by each of three watches.
+/// Numbers of allocations from three watches.
 struct AllocationCount {
   int by_new = 0;     ///< operator new, in all its forms.
-  int by_malloc = 0;  ///< malloc and its family. Not watched under sanitizers, which need it for themselves.
-  int by_eigen = 0;   ///< Eigen's own check.
+  int by_malloc = 0;  ///< malloc and its family. Not watched under sanitizers, which replace malloc.
+  int by_eigen = 0;   ///< The check of Eigen.
 
   [[nodiscard]] int total() const noexcept { return by_new + by_malloc + by_eigen; }
 };
 
-/// Watches for allocations as long as it lives, on this thread. Counts and reports; never stops the program.
+/// Counts the allocations on this thread during its lifetime. Never stops the program.
 class AllocationWatch {
  public:
   AllocationWatch() noexcept;

@@ -13,7 +13,7 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// One arm of every kind, for what must hold on all of them.
+/// One arm of every type, for properties of all arms.
 namespace fpbm::test {
 
 /// The Panda without its bounds on jerk.
@@ -22,14 +22,14 @@ namespace fpbm::test {
 /// The Panda on a rail along y.
 [[nodiscard]] Chain<> panda_on_rail();
 
-/// The same, its last joint geared to the first of the Panda's.
+/// The Panda on a rail, with its last joint geared to its first revolute joint.
 [[nodiscard]] Chain<> coupled_panda();
 
 /// make_arm() and make_planar_arm(), compiled once.
 [[nodiscard]] AnyArm<Position<3>> any_arm(const Chain<>& chain);
 [[nodiscard]] AnyArm<Position<2>> any_planar_arm(const Vector<Eigen::Dynamic>& lengths);
 
-/// An arm of a user's own: it has kinematics and nothing else.
+/// A user-defined arm, with kinematics only.
 struct OwnArm {
   using Scalar = double;
   static constexpr int kDof = 4;
@@ -53,8 +53,8 @@ struct ArmCase {
   Arm arm;
 };
 
-/// Calls check(case, q, qd) for each kind of arm and task, in random states. Most kinds are held by AnyArm, so that
-/// check compiles for its four pairs of arm and task, and for two of a fixed size.
+/// Calls check(case, q, qd) for each type of arm and task, in random states. AnyArm holds most arms, so that `check` is
+/// compiled only for the four pairs of arm and task of AnyArm, and for two of fixed size.
 template <typename Check>
 void on_every_arm(Check&& check) {
   const auto in_states = [&](const auto& each) {
@@ -94,7 +94,7 @@ template <typename Space, int N>
           random.uniform(M, -0.5, 0.5)};
 }
 
-/// The message of the std::invalid_argument that throw_it() throws; empty where it throws none.
+/// The message of the std::invalid_argument that throw_it() throws. Empty if throw_it() does not throw.
 template <typename Throw>
 [[nodiscard]] std::string complaint(Throw&& throw_it) {
   try {

@@ -8,10 +8,10 @@
 #include "fpbm/fpbm.hpp"
 #include "support/random.hpp"
 
-/// Arms with shapes, and surroundings for them.
+/// Arms with shapes, and obstacles around them.
 namespace fpbm::test {
 
-/// A capsule along each link, from its joint to the next, or to a frame.
+/// A capsule along each link, from its joint to the next joint or to a frame.
 [[nodiscard]] inline std::vector<LinkCapsule<>> sticks(const Tree<>& tree, double radius) {
   std::vector<LinkCapsule<>> capsules;
   const auto add = [&](int link, const Vector<3>& end, bool is_last) {
@@ -26,7 +26,7 @@ namespace fpbm::test {
   return sticks(tree_of(chain), radius);
 }
 
-/// Two Pandas, on a torso that leans and turns, or side by side.
+/// Two Pandas, on a torso that leans and rotates, or side by side.
 [[nodiscard]] inline Tree<> two_pandas(bool with_torso) {
   if (!with_torso) return presets::two_pandas();
   Tree<> tree;
@@ -48,7 +48,7 @@ namespace fpbm::test {
   return Vector<3>(random.uniform(3, -1.0, 1.0)).normalized();
 }
 
-/// A wall, a box or a post somewhere around an arm of some length.
+/// A wall, a box or a post near an arm of some length.
 [[nodiscard]] inline Obstacle<> random_obstacle(Random& random, double length, int kind) {
   const Vector<3> place = length * random.uniform(3, -1.0, 1.0);
   const std::string name = "obstacle" + std::to_string(kind);

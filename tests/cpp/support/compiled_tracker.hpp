@@ -8,11 +8,11 @@
 #include "fpbm/realtime/tracker.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
-/// Trackers that are compiled once for all tests: a test that uses them compiles only the calls.
+/// Trackers that are compiled once for all tests. A test that uses them compiles only the calls.
 namespace fpbm::test {
 
-/// A Tracker whose members are defined in compiled_tracker_members.hpp. trackers_*.cpp instantiate the kinds that the
-/// tests use; any other kind is an undefined symbol for the linker.
+/// A Tracker whose members are defined in compiled_tracker_members.hpp. trackers_*.cpp instantiate the types that the
+/// tests use. Any other type is an undefined symbol for the linker.
 template <typename Arm, typename Space, typename Scheme, typename Guard = Unguarded>
 class CompiledTracker {
  public:
@@ -39,7 +39,7 @@ class CompiledTracker {
   Result tick(const Target& reference) noexcept;
   /// In double only.
   Result tick(PathFollower<AnyPath<Space>>& follower) noexcept;
-  /// Instantiated apart, where a test uses it.
+  /// Instantiated separately in the tests that use it.
   template <typename S>
   Result tick(TargetFilter<Space, S>& filter) noexcept;
   /// At acceleration level only.
@@ -50,7 +50,7 @@ class CompiledTracker {
   [[nodiscard]] const JointVector& acceleration() const noexcept;
   [[nodiscard]] const Arm& arm() const noexcept;
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept;
-  /// limits.require_viable() of its state and acceleration, from which another tracker could start.
+  /// Calls limits.require_viable() for the current state and acceleration, from which another tracker could start.
   void require_viable(const JointLimits& limits) const;
 
  private:

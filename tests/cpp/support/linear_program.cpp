@@ -11,7 +11,7 @@ constexpr long double kZero = 1e-13L;
 }  // namespace
 
 double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  // x is free: each column comes with its negative. Row 0 holds the reduced costs, column 0 the values.
+  // x is free: each column has a negative copy. Row 0 contains the reduced costs, column 0 the values.
   const Eigen::Index rows = A.rows();
   const Eigen::Index free = A.cols();
   const Eigen::Index columns = 2 * free + rows;
@@ -21,7 +21,7 @@ double largest(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::
   T.block(1, 0, rows, 1) = b.cast<long double>();
   T.block(1, 1, rows, free) = A.cast<long double>();
   T.block(1, 1 + free, rows, free) = -A.cast<long double>();
-  // Rows of joints that hardly move, in units of their own.
+  // Scales rows of joints that hardly move.
   for (Eigen::Index i = 1; i <= rows; ++i) {
     const long double size = T.row(i).segment(1, free).cwiseAbs().maxCoeff();
     if (size > 0.0L) T.row(i) /= size;
@@ -59,7 +59,7 @@ double largest_scale(const Eigen::MatrixXd& J, const Eigen::VectorXd& lower, con
   const Eigen::Index n = J.cols();
   Eigen::FullPivLU<Eigen::MatrixXd> lu(J);
   lu.setThreshold(1e-12);
-  const Eigen::Index free = lu.dimensionOfKernel();  // Eigen's kernel() has a column of zeros where there is none.
+  const Eigen::Index free = lu.dimensionOfKernel();  // If the kernel is empty, Eigen's kernel() has a zero column.
   Eigen::MatrixXd motion(n, free + 1);
   motion.col(0) = desired - rest;
   if (free > 0) motion.rightCols(free) = lu.kernel();

@@ -19,8 +19,8 @@ template <typename Arm, typename Scalar = typename Arm::Scalar>
   return Arm(lengths.cast<Scalar>());
 }
 
-/// An arm in space of these links, all upright at q = 0, which turn about z and x by turns; from eight joints on it
-/// stands on a rail along x.
+/// An arm in space with these links, upright at q = 0, whose joints rotate alternately about z and x. Arms with eight
+/// joints or more are on a rail along x.
 template <typename Arm, typename Scalar = typename Arm::Scalar>
 [[nodiscard]] std::enable_if_t<std::is_constructible_v<Arm, Chain<Scalar>>, Arm> arm_of(
     const Eigen::VectorXd& lengths) {
@@ -39,12 +39,12 @@ template <typename Arm, typename Scalar = typename Arm::Scalar>
   return Arm(chain);
 }
 
-/// The Panda, whatever the links.
+/// The Panda, for all links.
 [[nodiscard]] inline SerialArm<7> panda_arm(const Eigen::VectorXd&) {
   return SerialArm<7>(presets::panda());
 }
 
-/// x ⊖ f(q): the difference of positions as the Scalar rounds it, and the rotation as it was asked for.
+/// x ⊖ f(q): the difference of positions as rounded by the Scalar, and the desired rotation.
 template <typename Space, typename Scalar>
 [[nodiscard]] RealVector error_of(const typename Space::template Point<Scalar>& x,
                                   const typename Space::template Point<Scalar>& tip, const RealVector& displacement) {
@@ -57,7 +57,7 @@ template <typename Space, typename Scalar>
   return error;
 }
 
-/// A scene as the library's types have it, and as the textbook's.
+/// A scene in the types of the library, and in the types of the textbook.
 template <typename Space, int N, typename Scalar>
 struct Staged {
   State<N, Scalar> state;
@@ -89,7 +89,7 @@ template <typename Space, typename Arm>
   return result;
 }
 
-/// How schemes of one type answer, whatever the paper calls them: compiled once for all of them.
+/// Resolves scenes by all schemes of one type, under any name of the paper. Compiled once for all of them.
 template <typename Arm, typename Space, typename Scheme>
 [[nodiscard]] std::function<Outcome(const Law&, const Scene&)> resolver(Arm (*make_arm)(const Eigen::VectorXd&),
                                                                         std::function<Scheme(const Law&)> make_scheme) {
@@ -103,7 +103,7 @@ template <typename Arm, typename Space, typename Scheme>
   };
 }
 
-/// Every scheme on one kind of arm, of dof joints, with one kind of task.
+/// Every scheme on one type of arm with `dof` joints, with one type of task.
 template <typename Arm, typename Space, Kinds kKinds = Kinds::kAll>
 [[nodiscard]] std::vector<Subject> make_subjects(const std::string& name, int dof,
                                                  Arm (*make_arm)(const Eigen::VectorXd&) = &arm_of<Arm>) {

@@ -3,7 +3,7 @@
 #include "fpbm/model/serial_arm.hpp"
 #include "fpbm/scheme/schemes.hpp"
 
-/// Single answers of the kinds that trackers_fixed.cpp compiles anyway.
+/// Single evaluations of the types that trackers_fixed.cpp compiles for other purposes.
 namespace fpbm::test {
 
 [[nodiscard]] Kinematics<Pose, 7> kinematics_of(const SerialArm<7>& arm, const State<7>& state);

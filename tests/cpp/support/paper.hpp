@@ -4,8 +4,8 @@
 
 #include "fpbm/fpbm.hpp"
 
-/// The paper's examples: set-up as identified from its printed numbers, and an independent solution of each case
-/// (DOP853 at a relative tolerance of 1e-12, in another implementation), good to 1e-9.
+/// The examples of the paper: parameters as identified from its printed numbers, and an independent solution of each
+/// case (DOP853 with a relative tolerance of 1e-12, in another implementation), accurate to 1e-9.
 namespace fpbm::test {
 
 inline constexpr double kPi = 3.14159265358979323846;
@@ -13,17 +13,17 @@ inline constexpr double kDuration = 10.0;  ///< [s]
 
 [[nodiscard]] PlanarArm<4> paper_arm();
 
-/// At rest in the paper's posture.
+/// At rest in the posture of the paper.
 [[nodiscard]] State<4> paper_start();
 
 [[nodiscard]] AnyPath<Position<2>> paper_circle();
 [[nodiscard]] AnyPath<Position<2>> paper_lissajous();
 [[nodiscard]] AnyPath<Position<2>> paper_tricuspid();
 
-/// W = diag(1, 2, 3, 4), the paper's first choice.
+/// W = diag(1, 2, 3, 4), the first choice of the paper.
 [[nodiscard]] DiagonalWeights<4> paper_weights();
 
-/// The paper's scheme, α = 0.6 and k₁ = k₂ = 1, with a secondary motion to choose.
+/// The scheme of the paper with α = 0.6 and k₁ = k₂ = 1, and any secondary motion.
 [[nodiscard]] AccelerationScheme<4> paper_fpbm(const NullSpace<4>& null_space = {});
 
 enum class Figure { kCircle, kLissajous, kTricuspid };

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <ostream>
 
-/// How failing tests print matrices. GoogleTest's own way, as containers, takes seconds to compile for each type.
+/// Prints matrices of failing tests. The default of GoogleTest, as containers, takes seconds to compile for each type.
 namespace Eigen {
 
 template <typename Scalar, int Rows, int Cols, int Options, int MaxRows, int MaxCols>

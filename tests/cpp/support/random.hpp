@@ -8,8 +8,7 @@
 
 namespace fpbm::test {
 
-/// How many of so many trials are made: under a sanitizer, which makes a program some twenty times slower, a tenth,
-/// but one at least.
+/// Number of trials. Under a sanitizer, which slows a program by a factor of about twenty: a tenth, but at least one.
 [[nodiscard]] constexpr int trials(int all) {
 #ifdef FPBM_FEW_TRIALS
   return std::max(all / 10, 1);
@@ -18,13 +17,13 @@ namespace fpbm::test {
 #endif
 }
 
-/// Trials of a law that takes long: few every day, all of them if FPBM_ALL_TRIALS is set, as `make nightly` does.
+/// Number of trials of a slow test: few by default, all if FPBM_ALL_TRIALS is set, as by `make nightly`.
 [[nodiscard]] inline int trials(int all, int few) {
   return std::getenv("FPBM_ALL_TRIALS") != nullptr ? trials(all) : std::min(trials(all), few);
 }
 
-/// Random test material, the same in every run and on every machine.
-/// All numbers are floats, so that every Scalar under test starts from exactly the same data.
+/// Random test data, the same in every run and on every machine. All numbers are floats, so that every Scalar under
+/// test starts from exactly the same data.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}

@@ -9,7 +9,7 @@
 
 namespace fpbm::test {
 
-/// A rollout with every sample kept.
+/// A rollout with all samples.
 template <int N, typename Scalar = double, typename Space = Position<2>>
 struct Recording {
   std::vector<Sample<Space, N, Scalar>> samples;
@@ -35,7 +35,7 @@ template <typename Arm, typename Path, typename Scheme>
   return {std::move(samples), result};
 }
 
-/// A planar scheme behind AnyScheme, for rollouts that are compiled once.
+/// A planar scheme as AnyScheme, for rollouts that are compiled once.
 template <typename Scheme>
 [[nodiscard]] AnyScheme<Scheme::kLevel, Position<2>> erased(const Scheme& scheme) {
   return AnyScheme<Scheme::kLevel, Position<2>>(scheme);
@@ -47,7 +47,7 @@ template <typename Scheme>
 [[nodiscard]] AnyScheme<Level::kVelocity, Position<2>> erased(
     const VelocityScheme<Eigen::Dynamic, double, UnitWeights>& scheme);
 
-// The paper's arm under the schemes that many tests take: compiled once, in recording.cpp.
+// The arm of the paper with the schemes of many tests: compiled once, in recording.cpp.
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&, const AccelerationScheme<4>&,
                                       const State<4>&, const TimeGrid<>&);
 extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Position<2>>&,
@@ -59,7 +59,7 @@ extern template Recording<4> recorded(const PlanarArm<4>&, const AnyPath<Positio
                                       const VelocityScheme<4, double, UnitWeights>&, const State<4>&,
                                       const TimeGrid<>&);
 
-// Planar arms under schemes of run-time type.
+// Planar arms with schemes of run-time type.
 extern template Recording<Eigen::Dynamic> recorded(const AnyArm<Position<2>>&, const AnyPath<Position<2>>&,
                                                    const AnyScheme<Level::kAcceleration, Position<2>>&,
                                                    const State<Eigen::Dynamic>&, const TimeGrid<>&);
@@ -67,7 +67,7 @@ extern template Recording<Eigen::Dynamic> recorded(const AnyArm<Position<2>>&, c
                                                    const AnyScheme<Level::kVelocity, Position<2>>&,
                                                    const State<Eigen::Dynamic>&, const TimeGrid<>&);
 
-// The Panda's poses.
+// Poses of the Panda.
 extern template Recording<7, double, Pose> recorded(const SerialArm<7>&, const AnyPath<Pose>&,
                                                     const AccelerationScheme<7>&, const State<7>&, const TimeGrid<>&);
 

@@ -7,16 +7,16 @@
 #include "fpbm/fpbm.hpp"
 #include "support/textbook.hpp"
 
-/// The library's schemes, built from the textbook's laws: the one list of schemes that the tests have.
+/// The schemes of the library, constructed from the laws of the textbook: the single list of schemes of the tests.
 namespace fpbm::test {
 
-/// What a scheme can be told.
+/// Parameters of a scheme.
 struct Takes {
-  bool acceleration;            ///< Its level.
-  std::optional<double> alpha;  ///< Its share of WMVN; empty where the caller chooses it.
+  bool acceleration;            ///< The level: acceleration or velocity.
+  std::optional<double> alpha;  ///< Weight of WMVN in the balance. Empty if the caller chooses it.
   bool feedback;
   bool weights;
-  bool dense;  ///< All of W, and not its diagonal alone.
+  bool dense;  ///< Whether W may be dense, not only diagonal.
 };
 
 template <int N, typename S>
@@ -33,11 +33,11 @@ template <typename S>
   return SingularDamping<S>(static_cast<S>(law.singular_radius), static_cast<S>(law.singular_brake));
 }
 
-/// Which weights a list of schemes has.
+/// Weights in a list of schemes.
 enum class Kinds { kAll, kUnitAndDiagonal, kDiagonal };
 
-/// Weights of run-time size behind one type, so that a scheme is compiled once for all kinds of them; others as they
-/// are.
+/// Weights of run-time size become AnyWeights, so that a scheme is compiled once for all their types. Other weights do
+/// not change.
 template <int N, typename S, typename Weights>
 [[nodiscard]] auto any_kind(const Weights& weights) {
   if constexpr (N == Eigen::Dynamic && std::is_same_v<S, double>) {
@@ -47,8 +47,8 @@ template <int N, typename S, typename Weights>
   }
 }
 
-/// Calls visit(name, takes, make) for every scheme with weights of these kinds, where make(law) is the library's scheme
-/// of that law.
+/// Calls visit(name, takes, make) for every scheme with weights of these types. make(law) returns the scheme of the
+/// library for the law.
 template <int N, typename S = double, Kinds kKinds = Kinds::kAll, typename Visit>
 void for_every_scheme(Visit&& visit) {
   const auto diagonal = [](const Law& law) {

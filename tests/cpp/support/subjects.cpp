@@ -16,7 +16,7 @@ Law random_law(Random& random, const Subject& subject, bool has_null_space) {
   const Takes& takes = subject.takes;
   Law law;
   law.acceleration = takes.acceleration;
-  const double share = std::clamp(random.uniform(-0.3, 1.3), 0.0, 1.0);  // 0 and 1 are branches of their own.
+  const double share = std::clamp(random.uniform(-0.3, 1.3), 0.0, 1.0);  // 0 and 1 are separate branches.
   law.alpha = takes.alpha.value_or(share);
   const double feedback = takes.feedback ? 1.0 : 0.0;
   law.k = feedback * random.uniform(0.0, 5.0);
@@ -55,9 +55,9 @@ double condition(const Subject& subject, const Scene& scene) {
   return static_cast<double>(sigma(0) / sigma(sigma.size() - 1));
 }
 
-/// A planar arm with a position task: all joints bend the same way, by 1 to 2 rad in all, which is far from straight
-/// and from folded; or by a few hundredths, as long as the square of J's condition number leaves the Scalar some
-/// digits.
+/// A planar arm with a position task. All joints bend in the same direction, by 1 to 2 rad in total, far from stretched
+/// and folded postures. Nearly singular: by a few hundredths, so that the square of the condition number of J leaves
+/// the Scalar some digits.
 Eigen::VectorXd bent_posture(Random& random, const Subject& subject, Regime regime) {
   const double small = subject.epsilon < 1e-10 ? 0.05 : 0.3;
   const double bend = (regime == Regime::kNearSingular ? small : 2.0) / subject.dof;
@@ -66,7 +66,7 @@ Eigen::VectorXd bent_posture(Random& random, const Subject& subject, Regime regi
   return q;
 }
 
-/// Any other: by trial.
+/// Any other arm: by rejection sampling.
 Eigen::VectorXd tried_posture(Random& random, const Subject& subject, Regime regime, const Eigen::VectorXd& lengths) {
   const bool near = regime == Regime::kNearSingular;
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(subject.rows);

@@ -14,9 +14,9 @@ RealMatrix identity(const RealMatrix& J) {
   return RealMatrix::Identity(J.cols(), J.cols());
 }
 
-// The decompositions are short and by hand: Eigen's, in extended precision, take ten times as long to compile.
+// The decompositions are short: Eigen's, in extended precision, take ten times as long to compile.
 
-/// Gauss-Jordan elimination with the largest pivots of each column: turns A into I and B into A⁻¹B. Returns det A.
+/// Gauss-Jordan elimination with the largest pivot of each column: transforms A to I and B to A⁻¹B. Returns det A.
 Real eliminate(RealMatrix A, RealMatrix& B) {
   Real product = 1;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
@@ -43,7 +43,7 @@ Real eliminate(RealMatrix A, RealMatrix& B) {
   return product;
 }
 
-/// A = QR by Gram-Schmidt, each column made orthogonal twice, for a Q good to round-off.
+/// A = QR by Gram-Schmidt. Each column is orthogonalised twice, so that Q is accurate to round-off.
 std::pair<RealMatrix, RealMatrix> qr(const RealMatrix& A) {
   RealMatrix Q = A;
   RealMatrix R = RealMatrix::Zero(A.cols(), A.cols());
@@ -61,11 +61,11 @@ std::pair<RealMatrix, RealMatrix> qr(const RealMatrix& A) {
   return {Q, R};
 }
 
-/// Jacobi's rotations: makes rows of A orthogonal, pair by pair, and turns U's columns along, so that UA stays. Small
-/// singular values are as good as large ones.
+/// Jacobi rotations: orthogonalises the rows of A in pairs, and rotates the columns of U accordingly, so that UA is
+/// constant. Small singular values are as accurate as large ones.
 void make_rows_orthogonal(RealMatrix& A, RealMatrix& U) {
   bool turned = true;
-  for (int sweep = 0; turned && sweep < 40; ++sweep) {  // Rows of round-off alone never become orthogonal.
+  for (int sweep = 0; turned && sweep < 40; ++sweep) {  // Rows of round-off error never become orthogonal.
     turned = false;
     for (Eigen::Index i = 0; i + 1 < A.rows(); ++i) {
       for (Eigen::Index j = i + 1; j < A.rows(); ++j) {

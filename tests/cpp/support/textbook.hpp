@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-/// The paper's mathematics a second time, without the library: as printed, with pseudoinverses and projectors formed,
-/// in extended precision.
+/// A second implementation of the mathematics of the paper, without the library: as printed, with explicit
+/// pseudoinverses and projectors, in extended precision.
 namespace fpbm::test {
 
 using Real = long double;
@@ -15,10 +15,10 @@ template <typename Derived>
   return values.template cast<Real>();
 }
 
-/// Every scheme of the paper, by its parameters. A scheme that lacks one has the neutral value there.
+/// Every scheme of the paper, by its parameters. Parameters that a scheme does not have are neutral.
 struct Law {
-  bool acceleration = false;  ///< The level: qdd is asked for, or qd.
-  double alpha = 0.0;         ///< Share of the weighted pseudoinverse: 0 in MVN and MAN, 1 in WMVN at both levels.
+  bool acceleration = false;  ///< The level: the law gives qdd, or qd.
+  double alpha = 0.0;         ///< Weight of the weighted pseudoinverse: 0 in MVN and MAN, 1 in WMVN at both levels.
   double k = 0.0;             ///< Feedback gain at velocity level.
   double k1 = 0.0;            ///< Feedback gains at acceleration level.
   double k2 = 0.0;
@@ -28,7 +28,7 @@ struct Law {
   double stiffness = 0.0;
   Eigen::VectorXd q_rest;
   Eigen::VectorXd c;
-  double singular_radius = 0.0;  ///< Share of ‖J‖_F below which the library damps; the functions here never do.
+  double singular_radius = 0.0;  ///< Fraction of ‖J‖_F below which the library damps; this header never damps.
   double singular_brake = 0.0;
 };
 
@@ -42,13 +42,13 @@ struct Situation {
   RealVector error;  ///< x ⊖ f(q).
   RealVector xd;
   RealVector xdd;
-  RealVector units;  ///< Of each row: 1 for a length, the arm's characteristic length for an angle.
+  RealVector units;  ///< Of each row: 1 for a length, the characteristic length of the arm for an angle.
 };
 
-/// Tip position, J and Jd of a planar arm at (q, qd), each element summed on its own. The reference stays empty.
+/// Tip position, J and Jd of a planar arm at (q, qd), with a separate sum for each element. The reference is empty.
 [[nodiscard]] Situation planar_arm(const RealVector& lengths, const RealVector& q, const RealVector& qd);
 
-/// Singular values of J, the largest first, and its left singular vectors.
+/// Singular values of J in decreasing order, and its left singular vectors.
 struct Spectrum {
   RealVector sigma;
   RealMatrix U;
@@ -59,17 +59,17 @@ struct Spectrum {
 [[nodiscard]] RealMatrix inverse(const RealMatrix& A);
 [[nodiscard]] Real determinant(const RealMatrix& A);
 
-/// Eigenvalues of a symmetric matrix that has no negative ones, the least first.
+/// Eigenvalues of a symmetric positive semidefinite matrix, in increasing order.
 [[nodiscard]] RealVector eigenvalues(const RealMatrix& A);
 
-/// The same numbers, the least first.
+/// The numbers in increasing order.
 [[nodiscard]] RealVector sorted(RealVector values);
 
 /// Orthogonal matrix: Q of A = QR.
 [[nodiscard]] RealMatrix orthogonal(const RealMatrix& A);
 
-/// J⁺ of a J of full rank, from an orthogonal decomposition: its round-off grows with the condition of J, and not with
-/// its square.
+/// J⁺ of a J of full rank, from an orthogonal decomposition. The round-off error is proportional to the condition
+/// number of J, not to its square.
 [[nodiscard]] RealMatrix pseudoinverse(const RealMatrix& J);
 
 /// J_W⁺ = W⁻¹Jᵀ(JW⁻¹Jᵀ)⁻¹.

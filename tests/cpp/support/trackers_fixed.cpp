@@ -1,7 +1,7 @@
 #include "support/compiled_tracker_members.hpp"
 #include "support/panda_answers.hpp"
 
-/// Arms of fixed size: with one joint more than rows, with none, and with several.
+/// Arms of fixed size: with one joint more than task rows, with none more, and with several more.
 namespace fpbm::test {
 
 template class CompiledTracker<SerialArm<7>, Pose, AccelerationScheme<7>>;

@@ -10,7 +10,10 @@
 
 namespace fpbm {
 
-/// A sweep of a robot's drives, as one of its joints.
+/// Stopping trajectory of the drives (Sweep) as displacements of all joints of a robot [rad or m]: s·way + t·tick + o,
+/// where s and t increase from 0 to 1, and low ≤ o ≤ high.
+///
+/// The displacement r = t·tick + o is the deviation from the straight line s·way: docs/clearance.md, "Algorithm".
 template <typename Clearance>
 struct JointSweep {
   using Scalar = typename Clearance::Scalar;
@@ -20,21 +23,22 @@ struct JointSweep {
   AllJoints tick;
   AllJoints low;
   AllJoints high;
-  AllJoints rest;  ///< Most that all but `way` displaces a joint, either way.
+  AllJoints rest;  ///< Bound e on |r|.
 
   template <int N>
   JointSweep(const Clearance& clearance, const Sweep<N, Scalar>& sweep) noexcept
       : JointSweep(clearance.robot().drives(), sweep) {}
 
-  /// Least that all but `way` adds to what has this gradient.
+  /// Smallest gᵀr, for a gradient g [m/rad or 1]: the largest decrease of a gap by the deviation r.
   [[nodiscard]] Scalar least(const AllJoints& gradient) const noexcept {
     return least_of_own(gradient) + std::min(gradient.dot(tick), Scalar(0));
   }
-  /// The same of low and high alone.
+  /// Smallest gᵀo: the part of least() by joints that follow their own shortest stop.
   [[nodiscard]] Scalar least_of_own(const AllJoints& gradient) const noexcept {
     return gradient.cwiseProduct(low).cwiseMin(gradient.cwiseProduct(high)).sum();
   }
-  /// Whether `way` and `tick` together never reduce what has this gradient. begun: of the sweep, by the joints.
+  /// Whether gᵀ(s·way + t·tick) ≥ 0 along the whole trajectory, because this sum consists of nonnegative multiples of
+  /// `begun` and −tick. begun: joint velocities at the start of the trajectory [rad/s or m/s].
   [[nodiscard]] bool opens(const AllJoints& gradient, const AllJoints& begun) const noexcept {
     return gradient.dot(begun) >= Scalar(0) && gradient.dot(tick) <= Scalar(0);
   }
@@ -49,7 +53,8 @@ struct JointSweep {
         rest(tick.cwiseAbs() + high.cwiseMax(-low)) {}
 };
 
-/// What joints that take their own quickest stop may take from a gap, beyond its slope at their speed for some time.
+/// Decrease of a gap by joints that follow their own shortest stop, beyond the decrease at constant velocity for a time
+/// T: Σ_k max(min(g_k q̇_k T, 0) − min(g_k low_k, g_k high_k), 0) [m]. gradient: g. speed: q̇. time: T [s].
 template <typename Clearance, typename Scalar>
 [[nodiscard]] Scalar beyond_slope(const JointSweep<Clearance>& sweep, const typename Clearance::AllJoints& speed,
                                   const typename Clearance::AllJoints& gradient, Scalar time) noexcept {
@@ -62,7 +67,8 @@ template <typename Clearance, typename Scalar>
   return beyond;
 }
 
-/// Most of a gap's rest of the way, up to `whole`, that surely leaves a gap above zero; below zero where there is none.
+/// Largest t ≤ whole with gap − slope t − bend t² ≥ 0; −1 if the gap is negative. The form of the root avoids
+/// cancellation.
 template <typename Scalar>
 [[nodiscard]] Scalar furthest(Scalar gap, Scalar slope, Scalar bend, Scalar whole) noexcept {
   using std::sqrt;

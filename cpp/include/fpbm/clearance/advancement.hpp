@@ -14,13 +14,14 @@ namespace fpbm {
 /// Pairs that Advancement checks.
 enum class Pairs : unsigned char {
   kAll,
-  kAtRest,  ///< All but those with a shape that moves by itself.
+  kAtRest,  ///< All pairs except pairs with a moving obstacle.
 };
 
-/// Checks by conservative advancement whether all pairs keep their margin along a sweep.
+/// Checks by conservative advancement (Mirtich 1996) whether all pairs keep their margin along a stopping trajectory:
+/// docs/clearance.md, "Proof".
 ///
-/// A step along the sweep is as large as the gap of the nearest pair, its slope and a bound on its bend surely allow. A
-/// pair that surely keeps its margin to the sweep's end is not checked again.
+/// Each step along the trajectory has the length that the lower bounds on all gaps allow. A pair whose lower bound
+/// keeps the margin to the end of the trajectory is not checked again.
 template <typename Clearance>
 class Advancement {
  public:
@@ -32,9 +33,9 @@ class Advancement {
   explicit Advancement(const Clearance& clearance)
       : bounds_(clearance), ahead_(clearance.placement()), open_(clearance.pairs().size()) {}
 
-  /// Whether all pairs surely keep their margin along a sweep from the posture of the near pairs. If a pair is closer
-  /// than its margin at the start, because a shape has moved, it must not come closer. time: that of the sweep, in
-  /// which moving shapes continue [s].
+  /// Whether all pairs are proved to keep their margin along the trajectory `drives` from the posture of the near
+  /// pairs. A pair that is closer than its margin at the start, because an obstacle has moved, must not come closer.
+  /// time: duration of the trajectory, during which moving obstacles continue [s].
   template <int N>
   [[nodiscard]] bool keeps_apart(const Clearance& clearance, NearPairs<Clearance>& near, const Sweep<N, Scalar>& drives,
                                  Scalar time, Pairs pairs = Pairs::kAll) noexcept {
@@ -59,7 +60,7 @@ class Advancement {
       const Scalar sure = sure_step(clearance, near.here(), pair, found, motion, open.bound, near.moves(pair), whole);
       open.until = sure;
       if (!(sure == whole)) ++count;
-      step = std::min(sure, step);  // In this order NaN stays.
+      step = std::min(sure, step);  // If `sure` is NaN, this order returns NaN.
     });
     for (int advance = 1; advance < kAdvances; ++advance) {
       if (!(step > Scalar(0))) return false;
@@ -88,29 +89,31 @@ class Advancement {
   }
 
  private:
-  // Of 48,019 stops of random motions among 26 near pairs that 16 advances accept, 8 accept 48,002. The worst tick of a
-  // clearance takes 25 % fewer instructions with 8 (bench/README.md, "The longest ticks").
+  // Of 48,019 stopping trajectories of random motions among 26 near pairs that 16 steps accept, 8 steps accept 48,002.
+  // With 8 steps, the longest tick of a clearance executes 25 % fewer instructions (bench/README.md, "The longest
+  // ticks").
   static constexpr int kAdvances = 8;
-  /// A pair that is proved for this part of the remaining sweep is not checked in the next advance (bench/README.md,
-  /// "The longest ticks").
+  /// A pair that is proved for this fraction of the remaining trajectory is not checked in the next step
+  /// (bench/README.md, "The longest ticks").
   static constexpr Scalar kProven = Scalar(0.75);
   static constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
 
   struct Motion {
     JointSweep<Clearance> sweep;
-    AllJoints begun;  ///< Velocities at the sweep's start.
-    Scalar time;      ///< [s]
+    AllJoints begun;  ///< Joint velocities at the start of the trajectory.
+    Scalar time;      ///< Duration of the trajectory [s].
   };
 
-  /// A pair that is not sure to keep its margin to the sweep's end.
+  /// A pair that is not proved to keep its margin to the end of the trajectory.
   struct Open {
     std::size_t pair;
-    Scalar until;  ///< Part of the sweep in which the pair surely keeps its margin.
+    Scalar until;  ///< Fraction of the trajectory in which the pair is proved to keep its margin.
     DisplacementBound<Scalar> bound;
   };
 
-  /// The part of the sweep, up to `whole`, the rest of it, in which a pair surely keeps its margin; not positive if
-  /// there is none. moves: how far the second shape may move by itself [m].
+  /// Fraction of the trajectory, at most the remaining fraction `whole`, in which the pair is proved to keep its
+  /// margin: the smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). Not positive if there is
+  /// none. moves: displacement bound of the second shape if it is a moving obstacle [m].
   [[nodiscard]] static Scalar sure_step(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
                                         const Nearest<Scalar>& nearest, const Motion& motion,
                                         const DisplacementBound<Scalar>& bound, Scalar moves, Scalar whole) noexcept {
@@ -132,7 +135,7 @@ class Advancement {
       if (far < whole && at_start && sweep.opens(g, motion.begun)) {
         far = std::max(furthest(gap + sweep.least_of_own(g), bound.c1, bound.c2, whole), far);
       }
-      sure = std::min(far, sure);  // In this order NaN stays.
+      sure = std::min(far, sure);  // If `far` is NaN, this order returns NaN.
     }
     return sure;
   }

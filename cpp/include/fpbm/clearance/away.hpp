@@ -2,11 +2,11 @@
 
 namespace fpbm {
 
-/// Keeps an arm at a distance from shapes where its task leaves it free to: off where the gain is 0.
+/// Null-space motion away from shapes: motion_away(). Disabled if the gain is 0.
 template <typename Scalar = double>
 struct Away {
-  Scalar gain = Scalar(0);  ///< [rad/(m s²)], or [rad/(m s)] at velocity level; a joint that slides: [1/s²], [1/s].
-  Scalar range = Scalar(0.1);  ///< From the margin on [m].
+  Scalar gain = Scalar(0);     ///< [rad/(m s²)], or [rad/(m s)] at velocity level. Prismatic joints: [1/s²] or [1/s].
+  Scalar range = Scalar(0.1);  ///< Distance beyond the margin at which the motion starts [m].
 };
 
 }  // namespace fpbm

@@ -9,19 +9,19 @@
 
 namespace fpbm {
 
-/// One of a robot's capsules. The body of a bound on a task is a point of a link, or a unit vector that turns with a
-/// link: a point that only turning joints move, by no more than their angles.
+/// A capsule of a robot, or the body of a bound on a task: a point of a link, or a unit vector fixed to a link. A unit
+/// vector is treated as a point that only revolute joints move, by at most their angles.
 template <typename Scalar, int Joints = Eigen::Dynamic>
 struct Body {
   int link;
-  Capsule<Scalar> in_link;  ///< Seen from the link's joint.
+  Capsule<Scalar> in_link;  ///< In the frame of the joint of the link.
   std::string name;
-  Vector<Joints, Scalar> levers;  ///< Of both ends, the longer, by joint.
+  Vector<Joints, Scalar> levers;  ///< Larger lever of both ends, for each joint (levers.hpp).
   Scalar size;                    ///< Radius of the smallest ball around the capsule [m].
   bool is_direction = false;
-  Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Most toward a bound of a task.
+  Scalar deceleration = std::numeric_limits<Scalar>::infinity();  ///< Largest, toward a task bound [m/s²] or [1/s²].
 
-  /// capsule: in the link's frame, which the link's joint sees at in_joint.
+  /// capsule: in the frame of the link. in_joint: pose of this frame in the frame of the joint of the link.
   Body(const Levers<Scalar>& levers_of, int link_, const Transform<Scalar>& in_joint, const Capsule<Scalar>& capsule,
        std::string name_)
       : link(link_),
@@ -30,11 +30,11 @@ struct Body {
         levers(levers_of(link, capsule.a).cwiseMax(levers_of(link, capsule.b))),
         size((capsule.b - capsule.a).norm() / Scalar(2) + capsule.radius) {}
 
-  /// The capsule in the base frame. frame: that of the link's joint.
+  /// The capsule in the base frame. frame: pose of the joint of the link.
   [[nodiscard]] Capsule<Scalar> placed_by(const Transform<Scalar>& frame) const noexcept {
     return placed(in_link, frame);
   }
-  /// The point or the direction of a bound, in the base frame.
+  /// The point or the direction of a bound in the base frame. frame: pose of the joint of the link.
   [[nodiscard]] Vector<3, Scalar> point_by(const Transform<Scalar>& frame) const noexcept {
     const Vector<3, Scalar> turned = frame.R.lazyProduct(in_link.a);
     return is_direction ? turned : Vector<3, Scalar>(frame.p + turned);

@@ -18,32 +18,33 @@
 
 namespace fpbm {
 
-/// The shapes of a robot and of its surroundings, and the pairs that must keep a margin. Shapes of the world may move;
-/// all else is settled at construction. Joints: their number, where it is not N: Eigen::Dynamic for a robot with joints
-/// that follow others.
+/// The shapes of a robot and its environment, and the pairs of shapes that must keep a margin: docs/clearance.md.
+/// Obstacles may move; everything else is constant after construction. Joints: number of joints if it is not N,
+/// Eigen::Dynamic for a robot with joints that follow others.
 template <int N, typename Scalar_ = double, int Joints = N>
 class Clearance {
  public:
   using Scalar = Scalar_;
   using JointVector = Vector<N, Scalar>;
   using Vector3 = Vector<3, Scalar>;
-  using Tree = Robot<N, Scalar, Joints>;  ///< Of joints that have a drive, and any that follow them.
+  using Tree = Robot<N, Scalar, Joints>;  ///< With all joints: drives and followers.
   using AllJoints = Vector<Joints, Scalar>;
   using Body = fpbm::Body<Scalar, Joints>;
   using Placement = fpbm::Placement<N, Scalar, Joints>;
   using Names = std::pair<std::string, std::string>;
 
-  /// Most of the speed of a body over some coordinates of the base frame [m/s], or [rad/s] of a direction.
+  /// Bound `most` on the speed of a body over the coordinates `rows` of the base frame [m/s], or [rad/s] for a
+  /// direction.
   struct SpeedBound {
     Body body;
     std::array<bool, 3> rows;
     Scalar most;
   };
 
-  /// source: the Tree or the Chain of the robot. margin: least distance of a pair [m]. allowed: names of pairs that
-  /// need not be kept apart. Links next to one another need not either. Throws std::invalid_argument where a number is
-  /// out of range, a link does not exist, or a capsule is beyond a turning joint and a prismatic one without bounds on
-  /// it.
+  /// source: the Tree or the Chain of the robot. margin: smallest distance of a pair [m]. allowed: names of pairs that
+  /// are not checked. A link and its parent link are not checked either. Throws std::invalid_argument if a number is
+  /// out of range, a link does not exist, or a prismatic joint without bounds is between a revolute joint and a
+  /// capsule.
   template <typename Source>
   Clearance(const Source& source, const std::vector<LinkCapsule<Scalar>>& capsules,
             const std::vector<Obstacle<Scalar>>& obstacles, Scalar margin, const std::vector<Names>& allowed = {})
@@ -87,14 +88,14 @@ class Clearance {
     return {bodies_[pair.first].name, pair.world ? obstacles_[pair.second].name : bodies_[pair.second].name};
   }
 
-  /// Number of pairs of shapes; the pairs behind these are bounds of tasks.
+  /// Number of pairs of shapes. The pairs after these are bounds of tasks.
   [[nodiscard]] std::size_t shape_pairs() const noexcept { return shape_pairs_; }
 
-  /// Pairs that overlap in all of many postures, which no motion could keep apart: left out.
+  /// Excluded pairs: they overlap in all of many postures, so no motion could keep their margin.
   [[nodiscard]] const std::vector<ShapePair>& left_out() const noexcept { return left_out_; }
 
-  /// Moves obstacle i, whose velocity is then expected to last. Does nothing, and says so, where there is no such
-  /// obstacle, or it is a shape of another kind.
+  /// Moves obstacle i, which is then expected to continue with the velocity [m/s]. Returns false without effect if
+  /// obstacle i does not exist or has another type of shape.
   bool move(std::size_t i, const WorldShape<Scalar>& shape, const Vector3& velocity) noexcept {
     if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
     obstacles_[i].shape = shape;
@@ -103,12 +104,12 @@ class Clearance {
     return true;
   }
 
-  /// Marks all obstacles as read: none has moved since.
+  /// Marks all obstacles as not moved.
   void read_obstacles() noexcept {
     for (auto& each : obstacles_) each.moved = false;
   }
 
-  /// Keeps a distance in time, by self-motion. Throws std::invalid_argument where a number is out of range.
+  /// Enables null-space motion away from shapes. Throws std::invalid_argument if a number is out of range.
   void keep_away(const Away<Scalar>& away) {
     validation::require_non_negative("away.gain", away.gain);
     validation::require_positive("away.range", away.range);
@@ -116,18 +117,20 @@ class Clearance {
   }
   [[nodiscard]] const Away<Scalar>& away() const noexcept { return away_; }
 
-  /// Adds bounds on a task's coordinates: PositionBounds, AxisBounds. Throws std::invalid_argument as they do.
+  /// Adds bounds of a task: PositionBounds or AxisBounds. Throws std::invalid_argument under the conditions of their
+  /// add_to().
   template <typename Bounds>
   void keep(const Bounds& bounds) {
     bounds.add_to(*this);
   }
 
-  /// The origin of a frame, as the body of a bound. Throws std::invalid_argument where there is no such link.
+  /// The origin of a frame as the body of a bound. Throws std::invalid_argument if the link does not exist.
   [[nodiscard]] Body point_of(const LinkFrame<Scalar>& frame, const std::string& name) const {
     return body_of(frame, frame.offset().p, name);
   }
 
-  /// The same of an axis of a frame, a unit vector.
+  /// An axis of a frame, a unit vector, as the body of a bound. Throws std::invalid_argument if the link does not
+  /// exist.
   [[nodiscard]] Body direction_of(const LinkFrame<Scalar>& frame, const Vector3& axis, const std::string& name) const {
     Body body = body_of(frame, frame.offset().R * axis, name);
     body.is_direction = true;
@@ -137,8 +140,9 @@ class Clearance {
     return body;
   }
 
-  /// Keeps n·x of the point x of a body at offset or above. The radius of the body, −margin(), takes the margin of
-  /// shapes off. deceleration: most before the bound [1/s²].
+  /// Adds the bound n·x ≥ offset on the point or direction x of a body. The radius of the body is −margin(), so that
+  /// the margin of shapes does not apply to the bound. deceleration: largest deceleration toward the bound [m/s²], or
+  /// [1/s²] of a direction.
   void keep_above(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
     if (!(deceleration > Scalar(0))) validation::fail("acceleration", deceleration, "positive, or infinite");
     body.deceleration = deceleration;
@@ -147,14 +151,14 @@ class Clearance {
     bodies_.push_back(std::move(body));
   }
 
-  /// Keeps the speed of a body at a bound or below. Throws std::invalid_argument unless that is positive.
+  /// Adds a bound on the speed of a body. Throws std::invalid_argument unless the bound is positive.
   void bound_speed(SpeedBound bound) {
     if (!(bound.most > Scalar(0))) validation::fail("velocity", bound.most, "positive, or infinite");
     if (std::isfinite(bound.most)) speed_bounds_.push_back(std::move(bound));
   }
   [[nodiscard]] const std::vector<SpeedBound>& speed_bounds() const noexcept { return speed_bounds_; }
 
-  /// Whether any obstacle moves by itself.
+  /// Whether any obstacle has a velocity.
   [[nodiscard]] bool moves() const noexcept {
     return std::any_of(obstacles_.begin(), obstacles_.end(),
                        [](const auto& each) { return !each.velocity.isZero(Scalar(0)); });
@@ -169,7 +173,7 @@ class Clearance {
     return placed;
   }
 
-  /// Places the bodies in a posture. placed: a placement(); bodies that were added since are not placed.
+  /// Computes the bodies in a posture. placed: a placement(). Bodies added after placement() are not placed.
   void place(const JointVector& q, Placement& placed) const noexcept {
     robot_.update(q, placed.state);
     placed.set_axes(robot_.joints(), [this](Eigen::Index k) noexcept { return robot_.turns(k); });
@@ -186,7 +190,7 @@ class Clearance {
     }
   }
 
-  /// A lower bound on the distance of a pair, found faster than nearest_of().
+  /// Lower bound on the distance of a pair [m]. Cheaper than nearest_of().
   [[nodiscard]] Scalar roughly(const Placement& placed, const ShapePair& pair) const noexcept {
     const Scalar size = bodies_[pair.first].size;
     const Vector3& centre = placed.centres[pair.first];
@@ -199,18 +203,18 @@ class Clearance {
     return pair.world ? obstacles_[pair.second].nearest_to(first) : nearest(first, placed.bodies[pair.second]);
   }
 
-  /// The pair of shapes that is nearest to one another in a posture, and its distance; infinite without pairs.
+  /// The nearest pair of shapes in a posture and its distance [m]. The distance is infinite if there are no pairs.
   [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q) const {
     Placement memory = placement();
     return nearest_pair(q, memory);
   }
-  /// The same without an allocation. memory: a placement().
+  /// The nearest pair of shapes, without an allocation. memory: a placement().
   [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const JointVector& q, Placement& memory) const noexcept {
     place(q, memory);
     return nearest_pair(memory, 0, shape_pairs_);
   }
 
-  /// The same of the pairs of shapes or the bounds of tasks from a number up to another.
+  /// The nearest pair of the pairs first to end − 1, which may include bounds of tasks.
   [[nodiscard]] std::pair<std::size_t, Scalar> nearest_pair(const Placement& placed, std::size_t first,
                                                             std::size_t end) const noexcept {
     std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
@@ -223,8 +227,8 @@ class Clearance {
   }
 
  private:
-  /// A turning joint has no finite lever if a prismatic joint without bounds is between it and the capsule. A mobile
-  /// base whose turning joint is the last has such levers.
+  /// Throws the error of a capsule with an infinite lever: a prismatic joint without bounds is between a revolute joint
+  /// and the capsule. A mobile base whose revolute joint is last has finite levers.
   template <typename Source>
   void reject_unbounded(const Source& source, const validation::Argument& argument, int link) const {
     bool turns = false;
@@ -241,7 +245,7 @@ class Clearance {
     }
     validation::reject(argument, ": is too large: its lever about a joint must be finite");
   }
-  /// Whether links are different, and none carries the joint that moves the other. A chain's later link comes first.
+  /// Whether the links differ and neither is the parent of the other. In a chain, the later link is first.
   [[nodiscard]] bool may_meet(int first, int second) const noexcept {
     return first > second && robot_.parent(first) != second;
   }
@@ -250,7 +254,8 @@ class Clearance {
     const JointBits second = robot_.moved_by(bodies_[j].link);
     return {i, j, false, first & ~second, second & ~first};
   }
-  /// A point of a frame's link, given in the link's frame but for the tip's, as the body of a bound.
+  /// A point of the link of a frame as the body of a bound. The point is given in the frame of the link, for the tip in
+  /// the frame of the tip.
   [[nodiscard]] Body body_of(const LinkFrame<Scalar>& frame, const Vector3& point, const std::string& name) const {
     robot_.require_link("frame", frame.link());
     const bool is_tip = frame.link() == Tree::kTip;
@@ -281,7 +286,7 @@ class Clearance {
 
   Tree robot_;
   Levers<Scalar> levers_;
-  std::vector<Body> bodies_;  ///< Those of bounds of tasks come last.
+  std::vector<Body> bodies_;  ///< The bodies of bounds of tasks are last.
   std::size_t shape_pairs_ = 0;
   std::vector<SpeedBound> speed_bounds_;
   std::vector<Obstacle<Scalar>> obstacles_;

@@ -8,11 +8,18 @@
 
 namespace fpbm {
 
-/// Bounds on the displacement of a body's points over a sweep, t of its way done: at most d₀ + d₁ t, and at most
-/// c₀ + c₁ t + c₂ t² from the linear displacement.
+/// Bounds on the displacement of a point of a body, after the fraction t of a stopping trajectory [m]
+/// (docs/clearance.md, "Proof"):
 ///
-/// c bounds the second derivative along the sweep: if joint j turns by a and a joint k beyond it by b, a point at lever
-/// r of joint k deviates by at most r a b.
+///   displacement:                                        at most d₀ + d₁t
+///   deviation from the linear displacement J(t·p + r):   at most c₀ + c₁t + c₂t²
+///
+/// Let x_k = |p_k|t + e_k be the largest displacement of joint k, and r_k the lever of joint k. Then
+///
+///   d₀ + d₁t = Σ_k r_k x_k,        c₀ + c₁t + c₂t² = Σ_k r_k x_k (x_k/2 + Σ_{j<k} x_j),
+///
+/// where the factor in brackets contains revolute joints only. This is the second-order term: if joint j rotates by α,
+/// and joint k later in the chain by β, a point deviates by at most r_k αβ.
 template <typename Scalar>
 struct DisplacementBound {
   Scalar d0 = Scalar(0);
@@ -23,11 +30,11 @@ struct DisplacementBound {
 
   [[nodiscard]] Scalar displacement(Scalar t) const noexcept { return d0 + t * d1; }
 
-  /// Adds the displacement of a body by joints.
+  /// Adds the terms of `joints` to the bounds: the joints that move the body.
   template <typename Clearance>
   void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
            const JointSweep<Clearance>& sweep) noexcept {
-    Scalar way(0);  // Turned by joints so far.
+    Scalar way(0);  // Σ |p_j| of the revolute joints before joint k. `rest` is Σ e_j.
     Scalar rest(0);
     each_joint(joints, [&](Eigen::Index k) noexcept {
       const Scalar lever = body.levers(k);
@@ -45,8 +52,8 @@ struct DisplacementBound {
   }
 };
 
-/// The displacement bounds of the pairs of a clearance over one sweep. Those of a body and a shape of the world are
-/// computed once for each body.
+/// Displacement bounds of the pairs of a clearance along one stopping trajectory. The bound of a body and an obstacle
+/// is computed once for each body.
 template <typename Clearance>
 class DisplacementBounds {
  public:
@@ -55,10 +62,10 @@ class DisplacementBounds {
   explicit DisplacementBounds(const Clearance& clearance)
       : by_body_(clearance.bodies().size()), is_known_(clearance.bodies().size(), 0) {}
 
-  /// Forgets the sweep before.
+  /// Discards the bounds of the previous trajectory.
   void begin() noexcept { is_known_.assign(is_known_.size(), 0); }
 
-  /// The bound of both shapes of a pair together. sweep: the same since begin().
+  /// Sum of the bounds of both shapes of a pair. sweep: the same trajectory in all calls after begin().
   [[nodiscard]] Bound of(const Clearance& clearance, const ShapePair& pair,
                          const JointSweep<Clearance>& sweep) noexcept {
     const auto& first = clearance.bodies()[pair.first];

@@ -7,16 +7,16 @@
 
 namespace fpbm {
 
-/// Where two shapes come nearest to one another; where they do so in several places, or may be parted in several
-/// directions as well, one of these. Never NaN for shapes whose lengths have finite squares.
+/// Nearest points of two shapes. If several pairs of points are nearest, or several directions separate overlapping
+/// shapes equally, the result is one of them. Never NaN for shapes whose lengths have finite squares.
 template <typename Scalar = double>
 struct Nearest {
-  Scalar distance;              ///< Signed [m]: below zero, the least way that either must move to part them.
+  Scalar distance;              ///< Signed [m]. Negative: the smallest displacement that separates them.
   Vector<3, Scalar> normal;     ///< Unit vector from second to first: moving first along it by x adds x to distance.
   Vector<3, Scalar> on_first;   ///< On the surface of first; on_first = on_second + distance · normal.
   Vector<3, Scalar> on_second;  ///< On the surface of second.
 
-  /// For a capsule whose core is so far from second, at a point of the core.
+  /// For a capsule whose core has this distance from second. point: the nearest point of the core.
   [[nodiscard]] static Nearest of_core(Scalar distance, const Vector<3, Scalar>& normal, const Vector<3, Scalar>& point,
                                        Scalar radius) noexcept {
     return {distance - radius, normal, point - radius * normal, point - distance * normal};
@@ -31,7 +31,7 @@ template <typename Scalar>
   return Nearest<Scalar>::of_core(cores.gap - second.radius, cores.normal, core.at(cores.s), first.radius);
 }
 
-/// Of a capsule and a half-space: at that end of the capsule which is deeper.
+/// Of a capsule and a half-space: at the deeper end of the capsule.
 template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const HalfSpace<Scalar>& second) noexcept {
   const Scalar at_a = second.normal.dot(first.a);

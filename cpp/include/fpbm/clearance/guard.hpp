@@ -12,19 +12,18 @@
 
 namespace fpbm {
 
-/// Keeps an arm clear of itself and its surroundings, tick by tick.
+/// Keeps the margin of all pairs of a clearance, tick by tick: docs/clearance.md.
 ///
-/// A tick is taken only if from its end the arm can stop with all pairs keeping their margin all the way
-/// (keeps_apart()); else the arm goes on with the stop that was found for the tick before. So no pair that does not
-/// move by itself ever comes nearer than its margin, by induction from the start. rows() are bounds on the next motion
-/// that leave room for that: they make the arm slide along a surface rather than stop before it.
-/// Joints: that of the Clearance.
+/// A tick is executed only if the arm can stop from its end, and all pairs keep their margin until the arm is at rest
+/// (Advancement). Otherwise the arm continues the stopping trajectory of the previous tick. By induction from the
+/// start, no pair of static shapes comes closer than its margin. The bounds of rows() on the next motion leave slack
+/// for this check, so that the arm slides along a surface instead of stopping before it. Joints: as in Clearance.
 template <Level kLevel, int N, typename Scalar = double, int Joints = N>
 class Guard {
  public:
   using Clearance = fpbm::Clearance<N, Scalar, Joints>;
-  static constexpr int kPairs = 16;         ///< Rows for pairs, at most: of more, those with least to spare.
-  static constexpr int kRows = kPairs + 2;  ///< The last ones for speeds.
+  static constexpr int kPairs = 16;         ///< Largest number of rows for pairs: those with the smallest slack.
+  static constexpr int kRows = kPairs + 2;  ///< The last rows are for speeds.
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
@@ -40,8 +39,8 @@ class Guard {
         plan_(clearance.robot().dof()),
         sweep_(plan_.sweep()) {}
 
-  /// Starts from a state after a tick of acceleration last. Throws std::invalid_argument, with the pair's names, where
-  /// the arm is not clear of all, or cannot stop clear of it.
+  /// Starts from a state after a tick with the acceleration `last`. Throws std::invalid_argument with the names of the
+  /// pair if a pair is closer than the margin, or if the arm cannot stop with all margins kept.
   void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
     validation::require_size("clearance's joints", clearance_.robot().dof(), start.q.size());
     if (empty()) return;
@@ -64,17 +63,28 @@ class Guard {
     }
   }
 
-  /// Whether there is nothing to keep clear of.
+  /// Whether there are no pairs.
   [[nodiscard]] bool empty() const noexcept { return clearance_.pairs().empty(); }
-  /// To move obstacles, or to set away(). Bounds that are added after the construction have no effect.
+  /// To move obstacles, or to set away(). Bounds that are added after the construction of the guard have no effect.
   [[nodiscard]] Clearance& clearance() noexcept { return clearance_; }
   [[nodiscard]] const Clearance& clearance() const noexcept { return clearance_; }
 
-  /// Bounds on the next tick's motion from a state, for the pairs that are near enough to need them.
+  /// Bounds on the next motion, for the pairs that are near enough to need them (docs/clearance.md, "Rows").
   ///
-  /// A gap s that closes at w must not close faster than w T ≤ κ (s − c), where T is the time that the plan's stop
-  /// takes on average, with an offset, and c is what the plan's way takes beyond its slope. So the arm comes to rest at
-  /// the margin without a jolt, and slides along a surface. κ < 1 leaves room for keeps_apart().
+  /// Let s be the gap of a pair, g its gradient with respect to the drives, n the normal from the second shape to the
+  /// first, and v the velocity of an obstacle. After the tick, the gap must satisfy
+  ///
+  ///   −ṡ T ≤ κ (s − c),        ṡ = gᵀq̇ − nᵀv.
+  ///
+  /// T is the stopping distance of the planned stop divided by the velocity, plus kSoft. c is the margin plus the part
+  /// of the gap that the stop needs beyond the first-order term gᵀp, where p is the displacement of the stop. The arm
+  /// therefore stops smoothly at the margin, and slides along a surface. κ < 1 leaves slack for the check by
+  /// Advancement. If s < c, the gap must open:
+  /// ṡ ≥ (c − s)/(κ (T − kSoft)).
+  ///
+  /// 1. Bound the joint displacements until rest, and with them the distance within which a pair needs a row.
+  /// 2. For each pair within this distance, compute s − c and g. Keep the kPairs rows with the smallest slack.
+  /// 3. Subtract the second-order change of the distance at the end of the stop, and write the rows gᵀu ≤ b.
   [[nodiscard]] Rows<N, kRows, Scalar> rows(const JointLimits& limits, const JointState& state) noexcept {
     Rows<N, kRows, Scalar> rows;
     rows.g.resize(state.q.size(), kRows);
@@ -84,24 +94,26 @@ class Guard {
     const Scalar h = limits.tick();
     near_pairs_.go_to(clearance_, state.q);
     const auto& drives = clearance_.robot().drives();
-    // Without the steps that whole ticks make, which would be felt as jerks.
+    // Not rounded to whole ticks: the steps of a rounded number would cause jerks.
     const Scalar ticks = Scalar(1) + plan_.smooth_average(limits);
     const Scalar average = h * ticks;
     const Scalar time = average + kSoft;
-    // Velocity at the tick's end, after letting go of the acceleration: qd + late h u.
+    // After the acceleration u of this tick is reduced to zero, the velocity is q̇ + late h u.
     const Scalar late = plan_.latency(limits);
     JointSweep<Clearance> sweep(clearance_, sweep_);
     const JointVector way = ticks / (Scalar(1) + plan_.average()) * sweep_.way;
     sweep.way = drives.rates(way);
     JointSweep<Clearance> fastest = sweep;
     fastest.way = (time / kShare) * drives.rates(fastest_of(limits, state, late));
-    // No pair whose distance exceeds a reach of fastest needs a row; bend takes no more than its reach times all turns.
+    // A pair that is farther apart than the displacement bound of `fastest` needs no row. The deviation bound c₀ + c₁ +
+    // c₂ is at most Σ_k r_k x_k Σ_j x_j, with x = most and the levers r_k.
     const auto most = (sweep.way.cwiseAbs() + sweep.rest).eval();
     const Scalar turned = most.sum();
     const auto speed = drives.rates(state.qd);
     near_pairs_.set_displacements(clearance_,
                                   fastest.way + sweep.rest + turned * most + h / Scalar(2) * speed.cwiseAbs(), time);
-    // The rows are those of the tick's middle, as the task's J is: at its start they differ by h/2 d(∇s)/dt.
+    // The rows are evaluated in the middle of the tick, like J of the task. At the start of the tick, they would differ
+    // by h/2 d(∇s)/dt.
     const JointVector middle = state.q + h / Scalar(2) * state.qd;
     bool is_placed = false;
     of_plan_.begin();
@@ -109,10 +121,10 @@ class Guard {
     const ShapePair* pairs[kPairs];
     Scalar slack[kPairs];
     Scalar closing[kPairs];
-    Scalar gaps[kPairs];  // Of rows of bounds with a deceleration.
+    Scalar gaps[kPairs];  // For bounds with a deceleration: n·x − offset.
     std::uint32_t gentle_rows = 0;
-    Scalar spares[kPairs];  // By how much gaps close slower than they may.
-    // A bound with its own deceleration may need more distance than the quickest stop.
+    Scalar spares[kPairs];  // Slack of each row [m/s]: permitted minus current closing speed.
+    // A bound with its own deceleration may need more distance than the shortest stop.
     const auto is_gentle = [&](const ShapePair& pair) noexcept {
       return &pair >= clearance_.pairs().data() + clearance_.shape_pairs() &&
              std::isfinite(clearance_.bodies()[pair.first].deceleration);
@@ -141,6 +153,7 @@ class Guard {
         const Scalar gap = between ? plane.distance : plane.gap(e);
         const auto gradient = between ? nearest : plane.gradient_of(e);
         const JointVector g = drives.by_drive(gradient);
+        // s − c, without the second-order change of the distance.
         const Scalar left = gap - kReserve - taken - beyond_slope(sweep, speed, gradient, average);
         Scalar allowed = kShare * left / time;
         if (gentle) allowed = most_closing(gap - clearance_.margin(), allowed, clearance_.bodies()[pair.first], h);
@@ -149,7 +162,7 @@ class Guard {
         if (k == kPairs) continue;
         spares[k] = spare;
         pairs[k] = &pair;
-        slack[k] = plane.distance + nearest.dot(sweep.way);  // At the way's end, without what bends it.
+        slack[k] = plane.distance + nearest.dot(sweep.way);  // Distance at the end of the stop, to first order.
         closing[k] = plane.closing;
         gentle_rows &= ~(std::uint32_t(1) << k);
         if (gentle) {
@@ -171,34 +184,36 @@ class Guard {
       if ((gentle_rows >> k & 1U) != 0) {
         allowed = most_closing(gaps[k], allowed, clearance_.bodies()[pairs[k]->first], h);
       }
-      rows.b(k) = allowed - closing[k];  // −g·q̇
+      rows.b(k) = allowed - closing[k];  // Bound on −gᵀq̇ after the tick.
       rows.b(k) += kLevel == Level::kAcceleration ? now : (Scalar(1) - late) * now;
       rows.g.col(k) *= kLevel == Level::kAcceleration ? -late * h : -late;
     }
     return rows;
   }
 
-  /// Adds rows for the speeds that a tick's motion would exceed.
+  /// Adds rows for the bounds on speeds that the motion u would exceed.
   void bound_speeds(const JointLimits& limits, const JointState& state, const JointVector& u,
                     Rows<N, kRows, Scalar>& rows) noexcept {
     fpbm::bound_speeds(clearance_, ahead_, limits, state, plan_.latency(limits), u, rows);
   }
 
-  /// Whether some of the rows that bound a motion are those of pairs; bit k is for row k.
+  /// Whether any active row is the row of a pair. rows: bit k is set if row k is active.
   [[nodiscard]] bool is_near(std::uint32_t rows) const noexcept {
     return (rows & ((std::uint32_t(1) << near_) - std::uint32_t(1))) != 0;
   }
 
-  /// Sum of the distances of pairs that rows() found near. While the arm rests, it changes only where shapes move.
+  /// Sum of the distances of the pairs that rows() found near [m]. While the arm is at rest, the sum changes only if
+  /// obstacles move.
   [[nodiscard]] Scalar room() const noexcept { return room_; }
 
-  /// Motion away from shapes, for the null space, where it was asked for.
+  /// Whether null-space motion away from shapes is enabled.
   [[nodiscard]] bool draws_away() const noexcept { return clearance_.away().gain > Scalar(0) && !empty(); }
-  /// At the state of rows().
+  /// Null-space motion away from shapes, at the state of rows().
   [[nodiscard]] JointVector away() const noexcept { return motion_away(clearance_, near_pairs_.here()); }
 
-  /// Whether the arm may move from the state of rows() to another in a tick; if so, a stop from there is the plan. If
-  /// no stop is sure to be clear of shapes that move, the rows bound the motion toward them.
+  /// Whether the arm may move in a tick from the state of rows() to the state `to`. If so, the stopping trajectory from
+  /// `to` becomes the plan. If the proof fails only for pairs with moving obstacles, the tick is accepted, because the
+  /// rows bound the motion toward these obstacles.
   [[nodiscard]] bool accepts(const JointLimits& limits, const JointState& from, const JointState& to) noexcept {
     const StopPlan<kLevel, N, Scalar> plan(limits, to, (to.qd - from.qd) / limits.tick());
     const Sweep<N, Scalar> sweep = plan.sweep(limits, from, to);
@@ -212,14 +227,14 @@ class Guard {
     return true;
   }
 
-  /// Accelerations of the next tick of the plan.
+  /// Accelerations of the next tick of the planned stop.
   [[nodiscard]] JointVector stop(const JointLimits& limits, const JointState& state, const JointVector& last) noexcept {
     return plan_.next(limits, state, last);
   }
 
  private:
-  /// Most speed v at which a gap s may close. A body with a deceleration a brakes by a, v²/2a + v h ≤ s − s₀/2, until
-  /// s₀ = a τ², from where v = s/τ decelerates by less.
+  /// Largest speed v at which a gap s may close. A body with the deceleration a brakes along v²/(2a) + v h = s − s₀/2.
+  /// For s ≤ s₀ = a τ², the bound is v = s/τ, which decelerates by less than a. hard: bound of the shortest stop.
   [[nodiscard]] static Scalar most_closing(Scalar gap, Scalar hard, const typename Clearance::Body& body,
                                            Scalar h) noexcept {
     const Scalar a = body.deceleration;
@@ -228,15 +243,15 @@ class Guard {
     return std::min(hard, std::sqrt(a * (a * h * h + Scalar(2) * gap - last)) - a * h);
   }
 
-  /// No joint can be faster at a tick's end, once its acceleration has been let go.
+  /// Bound on the joint speeds at the end of a tick, after the acceleration is reduced to zero.
   [[nodiscard]] static JointVector fastest_of(const JointLimits& limits, const JointState& state,
                                               Scalar late) noexcept {
     JointVector speed = state.qd.cwiseAbs() + late * limits.tick() * limits.bounds().acceleration;
     return speed.cwiseMin(limits.bounds().velocity);
   }
 
-  /// Where a row with so much to spare goes: behind those that are there, in place of the one with most of all, or
-  /// nowhere, at kPairs.
+  /// Index for a row with this slack: the next index if there is one, otherwise the index of the row with the largest
+  /// slack, or kPairs if no row has more slack.
   [[nodiscard]] static Eigen::Index row_for(Scalar spare, const Scalar* spares, Eigen::Index& count) noexcept {
     if (count < kPairs) return count++;
     const Scalar* most = std::max_element(spares, spares + kPairs);
@@ -247,12 +262,13 @@ class Guard {
     return limits.tick() * (Scalar(1) + plan_.ticks_left());
   }
 
-  /// What an arm at rest keeps beyond the margin, so that it can move on: more than a tick from rest may bend.
+  /// Distance that the rows keep beyond the margin, so that an arm at rest can move along a surface. It is larger than
+  /// the second-order displacement of a tick from rest [m].
   static constexpr Scalar kReserve = Scalar(1e-6);
-  static constexpr Scalar kSoft = Scalar(0.05);  ///< Offset of the envelope over its deceleration [s].
-  static constexpr Scalar kTail = Scalar(0.2);   ///< τ [s], above the usual T/κ (TaskBounds.stop_gently*).
+  static constexpr Scalar kSoft = Scalar(0.05);  ///< Part of T beyond the stopping time [s].
+  static constexpr Scalar kTail = Scalar(0.2);   ///< τ [s], larger than the usual T/κ (TaskBounds.stop_gently*).
   static constexpr Scalar kShare = Scalar(0.8);  ///< κ
-  static constexpr Scalar kSteps = Scalar(4);    ///< Advances that a stop along a surface may take.
+  static constexpr Scalar kSteps = Scalar(4);    ///< Steps of the advancement, for the deviation bound of one step.
 
   Clearance clearance_;
   NearPairs<Clearance> near_pairs_;  ///< At the state of rows().
@@ -262,9 +278,9 @@ class Guard {
   typename Clearance::Placement middle_;  ///< In the middle of the tick.
   typename Clearance::Placement ahead_;   ///< At the end of the stop.
   StopPlan<kLevel, N, Scalar> plan_;
-  Sweep<N, Scalar> sweep_;  ///< Of the plan and the tick before it.
+  Sweep<N, Scalar> sweep_;  ///< Of the tick that leads to the plan, and of the plan.
   Scalar room_ = Scalar(0);
-  Eigen::Index near_ = 0;  ///< Rows of pairs.
+  Eigen::Index near_ = 0;  ///< Number of rows for pairs.
 };
 
 }  // namespace fpbm

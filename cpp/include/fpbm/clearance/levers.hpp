@@ -9,7 +9,8 @@
 
 namespace fpbm {
 
-/// Bounds on the displacement of points of a robot's links by each joint, in every posture.
+/// Bounds on the displacement of points of links by each joint, valid in every posture (docs/clearance.md, "Near
+/// pairs").
 template <typename Scalar = double>
 class Levers {
  public:
@@ -27,13 +28,15 @@ class Levers {
     }
   }
 
-  /// Lever k bounds the displacement of a point of a link [m], given in the link's frame, per unit of joint k [rad] or
-  /// [m]. The distance from the point to the axis of a turning joint is at most the length of the chain between them,
-  /// where the first link counts without its component along the axis. Infinite if a prismatic joint without bounds is
-  /// in that chain; 0 if joint k does not move the link.
+  /// Levers r_k ≥ ‖∂x/∂q_k‖ of a point x of a link, in every posture [m/rad, or 1 for a prismatic joint]. point: x in
+  /// the frame of the link [m].
+  ///
+  /// The distance from x to the axis of a revolute joint is at most the length of the chain from the axis to x, without
+  /// the component of the first link along the axis. A lever is infinite if a prismatic joint without bounds is in this
+  /// chain, and 0 if joint k does not move the link.
   [[nodiscard]] JointVector operator()(int link, const Vector<3, Scalar>& point) const {
     JointVector lever = filled<JointVector>(static_cast<Eigen::Index>(joints_.size()));
-    Scalar beyond = Scalar(0);  // Length of the chain from the next joint's origin to the point [m].
+    Scalar beyond = Scalar(0);  // Length of the chain from the origin of the next joint to the point [m].
     Vector<3, Scalar> step = point;
     while (link > 0) {
       const auto& [place, axis, range, turns, parent] = joints_[static_cast<std::size_t>(link - 1)];
@@ -47,9 +50,9 @@ class Levers {
 
  private:
   struct Joint {
-    Vector<3, Scalar> place;  ///< In the frame of the link that carries it.
-    Vector<3, Scalar> axis;   ///< Of length 1.
-    Scalar range;             ///< Most that a prismatic joint slides, either way.
+    Vector<3, Scalar> place;  ///< In the frame of the link that carries the joint.
+    Vector<3, Scalar> axis;   ///< Unit vector.
+    Scalar range;             ///< Largest displacement of a prismatic joint from zero [m].
     bool turns;
     int parent;
   };

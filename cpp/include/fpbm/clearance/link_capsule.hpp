@@ -7,15 +7,15 @@
 
 namespace fpbm {
 
-/// A capsule on a link of a robot: link 0 is the base, link i what joint i moves. The capsule is given in
-/// the frame of that joint after its motion, or in the base frame.
+/// A capsule on a link of a robot. Link 0 is the base, and joint i moves link i. The capsule is given in the frame of
+/// joint i after the motion of the joint, or in the base frame for link 0.
 template <typename Scalar = double>
 struct LinkCapsule {
   int link;
   Capsule<Scalar> capsule;
   std::string name = {};
 
-  /// Throws std::invalid_argument where a number is out of range, or the robot has no such link.
+  /// Throws std::invalid_argument if a number is out of range, or the link does not exist.
   void require_sound(const validation::Argument& argument, Eigen::Index links) const {
     if (link < 0 || link > links) validation::fail(argument + ".link", link, "a link of the arm");
     validation::require_finite(argument + ".a", capsule.a);
@@ -24,16 +24,17 @@ struct LinkCapsule {
   }
 };
 
-/// Two shapes that must not come near one another: a capsule of the robot, and another one or a shape of the world.
+/// Two shapes that must keep the margin: a capsule of the robot, and another capsule of the robot or an obstacle.
 struct ShapePair {
   std::size_t first;
   std::size_t second;
   bool world;
-  JointBits by_first;   ///< Joints that move the first one alone.
-  JointBits by_second;  ///< Joints that move the second one alone: none of a chain, whose second is on a link before.
+  JointBits by_first;   ///< Joints that move the first shape only.
+  JointBits by_second;  ///< Joints that move the second shape only. None in a chain, because the second link is
+                        ///< earlier.
 };
 
-/// Calls f(k) for each joint whose bit is set, from the base on.
+/// Calls f(k) for each joint whose bit is set, from the base to the tip.
 template <typename F>
 [[gnu::always_inline]] inline void each_joint(JointBits bits, const F& f) noexcept {
   for (Eigen::Index k = 0; bits != 0; ++k, bits >>= 1U) {

@@ -6,10 +6,10 @@
 
 namespace fpbm {
 
-/// The joint motion gain Σ (1 − s/range)² ∇s over the gaps s of all pairs that are nearer than the range beyond their
-/// margin: up the gradient of −gain range/3 Σ (1 − s/range)³. Both ends of a capsule
-/// count, so that it is continuous where the nearest points jump.
-/// placed: the bodies of the clearance.
+/// Joint motion gain Σ (1 − s/range)² ∇s, over all pairs with a gap s < range beyond the margin [rad/s², or rad/s at
+/// velocity level]. This is the negative gradient of the potential gain·range/3 Σ (1 − s/range)³. The sum contains both
+/// ends of a capsule, so that the motion is continuous if the nearest points jump from one end to the other. placed:
+/// the bodies of the clearance.
 template <typename Clearance>
 [[nodiscard]] typename Clearance::JointVector motion_away(const Clearance& clearance,
                                                           const typename Clearance::Placement& placed) noexcept {

@@ -10,11 +10,12 @@
 
 namespace fpbm {
 
-/// The pairs of a clearance that a motion can bring closer than the margin, from tick to tick.
+/// Near pairs of a clearance: the pairs that a motion can bring closer than the margin (docs/clearance.md, "Near
+/// pairs").
 ///
-/// A lower bound on the distance of each pair is kept: from one posture to the next, a distance decreases by at most
-/// the displacements of both shapes, Σ lever_k |Δq_k|. Distances are computed anew only of pairs whose bound is too
-/// low.
+/// A lower bound on the distance of each pair is kept from tick to tick. From one posture to the next, this bound
+/// decreases by the displacement bounds of both shapes, Σ_k r_k |Δq_k| with the levers r_k. A distance is computed
+/// again only if its lower bound is too small.
 template <typename Clearance>
 class NearPairs {
  public:
@@ -36,7 +37,7 @@ class NearPairs {
   /// The bodies in the posture of go_to().
   [[nodiscard]] const Placement& here() const noexcept { return here_; }
 
-  /// Places the bodies in a posture, from the one before or any other.
+  /// Computes the bodies in a posture, which need not be near the previous posture.
   void go_to(Clearance& clearance, const JointVector& q) noexcept {
     set_displacements(clearance, clearance.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
@@ -51,8 +52,8 @@ class NearPairs {
     clearance.place(q, here_);
   }
 
-  /// Sets how far shapes may be displaced: bodies by joints that move by at most `most`, obstacles by their velocities
-  /// in a time.
+  /// Sets the displacement bounds: for bodies, if joint k moves by at most most(k) [rad or m]; for obstacles, if they
+  /// move with their velocities for a time [s].
   void set_displacements(const Clearance& clearance, const AllJoints& most, Scalar time = Scalar(0)) noexcept {
     Scalar by_joints(0);
     for (std::size_t i = 0; i < displacement_.size(); ++i) {
@@ -66,18 +67,18 @@ class NearPairs {
       largest_ = std::max(largest_, by_joints + by_obstacle_[i]);
     }
   }
-  /// How far the shapes of a pair may be displaced toward one another.
+  /// Sum of the displacement bounds of both shapes of a pair [m].
   [[nodiscard]] Scalar displacement_of(const ShapePair& pair) const noexcept {
     const Scalar second = pair.world ? by_obstacle_[pair.second] : pair.by_second != 0 ? displacement_[pair.second] : 0;
     return displacement_[pair.first] + second;
   }
-  /// How far the second shape of a pair may move by itself.
+  /// Displacement of the second shape of a pair if it is a moving obstacle, otherwise 0 [m].
   [[nodiscard]] Scalar moves(const ShapePair& pair) const noexcept {
     return pair.world ? by_obstacle_[pair.second] : Scalar(0);
   }
 
-  /// Calls f(i, nearest) for each pair i closer than needs(pair) in the posture of go_to(). Of a pair of shapes,
-  /// needs() is at most the margin and displacement_of().
+  /// Calls f(i, nearest) for each pair i that is closer than needs(pair) in the posture of go_to(). For a pair of
+  /// shapes, needs() must be at most the margin plus displacement_of().
   template <typename Needs, typename F>
   [[gnu::always_inline]] void each(const Clearance& clearance, const Needs& needs, const F& f) noexcept {
     const Scalar most = clearance.margin() + largest_;
@@ -105,11 +106,11 @@ class NearPairs {
 
   Placement here_;
   std::vector<Scalar> least_;             ///< Lower bound on the distance of each pair [m].
-  std::vector<Nearest<Scalar>> nearest_;  ///< Of pairs that are known.
-  std::vector<unsigned char> is_known_;   ///< Whether nearest_ is that of the posture.
-  std::vector<Scalar> displacement_;      ///< Of each body.
-  std::vector<Scalar> by_obstacle_;       ///< Of each obstacle.
-  Scalar largest_ = Scalar(0);            ///< Of any pair.
+  std::vector<Nearest<Scalar>> nearest_;  ///< Nearest points of each pair with is_known_.
+  std::vector<unsigned char> is_known_;   ///< Whether nearest_ is computed for this posture.
+  std::vector<Scalar> displacement_;      ///< Displacement bound of each body [m].
+  std::vector<Scalar> by_obstacle_;       ///< Displacement of each obstacle [m].
+  Scalar largest_ = Scalar(0);            ///< Largest displacement_of() of any pair [m].
 };
 
 }  // namespace fpbm

@@ -11,30 +11,30 @@
 
 namespace fpbm {
 
-/// Any shape of the world.
+/// Shape of an obstacle.
 template <typename Scalar = double>
 using WorldShape = std::variant<Capsule<Scalar>, HalfSpace<Scalar>, Cuboid<Scalar>>;
 
-/// Greatest n·x of a capsule's points x: its support along n.
+/// Support of a capsule along n: the largest n·x of its points x.
 template <typename Scalar>
 [[nodiscard]] Scalar support(const Capsule<Scalar>& shape, const Vector<3, Scalar>& n) noexcept {
   return std::max(n.dot(shape.a), n.dot(shape.b)) + shape.radius;
 }
 
-/// A shape in the world that an arm is to keep clear of, in the base frame.
+/// A shape in the environment of the arm, in the base frame. Each capsule of the arm keeps the margin to the obstacle.
 template <typename Scalar = double>
 struct Obstacle {
   using Vector3 = Vector<3, Scalar>;
 
   std::string name;
   WorldShape<Scalar> shape;
-  Vector3 velocity;   ///< By which all of it is expected to go on [m/s].
-  bool moved = true;  ///< Since NearPairs last read the shape.
+  Vector3 velocity;   ///< Velocity of all points with which the obstacle is expected to continue [m/s].
+  bool moved = true;  ///< Whether the shape has moved since NearPairs last read it.
 
   Obstacle(std::string its_name, const WorldShape<Scalar>& its_shape, const Vector3& its_velocity = Vector3::Zero())
       : name(std::move(its_name)), shape(its_shape), velocity(its_velocity) {}
 
-  /// Throws std::invalid_argument where a number is not finite or out of range, or a normal's length is not 1.
+  /// Throws std::invalid_argument if a number is not finite or out of range, or a normal is not a unit vector.
   void require_sound(const validation::Argument& argument) const {
     const auto finite = [&](const char* part, const Vector3& x) { validation::require_finite(argument + part, x); };
     finite(".velocity", velocity);
@@ -64,7 +64,7 @@ struct Obstacle {
     return std::visit([&body](const auto& each) { return nearest(body, each); }, shape);
   }
 
-  /// Its support along n; of a half-space along its own normal.
+  /// Support along n. Of a half-space: its offset, the support along its own normal.
   [[nodiscard]] Scalar support_along(const Vector3& n) const noexcept {
     if (const auto* capsule = std::get_if<Capsule<Scalar>>(&shape)) return support(*capsule, n);
     if (const auto* cuboid = std::get_if<Cuboid<Scalar>>(&shape)) {
@@ -73,7 +73,7 @@ struct Obstacle {
     return std::get_if<HalfSpace<Scalar>>(&shape)->offset;
   }
 
-  /// A lower bound on its distance to a ball, found faster.
+  /// Lower bound on the distance from the obstacle to a ball [m]. Cheaper than nearest_to().
   [[nodiscard]] Scalar at_least(const Vector3& centre, Scalar radius) const noexcept {
     if (const auto* capsule = std::get_if<Capsule<Scalar>>(&shape)) {
       return (centre - (capsule->a + capsule->b) / Scalar(2)).norm() - radius -

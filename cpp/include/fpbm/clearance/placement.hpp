@@ -15,15 +15,20 @@ struct Placement {
 
   RobotState<N, Scalar, Joints> state;
   std::vector<Capsule<Scalar>> bodies;
-  std::vector<Vector3> centres;       ///< Of the smallest balls around the bodies [m].
-  std::vector<Vector3> speed_points;  ///< The points, or directions, whose speed is bounded.
-  /// Rows zₖ and zₖ × pₖ of joints that turn, 0 and −zₖ of those that slide.
+  std::vector<Vector3> centres;       ///< Centres of the smallest balls around the bodies [m].
+  std::vector<Vector3> speed_points;  ///< Points [m] or directions whose speeds are bounded.
+  /// Row k of axes and moments, with the axis zₖ through pₖ: zₖ and zₖ × pₖ if joint k is revolute, 0 and −zₖ if
+  /// prismatic.
   Matrix<Joints, 3, Scalar> axes;
   Matrix<Joints, 3, Scalar> moments;
 
-  /// Sets gradients[e] to that of n·xₑ by joints k, for points x₀, x₁ of a link that they move: n·(zₖ × (x − pₖ)) =
-  /// zₖ·(x × n) − n·(zₖ × pₖ) of a joint that turns, n·zₖ of one that slides. Without the second term, that of a
-  /// direction x.
+  /// Sets gradients[e] to the gradient of n·xₑ with respect to the joints, for two points x₀ and x₁ of one link:
+  ///
+  ///   revolute joint:    n·(zₖ × (x − pₖ)) = zₖ·(x × n) − n·(zₖ × pₖ)
+  ///   prismatic joint:   n·zₖ
+  ///
+  /// If x is a direction, the term with pₖ and the gradient of a prismatic joint are zero. joints: the joints that move
+  /// the link.
   void set_gradients(const Vector3& n, const Vector3& x0, const Vector3& x1, JointBits joints, bool is_direction,
                      Vector<Joints, Scalar> (&gradients)[2]) const noexcept {
     const Vector3 m0 = cross(x0, n);
@@ -43,7 +48,7 @@ struct Placement {
     }
   }
 
-  /// Sets axes and moments from the state. turns(k): whether joint k turns, not slides.
+  /// Sets axes and moments from the state. turns(k): whether joint k is revolute.
   template <typename Turns>
   void set_axes(Eigen::Index joints, const Turns& turns) noexcept {
     axes.resize(joints, 3);

@@ -6,8 +6,8 @@
 
 #include "fpbm/clearance/clearance.hpp"
 
-/// Capsules on the links of the presets [m]. They contain the meshes that the makers give for collisions, in every
-/// posture; cables, tools and what else is mounted they do not. Written by tools/preset_capsules.py.
+/// Capsules on the links of the presets [m]. They contain the collision meshes of the manufacturers in every posture,
+/// but no cables, tools or other mounted parts. Written by tools/preset_capsules.py.
 namespace fpbm::presets::capsules {
 
 /// Franka Emika Panda, without a hand.
@@ -108,8 +108,8 @@ namespace fpbm::presets::capsules {
 
 }  // namespace fpbm::presets::capsules
 
-/// Links of the presets that never meet within the bounds of their joints, though their capsules do: for Clearance's
-/// last argument. They stay 5 mm apart and more.
+/// Links of the presets whose capsules may overlap although the links never meet within the joint bounds: pass them as
+/// the last argument of Clearance. These links are always at least 5 mm apart.
 namespace fpbm::presets::never_meet {
 
 using LinkNames = std::pair<std::string, std::string>;
@@ -137,7 +137,7 @@ using LinkNames = std::pair<std::string, std::string>;
 
 namespace fpbm::presets {
 
-/// A preset's capsules by its name, for programs that learn it at run time.
+/// Capsules of a preset by name, for programs that read the name at run time.
 struct PresetCapsules {
   const char* name;
   std::vector<LinkCapsule<>> (*capsules)();

@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// Adds the capsules of an arm to those of a tree, as add_arm() with the same name, link and placement added its joints
-/// behind `first` others. Names of capsules begin with the arm's name.
+/// Appends the capsules of an arm to the capsules of a tree. Use the arguments with which add_arm() added the joints of
+/// the arm to the tree. first: number of joints before the arm. Names of capsules start with the name of the arm.
 template <typename Scalar>
 void add_capsules(std::vector<LinkCapsule<Scalar>>& capsules, const std::vector<LinkCapsule<Scalar>>& arm,
                   const std::string& name, int first, int link = 0, const Transform<Scalar>& placement = {}) {

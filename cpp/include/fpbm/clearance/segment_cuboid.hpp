@@ -10,14 +10,15 @@
 
 namespace fpbm {
 
-/// Where a segment p + t d comes nearest to the box |x_i| ≤ half_i in whose frame it is given, and the unit vector from
-/// the box to the segment there. Where the segment is in the box: the shortest way out.
+/// Nearest point of a segment p + t d to the box |x_i| ≤ half_i, and the unit vector from the box to the segment. The
+/// segment is given in the frame of the box. If the segment is in the box: the smallest displacement that separates
+/// them.
 template <typename Scalar>
 struct NearestToBox {
   using Vector3 = Vector<3, Scalar>;
 
   Scalar t;
-  Scalar gap;  ///< Distance; below zero, how far the segment must move to leave the box.
+  Scalar gap;  ///< Distance [m]. Negative: the depth by which the segment must move to leave the box.
   Vector3 normal;
 
   NearestToBox(const Segment<Scalar>& segment, const Vector3& half) noexcept {
@@ -34,15 +35,15 @@ struct NearestToBox {
   }
 
  private:
-  /// From the nearest point of the box to x.
+  /// Vector from the nearest point of the box to x.
   static Vector3 excess(const Vector3& x, const Vector3& half) noexcept { return x - x.cwiseMin(half).cwiseMax(-half); }
 
-  /// Where f(t) = |excess(p + t d)|² is least in [0, 1]: its slope never falls, and is straight between the planes of
-  /// the faces, so that eight values of it at most find its zero.
+  /// Minimiser of f(t) = |excess(p + t d)|² in [0, 1]. The slope of f is nondecreasing and piecewise linear, with kinks
+  /// at the planes of the faces. At most eight values of the slope therefore bracket its zero.
   static Scalar nearest(const Segment<Scalar>& segment, const Vector3& half) noexcept {
     const auto& [p, d] = segment;
     const Vector3 weight = d.cwiseAbs2();
-    Vector3 enter;  // The t at which the line comes between the planes of two opposite faces, and leaves again.
+    Vector3 enter;  // The t at which the line enters and leaves the slab between two opposite faces.
     Vector3 leave;
     for (int i = 0; i < 3; ++i) {
       const Scalar inverse = weight(i) > Scalar(0) ? Scalar(1) / d(i) : Scalar(0);
@@ -78,16 +79,16 @@ struct NearestToBox {
     return low + (high - low) * (falling / (falling - rising));
   }
 
-  /// The normal where the difference of the nearest points is too short to tell, and the gap within the box: by the
-  /// separating axes of a box and a segment, which are its faces' normals and those of its edges with the segment
-  /// (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, 1996).
+  /// Normal and gap if the difference of the nearest points is too short to define a direction, or the segment is in
+  /// the box. The candidates are the separating axes of a box and a segment: the normals of the faces, and the cross
+  /// products of the edges with the segment (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, 1996).
   [[gnu::noinline, gnu::cold]] void touch(const Segment<Scalar>& segment, const Vector3& half,
                                           const Vector3& between) noexcept {
     using std::abs;
     const Vector3& d = segment.way;
     const auto reach = [&](const Vector3& n) { return n.cwiseAbs().dot(half) + abs(n.dot(d)) / Scalar(2); };
     WidestGap<Scalar, decltype(reach)> widest(segment.at(Scalar(0.5)), reach, half.sum() + d.cwiseAbs().sum());
-    // At right angles to the segment, but for an end's.
+    // Perpendicular to the segment, unless an end of the segment is nearest.
     const bool inside = Scalar(0) < t && t < Scalar(1);
     widest.offer(inside ? across(between, d) : between);
     for (int i = 0; i < 3; ++i) widest.offer(Vector3::Unit(i));
@@ -95,7 +96,7 @@ struct NearestToBox {
     normal = widest.normal();
     if (gap > widest.round_off()) return;
     gap = widest.gap();
-    t = nearest({segment.start - gap * normal, d}, half);  // Moved out of the box, the segment touches it there.
+    t = nearest({segment.start - gap * normal, d}, half);  // Nearest point after the displacement.
   }
 };
 

@@ -9,22 +9,22 @@
 
 namespace fpbm {
 
-/// part / whole, kept within [0, 1], for whole ≥ 0; never NaN.
+/// part / whole, clamped to [0, 1], for whole ≥ 0. Never NaN.
 template <typename Scalar>
 [[nodiscard]] Scalar fraction(Scalar part, Scalar whole) noexcept {
   if (!(part > Scalar(0))) return Scalar(0);
   return part < whole ? part / whole : Scalar(1);
 }
 
-/// Where two segments a + s u and b + t v come nearest to one another (C. Ericson, Real-Time Collision Detection, 2005,
-/// 5.1.9), and the unit vector from the second to the first there.
+/// Nearest points of two segments a + s u and b + t v (C. Ericson, Real-Time Collision Detection, 2005, 5.1.9), and the
+/// unit vector from the second point to the first.
 template <typename Scalar>
 struct NearestOfSegments {
   using Vector3 = Vector<3, Scalar>;
 
   Scalar s;
   Scalar t;
-  Scalar gap;  ///< Distance.
+  Scalar gap;  ///< Distance [m].
   Vector3 normal;
 
   NearestOfSegments(const Segment<Scalar>& first, const Segment<Scalar>& second) noexcept {
@@ -35,7 +35,7 @@ struct NearestOfSegments {
     const Vector3 c = cross(u, v);
     const Scalar uu = u.squaredNorm();
     const Scalar vv = v.squaredNorm();
-    // Where the lines come nearest. With |c|² = (u·u)(v·v) − (u·v)², half the digits would be lost near parallel.
+    // Nearest points of the lines. For nearly parallel lines, |c|² = (u·u)(v·v) − (u·v)² would lose half of the digits.
     s = fraction(c.dot(cross(v, w)), c.squaredNorm());
     t = fraction(v.dot(w + s * u), vv);
     if (t == Scalar(0) || t == Scalar(1)) s = fraction(u.dot(t * v - w), uu);
@@ -52,18 +52,20 @@ struct NearestOfSegments {
  private:
   static bool inside(Scalar fraction) noexcept { return Scalar(0) < fraction && fraction < Scalar(1); }
 
-  /// The normal where the difference of the nearest points is too short to tell. Rare, and kept apart from what is not.
+  /// Normal if the difference of the nearest points is too short to define a direction. A separate function, because
+  /// the case is rare.
   [[gnu::noinline, gnu::cold]] Vector3 touching(const Vector3& u, const Vector3& v, const Vector3& w, const Vector3& c,
                                                 Vector3 between) const noexcept {
     using std::abs;
     const auto reach = [&u, &v](const Vector3& n) { return (abs(n.dot(u)) + abs(n.dot(v))) / Scalar(2); };
     const Scalar size = u.cwiseAbs().sum() + v.cwiseAbs().sum();
     WidestGap<Scalar, decltype(reach)> widest(w + (u - v) / Scalar(2), reach, size);
-    // At right angles to a segment, but for an end's.
+    // Perpendicular to each segment, unless its end is nearest.
     if (inside(s)) between = across(between, u);
     if (inside(t)) between = across(between, v);
     widest.offer(between);
-    // Near parallel, c is as inaccurate as it is short; what that leaves of u in it counts.
+    // For nearly parallel segments, c is short, and its relative error is large. Its component along u is round-off
+    // error.
     widest.offer(across(c, u));
     widest.offer(perpendicular(u.squaredNorm() > v.squaredNorm() ? u : v));
     return widest.normal();

@@ -7,13 +7,13 @@
 
 namespace fpbm {
 
-/// Separating planes of a pair of shapes, all with the normal n, which is fixed to the last link that both shapes'
-/// chains have in common.
+/// Planes that separate two shapes, all with the normal n (docs/clearance.md, "Proof"). n is fixed to the last common
+/// link of the chains to both shapes.
 ///
-/// An end a of the first capsule's axis and an end b of the second one's have the gap (n·a − radius of the first) −
-/// (n·b + radius of the second). The distance of the shapes is at least the smallest gap, and equal to it in the
-/// posture in which n is the normal of the nearest points. If no joint moves the second shape alone, its support along
-/// n takes the place of its ends.
+/// Let a be an end of the axis of the first capsule, and b an end of the axis of the second capsule. Their gap is (n·a
+/// − radius of the first) − (n·b + radius of the second). The smallest gap is a lower bound on the distance of the
+/// shapes. In the posture in which n is the normal at the nearest points, the smallest gap equals the distance. If no
+/// joint moves the second shape only, its support along n replaces n·b + radius.
 template <typename Clearance>
 struct Separation {
   using Scalar = typename Clearance::Scalar;
@@ -23,14 +23,15 @@ struct Separation {
   using Vector3 = Vector<3, Scalar>;
 
   Scalar distance;
-  Scalar closing;          ///< Speed of the second shape toward the first [m/s].
-  Scalar along[2];         ///< n·a − radius of the first shape [m].
-  Scalar beyond[2];        ///< n·b + radius of the second shape, or its support [m].
-  AllJoints gradient[2];   ///< Of along, by the joints.
-  AllJoints of_beyond[2];  ///< That of beyond, where the second one moves.
-  int seconds = 1;         ///< Number of ends of the second one.
+  Scalar closing;          ///< Velocity n·v of the second shape toward the first, if it is a moving obstacle [m/s].
+  Scalar along[2];         ///< n·a − radius of the first shape, for both ends [m].
+  Scalar beyond[2];        ///< n·b + radius of the second shape for both ends, or its support [m].
+  AllJoints gradient[2];   ///< Gradient of `along` with respect to the joints.
+  AllJoints of_beyond[2];  ///< Gradient of `beyond`, if joints move the second shape only.
+  int seconds = 1;         ///< Number of ends of the second shape that are used.
 
-  /// placed: the bodies of the clearance; found: the nearest points of the pair there. Both must outlive this.
+  /// placed: the bodies of the clearance. found: nearest points of the pair in this placement. Both must outlive the
+  /// separation.
   Separation(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
              const Nearest<Scalar>& found) noexcept
       : found_(found), first_(placed.bodies[pair.first]) {
@@ -58,31 +59,31 @@ struct Separation {
 
   Separation(const Clearance&, const Placement&, const ShapePair&, Nearest<Scalar>&&) = delete;
 
-  /// Where the first one's axis is nearest: 0 at one end, 1 at the other.
+  /// Position of the nearest point on the axis of the first shape, from 0 at one end to 1 at the other.
   [[nodiscard]] Scalar at() const noexcept {
     return nearest_on(first_, found_.on_first + first_.radius * found_.normal);
   }
 
-  /// Of end e of the first one and end f of the second one.
+  /// Gap of end e of the first shape and end f of the second shape [m].
   [[nodiscard]] Scalar gap(int e, int f) const noexcept { return along[e] - beyond[f]; }
   [[nodiscard]] AllJoints gradient_of(int e, int f) const noexcept {
     return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - of_beyond[f]);
   }
-  /// Of end e of the first one and the support of the second one.
+  /// Gap of end e of the first shape and the support of the second shape [m].
   [[nodiscard]] Scalar gap(int e) const noexcept {
     return along[e] - (seconds == 1 ? beyond[0] : std::max(beyond[0], beyond[1]));
   }
   [[nodiscard]] AllJoints gradient_of(int e) const noexcept {
     return seconds == 1 ? gradient[e] : AllJoints(gradient[e] - between(of_beyond, at_second()));
   }
-  /// Gradient of the distance, by the joints.
+  /// Gradient of the distance with respect to the joints.
   [[nodiscard]] AllJoints of_distance() const noexcept {
     const AllJoints first = between(gradient, at());
     return seconds == 1 ? first : AllJoints(first - between(of_beyond, at_second()));
   }
 
  private:
-  /// Where the second one's axis is nearest.
+  /// Position of the nearest point on the axis of the second shape.
   [[nodiscard]] Scalar at_second() const noexcept {
     return nearest_on(*second_, found_.on_first - (found_.distance + second_->radius) * found_.normal);
   }
@@ -91,7 +92,7 @@ struct Separation {
     return ends[0] + share * (ends[1] - ends[0]);
   }
 
-  /// Where on a capsule's axis a point is.
+  /// Position, from 0 to 1, of the point on the axis of a capsule that is nearest to a point.
   [[nodiscard]] static Scalar nearest_on(const Capsule<Scalar>& capsule, const Vector3& point) noexcept {
     const Vector3 axis = capsule.b - capsule.a;
     const Scalar squared = axis.squaredNorm();
@@ -99,7 +100,7 @@ struct Separation {
     return squared > Scalar(0) ? std::clamp(axis.dot(offset) / squared, Scalar(0), Scalar(1)) : Scalar(0);
   }
 
-  /// n·x + more at both ends x of a body's axis, and its gradient by the joints.
+  /// Sets n·x + more for both ends x of the axis of a body, and the gradients with respect to the joints.
   static void set_ends(const Placement& placed, const Body& body, const Capsule<Scalar>& capsule, JointBits joints,
                        const Vector3& n, Scalar more, Scalar (&value)[2], AllJoints (&gradient)[2]) noexcept {
     value[0] = n.dot(capsule.a) + more;
@@ -109,7 +110,7 @@ struct Separation {
 
   const Nearest<Scalar>& found_;
   const Capsule<Scalar>& first_;
-  const Capsule<Scalar>* second_ = nullptr;  ///< If joints move the second one alone.
+  const Capsule<Scalar>* second_ = nullptr;  ///< Set if joints move the second shape only.
 };
 
 }  // namespace fpbm

@@ -3,10 +3,10 @@
 #include "fpbm/core/rotation.hpp"
 #include "fpbm/core/types.hpp"
 
-/// Solid shapes [m], on an arm's links or in the world around it.
+/// Solid shapes on the links of an arm or in its environment [m].
 namespace fpbm {
 
-/// From one end to the other: start + t way, t in [0, 1].
+/// Segment start + t way, with t in [0, 1].
 template <typename Scalar = double>
 struct Segment {
   Vector<3, Scalar> start;
@@ -15,7 +15,7 @@ struct Segment {
   [[nodiscard]] Vector<3, Scalar> at(Scalar t) const noexcept { return start + t * way; }
 };
 
-/// All points within radius of the segment from a to b; a sphere where a = b.
+/// All points within `radius` of the segment from a to b; a sphere if a = b.
 template <typename Scalar = double>
 struct Capsule {
   Vector<3, Scalar> a;
@@ -25,21 +25,21 @@ struct Capsule {
   [[nodiscard]] Segment<Scalar> core() const noexcept { return {a, b - a}; }
 };
 
-/// All points x with normal · x ≤ offset: a floor, or a wall.
+/// All points x with normal · x ≤ offset: a floor or a wall.
 template <typename Scalar = double>
 struct HalfSpace {
-  Vector<3, Scalar> normal;  ///< Of length 1, out of what is solid.
+  Vector<3, Scalar> normal;  ///< Unit vector that points out of the solid.
   Scalar offset;
 };
 
-/// A box in any pose: all points pose.p + pose.R x with |x_i| ≤ half_i.
+/// Box in any pose: all points pose.p + pose.R x with |x_i| ≤ half_i.
 template <typename Scalar = double>
 struct Cuboid {
   Transform<Scalar> pose;
-  Vector<3, Scalar> half;  ///< Half the length of each edge, zero or more.
+  Vector<3, Scalar> half;  ///< Half lengths of the edges, nonnegative.
 };
 
-/// A capsule given in frame b, in frame a, where pose is that of b in a.
+/// Transforms a capsule from frame b to frame a. pose: frame b in frame a.
 template <typename Scalar>
 [[nodiscard]] Capsule<Scalar> placed(const Capsule<Scalar>& capsule, const Transform<Scalar>& pose) noexcept {
   return {pose.p + pose.R.lazyProduct(capsule.a), pose.p + pose.R.lazyProduct(capsule.b), capsule.radius};

@@ -6,16 +6,18 @@
 
 namespace fpbm {
 
-/// Adds a row n · v ≤ most for each speed bound that a tick's motion u would exceed with the velocity v, with n along
-/// v: at the tick's end, or once the acceleration has been let go, which takes `late` ticks. So the speed is kept but
-/// for the change of direction in a tick, and where other rows and the joints' limits leave no motion that keeps it.
-/// placed: memory for the bodies in the middle of the tick.
+/// Adds a row n·v ≤ most for each speed bound that the motion u would exceed.
+///
+/// v is the velocity after the tick and after the acceleration is reduced to zero, q̇ + late h u, or q̇ + late (u − q̇)
+/// at velocity level. n is the direction of v. The speed may still exceed the bound by the change of the direction
+/// within the tick, or if the other rows and the joint limits admit no motion within the bound. placed: memory for the
+/// bodies in the middle of the tick.
 template <Level kLevel, typename Clearance, int N, int P, typename Scalar>
 void bound_speeds(const Clearance& clearance, typename Clearance::Placement& placed,
                   const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state, Scalar late,
                   const Vector<N, Scalar>& u, Rows<N, P, Scalar>& rows) noexcept {
   if (clearance.speed_bounds().empty()) return;
-  // qd + g u is the velocity then.
+  // The velocity after the tick is `left` + g u.
   const Scalar h = limits.tick();
   const Scalar g = kLevel == Level::kAcceleration ? late * h : late;
   const Vector<N, Scalar> left = kLevel == Level::kAcceleration ? state.qd : (Scalar(1) - late) * state.qd;

@@ -10,12 +10,12 @@
 
 namespace fpbm {
 
-/// Bounds on the place of a frame's origin, coordinate by coordinate in the base frame, and on its speed:
+/// Bounds on the position p of the origin of a frame in the base frame, for each coordinate, and on its speed:
 ///
 ///   lowerᵢ ≤ pᵢ ≤ upperᵢ        ‖(ṗᵢ)‖ ≤ velocity, over the coordinates of `rows`
 ///
-/// The bounds on the place hold at every tick, as a clearance does: a tick is taken only if the robot can stop within
-/// them from its end. The bound on the speed holds as far as the joints' limits and the other rows admit.
+/// The bounds on the position hold at every tick, as in a clearance: a tick is executed only if the robot can stop from
+/// its end within the bounds. The bound on the speed holds as far as the joint limits and the other rows admit.
 template <typename Scalar = double>
 struct PositionBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
@@ -24,11 +24,11 @@ struct PositionBounds {
   Vector<3, Scalar> lower = Vector<3, Scalar>::Constant(-kNone);  ///< [m]
   Vector<3, Scalar> upper = Vector<3, Scalar>::Constant(kNone);   ///< [m]
   Scalar velocity = kNone;                                        ///< [m/s]
-  Scalar deceleration = kNone;                                    ///< Most before lower and upper [m/s²].
-  std::array<bool, 3> rows = {true, true, true};                  ///< Of the speed.
+  Scalar deceleration = kNone;                                    ///< Largest, toward lower and upper [m/s²].
+  std::array<bool, 3> rows = {true, true, true};                  ///< Coordinates of the speed.
   std::string name = "tip";
 
-  /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
+  /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
   template <int N, int Joints>
   void add_to(Clearance<N, Scalar, Joints>& clearance) const {
     const auto body = [&](const std::string& bound) { return clearance.point_of(frame, bound + " of " + name); };
@@ -43,26 +43,26 @@ struct PositionBounds {
   }
 };
 
-/// Bounds on the angle θ between an axis of a frame and a direction d, a cone about d, and on the speed of the axis:
+/// Bounds on the angle θ between an axis a of a frame and a direction d (a cone about d), and on the speed of the axis:
 ///
 ///   lower ≤ θ ≤ upper        ‖ȧ‖ ≤ velocity
 ///
-/// The bounds on the angle hold at every tick, as those of PositionBounds: cos θ = d·a is the coordinate along d of the
-/// unit vector a, a point that turning joints move.
+/// The bounds on the angle hold at every tick, like the bounds on the position in PositionBounds: cos θ = d·a is the
+/// coordinate along d of the unit vector a, which is treated as a point that only revolute joints move.
 template <typename Scalar = double>
 struct AxisBounds {
   static constexpr Scalar kNone = std::numeric_limits<Scalar>::infinity();
 
   LinkFrame<Scalar> frame;
-  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the frame; its length does not matter.
-  Vector<3, Scalar> direction;                          ///< In the base frame; its length does not matter.
+  Vector<3, Scalar> axis = Vector<3, Scalar>::UnitZ();  ///< In the frame. Any positive length.
+  Vector<3, Scalar> direction;                          ///< In the base frame. Any positive length.
   Scalar lower = Scalar(0);                             ///< [rad]
-  Scalar upper = kNone;                                 ///< [rad]; from π on there is no bound.
+  Scalar upper = kNone;                                 ///< [rad]; no bound if π or more.
   Scalar velocity = kNone;                              ///< [rad/s]
-  Scalar deceleration = kNone;                          ///< Most of cos θ before the bounds [1/s²].
+  Scalar deceleration = kNone;                          ///< Largest deceleration of cos θ toward the bounds [1/s²].
   std::string name = "axis";
 
-  /// Throws std::invalid_argument where a bound is out of range, or the robot has no such link.
+  /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
   template <int N, int Joints>
   void add_to(Clearance<N, Scalar, Joints>& clearance) const {
     const Vector<3, Scalar> a = unit_vector("axis", axis);

@@ -10,7 +10,7 @@
 
 namespace fpbm {
 
-/// A start posture in which two shapes are closer than the margin. what() names the remedies in the terms of C++.
+/// Error for a start posture in which two shapes are closer than the margin. what() names the remedies in C++.
 class TooClose : public ParameterError {
  public:
   TooClose(std::pair<std::string, std::string> names, double distance, double margin)
@@ -22,7 +22,8 @@ class TooClose : public ParameterError {
   [[nodiscard]] const std::pair<std::string, std::string>& names() const noexcept { return names_; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
 
-  /// The message, with the remedy beside a smaller margin as a language writes it. Shapes that overlap have no margin.
+  /// The message. It proposes a smaller margin, unless the shapes overlap, and `remedy` in the syntax of the caller's
+  /// language.
   [[nodiscard]] static std::string text(const std::pair<std::string, std::string>& names, double distance,
                                         double margin, const std::string& remedy) {
     const double smaller = std::floor(distance * kDigits) / kDigits;
@@ -33,7 +34,7 @@ class TooClose : public ParameterError {
   }
 
  private:
-  static constexpr double kDigits = 1e4;  ///< The margin that is proposed is a multiple of 0.1 mm.
+  static constexpr double kDigits = 1e4;  ///< The proposed margin is a multiple of 0.1 mm.
 
   [[nodiscard]] static std::string number(const char* format, double value) {
     char written[32];
@@ -45,7 +46,7 @@ class TooClose : public ParameterError {
   double margin_;
 };
 
-/// Throws TooClose; without exceptions, ends the program with its message.
+/// Throws TooClose. Without exceptions, prints the message and aborts the program.
 [[noreturn]] inline void reject_close(const std::pair<std::string, std::string>& names, double distance,
                                       double margin) {
 #if defined(__cpp_exceptions)

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Keeps clear of nothing.
+/// A guard without pairs.
 struct Unguarded {
   [[nodiscard]] static constexpr bool empty() noexcept { return true; }
   [[nodiscard]] static constexpr bool is_near(std::uint32_t) noexcept { return false; }

@@ -8,7 +8,7 @@
 
 namespace fpbm {
 
-/// A unit vector at right angles to a vector, which may be zero.
+/// Unit vector perpendicular to a vector, which may be zero.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> perpendicular(const Vector<3, Scalar>& vector) noexcept {
   using std::abs;
@@ -21,7 +21,7 @@ template <typename Scalar>
   return result / sqrt(result.squaredNorm());
 }
 
-/// What is left of a vector without its part along a way, which may be zero.
+/// Component of a vector perpendicular to the direction `way`. Returns the vector if `way` is zero.
 template <typename Scalar>
 [[nodiscard]] Vector<3, Scalar> across(const Vector<3, Scalar>& vector, const Vector<3, Scalar>& way) noexcept {
   const Scalar squared = way.squaredNorm();
@@ -29,8 +29,9 @@ template <typename Scalar>
   return vector - vector.dot(way) / squared * way;
 }
 
-/// Are points whose gap squared this is far enough apart, for shapes so large (a length squared), that their difference
-/// tells its direction? To all but a quarter of a Scalar's digits.
+/// Whether the difference of two nearest points is long enough to define a direction. gap_squared: squared length of
+/// the difference. size_squared: squared size of the shapes. The direction then has all but a quarter of the digits of
+/// Scalar.
 template <typename Scalar>
 [[nodiscard]] bool tells_direction(Scalar gap_squared, Scalar size_squared) noexcept {
   using Limits = std::numeric_limits<Scalar>;
@@ -39,30 +40,31 @@ template <typename Scalar>
   return gap_squared > kRootOfEpsilon * size_squared + kNoRoundOff;
 }
 
-/// Of the directions offered, that along which two shapes are farthest apart or, where they are not, least deep in one
-/// another; of those as good, the first. The signed distance of convex shapes is the largest gap along any unit vector
-/// n,
+/// Finds the normal at the nearest points of two shapes that touch or overlap. Of the directions offered, this is the
+/// unit vector n with the largest
 ///
 ///   gap(n) = |n·offset| − reach(n),
 ///
-/// for shapes that are their own mirror image at their centres: offset is from the second centre to the first, and
-/// reach(n) is how far both reach along n, summed. So a direction offered that is wrong does no harm.
+/// where offset is the vector from the centre of the second shape to the centre of the first, and reach(n) is the sum
+/// of the half extents of both shapes along n. Both shapes must be convex and point-symmetric about their centres. The
+/// signed distance of the shapes is the maximum of gap(n) over all unit vectors n. A wrong candidate is therefore
+/// harmless: its gap is not larger. If gaps are equal up to round-off, the first direction is kept.
 template <typename Scalar, typename Reach>
 class WidestGap {
  public:
-  /// size: that of both shapes, for round-off.
+  /// size: size of both shapes, for the round-off error of gaps.
   WidestGap(const Vector<3, Scalar>& offset, const Reach& reach, Scalar size) noexcept
       : offset_(offset),
         reach_(reach),
         round_off_(Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (size + offset.cwiseAbs().sum())) {}
 
-  /// A direction of any length and either sign; zero is passed over.
+  /// Offers a direction of any length and either sign. Zero is ignored.
   void offer(const Vector<3, Scalar>& direction) noexcept {
     using std::abs;
     using std::sqrt;
     const Scalar size = direction.cwiseAbs().maxCoeff();
     if (!(size > Scalar(0))) return;
-    const Vector<3, Scalar> scaled = direction / size;  // Whose square cannot vanish.
+    const Vector<3, Scalar> scaled = direction / size;  // The square does not underflow.
     const Vector<3, Scalar> normal = scaled / sqrt(scaled.squaredNorm());
     const Scalar along = normal.dot(offset_);
     const Scalar gap = abs(along) - reach_(normal);
@@ -73,7 +75,7 @@ class WidestGap {
 
   [[nodiscard]] const Vector<3, Scalar>& normal() const noexcept { return normal_; }
   [[nodiscard]] Scalar gap() const noexcept { return gap_; }
-  /// What a gap is uncertain by.
+  /// Round-off error of a gap.
   [[nodiscard]] Scalar round_off() const noexcept { return round_off_; }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Bounds on each joint's motion over one tick: accelerations, or velocities for a scheme of that level.
+/// Bounds on the motion of each joint in one tick: accelerations, or velocities at velocity level.
 template <int N, typename Scalar = double>
 struct Box {
   Vector<N, Scalar> lower;

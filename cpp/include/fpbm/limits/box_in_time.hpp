@@ -4,10 +4,11 @@
 
 namespace fpbm {
 
-/// Limits::box_in_time(), with the same bits as the box of a tick where jerk does not set that box's bound.
+/// Limits::box_in_time(), with the bounds of `tick`, the box of this tick, wherever the bound on jerk does not restrict
+/// `tick`. These bounds are copied bit for bit. `last`: acceleration of the last tick.
 ///
-/// The bound is the same number then, but each box finds it by iteration, to an error of its own. A goal beyond the
-/// tick's bound by this error would let a joint on that bound hold back the whole motion.
+/// Both boxes compute these bounds by iteration, with different errors. If a goal exceeded a bound of the tick by this
+/// error, the whole motion would be scaled down because of a joint on this bound.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Box<N, Scalar> box_in_time(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state,
                                          const Vector<N, Scalar>& last, const Box<N, Scalar>& tick) noexcept {

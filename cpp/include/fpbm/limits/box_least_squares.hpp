@@ -9,13 +9,14 @@
 
 namespace fpbm {
 
-/// The joint motion within a box that comes nearest to J u = v where the box does not admit it:
+/// Damped least-squares solution of J u = v within a box:
 ///
-///   min ‖J u − v‖² + μ ‖u − rest‖²,
+///   min ‖J u − v‖² + μ ‖u − rest‖²   for u in the box.
 ///
-/// from the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), clipped to the box, then by Gauss-Seidel: n
-/// rounds, each of which moves every joint in turn to its best place within its bounds. A continuous function of all
-/// inputs, unlike an active set, so that it does not chatter.
+/// The start is the unbounded solution rest + Jᵀ(JJᵀ + μI)⁻¹(v − J rest), clipped to the box. Then n rounds of
+/// Gauss-Seidel follow. Each round moves every joint in turn to its optimum within its bounds. Unlike the result of an
+/// active-set method, the result is a continuous function of all inputs, so the arm does not chatter (docs/limits.md,
+/// Saturation in the null space).
 template <int M, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> box_least_squares(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& v, Scalar mu,
                                                   const Vector<N, Scalar>& rest, const Box<N, Scalar>& box) noexcept {

@@ -4,11 +4,12 @@
 
 namespace fpbm {
 
-/// All joints slow down in proportion, as fast as their accelerations allow; a joint that must brake harder, as a box
-/// of the limits says, does. At acceleration level a joint beyond its range stops there.
+/// Braking motion: all joints reduce their velocities in proportion, as fast as their bounds on acceleration and jerk
+/// allow. If the box requires a joint to brake harder, the joint brakes harder. At acceleration level, a joint beyond
+/// its range stops there.
 ///
-/// least: time in which a joint may come to rest, a tick unless given; the last of its speed then decays as
-/// exp(-t/least).
+/// least: smallest time constant of the stop [s], by default one tick. At the end of the stop, the velocities decay as
+/// exp(−t/least).
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> brake_in_proportion(const Limits<kLevel, N, Scalar>& limits,
                                                     const State<N, Scalar>& state, const Box<N, Scalar>& box,
@@ -21,7 +22,8 @@ template <Level kLevel, int N, typename Scalar>
     if (rate * speed > fastest) rate = fastest / speed;
   }
   if constexpr (kLevel == Level::kAcceleration) {
-    // In the box of every viable state; not where a joint beyond its range should return, which may wait.
+    // `halt` is in the box of every viable state. If the box requires a joint beyond its range to return, `halt` is
+    // outside the box: the joint stops first, and returns later.
     return entrywise(state.qd, [&](Eigen::Index i) {
       const Scalar halt = std::min(std::max(state.qd(i) / -least, -most(i)), most(i));
       const Scalar lower = std::min(box.lower(i), halt);
@@ -38,8 +40,8 @@ template <Level kLevel, int N, typename Scalar>
   return brake_in_proportion(limits, state, box, limits.tick());
 }
 
-/// The motion to rest after a tick of acceleration last: as brake_in_proportion(), but each joint with a bound on its
-/// jerk takes its quickest stop.
+/// Braking motion after a tick with the acceleration `last`: as brake_in_proportion(), but each joint with a bound on
+/// jerk follows its own shortest stop.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> brake(const Limits<kLevel, N, Scalar>& limits, const State<N, Scalar>& state,
                                       const Vector<N, Scalar>& last) noexcept {
@@ -55,7 +57,7 @@ template <Level kLevel, int N, typename Scalar>
   return u;
 }
 
-/// The acceleration of a joint whose state is not known: toward zero, within the bound on its jerk.
+/// Accelerations if the joint states are unknown: `last`, reduced toward zero, as fast as the bounds on jerk allow.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> fade(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& last) noexcept {
   const Vector<N, Scalar>& jerk = limits.bounds().jerk;

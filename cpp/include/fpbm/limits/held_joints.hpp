@@ -11,35 +11,38 @@
 
 namespace fpbm {
 
-/// The joints that a motion in a null space keeps on their bounds. No more can be held than that space has dimensions;
-/// kMost is the most that it may have; kEntries is the number of rows of its basis Z at most.
+/// Joints that a null-space motion keeps on their bounds. The number of held joints is at most the dimension of the
+/// null space. kMost: largest dimension of the null space. kEntries: largest number of rows of the basis Z.
 ///
-/// Keeps Z_heldᵀ = QR of the rows of the joints held, one column for each.
+/// Stores the factorisation Z_heldᵀ = QR, where Z_held are the rows of Z of the held joints, one column of Z_heldᵀ for
+/// each held joint.
 template <int kMost, int kEntries, typename Scalar>
 class HeldJoints {
  public:
   static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
-  /// A joint can be held too where the part of its row of Z outside the held joints' rows is longer than this: about
-  /// √epsilon, below which the part is mostly round-off.
-  /// A shorter part serves a slow joint: round-off error in its direction, ε/part, times the motion, rate/part, is then
-  /// less than 1.
+  /// Smallest length of the part of a joint's row of Z that is orthogonal to the rows of the held joints, for a joint
+  /// that is held in addition: about √ε. A shorter part is mostly round-off error. A slow joint may be held with a
+  /// shorter part, if the round-off error of the direction of the part, ε/part, times the motion, rate/part, is less
+  /// than 1.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-8) : Scalar(3e-4);
 
-  /// A joint whose part is shorter does not move in the null space: the part is the round-off error of a basis of
-  /// unit length. Otherwise, to hold a joint against a motion of 1e-13, other joints would move up to their bounds.
+  /// A joint with a shorter part does not move in the null space, because this part is the round-off error of a basis
+  /// of unit length. Without this threshold, holding a joint against a motion of 1e-13 would move other joints to their
+  /// bounds.
   static constexpr Scalar kIdle = Scalar(64) * kEpsilon;
 
-  /// Round-off error of Z: SelfMotion's is 5e-13 where J has a condition of 1e3.
+  /// Round-off error of Z. The basis of SelfMotion has an error of 5e-13 if the condition number of J is 1e3.
   static constexpr Scalar kRoundOff = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-12) : Scalar(3e-5);
-  /// The most that held joints may amplify a round-off error by, so that 1e-10 of the motion is off the task's line at
-  /// most.
+  /// Largest factor by which the held joints may amplify a round-off error. At most 1e-10 of the motion then deviates
+  /// from the line of the task.
   static constexpr Scalar kAmplified = Scalar(100);
-  /// du/ds beyond which a step is mostly round-off, and gains next to nothing for a motion of a whole unit.
+  /// du/ds above which a step is mostly round-off error. A step that moves a joint by a whole unit then increases s by
+  /// almost nothing.
   static constexpr Scalar kSteepest = Scalar(100) / kIndependent;
 
   struct Held {
     Eigen::Index joint;
-    bool above;  ///< On its upper bound.
+    bool above;  ///< Whether the joint is on its upper bound.
   };
 
   void clear() noexcept {
@@ -49,11 +52,11 @@ class HeldJoints {
   }
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] const Held& operator[](int i) const noexcept { return held_[i]; }
-  /// Whether a joint is held, or rests because the held joints do.
+  /// Whether a joint is held, or does not move because of the held joints.
   [[nodiscard]] bool has(Eigen::Index joint) const noexcept { return fixed_[index(joint)]; }
 
-  /// The goal plus the least motion Z Q y that keeps the held joints at rest. goal: the same for all joints that are
-  /// held since clear(), so that y keeps its entries when a joint is added.
+  /// du/ds: the goal plus the least-norm null-space motion Z Q y for which the held joints do not move. `goal` must be
+  /// the same for all joints that are held after clear(), so that y keeps its entries when a joint is added.
   template <typename Basis, typename Motion>
   [[nodiscard]] Motion direction(const Basis& Z, const Motion& goal) noexcept {
     Motion rate = goal;
@@ -75,10 +78,12 @@ class HeldJoints {
     return rate;
   }
 
-  /// Holds one more joint on its bound, or holds it in place of one that may leave its own. False where neither works.
+  /// Holds a joint on its bound, in addition to the held joints or in place of a held joint that can leave its bound.
+  /// Returns false if neither is possible.
   ///
-  /// rate: of the joint; remaining: increase of s up to 1; round_off(): of the motions of independent joints. A joint
-  /// that depends on those held and whose remaining motion is round-off error needs no hold.
+  /// above: whether the joint is on its upper bound. rate: |du/ds| of the joint. remaining: 1 − s. round_off():
+  /// round-off error of the motions of independent joints. If the joint depends on the held joints and its remaining
+  /// motion is round-off error, the joint does not need to be held.
   template <typename Basis, typename RoundOff>
   [[nodiscard]] bool hold(const Basis& Z, Eigen::Index joint, bool above, Scalar rate, Scalar remaining,
                           RoundOff&& round_off) noexcept {
@@ -96,7 +101,7 @@ class HeldJoints {
     if (spare && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
       return add(joint, above);
     }
-    // A smaller share would let the other joint leave at a rate beyond kSteepest.
+    // With a smaller share, the released joint would leave its bound at a rate above kSteepest.
     return replace(Z, joint, above, share, std::max(kRoundOff, rate / kSteepest));
   }
 
@@ -105,7 +110,7 @@ class HeldJoints {
 
   [[nodiscard]] static std::size_t index(Eigen::Index joint) noexcept { return static_cast<std::size_t>(joint); }
 
-  /// c in Z_joint = Σ c_i Z_held(i), of the joint that was split last.
+  /// c in Z_joint = Σ c_i Z_held(i), for the joint of the last split().
   [[nodiscard]] Free shares() const noexcept {
     Free share(count_);
     for (int i = count_ - 1; i >= 0; --i) {
@@ -116,7 +121,8 @@ class HeldJoints {
     return share;
   }
 
-  /// Holds a joint in place of the one that leaves its bound fastest, if its share is more than a least one.
+  /// Holds a joint in place of the held joint that leaves its bound fastest, if the share of the held joint exceeds
+  /// `least`. Otherwise, returns false.
   template <typename Basis>
   [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& share, Scalar least) noexcept {
     int leaving = -1;
@@ -138,7 +144,7 @@ class HeldJoints {
     return true;
   }
 
-  /// Holds the joint that was split last.
+  /// Holds the joint of the last split().
   bool add(Eigen::Index joint, bool above) noexcept {
     shorten(Q_[count_], R_[count_][count_]);
     held_[count_++] = {joint, above};
@@ -151,8 +157,8 @@ class HeldJoints {
     for (int i = 0; i < count_; ++i) fixed_[index(held_[i].joint)] = true;
   }
 
-  /// Z_jointᵀ = Σ R_[i][k] Q_[i] + Q_[k], over i < k: column k, not yet of length 1. Gram and Schmidt, twice, so that Q
-  /// is orthogonal where the rest is short.
+  /// Column k of the factorisation, not yet normalised: Z_jointᵀ = Σ R_[i][k] Q_[i] + Q_[k], over i < k. Two rounds of
+  /// Gram-Schmidt keep Q orthogonal even if Q_[k] is short.
   template <typename Basis>
   void split(const Basis& Z, Eigen::Index joint, int k) noexcept {
     Q_[k].resize(Z.cols());
@@ -173,10 +179,10 @@ class HeldJoints {
   }
 
   int count_ = 0;
-  int solved_ = 0;  ///< Number of joints that y and change_ = Q y have.
+  int solved_ = 0;  ///< Number of held joints that y_ and change_ = Q y include.
   Scalar y_[kMost];
   Free change_;
-  std::bitset<kEntries> fixed_;  ///< Bit i is set where has(i).
+  std::bitset<kEntries> fixed_;  ///< Bit i is has(i).
   Held held_[kMost];
   Free Q_[kMost + 1];
   Scalar R_[kMost + 1][kMost + 1];

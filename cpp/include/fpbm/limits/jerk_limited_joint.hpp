@@ -10,59 +10,63 @@
 
 namespace fpbm {
 
-/// Accelerations of a joint from low to high.
+/// Interval of accelerations of a joint [rad/s²].
 template <typename Scalar>
 struct Interval {
   Scalar low;
   Scalar high;
 };
 
-/// A joint with a bound J on its jerk, in a loop of ticks of length h.
+/// A joint with a bound J on jerk, in a loop of ticks of length h (docs/limits.md, Bounds on jerk).
 ///
-/// Its acceleration u is constant over a tick; its jerk is (u − u₋)/h, with u₋ the tick before. A state (q, q̇, u) is
-/// viable where u can be let go, at jerk −J, before q̇ exceeds its bounds or the envelopes of both ends of the range. An
-/// envelope of offset c and deceleration d ≤ A can then be followed to rest, since that takes jerks of d²/c ≤ J.
-/// Letting go in ticks leaves a little room, since steps of acceleration come at the start of a tick, before the ramps
-/// that they stand for; so from a viable state one of the accelerations in reach always leads to a viable state, with
-/// no margin. The greatest velocity rises with u, and so does the excess over an envelope: those accelerations are an
-/// interval.
+/// The acceleration u is constant during a tick. The jerk is (u − u₋)/h, where u₋ is the acceleration of the previous
+/// tick. A state (q, q̇, u) is viable toward the upper end if the velocity bound and the envelope hold while the
+/// acceleration decreases at the jerk −J. For the lower end, the same condition applies to −q. From a viable state, the
+/// joint can follow an envelope of offset c and deceleration d ≤ A until it is at rest, since this needs jerks of at
+/// most d²/c ≤ J.
 ///
-/// Where no envelope is given, c = 2A²/J: with c = 0 a joint that is pushed against its end would tremble there.
+/// The piecewise-constant acceleration leads the continuous ramp. Therefore, at least one admissible acceleration after
+/// a viable state leads to a viable state, without a margin. The largest velocity and the largest excess over an
+/// envelope increase with u, so these accelerations are an interval.
 ///
-/// At velocity level q moves by h q̇ of the tick's end, less than its ramps while it stops; where it still speeds up,
-/// the room that is left makes up for that.
+/// If no envelope is given, c = 2A²/J. With c = 0, a joint that is pushed against its end would chatter.
+///
+/// At velocity level, q changes by h q̇, where q̇ is the velocity at the end of the tick. While the joint stops, this
+/// displacement is smaller than with continuous ramps. While the speed still increases, the slack of the
+/// piecewise-constant acceleration compensates for the larger displacement.
 template <Level kLevel, typename Scalar>
 struct JerkLimitedJoint {
   QuickestStop<Scalar> stop;
-  Scalar velocity;                         ///< Bound on q̇ either way.
-  VelocityEnvelope<kLevel, Scalar> upper;  ///< Bounds q, and q̇ near its end.
+  Scalar velocity;                         ///< Bound on |q̇|.
+  VelocityEnvelope<kLevel, Scalar> upper;  ///< Bounds q, and q̇ near the upper end.
   VelocityEnvelope<kLevel, Scalar> lower;  ///< For −q.
   Scalar tick;                             ///< h [s]
 
-  /// Whether a state within some errors of this one is viable. A velocity may be a difference of positions over a tick.
+  /// Whether some state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
+  /// over a tick.
   [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
     return far_from_bounds(at) || viable_near_bounds(at, error);
   }
 
-  /// Accelerations within the bounds on acceleration and jerk after another one.
+  /// Accelerations within the bounds on acceleration and jerk in the tick after the acceleration `last`.
   [[nodiscard]] Interval<Scalar> after(Scalar last) const noexcept {
     const Scalar step = stop.jerk * tick;
     return {std::clamp(last - step, -stop.acceleration, stop.acceleration),
             std::clamp(last + step, -stop.acceleration, stop.acceleration)};
   }
-  /// After any other.
+  /// Accelerations within the bound on acceleration, whatever the last acceleration.
   [[nodiscard]] Interval<Scalar> after_any() const noexcept { return {-stop.acceleration, stop.acceleration}; }
 
-  /// Which of some accelerations lead to a viable state; the nearest to them where none does. A joint beyond its range
-  /// returns, and comes to rest at its end.
+  /// Accelerations in the interval `some` that lead to a viable state. If none does, the acceleration that leads
+  /// nearest to a viable state. A joint beyond its range returns, and stops at its end.
   [[nodiscard]] Interval<Scalar> viable(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
     const Scalar high = most(upper, q, qd, some);
     const Scalar low = -most(lower, -q, -qd, {-some.high, -some.low});
     return low <= high ? Interval<Scalar>{low, high} : between(some, q, qd);
   }
 
-  /// Greatest acceleration b from which steps of Jh to zero, h (b + (b − Jh) + (b − 2Jh) + …), change the velocity by
-  /// no more than a given amount.
+  /// Largest acceleration b whose decrease to zero by steps of Jh changes the velocity by at most `amount`:
+  /// h (b + (b − Jh) + (b − 2Jh) + …) ≤ amount.
   [[nodiscard]] Scalar change(Scalar amount) const noexcept {
     using std::floor;
     using std::sqrt;
@@ -72,7 +76,7 @@ struct JerkLimitedJoint {
     return std::min(stop.acceleration, (sum + step * steps * (steps + Scalar(1)) / Scalar(2)) / (steps + Scalar(1)));
   }
 
-  /// Acceleration of the next tick on the quickest way to q̇ = u = 0.
+  /// Acceleration of the next tick of the shortest stop, at whose end q̇ = u = 0.
   [[nodiscard]] Scalar brake(Scalar qd, Scalar last) const noexcept {
     const auto [low, high] = after(last);
     const Scalar most = change(std::abs(qd));
@@ -86,8 +90,9 @@ struct JerkLimitedJoint {
            keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
   }
 
-  /// Whether a state is so far from all bounds that it is viable: |q̇| + u²/2J is within the bound on q̇, and a stop from
-  /// that velocity ends before both envelopes. Most states are so far. False says nothing.
+  /// Sufficient condition for a viable state, far from all bounds: |q̇| + u²/2J is within the bound on q̇, and a stop
+  /// from this velocity ends before both envelopes. Most states satisfy this condition. If the result is false, the
+  /// state may still be viable.
   [[nodiscard]] bool far_from_bounds(const AxisState<Scalar>& at) const noexcept {
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar size = std::abs(at.a);
@@ -99,13 +104,15 @@ struct JerkLimitedJoint {
     return fastest <= velocity && room(upper, at.q) && room(lower, -at.q);
   }
 
-  /// The most that a stop adds to the excess over an envelope [rad] or [m]: v (t + c/d + v/2d) for velocities up to v =
-  /// fastest [rad/s], if the excess is greatest within the time t = longest [s].
+  /// Upper bound on the excess over an envelope that a stop adds [rad] or [m]: v (t + c/d + v/2d) for velocities up to
+  /// v = fastest [rad/s], if the excess is largest within the time t = longest [s].
   [[nodiscard]] static Scalar most_excess(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
                                           Scalar longest) noexcept {
     return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
   }
 
+  /// Whether a state satisfies the two conditions of docs/limits.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
+  /// a > 0, up to `slack` [rad/s], and G ≤ 0.
   [[nodiscard]] bool keeps(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
                            Scalar slack) const noexcept {
     const Scalar rises = std::max(at.a, Scalar(0));
@@ -113,34 +120,42 @@ struct JerkLimitedJoint {
            !(envelope.excess(stop.jerk, {at.q - envelope.rest, at.v, at.a}) > Scalar(0));
   }
 
-  /// Largest of some accelerations that keep the bounds of one side; the smallest where none does.
+  /// Largest acceleration in the interval `some` after which the state is viable toward one end: the state satisfies
+  /// the bound on velocity and G ≤ 0 (docs/limits.md, Bounds on jerk). q and qd increase toward this end. rounds:
+  /// largest number of iterations of the search for G = 0.
+  ///
+  /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope by
+  /// round-off only stops within the tick, at the acceleration −q̇/h.
   [[nodiscard]] Scalar most(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
                             Interval<Scalar> some, int rounds = 6) const noexcept {
     const Scalar room = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar gain = greatest * (tick + greatest * inverse_jerk / Scalar(2));
-    // Most joints are far from all bounds. No velocity of a stop exceeds top, and its excess is greatest within
-    // longest.
+    // Most joints are far from all bounds, and pass this test of some.high: no velocity of the stop exceeds `top`, and
+    // the excess is largest within the time `longest`.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
     if (gain <= room && q - envelope.rest + most_excess(envelope, top, longest) <= Scalar(0)) return some.high;
     const Scalar high = within_velocity(room, some);
     if (!(envelope.rest < std::numeric_limits<Scalar>::infinity())) return high;
     const Scalar from = q - envelope.rest;
-    // Enough where the acceleration falls already: a little too much elsewhere.
+    // Upper end of the search: the acceleration that the envelope admits without a bound on jerk. It is the solution if
+    // the joint already brakes along the envelope, and slightly too large otherwise.
     const Scalar falling = (envelope.furthest(q, qd, tick) - qd) / tick;
     const auto beyond = [&](Scalar u) noexcept { return this->beyond(envelope, from, qd, u); };
     const Scalar found =
         largest_below_zero(beyond, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
     if (found > some.low) return found;
-    // None, or the smallest: a joint that round-off brought to its end would leave it with all of its jerk.
+    // At most some.low keeps the envelope. A joint that round-off has brought to its end stops there: with some.low,
+    // the joint would leave its end at full jerk.
     const Scalar halts = std::clamp(-qd / tick, some.low, high);
     return beyond(halts) <= round_off(envelope, q) ? halts : found;
   }
 
-  /// Largest of some accelerations that can be let go before q̇ has risen by room: the root of u h + u²/2J = room, or of
-  /// u h = room where u falls. Infinite where the velocity is not bounded.
+  /// Largest acceleration u in the interval `some` with which q̇ increases by at most `room` [rad/s] in the tick and
+  /// while the jerk −J then reduces u to zero: the positive root of u h + u²/2J = room, or u = room/h if `room` is
+  /// negative. If the velocity is unbounded, some.high.
   [[nodiscard]] Scalar within_velocity(Scalar room, Interval<Scalar> some) const noexcept {
     using std::sqrt;
     const Scalar share = tick / room;
@@ -149,20 +164,22 @@ struct JerkLimitedJoint {
     return std::clamp(fastest, some.low, some.high);
   }
 
-  /// How far a joint that is `from` beyond an end's rest, at velocity qd, goes beyond its envelope after a tick of
-  /// acceleration u.
+  /// Largest excess over an envelope [rad] or [m] after a tick with the acceleration u. from: q − rest at the start of
+  /// the tick. If from > 0, the joint is beyond its end. The result is then the position at the end of its shortest
+  /// stop, relative to `rest`.
   [[nodiscard]] Scalar beyond(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
                               Scalar u) const noexcept {
     const Scalar next = qd + tick * u;
     const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
     if (from > Scalar(0)) return stop.rest({from + way, next, u});
     const Scalar most = envelope.excess(stop.jerk, {from + way, next, u});
-    // Where the joint turns back within the tick.
+    // The joint reverses within the tick, at from − qd²/2u.
     return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
   }
 
-  /// viable() where a few rounds leave no acceleration that keeps both ends' envelopes: more rounds find some, except
-  /// for round-off. There the bound on velocity goes first, and the envelopes are exceeded alike.
+  /// viable() if few iterations find no acceleration that keeps the envelopes of both ends. More iterations find an
+  /// acceleration, except for round-off errors. In this case, the bound on velocity has priority, and both envelopes
+  /// are exceeded equally.
   [[nodiscard, gnu::noinline]] Interval<Scalar> between(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
     constexpr int kRounds = 20;
     const Interval<Scalar> mirrored{-some.high, -some.low};
@@ -183,7 +200,7 @@ struct JerkLimitedJoint {
     return {u, u};
   }
 
-  /// Round-off of a distance to one end.
+  /// Round-off error of a distance to one end [rad] or [m].
   [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
     return std::isfinite(envelope.rest)
                ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.rest))

@@ -9,36 +9,37 @@
 
 namespace fpbm {
 
-/// Task levels J_k u = b_k in strict priority, within a box and further rows g·u ≤ b. From u₀ = rest, level by level:
+/// Resolves task levels J_k u = b_k in strict priority, within a box and further rows g·u ≤ b (docs/limits.md, Several
+/// tasks in strict priority). u₀ = rest, and for each level
 ///
 ///   d = u_{k−1} + Z_{k−1} (J_k Z_{k−1})⁺ (b_k − J_k u_{k−1})
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible,
 ///
-/// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace), and the null-space motion γ replaces joints on
-/// their bounds by others (NullSpaceSaturation). u_k keeps every bound that rest keeps. J_i u of a higher level changes
-/// by round-off only. s_k is the optimum of the linear program in s_k and γ. If the higher levels contradict a task, d
-/// is the least-squares solution, and s_k is the scale of d. docs/limits.md has the proofs.
+/// where Z_k is a basis of the null space of J₁ … J_k (LevelSpace). With the null-space motion Z_k γ, other joints
+/// compensate for joints on their bounds (NullSpaceSaturation). u_k keeps every bound that rest keeps. J_i u of a
+/// higher level i changes by round-off error only. s_k is the optimum of the linear program in s_k and γ. If the higher
+/// levels contradict a task, d is the least-squares solution, and s_k is the scale of d. docs/limits.md has the proofs.
 template <int N, typename Scalar = double, int P = 0>
 class LevelSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// box, rest: bounds, and a motion in them [rad/s², or rad/s at velocity level]. unit: unit of each joint's motion,
-  /// in which norms are measured, as for NullSpaceSaturation.
+  /// box: bounds [rad/s²], or [rad/s] at velocity level. rest: motion within the box from which the first level starts.
+  /// unit: unit of each joint's motion for norms, as in NullSpaceSaturation.
   LevelSaturation(const Box<N, Scalar>& box, const JointVector& rest, const JointVector& unit,
                   const Rows<N, P, Scalar>& rows = {}) noexcept
       : box_(box), rows_(rows), unit_(unit), u_(rest), space_(rest.size()) {}
 
-  /// Resolves the next level and returns its scale s_k. J: M × n; b: M. If J or b is not finite, the level is skipped
-  /// with scale 0.
+  /// Resolves the next level and returns its scale s_k. J is M × n, b has M entries. If J or b is not finite, the level
+  /// is skipped, with scale 0.
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b) noexcept {
     return next(J, b, [&](const auto& scaled, const auto& r) noexcept { return space_.add(scaled, r); });
   }
 
-  /// Resolves the next level with damping (DampedLevel): d = u_{k−1} + Z Aᵀ(A Aᵀ + Δ)⁻¹ r with A = J_k Z,
-  /// Z = Z_{k−1} and r = b_k − J_k u_{k−1}, in the units of the joints. radius in [0, 1]: ε = radius ‖J_k‖_F. If no
-  /// singular value of A is below ε, the result is that of resolve(J, b).
+  /// Resolves the next level with damping (DampedLevel): d = u_{k−1} + Z Aᵀ(A Aᵀ + Δ)⁻¹ r with A = J_k Z, Z = Z_{k−1}
+  /// and r = b_k − J_k u_{k−1}, in the units of the joints. radius in [0, 1]: ε = radius ‖J_k‖_F. If no singular value
+  /// of A is below ε, the result is the result of resolve(J, b).
   template <int M>
   Scalar resolve(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b, Scalar radius) noexcept {
     return next(J, b, [&](const Matrix<M, N, Scalar>& scaled, const Vector<M, Scalar>& r) noexcept {
@@ -49,17 +50,18 @@ class LevelSaturation {
     });
   }
 
-  /// tr Δ/ε² of the last level, about the number of its lost directions, and the number of its dependent rows. 0
+  /// tr Δ/ε² of the last level, about the number of its lost directions, plus the number of its dependent rows. 0
   /// without damping.
   [[nodiscard]] Scalar lost() const noexcept { return lost_; }
 
   /// u_k of the last level.
   [[nodiscard]] const JointVector& motion() const noexcept { return u_; }
-  /// Null space of the levels so far.
+  /// Null space of all levels so far.
   [[nodiscard]] const LevelSpace<N, Scalar>& space() const noexcept { return space_; }
 
  private:
-  /// resolve(), where solution(J in the units of the joints, r) is that of the level and adds it to the space.
+  /// Implements resolve(). solution(J in the units of the joints, r) returns the solution of the level, and adds the
+  /// level to the space.
   template <int M, typename Solution>
   Scalar next(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& b, const Solution& solution) noexcept {
     lost_ = Scalar(0);

@@ -18,27 +18,28 @@
 
 namespace fpbm {
 
-/// Makes any scheme keep the joint limits: takes the scheme's answer, returns a motion within the limits.
+/// Computes a motion within the joint limits from the motion of any scheme (docs/limits.md).
 ///
-/// A motion within the box of Limits passes unchanged. Otherwise it is saturated in the null space, so that other
-/// joints take over; where they cannot, the task is scaled down along its direction. Where the scale comes near zero
-/// (at the edge of the reach, say) the arm would stand still for good; so the smaller the scale, the more the motion
-/// yields to the one that still brings the tip nearer.
+/// A motion within the box of Limits does not change. Otherwise the motion is saturated in the null space: other joints
+/// compensate for joints on their bounds. If they cannot, the task is scaled down along its direction. If the task
+/// scale is nearly zero, for example at the workspace boundary, the arm would stop permanently. Therefore, the smaller
+/// the scale, the more the motion is blended with a motion that still reduces the tip error (yield()).
 ///
-/// With bounds on jerk this is done twice: first without regard to the last tick, to find where the motion is to go;
-/// then, from the last tick's acceleration toward that, as far along the task's line as the jerks allow.
+/// With bounds on jerk, the limiter works in two passes (docs/limits.md, Bounds on jerk). The first pass ignores the
+/// last tick, and determines the goal. The second pass starts from the acceleration of the last tick, and moves toward
+/// the goal along the line of the task as far as the jerk bounds allow.
 template <Level kLevel, int N, typename Scalar = double>
 class Limiter {
  public:
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
-  /// Saturated, or SaturatedLevels for TaskLevels.
+  /// Result of motion(): Saturated, or SaturatedLevels for TaskLevels.
   template <typename Tasks>
   using Found = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
-  /// reserve: share of each joint's bound on acceleration that the levels below the first leave to the first, and half
-  /// of that share of the bound on velocity. 0: the first level has no reserve, and all levels share the limits. Throws
-  /// std::invalid_argument where it is not in [0, 1].
+  /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
+  /// level. Of the bound on velocity, they leave half of this fraction. 0: the first level has no reserve, and all
+  /// levels share the limits. Throws std::invalid_argument if reserve is not in [0, 1].
   explicit Limiter(const Limits<kLevel, N, Scalar>& limits, Scalar reserve = Scalar(0))
       : limits_(limits),
         lower_limits_(reserved_limits(limits, reserve)),
@@ -51,16 +52,16 @@ class Limiter {
 
   [[nodiscard]] const Limits<kLevel, N, Scalar>& limits() const noexcept { return limits_; }
 
-  /// Whether an arm may go from one state to another in a tick without being limited.
+  /// Whether the limits, minus the reserve, admit a tick from one state to another. Such a tick needs no limiter.
   [[nodiscard]] bool admits(const JointState& from, const JointState& to, const JointVector& last) const noexcept {
     return lower_limits_.admits(from, to, last);
   }
 
-  /// The motion within the limits for a desired qdd, or qd at velocity level, where the state's qd is the last command.
-  /// last: acceleration of the last tick, which bounds on jerk start from.
+  /// Motion within the limits for a desired qdd [rad/s²], or qd [rad/s] at velocity level, where state.qd is the last
+  /// command. `last`: acceleration of the last tick [rad/s²], used by bounds on jerk.
   ///
-  /// tasks: the Jacobian of one task level, or TaskLevels, which are saturated level by level (SaturationByLevel).
-  /// rows: further bounds on the motion (RowProjection), kept as far as the limits admit.
+  /// tasks: Jacobian of one task level, or TaskLevels, which are saturated level by level (SaturationByLevel). rows:
+  /// further bounds on the motion (RowProjection), kept as far as the limits admit.
   template <typename Tasks, int P = 0>
   [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                     const JointVector& last, const Rows<N, P, Scalar>& rows = {}) const noexcept {
@@ -70,14 +71,15 @@ class Limiter {
     return bounded(tasks, state, desired, last, rows);
   }
 
-  /// The motion for an arm whose last acceleration does not matter: without bounds on jerk, or at rest.
+  /// motion() if the last acceleration has no effect: without bounds on jerk, or at rest.
   template <typename Tasks>
   [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state,
                                     const JointVector& desired) const noexcept {
     return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
-  /// The motion that resolves the first level as `desired` does, and brings the joints to rest in its null space.
+  /// Motion that resolves the first level as `desired` does, and brakes the joints in the null space of the first
+  /// level.
   template <typename Tasks, int P = 0>
   [[nodiscard]] Found<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
                                                  const JointVector& desired, const JointVector& last,
@@ -86,7 +88,7 @@ class Limiter {
     return motion(only_first(tasks), state, braking_beside(tasks, desired, rest), last, rows);
   }
 
-  /// The motion that brings the arm to rest, or one near to it that rows admit.
+  /// Braking motion, or a motion near the braking motion that the rows admit. The task scale is 0.
   template <int P = 0>
   [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last,
                                            const Rows<N, P, Scalar>& rows = {}) const noexcept {
@@ -94,9 +96,23 @@ class Limiter {
   }
 
  private:
-  /// motion() for a motion that rows do not admit: the nearest that they admit replaces it. Self-motion costs little,
-  /// so that joints go around a row where they can and the tip slides along it where they cannot. But where self-motion
-  /// can do next to nothing, what the tip has to give up costs less still, else joints would rush for that little.
+  /// motion() for a desired motion u₀ that the rows do not admit. Limits the nearest motion that the rows admit
+  /// (docs/clearance.md, Algorithm, Rows):
+  ///
+  ///   min ‖J(u − u₀)‖²_A + μ‖u − u₀‖²   where g_k·u ≤ b_k,   ‖x‖²_A = xᵀAx,   A = μB⁻¹.
+  ///
+  /// Null-space motion has the small cost μ. Therefore the arm first avoids a shape by null-space motion. If this is
+  /// not sufficient, the tip slides along the shape. A is the identity, except in the direction of δ, the smallest
+  /// change of the task that satisfies the rows (task_given_up()). In this direction, its eigenvalue is
+  ///
+  ///   1/(1 + l²/kGivenUp),   l = max(1 − ν/kServes, 0),
+  ///
+  /// where ν is the fraction of null-space motion in the motion that the rows demand. If ν is almost zero, null-space
+  /// motion contributes almost nothing. With A = I, all joints would then move fast to reduce the tip error by a
+  /// millimetre.
+  ///
+  /// The task scale of each level is multiplied by 1 − c, where c = min(‖J_k(u − u₀)‖/‖J_k u₀‖, 1) is its relative
+  /// change, unless c ≤ kUnseen.
   template <typename Tasks, int P>
   [[nodiscard]] Found<Tasks> beside(const Rows<N, P, Scalar>& rows, const Tasks& tasks, const JointState& state,
                                     const JointVector& desired, const JointVector& last) const noexcept {
@@ -128,7 +144,7 @@ class Limiter {
     return found;
   }
 
-  /// motion() for one that rows admit, or nearly.
+  /// motion() for a desired motion that the rows admit, at least approximately.
   template <typename Tasks, int P>
   [[nodiscard]] Found<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                      const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
@@ -144,15 +160,17 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
-  /// u + N₁(r − u): the first level as in u, and the braking motion r in its null space.
+  /// u + N₁(r − u): resolves the first level as u does, and equals the braking motion r in the null space of the first
+  /// level.
   template <typename Tasks>
   [[nodiscard]] static JointVector braking_beside(const Tasks& tasks, const JointVector& u,
                                                   const JointVector& r) noexcept {
     return u + null_space_motion(only_first(tasks), JointVector(r - u));
   }
 
-  /// bounded() where the lower levels leave a reserve: the first level alone brakes within the limits, the lower levels
-  /// move within those of the reserve, widened by the motion of the first level.
+  /// bounded() with a reserve. The first level is resolved within the whole limits, with a braking motion in its null
+  /// space. The lower levels are resolved within the limits minus the reserve, widened to include the motion of the
+  /// first level.
   template <typename Tasks, int P>
   [[nodiscard]] Found<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
                                           const JointVector& last, const Rows<N, P, Scalar>& rows,
@@ -181,7 +199,7 @@ class Limiter {
                        approach(limits_, state.qd, found.u), found);
   }
 
-  /// The motion within bounds that does as much as possible of a desired one.
+  /// Motion within the bounds that realises as much as possible of the desired motion.
   template <typename Saturation, typename Tasks, int P>
   [[nodiscard]] Found<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
                                     const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
@@ -199,15 +217,20 @@ class Limiter {
     return found;
   }
 
-  static constexpr Scalar kSelfMotion = Scalar(1e-4);  ///< Price of self-motion along rows, as a share of ‖J‖²_F.
-  static constexpr Scalar kGivenUp = Scalar(1e-3);     ///< Price of what the task gives up, as a share of the rest.
-  static constexpr Scalar kServes = Scalar(0.1);       ///< From here on self-motion serves: ‖Nv‖² / ‖v‖².
-  static constexpr Scalar kUnseen = Scalar(0.01);      ///< Share of the task that may be lost unreported.
+  /// Cost μ of null-space motion in beside(), as a fraction of ‖J‖²_F.
+  static constexpr Scalar kSelfMotion = Scalar(1e-4);
+  /// Eigenvalue of A along δ in beside() if null-space motion contributes nothing (ν = 0): cost of a tip error in this
+  /// direction, relative to other directions.
+  static constexpr Scalar kGivenUp = Scalar(1e-3);
+  /// ν = ‖Nv‖²/‖v‖² (GivenUp::self_motion) from which on A = I in beside(): null-space motion then contributes enough.
+  static constexpr Scalar kServes = Scalar(0.1);
+  /// Relative change c of a level in beside() up to which its task scale is not reduced.
+  static constexpr Scalar kUnseen = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;
-  Limits<kLevel, N, Scalar> lower_limits_;  ///< Of the levels below the first.
+  Limits<kLevel, N, Scalar> lower_limits_;  ///< Limits of the levels below the first level.
   bool reserves_;
-  JointVector unit_;  ///< Unit of each joint's motion in the null space.
+  JointVector unit_;  ///< Unit of each joint's null-space motion.
 };
 
 }  // namespace fpbm

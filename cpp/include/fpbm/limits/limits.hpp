@@ -14,22 +14,24 @@
 
 namespace fpbm {
 
-/// Bounds on positions, velocities, accelerations and jerks, kept tick by tick.
+/// Bounds on positions, velocities, accelerations and jerks, for every tick (docs/limits.md, Position, velocity and
+/// acceleration).
 ///
-/// A state is viable where every joint's velocity is within its bound and within the envelopes of both ends of its
-/// range. From a viable state there is always an acceleration within its bound, held for one tick of length h, that
-/// leads to a viable state, and every joint can come to rest (viability: Del Prete 2018, here in discrete time). The
-/// envelope of a bound A on accelerations has offset A h/2, the cost of one tick's delay. box() is the set of those
-/// accelerations (at velocity level: velocities): a motion that stays inside never violates a bound, at a tick or
-/// between ticks. Joints with a bound on jerk have another viable set (JerkLimitedJoint), of which the acceleration of
-/// the last tick is a part: last, zero for an arm at rest.
+/// A state is viable if the velocity of every joint is within its bound and within the braking envelopes of both ends
+/// of the range. From a viable state, some acceleration within its bound, constant for one tick of length h, leads to a
+/// viable state, and every joint can stop (viability: Del Prete 2018, here in discrete time). The envelope of a bound A
+/// on acceleration has the offset A h/2, the cost of one tick of delay. box() is the set of these accelerations, or of
+/// velocities at velocity level. A motion in the box never violates a bound, at ticks or between ticks. Joints with a
+/// bound on jerk have another viable set (JerkLimitedJoint), which includes the acceleration of the last tick. This
+/// acceleration is the argument `last`, zero for an arm at rest.
 template <Level kLevel, int N, typename Scalar = double>
 class Limits {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// tick: h [s]. A joint that has bounds needs one on its acceleration, except at velocity level, where it may then
-  /// change its velocity at once. Throws std::invalid_argument naming the joint and the value.
+  /// tick: h [s]. A joint with bounds needs a bound on its acceleration. At velocity level, this bound may be missing:
+  /// the joint may then change its velocity by any amount within a tick. Throws std::invalid_argument, with the joint
+  /// and the value, if a bound is missing or invalid.
   Limits(const JointLimits<N, Scalar>& bounds, Scalar tick) : tick_(tick), bounds_(bounds.complete()) {
     validation::require_positive("dt", tick);
     const Eigen::Index n = bounds.lower.size();
@@ -54,17 +56,17 @@ class Limits {
     }
   }
 
-  /// The bounds, with accelerations filled in.
+  /// The bounds in use, the result of usable_bounds().
   [[nodiscard]] const JointLimits<N, Scalar>& bounds() const noexcept { return bounds_; }
   [[nodiscard]] Scalar tick() const noexcept { return tick_; }
-  /// Whether any joint has a bound on its jerk, or joint i.
+  /// Whether any joint, or joint i, has a bound on jerk.
   [[nodiscard]] bool bounds_jerk() const noexcept { return jerk_bounds_ > 0; }
   [[nodiscard]] bool bounds_jerk(Eigen::Index i) const noexcept { return std::isfinite(bounds_.jerk(i)); }
   [[nodiscard]] JerkLimitedJoint<kLevel, Scalar> jerk_limited(Eigen::Index i) const noexcept {
     return {{bounds_.acceleration(i), bounds_.jerk(i)}, bounds_.velocity(i), upper_[i], lower_[i], tick_};
   }
 
-  /// Throws std::invalid_argument unless the state is viable, up to round-off: a tracker's own state is.
+  /// Throws std::invalid_argument if the state is not viable up to round-off. A tracker's own state is always viable.
   void require_viable(const State<N, Scalar>& state) const { require_viable(state, at_rest(state)); }
   void require_viable(const State<N, Scalar>& state, const JointVector& last) const {
     for (Eigen::Index i = 0; i < state.q.size(); ++i) {
@@ -83,7 +85,7 @@ class Limits {
       if (!(std::abs(last(i)) <= bounds_.acceleration(i) + margin / tick_)) {
         validation::fail(validation::element("qdd0", i), last(i), "within the joint's bound");
       }
-      // last is a difference of velocities over a tick.
+      // `last` is a difference of velocities over a tick, with the error of a velocity divided by h.
       const AxisState<Scalar> error{slack, rounding, rounding / tick_};
       if (!(bounds_jerk(i) ? jerk_limited(i).viable({q, qd, last(i)}, error) : viable(i, q, slower))) {
         validation::fail(validation::element("qd0", i), qd, "slow enough for the joint to stop within its bounds");
@@ -91,7 +93,7 @@ class Limits {
     }
   }
 
-  /// Whether an arm may go from one state to another in a tick, at constant acceleration.
+  /// Whether the limits admit a tick from one state to another at constant acceleration.
   [[nodiscard]] bool admits(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
     return admits(from, to, at_rest(from));
   }
@@ -111,10 +113,11 @@ class Limits {
     return good;
   }
 
-  /// Whether differences of commanded positions keep the bounds on velocity V and acceleration A in a tick of varying
-  /// acceleration: its mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends. The second
-  /// difference of positions over two such ticks is h (qd − v₁) + h (v₂ − qd), with qd between them: at most A h².
-  /// In a tick of constant acceleration within the bounds this holds, but for round-off.
+  /// Whether differences of commanded positions keep the bounds V on velocity and A on acceleration in a tick of
+  /// varying acceleration: the mean velocity v = (to.q − from.q)/h is within V, and |v − qd| ≤ A h/2 at both ends of
+  /// the tick. The second difference of positions over two such ticks is h (qd − v₁) + h (v₂ − qd), with the velocity
+  /// qd between the ticks, and therefore at most A h². A tick of constant acceleration within the bounds satisfies this
+  /// condition up to round-off.
   [[nodiscard]] bool admits_differences(const State<N, Scalar>& from, const State<N, Scalar>& to) const noexcept {
     bool good = true;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) {
@@ -126,24 +129,26 @@ class Limits {
     return good;
   }
 
-  /// Whether joint i's envelopes allow all of a stop from a velocity at a constant deceleration.
+  /// Whether the envelopes of joint i admit the whole stop from the velocity qd at a constant deceleration.
   [[nodiscard]] bool allows_stop(Eigen::Index i, Scalar q, Scalar qd, Scalar deceleration) const noexcept {
     return upper_[i].allows_stop(q, qd, deceleration) && lower_[i].allows_stop(-q, -qd, deceleration);
   }
 
-  /// What each joint may do in the next tick. From a state that is not viable (a measured one may be so) the box leads
-  /// back; it keeps the bound on acceleration first and the bound on velocity next. A joint beyond its range returns as
-  /// fast as these allow, and can come to rest on the bound.
+  /// Motions that the limits admit for each joint in the next tick. If the state is not viable, for example a measured
+  /// state, the box leads back to viable states. The bound on acceleration then has the first priority, and the bound
+  /// on velocity the second. A joint beyond its range returns as fast as these bounds allow, and can stop on the bound.
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state) const noexcept { return box(state, at_rest(state)); }
   [[nodiscard]] Box<N, Scalar> box(const State<N, Scalar>& state, const JointVector& last) const noexcept {
     return box_of(state, [&](Eigen::Index i, const auto& joint) { return joint.after(last(i)); });
   }
-  /// The same without regard to the last tick: where its joints may be once their jerk has brought them there.
+  /// box() without regard to the last tick: the motions that are admissible after the jerk has changed the
+  /// accelerations.
   [[nodiscard]] Box<N, Scalar> box_in_time(const State<N, Scalar>& state) const noexcept {
     return box_of(state, [](Eigen::Index, const auto& joint) { return joint.after_any(); });
   }
 
-  /// Joint i's motion in a tick of some acceleration.
+  /// Motion of a joint in a tick with the given acceleration: the acceleration, or the velocity at the end of the tick
+  /// at velocity level.
   [[nodiscard]] Scalar motion(Scalar qd, Scalar acceleration) const noexcept {
     return kLevel == Level::kVelocity ? qd + tick_ * acceleration : acceleration;
   }
@@ -154,7 +159,8 @@ class Limits {
   template <typename Reach>
   [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Reach&& reach) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
-    // No joint is told from another where none has a bound on jerk: the compiler makes vectors of them.
+    // This loop includes joints with a bound on jerk, so that the compiler vectorises the loop. The next loop replaces
+    // their bounds.
     if (jerk_bounds_ < state.q.size()) {
       for (Eigen::Index i = 0; i < state.q.size(); ++i) set(box, i, motions_of(i, state.q(i), state.qd(i)));
     }
@@ -172,14 +178,14 @@ class Limits {
     box.upper(i) = motions.high;
   }
 
-  /// The motions of a joint without a bound on its jerk, at velocity w.
+  /// Motions of joint i at velocity w if its jerk is unbounded (docs/limits.md, Position, velocity and acceleration).
   [[nodiscard]] Interval<Scalar> motions_of(Eigen::Index i, Scalar q, Scalar w) const noexcept {
     const Scalar v = bounds_.velocity(i);
     const Scalar most = w + bounds_.acceleration(i) * tick_;
     const Scalar least = w - bounds_.acceleration(i) * tick_;
     const Scalar fastest = std::clamp(v, least, most);
     const Scalar slowest = std::clamp(-v, least, most);
-    // In this order min and max pass over what is not a number, where a side has no end.
+    // With this order of arguments, min and max ignore NaN, the result of furthest() if the range has no end.
     Scalar up = std::max(slowest, std::min(fastest, upper_[i].furthest(q, w, tick_)));
     Scalar down = std::min(fastest, std::max(slowest, -lower_[i].furthest(-q, -w, tick_)));
     if (down > up) down = up = (down + up) / Scalar(2);
@@ -198,7 +204,7 @@ class Limits {
     return std::abs(qd) <= bounds_.velocity(i) && upper_[i].allows(q, qd) && lower_[i].allows(-q, -qd);
   }
 
-  /// Round-off of joint i's position and of its distance to the ends of its range [rad] or [m].
+  /// Round-off error of the position of joint i and of its distances to the ends of its range [rad] or [m].
   [[nodiscard]] Scalar round_off(Eigen::Index i, Scalar q) const noexcept {
     Scalar size = std::abs(q);
     for (const Scalar end : {bounds_.lower(i), bounds_.upper(i)}) {
@@ -211,9 +217,10 @@ class Limits {
   JointLimits<N, Scalar> bounds_;
   Envelopes upper_;
   Envelopes lower_;               ///< For −q.
-  Eigen::Index jerk_bounds_ = 0;  ///< Number of joints that have one.
+  Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
 
-  static constexpr Scalar kSoft = Scalar(2);  ///< c J/A² of a joint with a bound on its jerk and no envelope.
+  /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk).
+  static constexpr Scalar kSoft = Scalar(2);
 };
 
 }  // namespace fpbm

@@ -2,7 +2,7 @@
 
 #include "fpbm/limits/saturation.hpp"
 
-/// The Jacobian of one task as the only task level: the functions by which Limiter resolves one level or TaskLevels.
+/// Functions by which Limiter resolves one task level or TaskLevels. Here, the Jacobian of a task is the only level.
 namespace fpbm {
 
 template <int M, int N, typename Scalar>
@@ -10,11 +10,11 @@ template <int M, int N, typename Scalar>
   return J;
 }
 
-/// Whether tasks have levels below the first.
+/// Whether tasks have levels below the first level.
 template <typename Tasks>
 inline constexpr bool kHasLower = false;
 
-/// A motion u in which every level has the same scale.
+/// Result with the motion u and the same scale for every level.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
                                               Scalar scale) noexcept {
@@ -27,13 +27,13 @@ void set_scale(Saturated<N, Scalar>& motion, Scalar scale) noexcept {
   motion.scale = scale;
 }
 
-/// Multiplies the scale of each level by that of another motion.
+/// Multiplies the scale of each level by the scale of this level in another motion.
 template <int N, typename Scalar>
 void multiply_scales(Saturated<N, Scalar>& motion, const Saturated<N, Scalar>& other) noexcept {
   motion.scale *= other.scale;
 }
 
-/// Multiplies the scale of each level by share(J) of its Jacobian.
+/// Multiplies the scale of each level by share(J), where J is the Jacobian of the level.
 template <int M, int N, typename Scalar, typename Share>
 void multiply_scales(Saturated<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const Share& share) noexcept {
   motion.scale *= share(J);
@@ -46,7 +46,7 @@ template <int M, int N, typename Scalar, int P>
   return {J, unit, rows};
 }
 
-/// Resolves the levels below the first: none.
+/// Resolves the levels below the first level. A single task has none.
 template <int M, int N, typename Scalar, int P>
 void resolve_lower(const NullSpaceSaturation<M, N, Scalar, P>&, const Box<N, Scalar>&, const Vector<N, Scalar>&,
                    const Saturated<N, Scalar>&) noexcept {}

@@ -5,9 +5,9 @@
 
 namespace fpbm {
 
-/// Limits of the levels below the first, which leave a reserve to the first level: the share 1 − reserve of each
-/// joint's bounds on acceleration and deceleration, and 1 − reserve/2 of the bound on velocity. Throws
-/// std::invalid_argument where the reserve is not in [0, 1].
+/// Limits of the levels below the first level, which leave a reserve to the first level: the bounds on acceleration and
+/// deceleration are multiplied by 1 − reserve, the bounds on velocity by 1 − reserve/2. Throws std::invalid_argument if
+/// reserve is not in [0, 1].
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Limits<kLevel, N, Scalar> reserved_limits(const Limits<kLevel, N, Scalar>& limits, Scalar reserve) {
   validation::require_fraction("reserve", reserve);

@@ -12,14 +12,15 @@
 
 namespace fpbm {
 
-/// The motion within rows g·u ≤ b that changes a desired one's task least:
+/// Nearest motion to a desired motion u₀ that satisfies the rows g_k·u ≤ b_k (docs/clearance.md, Algorithm, Rows):
 ///
-///   min (u − desired)ᵀ (Jᵀ B⁻¹ J + I) (u − desired),
+///   min (u − u₀)ᵀ H (u − u₀)   where g_k·u ≤ b_k,   H = JᵀB⁻¹J + I.
 ///
-/// with B = μI, say, where self-motion costs μ of what the task does, or with larger entries for what the task may lose
-/// easily.
-/// By the dual active-set method (D. Goldfarb, A. Idnani 1983): rows are met one by one, and one whose multiplier comes
-/// to zero is let go. A continuous function of all inputs.
+/// With B = μI, null-space motion has the cost μ relative to a change of the task. Larger entries of B reduce the cost
+/// of changes of the task in their directions.
+///
+/// Solved by the dual active-set method (D. Goldfarb, A. Idnani 1983): violated rows become active one by one, and an
+/// active row whose multiplier decreases to zero is released. The result is a continuous function of all inputs.
 template <int M, int N, int P, typename Scalar>
 class RowProjection {
  public:
@@ -33,7 +34,7 @@ class RowProjection {
     ways_.resize(J.cols(), P);
     u_.resize(J.cols());
     for (Eigen::Index k = 0; k < rows.count; ++k) {
-      JointVector way = column(rows.g, k);  // (JᵀB⁻¹J + I)⁻¹ g
+      JointVector way = column(rows.g, k);  // H⁻¹g = g − Jᵀ(B + JJᵀ)⁻¹J g.
       if (regular) {
         const JointVector lost = transpose_times(J, cholesky.solve(product(J, way)));
         way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - lost.coeff(i); });
@@ -43,8 +44,8 @@ class RowProjection {
     }
   }
 
-  /// The motion for a desired one, exact to round-off where `solved` is set; otherwise the rows leave no motion, or as
-  /// good as none.
+  /// The nearest motion. If `solved` is set, the result is exact up to round-off. Otherwise the rows admit no motion,
+  /// or almost none.
   [[nodiscard]] JointVector operator()(const JointVector& desired) noexcept {
     u_ = desired;
     count_ = 0;
@@ -60,7 +61,7 @@ class RowProjection {
     return u_;
   }
 
-  /// Bit k is set where row k bounds the motion.
+  /// Bit k is set if row k is active.
   [[nodiscard]] std::uint32_t active() const noexcept {
     std::uint32_t bits = 0;
     for (Eigen::Index j = 0; j < count_; ++j) bits |= std::uint32_t(1) << active_[j];
@@ -70,14 +71,17 @@ class RowProjection {
   bool solved = false;
 
  private:
-  static constexpr int kChanges = 3;  ///< At most, for each row.
+  /// Largest number of changes of the active set for each row.
+  static constexpr int kChanges = 3;
   static constexpr int kMost = P < kCapacity<N> ? P : kCapacity<N>;
   static constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
-  /// A row counts as one of those that are active where less than this is left of it without them.
+  /// The row to be added counts as linearly dependent on the active rows if the independent part of gᵀH⁻¹g is below
+  /// this fraction of gᵀH⁻¹g.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
   using Share = Vector<Eigen::Dynamic, Scalar>;
 
-  /// The row that is exceeded most, in the measure of the problem. False where none is.
+  /// Sets met_ to the row whose violation is largest in the norm of H. Returns false if no row is violated beyond
+  /// round-off.
   [[nodiscard]] bool find() noexcept {
     Scalar worst(0);
     for (Eigen::Index k = 0; k < rows_.count; ++k) {
@@ -93,10 +97,11 @@ class RowProjection {
     return worst > Scalar(0);
   }
 
-  /// Brings u toward the row that is met, until it is there or an active one's multiplier is zero: then that is let go,
-  /// and the row is still to be met. False where there is no way.
+  /// Moves u toward row met_ until u satisfies the row, or until the multiplier of an active row decreases to zero. In
+  /// the first case, row met_ becomes active. In the second case, the active row is released, and `meets` is set, since
+  /// row met_ is still violated. Returns false if no motion satisfies the row.
   [[nodiscard]] bool step(bool& meets) noexcept {
-    Share share(count_);  // What each active row's multiplier loses, for one that the met row's gains.
+    Share share(count_);  // Decrease of each active row's multiplier per increase of the multiplier of row met_.
     if (!find_shares(share)) return false;
     JointVector way = column(ways_, met_);
     for (Eigen::Index j = 0; j < count_; ++j) {
@@ -142,7 +147,8 @@ class RowProjection {
     }
   }
 
-  /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, with G the active rows and g that which is met.
+  /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, where the columns of G are the active rows and g is row met_. Returns false if the
+  /// active rows are dependent.
   [[nodiscard]] bool find_shares(Share& share) noexcept {
     if (count_ == 0) return true;
     Matrix<Eigen::Dynamic, Eigen::Dynamic, Scalar> gram(count_, count_);
@@ -166,15 +172,15 @@ class RowProjection {
   }
 
   Rows<N, P, Scalar> rows_;
-  Matrix<N, P, Scalar> ways_;
+  Matrix<N, P, Scalar> ways_;  ///< Column k is H⁻¹g_k.
   JointVector u_;
-  Eigen::Index met_ = 0;
-  Scalar multiplier_ = Scalar(0);  ///< Of the row that is met.
+  Eigen::Index met_ = 0;           ///< Violated row that becomes active next.
+  Scalar multiplier_ = Scalar(0);  ///< Multiplier of row met_.
   Eigen::Index count_ = 0;
   Eigen::Index active_[kMost];
   Vector<P, Scalar> sizes_;             ///< gain(k, k)
-  Vector<kMost, Scalar> by_met_;        ///< gain() of the active rows and the row that is met.
-  Matrix<kMost, kMost, Scalar> gains_;  ///< Of the active rows, the lower triangle.
+  Vector<kMost, Scalar> by_met_;        ///< gain() of the active rows with row met_.
+  Matrix<kMost, kMost, Scalar> gains_;  ///< gain() of the active rows, lower triangle.
   Scalar multipliers_[kMost];
 };
 

@@ -9,33 +9,33 @@
 
 namespace fpbm {
 
-/// Bounds g_k · u ≤ b_k on joint motions, beside those of a box: count of them, P at most.
+/// Bounds g_k·u ≤ b_k on joint motions, in addition to a box: count rows, at most P.
 template <int N, int P, typename Scalar = double>
 struct Rows {
   Matrix<N, P, Scalar> g;  ///< Column k is g_k.
   Vector<P, Scalar> b;
   Eigen::Index count = 0;
 
-  /// How far a motion exceeds row k, below zero where it keeps it.
+  /// g_k·u − b_k, by which a motion violates row k. Not positive if the motion satisfies the row.
   [[nodiscard]] Scalar excess(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept { return along(k, u) - b(k); }
 
-  /// g_k · u
+  /// g_k·u
   [[nodiscard]] Scalar along(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
     return sum_over(u, [&](Eigen::Index i) { return g.coeff(i, k) * u.coeff(i); });
   }
 
-  /// g_k · (to − from), without the cancellation of two products.
+  /// g_k·(to − from), without the cancellation of two products.
   [[nodiscard]] Scalar change(Eigen::Index k, const Vector<N, Scalar>& from,
                               const Vector<N, Scalar>& to) const noexcept {
     return sum_over(to, [&](Eigen::Index i) { return g.coeff(i, k) * (to.coeff(i) - from.coeff(i)); });
   }
 
-  /// |g_k| · |u|: the round-off error of g_k · u is a share of it.
+  /// Σ |g_ki u_i|, to which the round-off error of g_k·u is proportional.
   [[nodiscard]] Scalar magnitude(Eigen::Index k, const Vector<N, Scalar>& u) const noexcept {
     return sum_over(u, [&](Eigen::Index i) { return std::abs(g.coeff(i, k) * u.coeff(i)); });
   }
 
-  /// Whether a motion keeps all rows.
+  /// Whether a motion satisfies all rows.
   [[nodiscard]] bool admit(const Vector<N, Scalar>& u) const noexcept {
     for (Eigen::Index k = 0; k < count; ++k) {
       if (!(excess(k, u) <= Scalar(0))) return false;
@@ -43,7 +43,8 @@ struct Rows {
     return true;
   }
 
-  /// How far from a motion that keeps them, to round-off, one may go toward another, 1 for all the way.
+  /// Largest fraction, at most 1, of the step between two motions that the rows admit. The motion `from` satisfies the
+  /// rows up to round-off.
   [[nodiscard]] Scalar share(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
     constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
     Scalar share(1);
@@ -56,7 +57,7 @@ struct Rows {
     return share;
   }
 
-  /// A motion in a box that keeps the rows, or nearly, near to a given one: the same where that keeps them.
+  /// A motion in a box that satisfies the rows, or almost, near u. If u satisfies the rows, the result is u.
   [[nodiscard]] Vector<N, Scalar> near(Vector<N, Scalar> u, const Box<N, Scalar>& box) const noexcept {
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
@@ -76,7 +77,7 @@ struct Rows {
     return u;
   }
 
-  /// The rows, widened as far as a motion needs.
+  /// The rows, with each b_k increased as far as u needs.
   [[nodiscard]] Rows widened(const Vector<N, Scalar>& u) const noexcept {
     Rows wider = *this;
     for (Eigen::Index k = 0; k < count; ++k) wider.b(k) += std::max(excess(k, u), Scalar(0));
@@ -84,7 +85,7 @@ struct Rows {
   }
 };
 
-/// None.
+/// No rows.
 template <int N, typename Scalar>
 struct Rows<N, 0, Scalar> {
   [[nodiscard]] static bool admit(const Vector<N, Scalar>&) noexcept { return true; }

@@ -15,25 +15,26 @@
 
 namespace fpbm {
 
-/// Saturation in the null space (after Flacco, De Luca and Khatib 2012, 2015): the joint motion u within a box that
-/// does as much as possible of the desired one,
+/// Saturation in the null space (Flacco, De Luca and Khatib 2012, 2015; docs/limits.md, Saturation in the null space):
+/// the joint motion u within a box that realises as much as possible of a desired motion,
 ///
-///   J u = J rest + s J (desired − rest),   s ≤ 1 as large as can be,
+///   J u = J rest + s J (desired − rest),   s ≤ 1 as large as possible,
 ///
-/// where rest is a motion within the box that slows the arm down. Starts from u = rest, s = 0 and raises s. A joint
-/// that meets its bound stays there while the others take over, by the null-space motion of least norm in each joint's
-/// unit. Where they cannot, a joint that blocks the task is released again (a step of the simplex method); where none
-/// does, s is the largest possible, as a linear program finds it. One pass per bound met, 3n at most (random problems
-/// take up to 1.7n). u lies in the box and on the task's line after any number of passes.
+/// where `rest` is a braking motion within the box. The algorithm starts from u = rest and s = 0, and raises s. If a
+/// joint meets its bound, the joint is held there, and other joints compensate by the null-space motion of least norm
+/// in the units of the joints. If the null space has no freedom for this, a joint whose bound blocks the task is
+/// released, as in the simplex method. If no joint can be released, s is the optimum of a linear program. Each bound
+/// that is met costs one pass. There are at most 3n passes (random problems need up to 1.7n). After every pass, u is in
+/// the box and on the line of the task.
 ///
-/// Further rows g·u ≤ b, up to P, are as many joints more: each moves by g·u where the others move by u, and has its
-/// row gᵀZ of the basis. A row that rest exceeds is widened as far as that.
+/// Further rows g·u ≤ b, at most P, are treated as additional joints: the motion of row k is g_k·u, and its row of the
+/// basis is g_kᵀZ. If `rest` violates a row, the bound of this row is increased so far that `rest` satisfies the row.
 template <int M, int N, typename Scalar, int P = 0>
 class NullSpaceSaturation {
  public:
   using JointVector = Vector<N, Scalar>;
 
-  /// unit: one unit of each joint's motion, such as its bound on acceleration.
+  /// unit: unit of each joint's motion, for example its bound on acceleration.
   NullSpaceSaturation(const Matrix<M, N, Scalar>& J, const JointVector& unit,
                       const Rows<N, P, Scalar>& rows = {}) noexcept
       : unit_(unit), rows_(rows) {
@@ -144,13 +145,14 @@ class NullSpaceSaturation {
   using Basis = Eigen::Matrix<Scalar, kAll, Eigen::Dynamic, Eigen::ColMajor | Eigen::DontAlign, kMost + P, kMost>;
   using Held = HeldJoints<kMost, kMost + P, Scalar>;
 
-  /// Share of |v|² from which on v has lost a few digits at most.
+  /// Fraction of the largest possible |v|² above which v has lost at most a few digits.
   static constexpr Scalar kRegular = Scalar(1e-4);
-  static constexpr int kPasses = 3;  ///< At most, for each joint.
-  /// A joint is still where its share of the motion is round-off.
+  static constexpr int kPasses = 3;  ///< Largest number of passes for each joint or row.
+  /// Fraction of the largest rate up to which the rate of a joint is round-off error. This joint does not move.
   static constexpr Scalar kStill = Scalar(16) * std::numeric_limits<Scalar>::epsilon();
 
-  /// Z of one self-motion v, away from singular postures: v in each joint's unit, at length 1. False elsewhere.
+  /// Z for an arm with one self-motion v, away from singular postures: v in the units of the joints, with length 1.
+  /// Otherwise, returns false.
   [[nodiscard]] bool set_self_motion([[maybe_unused]] const Matrix<M, N, Scalar>& J,
                                      [[maybe_unused]] Eigen::Index rows) noexcept {
     if constexpr (kHasSelfMotion<M, N>) {
@@ -168,7 +170,8 @@ class NullSpaceSaturation {
     return false;
   }
 
-  /// Appends the rows gᵀZ of the further bounds to the n rows of the joints, each scaled to length 1.
+  /// Appends the rows gᵀZ of the further bounds to the n rows of the joints. Scales each g to length 1 in the units of
+  /// the joints.
   void add_rows([[maybe_unused]] Eigen::Index n) noexcept {
     if constexpr (P > 0) {
       for (Eigen::Index k = 0; k < rows_.count; ++k) {
@@ -190,9 +193,9 @@ class NullSpaceSaturation {
     if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
   }
 
-  Basis Z_;  ///< Basis of the null space, in each joint's unit.
+  Basis Z_;  ///< Basis of the null space in the units of the joints.
   JointVector unit_;
-  Rows<N, P, Scalar> rows_;  ///< Each in a unit of its own.
+  Rows<N, P, Scalar> rows_;  ///< Scaled to length 1.
   Held held_;
 };
 

@@ -13,14 +13,15 @@
 
 namespace fpbm {
 
-/// Saturation of a desired motion u* level by level, each in the null space of the levels above:
+/// Saturates a desired motion u* level by level, each level in the null space of the higher levels (docs/limits.md,
+/// Several tasks in strict priority):
 ///
 ///   v = u* − u_{k−1},   p = Z Zᵀ v,   d = u_{k−1} + p + Z (J_k Z)⁺ J_k (v − p),   Z = Z_{k−1}
 ///   u_k = u_{k−1} + s_k (d − u_{k−1}) + Z_k γ  within the bounds,   s_k ∈ [0, 1] as large as possible.
 ///
-/// u* stands for the commands, b_k = J_k u*, and for the preferred null-space motion. J_k d = J_k u*. If every higher
-/// level has the scale 1, d = u*. The pseudoinverse is damped in lost directions (ScaledLevel, DampedLevel,
-/// kLevelRadius). The first level is that of NullSpaceSaturation: J u* and the null-space motion of u* together.
+/// u* determines the commands b_k = J_k u* and the preferred null-space motion. J_k d = J_k u*. If the scale of every
+/// higher level is 1, d = u*. In lost directions, the pseudoinverse is damped (ScaledLevel, DampedLevel, kLevelRadius).
+/// The first level is resolved by NullSpaceSaturation: J u* together with the null-space motion of u*.
 template <int N, typename Scalar, int P, typename... Matrices>
 class SaturationByLevel {
  public:
@@ -28,7 +29,7 @@ class SaturationByLevel {
   static constexpr int kLevels = static_cast<int>(sizeof...(Matrices));
   using Result = SaturatedLevels<N, Scalar, kLevels>;
 
-  /// unit: one unit of each joint's motion, such as its bound on acceleration.
+  /// unit: unit of each joint's motion, for example its bound on acceleration.
   SaturationByLevel(const TaskLevels<N, Scalar, Matrices...>& levels, const JointVector& unit,
                     const Rows<N, P, Scalar>& rows = {}) noexcept
       : levels_(levels),
@@ -37,16 +38,17 @@ class SaturationByLevel {
         above_(space_of(levels.first(), unit)),
         first_(first_saturation(levels.first(), above_, unit, rows)) {}
 
-  /// Resolves the first level from rest, a motion within the bounds.
+  /// Resolves the first level. rest: motion within the bounds from which the level starts.
   [[nodiscard]] Result operator()(const Box<N, Scalar>& box, const JointVector& rest,
                                   const JointVector& desired) noexcept {
     Result result{first_(box, rest, desired), {}};
-    result.scales.fill(Scalar(1));  // Of a level that is left out, or that the higher levels determine.
+    // Scale of a level that is left out, or that the higher levels determine.
+    result.scales.fill(Scalar(1));
     result.scales[0] = result.scale;
     return result;
   }
 
-  /// Resolves the levels below from the motion of the first. No J_k u of a higher level changes.
+  /// Resolves the lower levels, starting from the motion of the first level. J_k u of a higher level does not change.
   void resolve_lower(const Box<N, Scalar>& box, const JointVector& desired, Result& result) const noexcept {
     LevelSpace<N, Scalar> space = above_;
     bool whole = result.scale == Scalar(1);
@@ -73,7 +75,7 @@ class SaturationByLevel {
   }
 
  private:
-  /// Of the first level. One level alone is saturated as a task without levels.
+  /// Type of the saturation of the first level. One level alone is saturated as a task without levels.
   using FirstRows = std::tuple_element_t<0, std::tuple<Matrices...>>;
   static constexpr int kFirst = kLevels == 1 ? FirstRows::RowsAtCompileTime : Eigen::Dynamic;
   using First = NullSpaceSaturation<kFirst, N, Scalar, P>;
@@ -119,7 +121,7 @@ class SaturationByLevel {
   const TaskLevels<N, Scalar, Matrices...>& levels_;
   JointVector unit_;
   Rows<N, P, Scalar> rows_;
-  LevelSpace<N, Scalar> above_;  ///< Of the first level.
+  LevelSpace<N, Scalar> above_;  ///< Null space of the first level.
   First first_;
 };
 
@@ -137,7 +139,7 @@ void resolve_lower(const SaturationByLevel<N, Scalar, P, Matrices...>& saturatio
   saturation.resolve_lower(box, desired, found);
 }
 
-/// The part of a motion that changes no level.
+/// Part of a motion that changes no level.
 template <int N, typename Scalar, typename... Matrices>
 [[nodiscard]] Vector<N, Scalar> null_space_motion(const TaskLevels<N, Scalar, Matrices...>& levels,
                                                   const Vector<N, Scalar>& v) noexcept {

@@ -10,33 +10,36 @@
 
 namespace fpbm {
 
-/// Where joints are over some time: displaced from where they were by s·way + t·tick + rest, with s and t rising from 0
-/// to 1, and rest anywhere between low and high.
+/// Bounds on the joint displacements during a motion: at any time, the displacement from the start is
+/// s·way + t·tick + rest [rad] or [m]. s and t increase from 0 to 1, and each entry of `rest` is between low and high.
 template <int N, typename Scalar = double>
 struct Sweep {
-  Vector<N, Scalar> way;
-  Vector<N, Scalar> tick;
+  Vector<N, Scalar> way;   ///< Displacement at the constant velocity after the ramp.
+  Vector<N, Scalar> tick;  ///< Correction of `way` for the last tick and the ramp.
   Vector<N, Scalar> low;   ///< ≤ 0
   Vector<N, Scalar> high;  ///< ≥ 0
-  /// Velocities at the start. s·way + t·tick is a sum of multiples of these and of −tick that are not negative.
+  /// Velocities at the start [rad/s]. s·way + t·tick is a combination of `begun` and −tick with non-negative
+  /// coefficients.
   Vector<N, Scalar> begun;
 };
 
-/// A motion to rest from a viable state, known to its end: the arm's last resort.
+/// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance.md, Algorithm, Stopping
+/// trajectory).
 ///
-/// Joints let go of their accelerations, then brake in proportion to one another, so that the arm stays close to the
-/// straight line in joint space that it is on, in the time that the slowest of them needs. A joint that has to stop
-/// sooner, to keep its bounds, takes its own quickest stop. All states on the way are viable.
+/// Two phases: in the ramp, all joints reduce their accelerations to zero. Then all joints brake in proportion, with
+/// the profile of the slowest joint. The path in joint space stays close to the straight line along the present
+/// velocity. A joint that would violate its bounds follows its own shortest stop. All states of the trajectory are
+/// viable.
 template <Level kLevel, int N, typename Scalar = double>
 class StopPlan {
  public:
   using JointVector = Vector<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
 
-  /// At rest.
+  /// Plan of an arm at rest.
   explicit StopPlan(Eigen::Index dof) : last_(JointVector::Zero(dof)), velocity_(JointVector::Zero(dof)) {}
 
-  /// The plan from a viable state after a tick of acceleration last.
+  /// Plan from a viable state after a tick with the acceleration `last`.
   StopPlan(const JointLimits& limits, const State<N, Scalar>& state, const JointVector& last) noexcept
       : last_(last), velocity_(state.qd) {
     const Scalar h = limits.tick();
@@ -57,12 +60,13 @@ class StopPlan {
     }
   }
 
-  /// Of an arm at rest.
+  /// Displacements of an arm at rest.
   [[nodiscard]] Sweep<N, Scalar> sweep() const noexcept {
     return {velocity_, velocity_, velocity_, velocity_, velocity_};
   }
 
-  /// The joints' places over a tick that leads to the plan's start, and over the plan.
+  /// Displacement bounds from the state `before` the last tick until rest. start: state after the last tick, at the
+  /// start of the plan.
   [[nodiscard]] Sweep<N, Scalar> sweep(const JointLimits& limits, const State<N, Scalar>& before,
                                        const State<N, Scalar>& start) const noexcept {
     using std::abs;
@@ -71,7 +75,9 @@ class StopPlan {
     const JointVector zero = JointVector::Zero(n);
     Sweep<N, Scalar> sweep{zero, zero, zero, zero, zero};
     const Scalar ticks = Scalar(1) + profile_.way(kLevel);
-    // The tick's way less that at the velocity after letting go; and what is lost to that velocity while letting go.
+    // Deficit of the displacement, divided by h² last_, compared with the constant velocity after the ramp:
+    // gained() + 1/2 in the last tick (gained() at velocity level, where the velocity at the end of a tick counts), and
+    // late() in the ramp.
     const Scalar lost = gained() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5)) + late();
     for (Eigen::Index i = 0; i < n; ++i) {
       if (!is_own(i)) {
@@ -82,6 +88,8 @@ class StopPlan {
       }
       const auto [low, high] = own_reach(limits, i, start.qd(i));
       const Scalar tick = start.q(i) - before.q(i);
+      // Within a tick of constant acceleration a, the position leaves the interval between its end points by h²|a|/8 at
+      // most.
       const Scalar between = kLevel == Level::kVelocity ? Scalar(0) : h * h / Scalar(8) * abs(last_(i));
       sweep.low(i) = std::min(tick, Scalar(0)) - between + low;
       sweep.high(i) = std::max(tick, Scalar(0)) + between + high;
@@ -89,7 +97,8 @@ class StopPlan {
     return sweep;
   }
 
-  /// Accelerations of its next tick, from the state it has come to; the plan goes on.
+  /// Accelerations of the next tick of the plan. state: state at the start of this tick. before: accelerations of the
+  /// last tick. Advances the plan by one tick.
   [[nodiscard]] JointVector next(const JointLimits& limits, const State<N, Scalar>& state,
                                  const JointVector& before) noexcept {
     const Scalar h = limits.tick();
@@ -102,17 +111,17 @@ class StopPlan {
       } else if (k_ + Scalar(1) < profile_.ticks()) {
         u(i) = -profile_.share(k_) * velocity_(i) / h;
       } else {
-        u(i) = -state.qd(i) / h;  // To rest, exactly.
+        u(i) = -state.qd(i) / h;  // Exactly to rest.
       }
     }
     k_ += Scalar(1);
     return u;
   }
 
-  /// Way of the whole plan for each unit of velocity, in ticks.
+  /// Stopping distance of the plan divided by h times the velocity after the ramp.
   [[nodiscard]] Scalar average() const noexcept { return profile_.way(kLevel); }
 
-  /// The same without rounding to whole ticks, about: a continuous function of the state.
+  /// average() without rounding to whole ticks, approximately: a continuous function of the state.
   [[nodiscard]] Scalar smooth_average(const JointLimits& limits) const noexcept {
     using std::abs;
     Scalar most(0);
@@ -127,7 +136,8 @@ class StopPlan {
     return profile_.wait + most;
   }
 
-  /// Ticks of an acceleration that a velocity gains before it can be let go, that of the tick included.
+  /// Change of the velocity due to an acceleration u of the next tick, until u has decreased to zero, divided by h u:
+  /// 1 for the tick itself, plus (r − 1)/2 for a ramp of r ticks. r is the largest A/(h J) of all joints, rounded up.
   [[nodiscard]] static Scalar latency(const JointLimits& limits) noexcept {
     using std::ceil;
     Scalar most(0);
@@ -138,24 +148,27 @@ class StopPlan {
     return Scalar(1) + std::max(most - Scalar(1), Scalar(0)) / Scalar(2);
   }
 
-  /// Ticks until rest.
+  /// Number of ticks until rest.
   [[nodiscard]] Scalar ticks_left() const noexcept { return std::max(profile_.ticks() - k_, Scalar(0)); }
 
  private:
   [[nodiscard]] bool is_own(Eigen::Index i) const noexcept { return (own_ >> i & 1U) != 0; }
 
-  /// Velocity that is gained while an acceleration is let go, over h times that: Σ 1 − (k + 1)/r for k < r.
+  /// Change of the velocity in the ramp, in which the acceleration a decreases to zero in r ticks, divided by h a: the
+  /// sum of 1 − (k + 1)/r over k < r, which is (r − 1)/2.
   [[nodiscard]] Scalar gained() const noexcept { return std::max(let_go_ - Scalar(1), Scalar(0)) / Scalar(2); }
 
-  /// What is missing in the way meanwhile, next to that at the velocity afterwards, over h² times the acceleration.
+  /// Deficit of the displacement in the ramp, compared with r ticks at the constant velocity after the ramp, divided by
+  /// h² a: (r − 1)(2r − 1)/12, or (r − 1)(r − 2)/6 at velocity level.
   [[nodiscard]] Scalar late() const noexcept {
     const Scalar r = std::max(let_go_, Scalar(1));
     return kLevel == Level::kVelocity ? std::max((r - Scalar(1)) * (r - Scalar(2)) / Scalar(6), Scalar(0))
                                       : (r - Scalar(1)) * (Scalar(2) * r - Scalar(1)) / Scalar(12);
   }
 
-  /// Whether joint i keeps its bounds in the common stop. That is no faster, and no farther, than one that coasts at
-  /// the greatest velocity until the deceleration is reached, and then keeps that to the end.
+  /// Whether joint i keeps its bounds in the synchronised stop. Sufficient condition: the joint keeps its bounds if it
+  /// coasts at its largest velocity until the full deceleration begins, and then brakes at the full deceleration. The
+  /// synchronised stop is neither faster nor longer.
   [[nodiscard]] bool keeps_bounds(const JointLimits& limits, Eigen::Index i,
                                   const State<N, Scalar>& start) const noexcept {
     using std::abs;
@@ -168,7 +181,7 @@ class StopPlan {
     return limits.allows_stop(i, start.q(i) + coasts * v, v, deceleration);
   }
 
-  /// Acceleration of the next tick on joint i's own quickest way to rest.
+  /// Acceleration of the next tick in the shortest stop of joint i alone.
   [[nodiscard]] static Scalar quickest(const JointLimits& limits, Eigen::Index i, const State<N, Scalar>& state,
                                        const JointVector& before) noexcept {
     const Scalar most = limits.bounds().acceleration(i);
@@ -178,7 +191,7 @@ class StopPlan {
     return std::clamp(joint.brake(state.qd(i), before(i)), low, high);
   }
 
-  /// Bounds on the displacement over joint i's own quickest stop.
+  /// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m].
   [[nodiscard]] Interval<Scalar> own_reach(const JointLimits& limits, Eigen::Index i, Scalar qd) const noexcept {
     using std::abs;
     const Scalar h = limits.tick();
@@ -187,7 +200,8 @@ class StopPlan {
       const Scalar way = abs(qd) * (abs(qd) / most + h) / Scalar(2);
       return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), way} : Interval<Scalar>{-way, Scalar(0)};
     }
-    // At no time faster than top, which is left for its quickest stop once the acceleration has been let go.
+    // Upper bound: the velocity never exceeds `top`. The joint moves at `top` until the acceleration is zero, and then
+    // makes the shortest stop from `top`.
     const Scalar jerk = limits.bounds().jerk(i);
     const Scalar lost = abs(last_(i)) / jerk;
     const Scalar top = abs(qd) + abs(last_(i)) * lost / Scalar(2);
@@ -197,12 +211,12 @@ class StopPlan {
     return {forth ? Scalar(0) : -way, back ? Scalar(0) : way};
   }
 
-  StopProfile<Scalar> profile_;
-  JointVector last_;           ///< Acceleration of the tick before the plan.
-  Scalar let_go_ = Scalar(0);  ///< Ticks in which it is let go: none where no jerk is bounded.
-  JointVector velocity_;       ///< Velocity afterwards.
-  JointBits own_ = 0;          ///< Bit i is set where joint i takes its own quickest stop.
-  Scalar k_ = Scalar(0);       ///< Ticks done.
+  StopProfile<Scalar> profile_;  ///< Of the synchronised stop.
+  JointVector last_;             ///< Acceleration of the tick before the plan.
+  Scalar let_go_ = Scalar(0);    ///< Length r of the ramp in ticks: 0 if no jerk is bounded.
+  JointVector velocity_;         ///< Velocity after the ramp.
+  JointBits own_ = 0;            ///< Bit i is set if joint i follows its own shortest stop.
+  Scalar k_ = Scalar(0);         ///< Number of completed ticks.
 };
 
 }  // namespace fpbm

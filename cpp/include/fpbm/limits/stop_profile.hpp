@@ -7,18 +7,19 @@
 
 namespace fpbm {
 
-/// Ticks in which a velocity v is taken away: `wait` without acceleration, then decelerations of b w_k, whose shares
-/// w_k rise and fall by 1/ramp a tick, as far as 1, in `brake` ticks.
+/// Profile of the ticks in which a joint stops from a velocity v: `wait` ticks without acceleration, then `brake` ticks
+/// with the decelerations b w_k. The weights w_k increase by 1/ramp per tick, are at most 1, and decrease by 1/ramp per
+/// tick at the end.
 ///
-/// The ticks are alike from both ends, so that the way is v times `wait` and half of `brake`; their shares add up to
-/// brake − ramp + 1, which makes b = v / (h (brake − ramp + 1)).
+/// The weights are symmetric in time, so the stopping distance is h v (wait + brake/2). The sum of the weights is
+/// brake − ramp + 1. Therefore b = v/(h (brake − ramp + 1)).
 template <typename Scalar>
 struct StopProfile {
   Scalar wait = Scalar(0);
   Scalar ramp = Scalar(1);
-  Scalar brake = Scalar(0);  ///< 0, or 2 ramp − 1 at least.
+  Scalar brake = Scalar(0);  ///< 0, or at least 2 ramp − 1.
 
-  /// The quickest for a velocity, within bounds on deceleration and jerk, in ticks of length h.
+  /// Shortest profile for a velocity, within bounds on deceleration and jerk, in ticks of length h.
   [[nodiscard]] static StopProfile quickest(Scalar velocity, Scalar deceleration, Scalar jerk, Scalar h) noexcept {
     using std::abs;
     using std::ceil;
@@ -30,19 +31,21 @@ struct StopProfile {
     return {Scalar(0), ramp, std::max(Scalar(2) * ramp, ramp + ceil(speed / (h * deceleration))) - Scalar(1)};
   }
 
-  /// One in which joints of both stop, each no harder than in its own.
+  /// Profile in which the joints of both profiles stop, each with no larger deceleration than in its own profile.
   [[nodiscard]] StopProfile together(const StopProfile& other) const noexcept {
     const Scalar longest = std::max(ramp, other.ramp);
-    const Scalar even = std::max(brake - ramp, other.brake - other.ramp);  // Must not fall: b depends on it.
+    // Must not decrease, since b depends on this difference.
+    const Scalar even = std::max(brake - ramp, other.brake - other.ramp);
     return {std::max(wait, other.wait), longest, longest + std::max(longest - Scalar(1), even)};
   }
 
-  /// Way for each unit of velocity, in ticks. At velocity level a tick moves by the velocity at its end.
+  /// Stopping distance divided by h v. At velocity level, the displacement in a tick is h times the velocity at its
+  /// end.
   [[nodiscard]] Scalar way(Level level) const noexcept {
     return wait + (level == Level::kVelocity ? std::max(brake - Scalar(1), Scalar(0)) : brake) / Scalar(2);
   }
 
-  /// Share of the velocity that tick k, from 0 on, takes away.
+  /// Fraction of the velocity that tick k = 0, 1, … removes.
   [[nodiscard]] Scalar share(Scalar k) const noexcept {
     const Scalar at = k - wait;
     if (!(Scalar(0) <= at && at < brake)) return Scalar(0);

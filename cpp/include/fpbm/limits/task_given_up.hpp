@@ -12,19 +12,25 @@
 
 namespace fpbm {
 
-/// What a task gives up for rows.
+/// Smallest change of a task that satisfies rows, and the possible contribution of null-space motion.
 template <int M, typename Scalar>
 struct GivenUp {
-  Vector<M, Scalar> change;  ///< δ, of the task.
-  Scalar self_motion;        ///< ‖N v‖² / ‖v‖²: how much of what the rows ask for, self-motion could do.
+  Vector<M, Scalar> change;  ///< δ, change of J u.
+  Scalar self_motion;        ///< ν = ‖N v‖²/‖v‖² in [0, 1].
 };
 
-/// The least change of a task by which a motion u comes within rows, with the joints that the task itself would use:
+/// Smallest change δ of a task with which a motion u satisfies rows, if the joints move by J⁺δ only:
 ///
-///   min ‖δ‖² over δ with g_k · (u + J⁺δ) ≤ b_k, where J⁺ = Jᵀ (JJᵀ + μI)⁻¹.
+///   min ‖δ‖²   where g_k·(u + J⁺δ) ≤ b_k,   J⁺ = Jᵀ(JJᵀ + μI)⁻¹.
 ///
-/// By Hildreth's method (C. Hildreth 1957), some rounds of it: a continuous function of all inputs. Of a surface ahead
-/// of the tip, δ is along the normal. v = Gᵀλ with the rows' multipliers λ, and N = I − J⁺J.
+/// If the rows belong to a surface ahead of the tip, δ is along the normal of the surface.
+///
+/// The multipliers λ_k of this problem also give the joint motion v = Σ λ_k g_k that the rows demand. With N = I − J⁺J,
+/// ν = ‖N v‖²/‖v‖² is the fraction of v that null-space motion can realise: 1 if v does not change the task, 0 if
+/// null-space motion contributes nothing. Limiter::beside() uses δ and ν.
+///
+/// Solved by a fixed number of rounds of Hildreth's method (C. Hildreth 1957), so that the result is a continuous
+/// function of all inputs.
 template <int M, int N, int P, typename Scalar>
 [[nodiscard]] GivenUp<M, Scalar> task_given_up(const Matrix<M, N, Scalar>& J, Scalar mu, const Rows<N, P, Scalar>& rows,
                                                const Vector<N, Scalar>& u) noexcept {
@@ -34,9 +40,9 @@ template <int M, int N, int P, typename Scalar>
   for (Eigen::Index i = 0; i < J.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
   if (cholesky.factor(gram) != Status::kOk) return {change, Scalar(0)};
-  std::array<Vector<M, Scalar>, P> normals;  // Of the rows, in the task's space.
+  std::array<Vector<M, Scalar>, P> normals;  // J⁺ᵀg_k, the gradient of row k by δ.
   Vector<P, Scalar> squares;
-  Vector<P, Scalar> excess;  // Of u over the rows.
+  Vector<P, Scalar> excess;  // g_k·u − b_k
   Vector<P, Scalar> multipliers;
   for (Eigen::Index k = 0; k < rows.count; ++k) {
     Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
@@ -62,7 +68,7 @@ template <int M, int N, int P, typename Scalar>
   }
   const Scalar square = squared_norm(asked);
   if (!(square > Scalar(0))) return {change, Scalar(0)};
-  asked = sum_of(asked, transpose_times(J, change));  // N v, as change is −(JJᵀ + μI)⁻¹ J v.
+  asked = sum_of(asked, transpose_times(J, change));  // N v, since δ = −(JJᵀ + μI)⁻¹J v.
   return {change, squared_norm(asked) / square};
 }
 

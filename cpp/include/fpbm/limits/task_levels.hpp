@@ -12,21 +12,22 @@
 
 namespace fpbm {
 
-/// Jacobians of task levels in the order of their priority: J₁ (M₁ × n) … J_K (M_K × n), all rows in metres. Each is a
-/// Matrix<M, N, Scalar>, or a DiagonalLevel below the first.
+/// Jacobians of task levels in the order of priority: J₁ (M₁ × n) … J_K (M_K × n), all rows in metres. Each Jacobian is
+/// a Matrix<M, N, Scalar>, or a DiagonalLevel below the first level.
 template <int N, typename Scalar, typename... Matrices>
 class TaskLevels {
  public:
   explicit TaskLevels(const Matrices&... J) noexcept : J_(J...) { enabled_.fill(true); }
-  /// enabled: levels that are not enabled, or have no rows, are left out. The first one is enabled.
+  /// enabled: whether each level is enabled. Levels that are not enabled, or have no rows, are left out. The first
+  /// level must be enabled.
   explicit TaskLevels(const std::array<bool, sizeof...(Matrices)>& enabled, const Matrices&... J) noexcept
       : enabled_(enabled), J_(J...) {}
 
   [[nodiscard]] const auto& first() const noexcept { return std::get<0>(J_); }
-  /// Leaves out all levels below the first.
+  /// Leaves out all levels below the first level.
   void disable_lower() noexcept { enabled_.fill(false); }
 
-  /// Calls f(k, J_k) for the levels k = 1 … K − 1 below the first that are enabled.
+  /// Calls f(k, J_k) for the enabled levels k = 1 … K − 1 below the first level.
   template <typename F>
   void each_lower(F&& f) const noexcept {
     each_from(f, std::make_index_sequence<sizeof...(Matrices) - 1>{});
@@ -42,10 +43,10 @@ class TaskLevels {
   std::tuple<Matrices...> J_;
 };
 
-/// A joint motion within a box that resolves task levels.
+/// Joint motion within a box that resolves task levels.
 template <int N, typename Scalar, int K>
 struct SaturatedLevels : Saturated<N, Scalar> {
-  std::array<Scalar, K> scales;  ///< s_k of each level. The first is scale.
+  std::array<Scalar, K> scales;  ///< Task scale s_k of each level. scales[0] is scale.
 };
 
 template <int N, typename Scalar, typename... Matrices>
@@ -56,7 +57,7 @@ template <int N, typename Scalar, typename... Matrices>
 template <int N, typename Scalar, typename... Matrices>
 inline constexpr bool kHasLower<TaskLevels<N, Scalar, Matrices...>> = sizeof...(Matrices) > 1;
 
-/// The levels without those below the first.
+/// The first level alone.
 template <int N, typename Scalar, typename... Matrices>
 [[nodiscard]] auto only_first(TaskLevels<N, Scalar, Matrices...> levels) noexcept {
   levels.disable_lower();

@@ -7,7 +7,8 @@
 
 namespace fpbm {
 
-/// The motions of a tick of some accelerations: these, or the velocities at its end at velocity level.
+/// Motions of a tick with the given accelerations: the accelerations, or the velocities at the end of the tick at
+/// velocity level.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> motions(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qd,
                                         const Vector<N, Scalar>& accelerations) noexcept {
@@ -18,8 +19,9 @@ template <Level kLevel, int N, typename Scalar>
   }
 }
 
-/// At velocity level, the share of a change of velocities that leaves time to let the accelerations go before its end:
-/// the same for all joints, so that the change keeps its direction. At acceleration level the goal itself.
+/// At velocity level, reduces the change from qd to `goal` so that the accelerations have time to decrease to zero
+/// before the end of the change. The fraction is the same for all joints, so the change keeps its direction. At
+/// acceleration level, returns `goal`.
 template <Level kLevel, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> approach(const Limits<kLevel, N, Scalar>& limits, const Vector<N, Scalar>& qd,
                                          const Vector<N, Scalar>& goal) noexcept {

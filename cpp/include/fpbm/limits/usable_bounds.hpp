@@ -10,16 +10,17 @@
 
 namespace fpbm {
 
-/// Bounds on a joint as a loop of ticks of length h uses them. Throws std::invalid_argument naming the joint where they
-/// are none.
+/// Bounds of joint i as a loop of ticks of length h uses them. Throws std::invalid_argument, with the joint and the
+/// value, if the bounds are invalid.
 ///
-/// Where the velocity is bounded toward an end, the ends become the places where that bound is zero. A joint that
-/// cannot brake along that bound gets one that is zero at the same place with the same slope, and lies below it.
+/// If the joint has an envelope, the ends of the range become the positions at which the envelope is zero. If the joint
+/// cannot brake along the envelope, a lower envelope with the same zero and the same slope there replaces the envelope.
 ///
-/// At velocity level a missing acceleration is the one that changes the velocity at once. A velocity or an acceleration
-/// a thousand times what a tick can use is cut down to that, since squares of DBL_MAX overflow: no joint moves farther
-/// than its range in a tick, or changes its velocity by more than twice the largest. A jerk that takes the acceleration
-/// from one bound to the other in a tick is none.
+/// At velocity level, a missing bound on acceleration becomes the acceleration that changes the velocity from one bound
+/// to the other in a tick. A bound on velocity or acceleration is reduced to 1024 times the largest value that a tick
+/// can use, because squares of DBL_MAX overflow. In a tick, no joint moves farther than its range, or changes its
+/// velocity by more than twice the velocity bound. A bound on jerk that admits the change from one acceleration bound
+/// to the other in a tick is removed.
 template <Level kLevel, typename Scalar>
 [[nodiscard]] JointBounds<Scalar> usable_bounds(Eigen::Index i, JointBounds<Scalar> bounds, Scalar tick) {
   const auto require = [i](bool good, const char* name, Scalar value, const char* what) {

@@ -8,17 +8,18 @@
 
 namespace fpbm {
 
-/// Bound on a joint's velocity toward one end of its range, −c + √(2d (end − q)) with an offset c and a deceleration d,
-/// in coordinates that grow toward that end. It is zero at r = end − c²/2d.
+/// Braking envelope: bound on a joint's velocity toward one end of its range, −c + √(2d (end − q)) with an offset c and
+/// a deceleration d, in coordinates that increase toward this end. The envelope is zero at r = end − c²/2d
+/// (docs/limits.md, Position, velocity and acceleration).
 ///
-/// With a small offset it is the speed from which the joint can still stop before r. With a maker's numbers it is a
-/// bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
+/// With a small offset, the envelope is the velocity from which the joint can still stop before r. An envelope of a
+/// manufacturer is a bound on velocity that depends on position (Franka's "−0.30 + √(12 (2.75010 − q))").
 ///
-/// In this form, (w + c)² ≤ 2d (end − q) is w (w/d + 2c/d) ≤ 2 (r − q): r − q keeps its digits near r, and no number
-/// overflows where d is huge.
+/// The code uses (w + c)² ≤ 2d (end − q) in the form w (w/d + 2c/d) ≤ 2 (r − q): r − q keeps its digits near r, and no
+/// number overflows if d is very large.
 template <Level kLevel, typename Scalar>
 struct VelocityEnvelope {
-  Scalar rest;      ///< r, beyond which the joint does not go [rad] or [m]; infinite where there is no end.
+  Scalar rest;      ///< r, largest admissible position [rad] or [m]; infinite if there is no end.
   Scalar delay;     ///< c/d [s]
   Scalar softness;  ///< 1/d [s²/rad] or [s²/m]
 
@@ -26,10 +27,11 @@ struct VelocityEnvelope {
     return q <= rest && (qd <= Scalar(0) || qd * (qd * softness + Scalar(2) * delay) <= Scalar(2) * (rest - q));
   }
 
-  /// Whether it allows all of a stop from a velocity v ≥ 0 at a constant deceleration b.
+  /// Whether the envelope admits the whole stop from a velocity v ≥ 0 at a constant deceleration b.
   ///
-  /// With e = 2 (r − q) at the stop's end, v (v/d + 2c/d) ≤ 2 (r − q) is v² (1/b − 1/d) − 2 v c/d + e ≥ 0 all the way:
-  /// at its start, and where the left side is least, at v = (c/d) / (1/b − 1/d), if the stop comes by there.
+  /// With e = 2 (r − q) at the end of the stop, v (v/d + 2c/d) ≤ 2 (r − q) is v² (1/b − 1/d) − 2 v c/d + e ≥ 0. This
+  /// holds for all velocities of the stop if it holds at the start of the stop and at the minimum of the left side,
+  /// v = (c/d)/(1/b − 1/d), if the stop passes this velocity.
   [[nodiscard]] bool allows_stop(Scalar q, Scalar v, Scalar b) const noexcept {
     if (!(v > Scalar(0))) return q <= rest;
     const Scalar left = Scalar(2) * (rest - q) - v * v / b;  // e
@@ -37,11 +39,12 @@ struct VelocityEnvelope {
     return left >= Scalar(0) && allows(q, v) && (!(v * bend > delay) || left * bend >= delay * delay);
   }
 
-  /// Largest velocity w⁺ after a tick of length h that the envelope allows at the position q⁺ reached by then: the root
-  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level.
+  /// Largest velocity w⁺ after a tick of length h that the envelope admits at the position q⁺ after the tick: the root
+  /// of w⁺ (w⁺/d + 2c/d) = 2 (r − q⁺), where q⁺ = q + h (w + w⁺)/2, or q + h w⁺ at velocity level (docs/limits.md,
+  /// Position, velocity and acceleration).
   ///
-  /// Its mirror image where that is negative, beyond r: there the joint has to return at the speed from which it can
-  /// still stop at r. Not a number where there is no end.
+  /// Beyond r, the mirrored law applies: w⁺ is negative, and −w⁺ is the velocity from which the joint can still stop at
+  /// r. NaN if there is no end.
   [[nodiscard]] Scalar furthest(Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
     using std::abs;
     using std::sqrt;
@@ -54,15 +57,16 @@ struct VelocityEnvelope {
     return way / (sqrt(late * late + abs(way) * softness) + late);
   }
 
-  /// Greatest q̇²/2d + q̇ c/d + q − r, which the envelope keeps below 0, of a stop with jerk −J.
+  /// Largest G = q̇²/2d + q̇ c/d + q − r of a stop with the jerk −J (docs/limits.md, Bounds on jerk). G ≤ 0 within the
+  /// envelope.
   ///
-  /// from: a state's q − r, q̇ and acceleration. The greatest one is where the acceleration has come to −b = −d q̇/(q̇ +
-  /// c): found by iteration, which contracts where J ≥ d²/c, and whose error counts in second order.
+  /// from: q − r, q̇ and the acceleration of a state. G is largest at the acceleration −b = −d q̇/(q̇ + c). b is found
+  /// by iteration, which contracts if J ≥ d²/c. An error of b changes G in second order only.
   [[nodiscard]] Scalar excess(Scalar jerk, const AxisState<Scalar>& from) const noexcept {
     const auto value = [this](const AxisState<Scalar>& at) {
       return at.v > Scalar(0) ? at.q + at.v * (delay + at.v * softness / Scalar(2)) : at.q;
     };
-    const Scalar until = from.a / jerk;  // No acceleration is left.
+    const Scalar until = from.a / jerk;  // Time until the acceleration is zero.
     const Scalar top = from.v + from.a * until / Scalar(2);
     Scalar v = top;
     Scalar b = Scalar(0);
@@ -74,7 +78,7 @@ struct VelocityEnvelope {
   }
 };
 
-/// Envelopes of all joints toward one end of their ranges, in coordinates that grow toward it.
+/// Envelopes of all joints toward one end of their ranges, in coordinates that increase toward this end.
 template <Level kLevel, int N, typename Scalar>
 class VelocityEnvelopes {
  public:
@@ -86,7 +90,7 @@ class VelocityEnvelopes {
     return {rest_.coeff(i), delay_.coeff(i), softness_.coeff(i)};
   }
 
-  /// delay: c/d [s]. Infinite d: as hard as need be.
+  /// delay: c/d [s]. Infinite deceleration: the deceleration is not limited.
   void set(Eigen::Index i, Scalar rest, Scalar delay, Scalar deceleration) noexcept {
     rest_(i) = rest;
     delay_(i) = delay;
@@ -96,7 +100,7 @@ class VelocityEnvelopes {
  private:
   using JointVector = Vector<N, Scalar>;
 
-  // A row for each number, so that vector code computes several joints at once.
+  // A vector for each member, so that the compiler vectorises over the joints.
   JointVector rest_;
   JointVector delay_;
   JointVector softness_;

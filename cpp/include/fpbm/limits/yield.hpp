@@ -12,12 +12,14 @@
 
 namespace fpbm {
 
-/// How free the direction b of a task is, in [0, 1], where u keeps the direction and `leaving` does not:
+/// Freedom f of the direction b of a task, from 0 (blocked) to 1, where the motion u keeps this direction and the
+/// motion `leaving` does not (docs/limits.md, Saturation in the null space):
 ///
 ///   min((J u · b)/(0.3 J leaving · b), 1) min((σ_b/σ₀)², 1),    σ_b = ‖Jᵀb‖/(‖J‖‖b‖)
 ///
-/// The first factor compares what both motions give of the task: if the demand is large, both give little, and u gives
-/// a good share of `leaving`. σ_b is small where the posture loses the direction; there both give little as well.
+/// The first factor compares the parts of the task that both motions realise. If only the demand is large, both parts
+/// are small, but u realises a large fraction of the part of `leaving`. If the posture loses the direction b, both
+/// parts are small too; there, the second factor is small.
 template <int M, int N, typename Scalar>
 [[nodiscard]] Scalar freedom(const Matrix<M, N, Scalar>& J, const Vector<M, Scalar>& task, const Vector<N, Scalar>& u,
                              const Vector<N, Scalar>& leaving) noexcept {
@@ -30,16 +32,17 @@ template <int M, int N, typename Scalar>
   return kept * std::min(squared_norm(transpose_times(J, task)) / size, Scalar(1));
 }
 
-/// Blends found with box_least_squares(): found + (1 − (s/s₀)²)² (1 − f²)² (yielded − found), where s is the scale,
-/// s₀ = kLittle the scale below which the arm yields, and f is freedom(). At velocity level s is the share of the
-/// task's velocity that is left.
+/// Blends the motion of `found` with yielded, the result of box_least_squares():
+/// found + (1 − (s/s₀)²)² (1 − f²)² (yielded − found). s is the task scale, s₀ = kLittle the scale below which the
+/// motions are blended, and f the result of freedom(). At velocity level, s is the fraction of the task velocity that
+/// `found` realises.
 template <Level kLevel, int M, int N, int P, typename Scalar>
 void yield(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Box<N, Scalar>& box,
            const Rows<N, P, Scalar>& rows, const Vector<N, Scalar>& desired, Saturated<N, Scalar>& found) noexcept {
   using JointVector = Vector<N, Scalar>;
   constexpr Scalar kLittle = Scalar(0.1);  // s₀
-  constexpr Scalar kRadius = Scalar(0.1);  // Damping of the least squares, as a share of ‖J‖_F.
-  constexpr Scalar kDamping = Scalar(10);  // Damping of what the least squares leave free [1/s].
+  constexpr Scalar kRadius = Scalar(0.1);  // Damping of the least-squares solution, as a fraction of ‖J‖_F.
+  constexpr Scalar kDamping = Scalar(10);  // Null-space damping of the least-squares solution [1/s].
   const Vector<M, Scalar> task = product(J, desired);
   Scalar scale = found.scale;
   if constexpr (kLevel == Level::kVelocity) scale = dot(product(J, found.u), task) / squared_norm(task);
@@ -53,7 +56,7 @@ void yield(const Matrix<M, N, Scalar>& J, const Vector<N, Scalar>& qd, const Box
   const Scalar yields = (Scalar(1) - left * left) * (Scalar(1) - free * free);
   const JointVector blended =
       entrywise(yielded, [&](Eigen::Index i) { return found.u(i) + yields * yields * (yielded(i) - found.u(i)); });
-  const JointVector to = box.nearest(blended);  // Round-off may leave the box.
+  const JointVector to = box.nearest(blended);  // Round-off may lead out of the box.
   const Scalar share = rows.share(found.u, to);
   found.u = entrywise(to, [&](Eigen::Index i) { return found.u(i) + share * (to(i) - found.u(i)); });
 }
