@@ -67,14 +67,15 @@ template <typename Clearance, typename Scalar>
   return beyond;
 }
 
-/// Largest t ≤ whole with gap − slope t − bend t² ≥ 0; −1 if the gap is negative. The form of the root avoids
+/// Largest t ≤ whole with gap − slope t − bend t² ≥ 0; −1 if the gap is negative, or a number is NaN. The form of the root avoids
 /// cancellation.
 template <typename Scalar>
 [[nodiscard]] Scalar furthest(Scalar gap, Scalar slope, Scalar bend, Scalar whole) noexcept {
   using std::sqrt;
   if (!(gap >= Scalar(0))) return Scalar(-1);
   if (gap >= whole * (slope + whole * bend)) return whole;
-  return Scalar(2) * gap / (slope + sqrt(slope * slope + Scalar(4) * bend * gap));
+  const Scalar t = Scalar(2) * gap / (slope + sqrt(slope * slope + Scalar(4) * bend * gap));
+  return t >= Scalar(0) ? t : Scalar(-1);
 }
 
 }  // namespace fpbm

@@ -60,7 +60,7 @@ class Advancement {
       const Scalar sure = sure_step(clearance, near.here(), pair, found, motion, open.bound, near.moves(pair), whole);
       open.until = sure;
       if (!(sure == whole)) ++count;
-      step = std::min(sure, step);  // If `sure` is NaN, this order returns NaN.
+      step = std::min(sure, step);
     });
     for (int advance = 1; advance < kAdvances; ++advance) {
       if (!(step > Scalar(0))) return false;
@@ -135,7 +135,7 @@ class Advancement {
       if (far < whole && at_start && sweep.opens(g, motion.begun)) {
         far = std::max(furthest(gap + sweep.least_of_own(g), bound.c1, bound.c2, whole), far);
       }
-      sure = std::min(far, sure);  // If `far` is NaN, this order returns NaN.
+      sure = std::min(far, sure);
     }
     return sure;
   }
