@@ -152,7 +152,7 @@ def test_a_singular_start_keeps_nothing(arm, circle):
         ({"dt": np.nan}, "dt = nan"),
         ({"dt": 0.003}, r"dt = 0.003: must be a divisor of duration = 10; the nearest is 0.0030003"),
         ({"dt": 20}, "dt = 20: must be a divisor of duration = 10; the nearest is 10"),
-        ({"dt": 1e-10}, "dt = 1e-10: must be longer"),
+        ({"dt": 1e-10}, "dt = 1e-10: must be larger"),
         ({"hold": -1}, "hold = -1"),
         ({"hold": 0.0005}, "dt = 0.001: must be a divisor of hold"),
         ({"q0": [0, 0, 0]}, "q0 has 3 entries: must have 4"),

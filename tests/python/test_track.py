@@ -175,7 +175,7 @@ def test_it_goes_through_pickle_with_its_limits(q0):
     [
         ({"dt": 0}, "dt = 0: must be positive and finite"),
         ({"dt": 0.3}, "dt = 0.3: must be a divisor of duration = 2; the nearest is"),
-        ({"dt": 1e-10}, "dt = 1e-10: must be longer"),
+        ({"dt": 1e-10}, "dt = 1e-10: must be larger"),
         ({"hold": -1}, "hold = -1"),
         ({"q0": [0, 0, 0]}, "q0 has 3 entries: must have 4"),
         ({"q0": [0, 0, 0, np.inf]}, r"q0\[3\] = inf: must be finite"),

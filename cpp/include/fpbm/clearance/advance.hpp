@@ -67,8 +67,8 @@ template <typename Clearance, typename Scalar>
   return beyond;
 }
 
-/// Largest t ≤ whole with gap − slope t − bend t² ≥ 0; −1 if the gap is negative, or a number is NaN. The form of the root avoids
-/// cancellation.
+/// Largest t ≤ whole with gap − slope t − bend t² ≥ 0; −1 if the gap is negative, or a number is NaN. The form of the
+/// root avoids cancellation.
 template <typename Scalar>
 [[nodiscard]] Scalar furthest(Scalar gap, Scalar slope, Scalar bend, Scalar whole) noexcept {
   using std::sqrt;
