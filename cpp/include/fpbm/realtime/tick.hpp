@@ -60,7 +60,7 @@ struct TrackerOptions {
   /// Each task of a stack has an integral.
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
-  /// If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], it
+  /// If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
   /// stops until its target moves, or until resume(). Infinite: the arm never stalls.
   Scalar stall_time = Scalar(2);
   /// Damping near singular postures, for a scheme that has none.

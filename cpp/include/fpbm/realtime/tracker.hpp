@@ -20,16 +20,16 @@
 /// same inputs give the same bits. If no motion can be computed, the arm brakes.
 namespace fpbm {
 
-/// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until it is at rest
-/// (docs/realtime.md).
+/// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
+/// rest (docs/realtime.md).
 ///
 /// tick() integrates the tracker's own state by RK4. Its result is a command for an arm that accepts positions or
 /// velocities and follows them closely. resolve_measured() computes the acceleration for a measured state, for a torque
 /// controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
 /// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
-/// At acceleration level, a tick has one acceleration and no RK4 step if it has several tasks, or if the limits do not
-/// admit the motion at its start or damping is active there.
+/// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. The same applies to a tick at
+/// whose start the limits do not admit the motion or damping is active.
 ///
 /// With a Guard<kLevel, N, Scalar> in place of Unguarded, the arm avoids self-collision and obstacles.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
@@ -50,7 +50,8 @@ class Tracker {
 
   /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
   /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
-  /// (Limits), or the state violates a limit. If the scheme has no damping, it gets the damping of the options.
+  /// (Limits), or the state violates a limit. If the scheme has no damping, the tracker sets the damping of the
+  /// options.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
