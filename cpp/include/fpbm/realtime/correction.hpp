@@ -11,14 +11,15 @@
 
 namespace fpbm {
 
-/// Corrects a loop's reference before the scheme sees it: a target beyond options.error_bound is brought to that
-/// distance (Buss 2004), its angle to that angle, and the integral of the error is added.
+/// Corrects the reference of a loop before the scheme uses it. If the error exceeds options.error_bound, the target is
+/// moved toward the tip until the error equals error_bound, separately for the position and the orientation (Buss
+/// 2004). The integral of the error is added (docs/realtime.md, Integral of the error).
 template <Level kLevel, typename Space, typename Scalar = double>
 class Correction {
  public:
   using Twist = Vector<Space::kRows, Scalar>;
 
-  /// Throws std::invalid_argument where an option is out of range.
+  /// Throws std::invalid_argument if an option is out of range.
   explicit Correction(const TrackerOptions<Scalar>& options)
       : dt_(options.dt),
         error_bound_(options.error_bound),
@@ -29,7 +30,7 @@ class Correction {
     validation::require_positive("integral_bound", bound_);
   }
 
-  /// Call at the start of a tick, with its error and the arm's characteristic length.
+  /// Call at the start of a tick. error: x ⊖ f(q) at the start [m, rad]. length: the arm's characteristic length [m].
   void begin(const Twist& error, Scalar length) noexcept {
     error_ = error;
     excess_ = filled<Twist>(Space::kRows);
@@ -51,11 +52,11 @@ class Correction {
     });
   }
 
-  /// Whether the target, of the first level, lies beyond error_bound.
+  /// Whether a target of the first level is beyond error_bound.
   [[nodiscard]] bool far() const noexcept { return far_; }
-  /// Whether it changes a reference.
+  /// Whether the correction changes a reference.
   [[nodiscard]] bool active() const noexcept { return moved_ || gain_ != Scalar(0); }
-  /// What begin() was told.
+  /// Arguments of the last begin().
   [[nodiscard]] const Twist& error() const noexcept { return error_; }
   [[nodiscard]] Scalar length() const noexcept { return length_; }
 
@@ -71,13 +72,13 @@ class Correction {
     return reference;
   }
 
-  /// Sets the integral of some rows to zero.
+  /// Sets the integrals of some rows to zero. row: first of these rows. rows: their number.
   void forget(int row, int rows) noexcept {
     for (int i = row; i < row + rows; ++i) integral_(i) = Scalar(0);
   }
 
-  /// Call at the end of a tick that did the whole first level. Each task has its own integral and bound. The integral
-  /// of a lower level waits while the level is slowed or has no finite reference.
+  /// Call at the end of a tick that executed the whole first level. Each task has its own integral and bound. The
+  /// integral of a lower level is constant while the level is slowed or has no finite reference.
   template <typename Result>
   void integrate(const Result& tick) noexcept {
     if (gain_ == Scalar(0) || far_) return;
@@ -93,7 +94,8 @@ class Correction {
   }
 
  private:
-  /// The part of an error of some rows beyond a bound; whether there is one, or the error is not a number.
+  /// Sets `excess` to the part of an error beyond a bound. Returns false, without setting `excess`, if the error is
+  /// within the bound. A NaN counts as beyond the bound.
   template <int kRows>
   [[nodiscard]] static bool bring_near(const Scalar* error, Scalar bound, Scalar* excess) noexcept {
     Vector<kRows, Scalar> part;
@@ -109,8 +111,8 @@ class Correction {
   Scalar gain_;
   Scalar bound_;
   bool far_ = false;
-  bool moved_ = false;         ///< Some target is brought nearer.
-  Scalar length_ = Scalar(1);  ///< Of the arm [m].
+  bool moved_ = false;         ///< Whether a target is moved toward the tip.
+  Scalar length_ = Scalar(1);  ///< Characteristic length of the arm [m].
   Twist error_ = filled<Twist>(Space::kRows);
   Twist excess_ = filled<Twist>(Space::kRows);
   Twist integral_ = filled<Twist>(Space::kRows);

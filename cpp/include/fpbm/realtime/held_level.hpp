@@ -9,15 +9,16 @@
 
 namespace fpbm {
 
-/// Holds the references of the first level of a stack while a stop keeps that level (TrackerOptions::keep_first_level).
+/// Holds the references of the first level of a stack while a stop keeps this level (TrackerOptions::keep_first_level).
 template <typename Space, typename Scalar = double>
 class HeldLevel {
  public:
   using Point = typename Space::template Point<Scalar>;
 
-  /// Replaces the targets of the first level by those that the first tick of the stop had, at rest. A task that is
-  /// farther from its target than kNear stays where it was in that tick: a stop does not move it to the target. tip:
-  /// the current points. length: the robot's characteristic length [m].
+  /// Replaces the targets of the first level by the targets in the first tick of the stop, with zero velocity and
+  /// acceleration. If a task was farther than kNear from its target in that tick, its target becomes its point in that
+  /// tick, so that a stop does not move the task to its target. tip: the current points. length: the robot's
+  /// characteristic length [m].
   void hold(TickReferences<Space, Scalar>& references, const Point& tip, Scalar length) noexcept {
     if (!holds_) begin(references.stages[0].x, tip, length);
     for (Reference<Space, Scalar>& stage : references.stages) {
@@ -27,7 +28,7 @@ class HeldLevel {
       });
     }
   }
-  /// The next call of hold() begins another stop.
+  /// Ends the stop. The next call of hold() begins another stop.
   void release() noexcept { holds_ = false; }
 
  private:
@@ -42,7 +43,7 @@ class HeldLevel {
     });
   }
 
-  /// Calls f for each task of the first level, as Space::each().
+  /// Calls f(space, i, row) for each task of the first level, as Space::each().
   template <typename F>
   static void each_first(const F& f) noexcept {
     Space::each([&](auto space, auto i, int row) noexcept {
@@ -50,15 +51,15 @@ class HeldLevel {
     });
   }
 
-  /// TaskDistance from which a task is not at its target: 1 mm for a robot of 1 m, a thousand times the error of a
-  /// grasp (`bench_grasp`).
+  /// TaskDistance above which a task counts as not at its target: 1 mm for a robot of 1 m, a thousand times the error
+  /// of a grasp (`bench_grasp`).
   static constexpr Scalar kNear = Scalar(1e-3);
 
   bool holds_ = false;
   Point target_ = Space::template origin<Scalar>();
 };
 
-/// The place of HeldLevel in a tracker of a single level.
+/// Replaces HeldLevel in a tracker of a single level.
 struct NoHeldLevel {
   static void release() noexcept {}
 };

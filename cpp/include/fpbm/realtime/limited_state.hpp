@@ -18,10 +18,11 @@
 
 namespace fpbm {
 
-/// What a Tracker keeps from tick to tick, and how a tick ends: a step of RK4 that keeps every bound is taken as it is;
-/// otherwise the tick's mean motion is limited (Limiter). If only the position at the step's end breaks a bound, the
-/// tick has its mean acceleration throughout. has_one_acceleration() and expects_limits() name the ticks without a step
-/// of RK4.
+/// State of a Tracker from tick to tick, and the end of a tick.
+///
+/// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
+/// If only the position at the end of the step violates a bound, the tick has the mean acceleration of the step
+/// throughout. has_one_acceleration() and expects_limits() define the ticks without an RK4 step.
 template <Level kLevel, typename Space, int N, typename Scalar, typename Guard_>
 class LimitedState {
  public:
@@ -31,7 +32,7 @@ class LimitedState {
   using JointLimits = Limits<kLevel, N, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
-  /// From a state after a tick of acceleration qdd0. Throws std::invalid_argument where an option is out of range.
+  /// start: state after a tick with the acceleration qdd0. Throws std::invalid_argument if an option is out of range.
   LimitedState(const TrackerOptions<Scalar>& options, const JointLimits& limits, const JointState& start,
                const JointVector& qdd0, const Guard_& guard)
       : motion_{options.dt},
@@ -44,7 +45,8 @@ class LimitedState {
         change_(filled<JointVector>(qdd0.size())),
         progress_(options, start.q) {}
 
-  /// The tip of the start posture, and the arm's characteristic length [m]: the first posture to recover to.
+  /// Stores the start posture with its tip as the first posture of a recovery. length: the arm's characteristic length
+  /// [m].
   void begin_at(const typename Space::template Point<Scalar>& tip, Scalar length) noexcept {
     progress_.begin_at(state_.q, tip, length);
   }
@@ -60,7 +62,7 @@ class LimitedState {
   [[nodiscard]] const Guard_& guard() const noexcept { return guard_; }
 
   [[nodiscard]] bool stopping() const noexcept { return stopping_; }
-  /// Whether it stops and keeps the first level.
+  /// Whether the arm stops and keeps the first level.
   [[nodiscard]] bool keeps_stopping() const noexcept { return stopping_ && keeps_first_level_; }
   void stop() noexcept { stopping_ = true; }
   void resume() noexcept {
@@ -68,7 +70,7 @@ class LimitedState {
     progress_.try_again();
   }
 
-  /// The result of a tick in which nothing has happened yet.
+  /// Initial result of a tick: the arm has not moved.
   [[nodiscard]] static Result idle(const JointState& state) noexcept {
     using Twist = Vector<Space::kRows, Scalar>;
     Result result{{state.q, state.qd, filled<JointVector>(state.q.size()), Status::kOk, Scalar(1), 0, Scalar(0),
@@ -77,23 +79,24 @@ class LimitedState {
     return result;
   }
 
-  /// Whether a state is finite and far enough from overflow to brake from.
+  /// Whether a state is finite, and so far from overflow that braking does not overflow.
   [[nodiscard]] bool moderate(const JointState& state) const noexcept {
     const Scalar rate = Scalar(4) / dt();
     return is_finite(state.q) &&
            is_finite(entrywise(state.qd, [&](Eigen::Index i) { return state.qd.coeff(i) * rate; }));
   }
 
-  /// Whether a tick has one acceleration (StackKinematics::continue_tick): a tick of several tasks at acceleration
-  /// level. A step of RK4 contains motions of lower levels that the limits will not admit: in its mean motion they
-  /// would disturb the higher levels by J̇ q̇. A step of RK4 also resolves the tasks four times.
+  /// Whether a tick has one acceleration (docs/equations.md, A tick with one acceleration): a tick of several tasks at
+  /// acceleration level. An RK4 step would contain motions of lower levels that the limits do not admit. In the mean
+  /// motion of the step, these motions would disturb the higher levels by J̇q̇. An RK4 step also resolves the tasks
+  /// four times.
   template <typename Arm>
   [[nodiscard]] static bool has_one_acceleration(const Arm& arm) noexcept {
     return kSecondOrder && has_several_tasks(arm);
   }
 
-  /// Updates loop in the middle of a tick that continues the last tick's acceleration. loop: with the points of the
-  /// tick's start.
+  /// Evaluates `loop` in the middle of a tick that continues the acceleration of the last tick
+  /// (StackKinematics::continue_tick()). Before the call, `loop` has the points at the start of the tick.
   template <typename Loop, typename References>
   void update_middle(Loop& loop, const References& references) const noexcept {
     const auto tip = loop.kinematics.tip;
@@ -105,13 +108,14 @@ class LimitedState {
                                   {loop.state.qd, last_, change_});
   }
 
-  /// The guard's rows at the tick's start.
+  /// Rows of the guard at the start of the tick.
   [[nodiscard]] auto rows() noexcept { return guard_.rows(limits(), state_); }
 
-  /// Whether the limits or the rows do not admit the acceleration at a tick's start, or damping acts there. Such a tick
-  /// has one acceleration, that of its middle, and no step of RK4: the function sets next to the state after the tick,
-  /// and leaves the kinematics of the middle in loop. So the ticks that take most time resolve the task twice, not four
-  /// times. reference: of the middle. at_start: joint accelerations [rad/s²].
+  /// Whether the limits or the rows do not admit the acceleration at the start of a tick, or damping is active there.
+  /// Then the tick has one acceleration, which is evaluated in its middle, and no RK4 step (docs/limits.md, Bounds on
+  /// jerk). The function sets `next` to the state after the tick, and leaves the kinematics of the middle in `loop`.
+  /// Therefore the longest ticks resolve the task twice instead of four times. reference: in the middle of the tick.
+  /// at_start: joint accelerations at the start [rad/s²].
   template <typename Loop, typename Target, typename Rows>
   [[nodiscard]] bool expects_limits(Loop& loop, const Target& reference, const Rows& rows, JointVector at_start,
                                     JointState& next, Result& result) const noexcept {
@@ -124,19 +128,26 @@ class LimitedState {
     return true;
   }
 
-  /// The state after a tick of a constant motion u.
+  /// State after a tick with the constant motion u.
   [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion_.after(state_, u); }
 
-  /// Ends a tick whose desired motion led to next, of which velocity level reads q alone. field: the joint velocities
-  /// at its start, which acceleration level does not read. now: the reference at its start. one_acceleration: whether
-  /// loop has the kinematics of the tick's middle; otherwise they are evaluated where the motion is limited. result has
-  /// the status of the desired motion, and the error that the correction began with.
+  /// Ends a tick: limits the desired motion, replaces it if the arm could not stop clear of shapes, and updates the
+  /// state, the result, and the detection of a stall.
+  ///
+  /// next: state to which the desired motion leads. At velocity level, only next.q is read. field: velocities of the
+  /// scheme at the start of the tick [rad/s], read at velocity level only. now: reference at the start, not corrected.
+  /// rows: bounds on the motion from the guard. one_acceleration: whether `loop` has the kinematics in the middle of
+  /// the tick. Otherwise, the kinematics are evaluated if the motion must be limited. result: has the status of the
+  /// desired motion, and the error with which the correction began.
   template <typename Loop, typename Target, typename Rows>
   void take(Loop& loop, const Target& now, Rows rows, JointState next, const JointVector& field, bool one_acceleration,
             Result& result) noexcept {
     if constexpr (kGuarded) {
       progress_.watch_shapes(state_.qd.isZero(Scalar(0)), guard_.room(), correction_.length());
     }
+    // Acceleration level: with bounds on jerk, or if differences of positions would violate bounds, the tick has the
+    // mean acceleration of the step (docs/limits.md, Bounds on jerk). Velocity level: the tick has the mean velocity of
+    // the step.
     if constexpr (kSecondOrder) {
       if (limits().bounds_jerk() || !limits().admits_differences(state_, next)) {
         next.q = motion_.moved(state_, motion_.rate(state_.qd, next.qd));
@@ -153,6 +164,7 @@ class LimitedState {
     if (!moderate(next)) result.status = Status::kNotFinite;
     const bool recovering = progress_.recovering() && !stopping_ && !failed(result.status);
     if (progress_.stalled() && !recovering) result.status = worse(result.status, Status::kStalled);
+    // Motion of a recovery, or the limited motion if the arm brakes or a bound does not admit the desired motion.
     if (recovering) {
       const Box<N, Scalar> box = limits().box(state_, last_);
       next = motion_.after(state_, rows.near(box.nearest(progress_.recovery().motion(limits(), state_)), box));
@@ -176,7 +188,8 @@ class LimitedState {
         }
       }
       if (!several && !one_acceleration) {
-        // The Jacobian at the tick's middle: joints that take over then do not disturb the tip.
+        // Jacobian in the middle of the tick: joints that compensate for joints on their bounds then do not disturb the
+        // tip.
         const JointVector middle =
             entrywise(next.q, [&](Eigen::Index i) { return (state_.q.coeff(i) + next.q.coeff(i)) / Scalar(2); });
         loop.arm.kinematics(middle, loop.kinematics);
@@ -188,6 +201,8 @@ class LimitedState {
       }
       next = motion_.after(state_, u);
     }
+    // If every joint brakes, or if the arm could not stop clear of all shapes after this tick, the arm follows the
+    // stopping trajectory of the previous tick (docs/clearance.md, Guarantees).
     if constexpr (kGuarded) {
       const bool braking = brakes(result.status);
       if (!guard_.empty() && (braking || !guard_.accepts(limits(), state_, next))) {
@@ -214,8 +229,8 @@ class LimitedState {
     progress_.done(q, now.x, result, length);
   }
 
-  /// The desired motion within the limits, after a tick of acceleration last; the motion to rest where the scheme
-  /// failed or stop() was called.
+  /// Desired motion within the limits, after a tick with the acceleration `last`. If the scheme failed, the arm has
+  /// stalled, or stop() was called, the braking motion.
   template <int P>
   [[nodiscard, gnu::noinline]] JointVector limited(const Kinematics<Space, N, Scalar>& kinematics,
                                                    const JointState& state, const JointVector& last,
@@ -246,16 +261,17 @@ class LimitedState {
  private:
   static constexpr bool kSecondOrder = kLevel == Level::kAcceleration;
   static constexpr bool kHasLevels = kLevelsOf<Space> != 1;
-  /// Reserve of the first level (Limiter): with 0.4, 5 of the 10,000 motions along the path of `make grasp` lose the
-  /// grasp, with 0.6 one, with 0.7 none.
+  /// Reserve of the first level (Limiter). Of the 10,000 motions along the path of `make grasp`, five lose the grasp
+  /// with 0.4, one with 0.6, and none with 0.7.
   static constexpr Scalar kReserve = Scalar(0.7);
 
-  /// Whether each joint brakes by itself: a stop that keeps the first level moves the joints together.
+  /// Whether each joint brakes by itself. A stop that keeps the first level moves the joints together.
   [[nodiscard]] bool brakes(Status status) const noexcept {
     return (stopping_ && !keeps_first_level_) || failed(status);
   }
 
-  /// The desired motion, and the kinematics, in the middle of a tick that continues the last tick's acceleration.
+  /// Evaluates the desired motion and the kinematics in the middle of a tick that continues the acceleration of the
+  /// last tick.
   template <typename Loop, typename Target>
   [[nodiscard]] Status expect(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
     const JointState middle = motion_.middle(state_, last_);
@@ -265,10 +281,10 @@ class LimitedState {
     return status;
   }
 
-  /// Whether the limits admit a tick to a state.
+  /// Whether the limits admit a tick to the state `next`.
   [[nodiscard]] bool admits(const JointState& next) const noexcept { return limiter_.admits(state_, next, last_); }
 
-  /// The part of the motion away from shapes that leaves the task alone, in a tick that ends at a posture.
+  /// Null-space part of the motion away from shapes, in the middle of a tick that ends at the posture `end`.
   template <typename Arm>
   [[nodiscard]] JointVector self_motion_away(const Arm& arm, const JointVector& end) noexcept {
     const JointVector middle =
@@ -285,7 +301,7 @@ class LimitedState {
   bool keeps_first_level_;
   JointState state_;
   JointVector last_;    ///< Acceleration of the last tick.
-  JointVector change_;  ///< By which it differs from that of the tick before.
+  JointVector change_;  ///< Change of acceleration from the tick before the last tick to the last tick.
   Progress<Space, N, Scalar> progress_;
   bool stopping_ = false;
 };

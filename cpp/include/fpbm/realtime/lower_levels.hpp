@@ -17,14 +17,16 @@
 
 namespace fpbm {
 
-/// Stops tasks of the lower levels of a stack that do not approach their targets, so that the robot stops.
+/// Stops tasks on the lower levels of a stack that do not approach their targets, so that the robot stops. Otherwise,
+/// these tasks could oscillate or drift in the null space of the higher levels while limits slow them.
 ///
-/// The largest error of each task in a window of stall_time counts. A task makes progress if its largest error is below
-/// those of all earlier windows by 1/16. If no target has moved by 0.002 (TaskDistance), and no task makes progress of
-/// more than 0.002, each task of a lower level that makes no progress and has an error above 0.0001 stops: its
-/// reference becomes its current point at zero velocity. All tasks follow their references again if a target of any
-/// level or a shape near the arm moves, and after a tick that does not follow the references. Otherwise such tasks
-/// could oscillate or drift in the null space of the higher levels while limits slow them.
+/// The largest error of each task in a window of stall_time is compared with the largest errors in earlier windows. A
+/// task makes progress if its error is below those of all earlier windows by 1/16. A task of a lower level stops if it
+/// makes no progress, its error exceeds 0.0001, no target has moved by 0.002 (TaskDistance), and no task makes progress
+/// of more than 0.002. The reference of a stopped task is its current point at zero velocity.
+///
+/// All tasks follow their references again if a target of any level or a shape near the arm moves, and after a tick
+/// that does not follow the references.
 template <typename Space, typename Scalar = double>
 class LowerLevels {
  public:
@@ -32,8 +34,8 @@ class LowerLevels {
 
   LowerLevels(Scalar stall_time, Scalar dt) noexcept : stall_time_(stall_time), dt_(dt) { release(); }
 
-  /// Call at the start of a tick, with the kinematics of the state and the errors of the tasks there. Replaces the
-  /// references of tasks that have stopped, and begins the correction anew without their errors and integrals.
+  /// Call at the start of a tick. kinematics: in the state at the start. error: errors of the tasks in this state.
+  /// Replaces the references of stopped tasks, and begins the correction again without their errors and integrals.
   template <typename References, typename Kinematics, typename Correction>
   void hold(References& references, const Kinematics& kinematics, Vector<Space::kRows, Scalar> error,
             Correction& correction) noexcept {
@@ -59,15 +61,15 @@ class LowerLevels {
     }
   }
 
-  /// Call at the end of a tick. follows: the arm follows the references. qd: joint velocities [rad/s]. room: a measure
-  /// of the distances of shapes near the arm [m]. length: the robot's characteristic length [m].
+  /// Call at the end of a tick. follows: whether the arm follows the references. qd: joint velocities [rad/s]. room: a
+  /// measure of the distances of shapes near the arm [m]. length: the robot's characteristic length [m].
   template <typename JointVector>
   void end_tick(bool follows, const JointVector& qd, Scalar room, Scalar length) noexcept {
     if (!follows) return release();
     if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, room, kMoved * length)) release();
   }
 
-  /// All tasks follow their references.
+  /// Resets the detection: all tasks follow their references.
   void release() noexcept {
     stopped_.fill(false);
     any_stopped_ = false;
@@ -102,7 +104,8 @@ class LowerLevels {
     if (time_ > stall_time_) end_window();
   }
 
-  /// The first window makes progress, since the least errors are infinite.
+  /// Stops tasks at the end of a window. In the first window, every task makes progress, since the errors of earlier
+  /// windows are infinite.
   void end_window() noexcept {
     bool progress = false;
     for (std::size_t i = 0; i < kTasks; ++i) {
@@ -120,21 +123,23 @@ class LowerLevels {
   }
 
   static constexpr std::size_t kTasks = std::tuple_size_v<Point>;
-  /// Least displacement of a target or of shapes, and least progress, that counts, as TaskDistance::kProgress.
+  /// Smallest displacement of a target or of shapes that counts, and smallest progress that counts, as
+  /// TaskDistance::kProgress.
   static constexpr Scalar kMoved = Scalar(2e-3);
-  static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest velocity of a joint of an arm at rest [rad/s].
+  static constexpr Scalar kRest = Scalar(1e-3);   ///< Largest joint velocity of an arm at rest [rad/s].
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< As in StallDetector: 0.1 mm for an arm of 1 m.
-  /// As for an arm that crawls (StallDetector): an error that decays by 1/16 in each window of 2 s is 1 % after 143 s.
+  /// Relative decrease of the error that counts as progress, as for a crawling arm (StallDetector). An error that
+  /// decreases by 1/16 in each window of 2 s is 1 % of its start after 143 s.
   static constexpr Scalar kApproach = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;
   Scalar dt_;
-  Scalar time_;  ///< Since the window's start [s].
+  Scalar time_;  ///< Since the start of the window [s].
   bool any_stopped_;
   std::array<bool, kTasks> stopped_;
   std::array<bool, kTasks> counts_{};  ///< Tasks that are enabled, not stopped, and not at their targets.
-  std::array<Scalar, kTasks> peak_;    ///< Largest errors in the window,
-  std::array<Scalar, kTasks> least_;   ///< and the least of earlier windows.
+  std::array<Scalar, kTasks> peak_;    ///< Largest error of each task in the window.
+  std::array<Scalar, kTasks> least_;   ///< Smallest peak_ of earlier windows.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
 };

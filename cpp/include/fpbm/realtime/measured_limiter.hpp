@@ -12,7 +12,7 @@ namespace fpbm {
 /// Largest age of a measured state [ticks].
 inline constexpr int kMaxMeasuredDelay = 100;
 
-/// Throws std::invalid_argument where a measured state cannot be so old [ticks].
+/// Throws std::invalid_argument if delay [ticks] is not in [0, kMaxMeasuredDelay].
 inline void require_measured_delay(int delay) {
   if (delay < 0 || delay > kMaxMeasuredDelay) {
     validation::fail("measured_delay", delay, "a number of ticks from 0 to ", kMaxMeasuredDelay,
@@ -20,17 +20,18 @@ inline void require_measured_delay(int delay) {
   }
 }
 
-/// Keeps the joint limits of an arm whose measured state is up to d ticks old. The age need not be known or constant.
+/// Joint limits of an arm whose measured state is up to d ticks old (docs/realtime.md, Delay of measured states). The
+/// age may be unknown and may vary.
 ///
-/// The bounds on velocity and the braking envelopes are those of Limits with a longer tick H: each is approached with a
-/// feedback on the measured velocity of gain β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest for which
-/// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset that offset() gives them, the envelopes are
-/// approached without overshoot. docs/realtime.md derives H, the offset and their stability margins.
+/// The bounds on velocity and the braking envelopes are those of Limits with a longer tick H. Toward each bound, the
+/// gain of the feedback on the measured velocity is β ≤ g/h, where g = dᵈ/(d+1)ᵈ⁺¹ is the largest gain for which
+/// q̇ₖ₊₁ = q̇ₖ − g q̇ₖ₋d decays without oscillation. With the offset from offset(), the arm approaches the envelopes
+/// without overshoot. docs/realtime.md derives H, the offset and their stability margins.
 ///
-/// A bound J on the jerk limits the steps from one answer to the next. Where H ≥ A/J, the accelerations that keep the
-/// other bounds never need a greater jerk.
+/// A bound J on jerk limits the change from one command to the next. If H ≥ A/J, the accelerations that keep the other
+/// bounds never need a larger jerk (for the envelopes, this is a measured result).
 ///
-/// d = 0: the state is exact, and Limits are used as they are.
+/// If d = 0, the state is exact, and Limits apply unchanged.
 template <int N, typename Scalar = double>
 class MeasuredLimiter {
  public:
@@ -39,7 +40,7 @@ class MeasuredLimiter {
   using JointState = State<N, Scalar>;
   using JointLimits = Limits<kLevel, N, Scalar>;
 
-  /// Throws std::invalid_argument where the delay d is not in [0, kMaxMeasuredDelay].
+  /// Throws std::invalid_argument if the delay d is not in [0, kMaxMeasuredDelay].
   MeasuredLimiter(const JointLimits& limits, int delay)
       : delayed_(delay > 0),
         limiter_(delayed_ ? slower(limits, horizon(limits, delay)) : limits),
@@ -54,7 +55,7 @@ class MeasuredLimiter {
     }
   }
 
-  /// The limits for measured states.
+  /// Limits for measured states: with the tick H, or the given limits if d = 0.
   [[nodiscard]] const JointLimits& limits() const noexcept { return limiter_.limits(); }
 
   /// As Limiter::motion().
@@ -69,15 +70,15 @@ class MeasuredLimiter {
     return toward_goal(saturation, box, rows, box.nearest(last), found.u, found);
   }
 
-  /// As Limiter::brake(). The last of the speed decays as exp(−t/D), with a low-pass filter of time constant D/2
-  /// against noise, which lets large changes through.
+  /// As Limiter::brake(). At the end of the stop, the velocities decay as exp(−t/D). A low-pass filter with the time
+  /// constant D/2 reduces noise. Large changes of the command are not filtered.
   [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
     if (!delayed_) return limiter_.brake(state, last);
     const Scalar D = kRest * limits().tick();
     const JointVector& most = limits().bounds().acceleration;
     const Box<N, Scalar> box = limits().box(state);
     const JointVector u = brake_in_proportion(limits(), state, box, D);
-    // Limits that still allow braking at rate 1/D, which keeps the envelopes.
+    // The box is widened to admit braking at the rate 1/D, which keeps the envelopes.
     Box<N, Scalar> wider = box;
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       const Scalar halt = std::clamp(-state.qd(i) / D, -most(i), most(i));
@@ -96,7 +97,8 @@ class MeasuredLimiter {
   }
 
  private:
-  /// H. The feedback on the velocity is (T + H)/(T + H/2)/H at most, 1.172/H.
+  /// H (docs/realtime.md, Delay of measured states, The tick H). The gain of the velocity feedback is
+  /// β = (T + H)/(H (T + H/2)), at most 1.172/H.
   [[nodiscard]] static Scalar horizon(const JointLimits& limits, int delay) {
     const auto d = static_cast<Scalar>(delay);
     const Scalar gain = std::pow(d / (d + Scalar(1)), d) / (d + Scalar(1));  // g
@@ -107,11 +109,11 @@ class MeasuredLimiter {
     return longest;
   }
 
-  /// T, the offset over the deceleration of the envelopes of Limits with tick H, such that the arm keeps those of
-  /// offset D: T = D + H²/2(D − H).
+  /// T, offset divided by deceleration of the envelopes of Limits with the tick H. With T = D + H²/2(D − H), the arm
+  /// keeps the envelopes of offset D (docs/realtime.md, Delay of measured states, Envelopes).
   [[nodiscard]] static Scalar offset(Scalar D, Scalar H) noexcept { return D + H * H / (Scalar(2) * (D - H)); }
 
-  /// Limits of tick H, without bounds on jerk, which keep the envelopes of given ones.
+  /// Limits with the tick H and without bounds on jerk, which keep the envelopes of the given limits.
   [[nodiscard]] static JointLimits slower(const JointLimits& limits, Scalar H) {
     fpbm::JointLimits<N, Scalar> bounds = limits.bounds();
     for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) {
@@ -122,11 +124,11 @@ class MeasuredLimiter {
       Scalar D = kRest * H;
       if (std::isfinite(joint.deceleration)) D = std::max(D, joint.velocity_offset / joint.deceleration);
       const Scalar T = offset(D, H);
-      // Any greater deceleration brakes from all of the range within T.
+      // With a larger deceleration, a joint would stop within T from anywhere in the range.
       const Scalar d = std::min({joint.deceleration, joint.acceleration, Scalar(16) * range / (T * T)});
       joint.velocity_offset = std::isfinite(d) ? T * d : Scalar(0);
       joint.deceleration = d;
-      // Where the envelopes' velocity would be −c, so that it is zero at the range's end.
+      // The velocity of the envelope is −c at the end that Limits receives, and must be zero at the end of the range.
       const Scalar beyond = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
       joint.upper += beyond - end;
       joint.lower -= beyond - end;
@@ -135,7 +137,7 @@ class MeasuredLimiter {
     return {bounds, H};
   }
 
-  /// A box, or what bounds on acceleration and jerk admit nearest to it.
+  /// The box, clipped to the accelerations that the bound on jerk admits after `last`.
   [[nodiscard]] Box<N, Scalar> in_reach(const Box<N, Scalar>& box, const JointVector& last) const noexcept {
     if (!bounds_jerk_) return box;
     const auto reached = [&](const JointVector& u) {
@@ -146,15 +148,18 @@ class MeasuredLimiter {
     return {reached(box.lower), reached(box.upper)};
   }
 
-  /// H g/h: 1.172, the least possible (horizon()), times 1.28 for accelerations that exceed the commanded ones.
+  /// H g/h: 1.172, the smallest possible value (horizon()), times 1.28, a margin for accelerations that exceed the
+  /// commanded accelerations.
   static constexpr Scalar kMargin = Scalar(1.5);
-  /// Least H [s]: noise of ±0.001 rad/s on q̇ then becomes at most 0.5 % of 5 rad/s² after stop()
+  /// Smallest H [s]. Noise of ±0.001 rad/s on q̇ then causes accelerations of at most 0.5 % of 5 rad/s² after stop()
   /// (MeasuredDelay.every_preset_stops).
   static constexpr Scalar kQuiet = Scalar(0.014);
-  static constexpr Scalar kLarge = Scalar(0.25);  ///< Changes of the brake that are not filtered, over the bound.
-  /// Least D/H, 1 + 1/√2, for which T is least.
+  /// Changes of the braking acceleration above this fraction of its bound are not filtered.
+  static constexpr Scalar kLarge = Scalar(0.25);
+  /// Smallest D/H: 1 + 1/√2, which minimises T.
   static constexpr Scalar kRest = Scalar(1.70710678118654752440);
-  /// Envelopes end before the range does: twice the step of a coarse encoder of 1e-4 rad, and a share of the range.
+  /// Distance from the end of an envelope to the end of the range: twice the step of a coarse encoder of 1e-4 rad, but
+  /// at most the fraction kLeast of the range.
   static constexpr Scalar kEnd = Scalar(2e-4);
   static constexpr Scalar kLeast = Scalar(1e-3);
 
@@ -162,13 +167,13 @@ class MeasuredLimiter {
 
   bool delayed_;
   Limiter<kLevel, N, Scalar> limiter_;
-  JointVector unit_;  ///< Unit of each joint's motion in the null space.
+  JointVector unit_;  ///< Unit of each joint's null-space motion.
   JointVector step_;  ///< Largest change of the acceleration in a tick.
-  Scalar filter_;     ///< Share of a small change of the brake that is made in a tick.
+  Scalar filter_;     ///< Fraction of a small change of the braking acceleration that is applied in a tick.
   bool bounds_jerk_;
 };
 
-/// In its place where a scheme's answers are velocities.
+/// Replaces MeasuredLimiter for schemes that return velocities.
 struct NoMeasuredLimiter {
   template <typename JointLimits>
   NoMeasuredLimiter(const JointLimits&, int delay) {

@@ -8,8 +8,8 @@
 
 namespace fpbm {
 
-/// Ends a tick of Tracker::resolve_measured(): the acceleration within the limits for a measured state, after the
-/// answer `last`. loop: the kinematics and the scheme's acceleration in that state. result has the scheme's status.
+/// Ends a tick of Tracker::resolve_measured(): computes the acceleration within the limits for a measured state. loop:
+/// kinematics and acceleration of the scheme in this state. `last`: last command. result: has the status of the scheme.
 template <typename Loop, typename Limiter, typename Kept, typename Space, int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> limit_measured(const Loop& loop, const Limiter& limiter, Kept& kept,
                                                const State<N, Scalar>& measured, const Vector<N, Scalar>& last,
@@ -18,7 +18,8 @@ template <typename Loop, typename Limiter, typename Kept, typename Space, int N,
   auto& guard = kept.guard();
   auto rows = guard.rows(limits, measured);
   if constexpr (Kept::kGuarded) {
-    // Where the tip turns, its directions after a tick of the limits and after one of the loop differ.
+    // If the tip rotates, the direction of its velocity after a tick of the limits differs from the direction after a
+    // tick of the loop. Therefore, both ticks have rows.
     guard.bound_speeds(limits, measured, loop.qdd, rows);
     const Scalar share = kept.dt() / limits.tick();
     if (share < Scalar(1)) guard.bound_speeds(limits, measured, share * loop.qdd, rows);

@@ -2,7 +2,7 @@
 
 namespace fpbm {
 
-/// In a Tracker of a single task, the place of LowerLevels.
+/// Replaces LowerLevels in a Tracker of a single task.
 struct NoLowerLevels {
   template <typename Scalar>
   NoLowerLevels(Scalar, Scalar) noexcept {}

@@ -8,13 +8,15 @@
 
 namespace fpbm {
 
-/// Follows a path from a tip by a clock of its own, which can pause and resume: the tip stays on the path, and its
+/// Follows a path from a tip. The follower has a clock that can pause and resume. The tip stays on the path, and its
 /// velocity and acceleration do not jump.
 ///
-/// The reference is x(p), x′(p) r, x″(p) r² + x′(p) ṙ at path time p = ∫ r dt, and at rest on the path's end from then
-/// on. The clock's rate r goes to 0 or 1 by a cubic in time. One that is called back first loses its slope at
-/// |r̈| = 6/ramp², which the cubics leave room for; one that has slope already takes a shorter cubic where the usual one
-/// would go too far. So r never leaves [0, 1], |ṙ| ≤ 1.5/ramp, |r̈| ≤ 8/ramp², and no call takes more than 1.25 ramps.
+/// The reference at the path time p = ∫ r dt is x(p), x′(p) r, x″(p) r² + x′(p) ṙ. After the end of the path, the
+/// reference is at rest there. The rate r of the clock changes to 0 or 1 along a cubic in time, which takes one ramp.
+///
+/// If a call reverses a running transition, ṙ first decreases to zero at |r̈| = 6/ramp². The cubics leave enough range
+/// for this. If r already changes toward its new value so fast that the cubic would overshoot, a shorter cubic is used.
+/// Therefore r is always in [0, 1], |ṙ| ≤ 1.5/ramp, |r̈| ≤ 8/ramp², and a transition takes at most 1.25 ramps.
 template <typename Path_>
 class PathFollower {
  public:
@@ -23,23 +25,23 @@ class PathFollower {
   using Space = typename Path::Space;
   using Point = typename Space::template Point<Scalar>;
 
-  /// start: the path's origin in the base frame. ramp: duration of a pause from full speed, or a resumption [s].
-  /// Throws std::invalid_argument unless ramp is positive.
+  /// start: origin of the path in the base frame. ramp: duration of a pause from full speed, or of a resumption [s].
+  /// Throws std::invalid_argument if ramp is not positive.
   PathFollower(const Path& path, const Point& start, Scalar ramp = Scalar(0.5))
       : path_(path), start_(start), ramp_(ramp), elapsed_(ramp) {
     validation::require_positive("ramp", ramp);
     end_ = Space::template compose<Scalar>(start, path.sample(path.duration()).x);
   }
 
-  /// Both do nothing where that is under way already.
+  /// Repeated calls have no effect.
   void pause() noexcept { go_to(Scalar(0)); }
   void resume() noexcept { go_to(Scalar(1)); }
 
-  /// Path time [s], and whether it has reached the path's end.
+  /// Path time p [s], and whether the path has ended.
   [[nodiscard]] Scalar time() const noexcept { return time_; }
   [[nodiscard]] bool done() const noexcept { return time_ >= path_.duration(); }
 
-  /// Reference some seconds from now.
+  /// Reference after `seconds` [s].
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
     const Scalar p = time_ + (steady() ? to_ * seconds : way(seconds));
     if (time_ >= path_.duration() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
@@ -55,10 +57,10 @@ class PathFollower {
     return reference;
   }
 
-  /// Advances the clock.
+  /// Advances the clock by `seconds` [s].
   void advance(Scalar seconds) noexcept {
     if (steady()) {
-      // Counts equal ticks, since a sum of their lengths would gather round-off.
+      // Counts equal ticks, since a sum of their lengths would accumulate round-off errors.
       if (ticks_ == Scalar(0) || seconds != tick_) {
         since_ = time_;
         tick_ = seconds;
@@ -78,12 +80,23 @@ class PathFollower {
     Scalar rd;
   };
 
-  /// Takes the rate to target, from its present value and slope.
+  /// Starts the transition of the rate r to target, 0 or 1, from its present value and slope.
+  ///
+  /// In the equations, time is in ramps. The gap is |target − r|. Its slope is defined as −d(gap)/dt: positive while r
+  /// approaches target.
+  ///
+  /// slope_ < 0: r moves away from target. At first, the slope increases by 6 per ramp, and is zero after
+  /// brakes_ = −slope_/6 ramps. In this time, the gap increases by slope_²/12. Then a cubic of one ramp brings the gap
+  /// from left_ to zero.
+  ///
+  /// slope_ ≥ 0: a cubic brings the gap to zero. At its start, the cubic has the slope slope_. Its duration is one
+  /// ramp, or 3 gap_/slope_ if the cubic would overshoot in one ramp.
   void go_to(Scalar target) noexcept {
     if (target == to_) return;
     const auto [r, rd] = rate(elapsed_);
     slope_ = (target > to_ ? rd : -rd) * ramp_;
-    // The room to lose the slope in is there, on the side that it leads to: max() and min() are for round-off.
+    // The remaining range of r in the direction of its slope is always at least this. max() and min() correct round-off
+    // errors only.
     const Scalar room = slope_ * slope_ / Scalar(12);
     gap_ = target > r ? target - r : r - target;
     if (slope_ < Scalar(0)) {
@@ -104,6 +117,7 @@ class PathFollower {
   /// Whether the rate is constant.
   [[nodiscard]] bool steady() const noexcept { return elapsed_ / ramp_ >= brakes_ + lasts_; }
 
+  /// r and ṙ after `elapsed` [s] of the transition.
   [[nodiscard]] Rate rate(Scalar elapsed) const noexcept {
     const Scalar v = elapsed / ramp_;
     if (v >= brakes_ + lasts_) return {to_, Scalar(0)};
@@ -115,20 +129,21 @@ class PathFollower {
       gap = rest * rest * (left_ + bend() * w);
       slope = rest * (push_ + Scalar(3) * bend() * w) / lasts_;
     }
-    gap = std::clamp(gap, Scalar(0), Scalar(1));  // It is, but for round-off.
+    gap = std::clamp(gap, Scalar(0), Scalar(1));  // Outside by round-off only.
     return to_ == Scalar(0) ? Rate{gap, -slope / ramp_} : Rate{Scalar(1) - gap, slope / ramp_};
   }
 
+  /// Coefficient of the cubic: the gap is (1 − w)² (left_ + bend() w) after the fraction w of the duration lasts_.
   [[nodiscard]] Scalar bend() const noexcept { return Scalar(2) * left_ - push_; }
 
-  /// ∫ r dt over some seconds from now, within 0 and all of them.
+  /// ∫ r dt over the next `seconds` [s], clipped to the interval from 0 to `seconds`.
   [[nodiscard]] Scalar way(Scalar seconds) const noexcept {
     const Scalar gap = ramp_ * (gaps((elapsed_ + seconds) / ramp_) - gaps(elapsed_ / ramp_));
     const Scalar whole = to_ == Scalar(0) ? gap : seconds - gap;
     return std::clamp(whole, std::min(seconds, Scalar(0)), std::max(seconds, Scalar(0)));
   }
 
-  /// ∫ |to − r| dv from the call to v ramps after it.
+  /// ∫ |to_ − r| dv over the first v ramps of the transition.
   [[nodiscard]] Scalar gaps(Scalar v) const noexcept {
     const Scalar first = std::min(v, brakes_);
     const Scalar w = std::clamp((v - brakes_) / lasts_, Scalar(0), Scalar(1));
@@ -146,15 +161,15 @@ class PathFollower {
   Scalar tick_{0};   ///< Length of an equal tick [s].
   Scalar ticks_{0};  ///< Number of equal ticks.
 
-  // The transition: how far the rate is from to, its slope toward it, and durations, in ramps.
-  Scalar elapsed_;  ///< Since the call [s].
-  Scalar to_{1};
-  Scalar gap_{0};  ///< At the call, as slope.
-  Scalar slope_{0};
-  Scalar brakes_{0};  ///< How long a slope away from to is lost.
-  Scalar left_{0};    ///< Gap where the cubic begins,
-  Scalar push_{0};    ///< its slope there, in cubics,
-  Scalar lasts_{1};   ///< and how long it lasts.
+  // The transition, with time in ramps: gap |to_ − r|, its slope −d(gap)/dt, and durations.
+  Scalar elapsed_;    ///< Time since the call [s].
+  Scalar to_{1};      ///< Target of the rate.
+  Scalar gap_{0};     ///< At the call.
+  Scalar slope_{0};   ///< At the call; negative if r moves away from to_.
+  Scalar brakes_{0};  ///< Duration in which a negative slope increases to zero.
+  Scalar left_{0};    ///< Gap at the start of the cubic.
+  Scalar push_{0};    ///< Slope at the start of the cubic, with time in durations of the cubic.
+  Scalar lasts_{1};   ///< Duration of the cubic.
 };
 
 }  // namespace fpbm

@@ -7,7 +7,7 @@
 
 namespace fpbm {
 
-/// Progress of an arm toward its target, from tick to tick: whether the arm has stalled, and whether it recovers.
+/// Progress of an arm toward its target: whether the arm has stalled, and whether a recovery is active.
 template <typename Space, int N, typename Scalar = double>
 class Progress {
  public:
@@ -16,13 +16,14 @@ class Progress {
   using Distance = TaskDistance<Space, Scalar>;
   using Result = Tick<Space, N, Scalar>;
 
-  /// q0: start posture. Throws std::invalid_argument unless the stall time is positive.
+  /// q0: start posture. Throws std::invalid_argument if the stall time is not positive.
   Progress(const TrackerOptions<Scalar>& options, const JointVector& q0)
       : stall_(options.stall_time, options.dt),
         recovery_(q0, options.stall_time, options.dt),
         recovers_(options.recovery) {}
 
-  /// The start posture and its tip: the first posture to recover to. length: the arm's characteristic length [m].
+  /// Stores the start posture and its tip as the first posture of a recovery. length: the arm's characteristic length
+  /// [m].
   void begin_at(const JointVector& q0, const Point& tip, Scalar length) noexcept {
     recovery_.remember(q0, tip, length);
   }
@@ -31,26 +32,26 @@ class Progress {
   [[nodiscard]] bool recovering() const noexcept { return recovery_.active(); }
   [[nodiscard]] const Recovery<Space, N, Scalar>& recovery() const noexcept { return recovery_; }
 
-  /// The arm is to try again, as if its target were new.
+  /// Resets the detection of a stall, as if the target were new.
   void try_again() noexcept {
     stall_.reset();
     recovery_.renew();
   }
 
-  /// Call before a tick of an arm with shapes near it. room: a measure of their distances [m]. An arm that has stalled
-  /// tries again when they have moved.
+  /// Call before a tick of an arm with shapes near it. room: a measure of their distances [m]. If the shapes have
+  /// moved, a stalled arm tries again.
   void watch_shapes(bool at_rest, Scalar room, Scalar length) noexcept {
     if (stall_.stalled() && stall_.wait(at_rest, room, length)) try_again();
   }
 
-  /// After a tick of a recovery, which led to q.
+  /// Call after a tick of a recovery. q: posture after the tick.
   void recovered(const JointVector& q, const Point& target, Scalar length) noexcept {
     if (stall_.has_moved(target, length)) return try_again();
     if (recovery_.advance(q)) stall_.reset();
   }
 
-  /// After a tick that did not do the whole task and led to q. velocity: bounds of the joints' velocities [rad/s]. far:
-  /// the target is beyond the error bound.
+  /// Call after a tick that did not execute the whole task. q: posture after the tick. velocity: bounds on the joint
+  /// velocities [rad/s]. far: whether the target is beyond the error bound.
   [[gnu::noinline]] void missed(const JointVector& q, const JointVector& velocity, const Point& target,
                                 const Result& result, Scalar length, bool far) noexcept {
     const Scalar error = Distance::norm(result.error, length);
@@ -65,7 +66,7 @@ class Progress {
     if (recovers_ && result.status == Status::kStalled && stall_.stalled()) recovery_.begin(q, target, error, length);
   }
 
-  /// After a tick that did the whole task and began at q.
+  /// Call after a tick that executed the whole task. q: posture at the start of the tick.
   void done(const JointVector& q, const Point& target, const Result& result, Scalar length) noexcept {
     recovery_.settle();
     if (!recovers_ || !recovery_.is_new(q)) return;
@@ -73,8 +74,8 @@ class Progress {
   }
 
  private:
-  /// Share of its velocity bound below which a joint crawls. An arm that approaches its target within tight velocity
-  /// bounds has a joint near its bound. The arm of Recovery.a_blocked_arm_stops_crawling moves at 0.2 % of its bounds.
+  /// Fraction of its velocity bound below which a joint crawls. If an arm approaches its target within small velocity
+  /// bounds, a joint is near its bound. The arm of Recovery.a_blocked_arm_stops_crawling moves at 0.2 % of its bounds.
   static constexpr Scalar kCrawl = Scalar(0.01);
 
   StallDetector<Space, Scalar> stall_;

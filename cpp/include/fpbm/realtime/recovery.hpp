@@ -11,18 +11,19 @@
 
 namespace fpbm {
 
-/// Leads a stalled arm to a posture from which its target can be reached.
+/// Moves a stalled arm to a posture from which its target is reachable (docs/realtime.md, Unreachable targets).
 ///
-/// An arm that follows a target out of reach and back may stand still away from a reachable target: in a singular
-/// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave such a minimum of
-/// the error. So the arm remembers up to kPostures postures in which it did the whole task, with tips as far apart as
-/// possible. If the arm has stalled and a remembered tip is nearer to the target than the arm's own tip, or the target
-/// has come back toward a remembered tip, the joints move to that posture in a straight line, and the scheme continues
-/// from there.
+/// An arm that followed its target out of the workspace and back may stop away from a reachable target: in a singular
+/// posture with Jᵀe = 0, or with joints at the ends of their ranges. Feedback of the tip cannot leave this local
+/// minimum of the error. Therefore the arm remembers up to kPostures postures in which it executed the whole task, with
+/// tips as far apart as possible. A stalled arm recovers if a remembered tip is nearer to the target than the arm's own
+/// tip, or if the target has returned toward a remembered tip. In a recovery, the joints move to the remembered posture
+/// in a straight line. Then the scheme continues.
 ///
-/// Each recovery starts toward a tip that is nearer to the target than the one before by a step of progress, except one
-/// for a target that has come back. A target at rest therefore causes at most kPostures + 1 recoveries. A target that
-/// stays unreachable causes none if the arm has stalled nearer to the target than every remembered tip.
+/// The tip of each recovery must be nearer to the target than the tip of the previous recovery, by a step of progress.
+/// Exception: one recovery if the target has returned. A constant target therefore causes at most kPostures + 1
+/// recoveries. A target that stays unreachable causes none if the arm has stalled nearer to the target than every
+/// remembered tip.
 template <typename Space, int N, typename Scalar = double>
 class Recovery {
  public:
@@ -30,9 +31,9 @@ class Recovery {
   using Point = typename Space::template Point<Scalar>;
   using Distance = TaskDistance<Space, Scalar>;
 
-  static constexpr int kPostures = 8;  ///< 1.3 kB of memory for seven joints and a pose.
+  static constexpr int kPostures = 8;  ///< They need 1.3 kB for seven joints and a pose.
 
-  /// patience: time without progress toward the posture after which the arm gives up [s]. dt: tick [s].
+  /// patience: time without progress toward the posture after which a recovery ends [s]. dt: length of a tick [s].
   Recovery(const JointVector& q, Scalar patience, Scalar dt) noexcept : patience_(patience), dt_(dt), goal_(q) {}
 
   /// Whether the joints are moving to a remembered posture.
@@ -47,9 +48,9 @@ class Recovery {
     return false;
   }
 
-  /// Remembers a posture in which the task is done whole, and its tip, unless a remembered tip is within kSpread. If
-  /// the memory is full, the posture replaces the older one of the two whose tips are nearest to each other. length:
-  /// the arm's characteristic length [m].
+  /// Remembers a posture in which the whole task is executed, and its tip, unless a remembered tip is within kSpread.
+  /// If the memory is full, the posture replaces the older of the two postures whose tips are nearest to each other.
+  /// length: the arm's characteristic length [m].
   [[gnu::cold, gnu::noinline]] void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
     seen_ = q;
     for (int i = 0; i < count_; ++i) {
@@ -58,16 +59,18 @@ class Recovery {
     known_[count_ < kPostures ? count_++ : most_crowded(length)] = {q, tip, ++age_};
   }
 
-  /// Call after a tick that does not do the whole task: notes how far the target has gone from the remembered tips.
+  /// Call after a tick that does not execute the whole task. Updates the largest distance of the target from the
+  /// remembered tips.
   void follow(const Point& target, Scalar length) noexcept {
     farthest_ = std::max(farthest_, nearest(target, length).distance);
   }
-  /// The task is done whole.
+  /// Call after a tick that executes the whole task.
   void settle() noexcept { farthest_ = Scalar(0); }
 
-  /// Starts toward the remembered posture whose tip is nearest to the target. error: distance of the arm's own tip.
-  /// False if that posture promises nothing: its tip is not nearer to the target than the arm's own tip and the tip of
-  /// the last recovery, and the target has not come back, or was tried already.
+  /// Starts a recovery to the remembered posture whose tip is nearest to the target. error: distance of the arm's own
+  /// tip from the target. Returns false, without a recovery, if the remembered tip is not nearer to the target than the
+  /// arm's own tip and the tip of the last recovery, and the target has not returned or its return has already caused a
+  /// recovery.
   [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
                                           Scalar length) noexcept {
     const auto [distance, best] = nearest(target, length);
@@ -83,8 +86,8 @@ class Recovery {
     return true;
   }
 
-  /// Call after a tick of the recovery. True if the arm has arrived. Without progress for the patience, the recovery
-  /// ends as well.
+  /// Call after a tick of the recovery. Returns true if the arm has arrived. The recovery also ends if there is no
+  /// progress for the time `patience`.
   bool advance(const JointVector& q) noexcept {
     const Scalar left = distance_to(q);
     waited_ = left < left_ - kArrived * whole_ ? Scalar(0) : waited_ + dt_;
@@ -94,14 +97,14 @@ class Recovery {
     return arrived;
   }
 
-  /// The target has moved, or the caller asks for another attempt: every remembered posture counts again.
+  /// Call if the target has moved, or for another attempt. Every remembered posture is a candidate again.
   void renew() noexcept {
     active_ = returned_ = false;
     tried_ = std::numeric_limits<Scalar>::infinity();
   }
 
-  /// Joint motion toward the posture: velocities v = r (goal − q), or accelerations 4 kRate (v − q̇). The rate r ≤ kRate
-  /// is common to all joints, so that they move in a straight line. Each joint keeps its bound on velocity, and
+  /// Joint motion to the posture: velocities v = r (goal − q), or accelerations 4 kRate (v − q̇). The rate r ≤ kRate is
+  /// the same for all joints, so the joints move in a straight line. Each joint keeps its bound on velocity, and
   /// decelerates at half of its bound on acceleration: v²/(2|goal − q|) = A/2.
   template <Level kLevel>
   [[nodiscard, gnu::cold, gnu::noinline]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
@@ -121,15 +124,14 @@ class Recovery {
   }
 
  private:
-  // Choices, not optimised: `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with
-  // them.
+  // Not optimised. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with these values.
   static constexpr Scalar kApart = Scalar(0.1);    ///< Change of a joint that may move the tip by kSpread [rad] or [m].
-  static constexpr Scalar kSpread = Scalar(0.05);  ///< Least distance of two tips, as TaskDistance.
-  /// Share of its farthest distance within which a target has come back.
+  static constexpr Scalar kSpread = Scalar(0.05);  ///< Smallest distance of two remembered tips, as TaskDistance.
+  /// If the distance of the target is below this fraction of its largest distance, the target has returned.
   static constexpr Scalar kReturned = Scalar(0.5);
   static constexpr Scalar kRate =
-      Scalar(2);  ///< Rate of the approach [1/s]; both poles of the acceleration are at −2 kRate.
-  static constexpr Scalar kArrived = Scalar(0.02);  ///< Share of the whole displacement that counts as arrived.
+      Scalar(2);  ///< Rate of the approach [1/s]. Both poles of the acceleration are at −2 kRate.
+  static constexpr Scalar kArrived = Scalar(0.02);  ///< Fraction of the initial distance that counts as arrived.
 
   [[nodiscard]] Scalar distance_to(const JointVector& q) const noexcept {
     return std::sqrt(entrywise(q, [&](Eigen::Index i) { return (goal_(i) - q(i)) * (goal_(i) - q(i)); }).sum());
@@ -154,7 +156,7 @@ class Recovery {
     return found;
   }
 
-  /// The older one of the two postures whose tips are nearest to each other.
+  /// Index of the older of the two postures whose tips are nearest to each other.
   [[nodiscard]] int most_crowded(Scalar length) const noexcept {
     int place = 0;
     Scalar least = std::numeric_limits<Scalar>::infinity();
@@ -176,12 +178,14 @@ class Recovery {
   std::int64_t age_ = 0;
   JointVector seen_;  ///< Last posture passed to remember().
   JointVector goal_;
-  Scalar tried_ = std::numeric_limits<Scalar>::infinity();  ///< Distance of the last recovery's tip to this target.
-  Scalar farthest_ = Scalar(0);  ///< Distance of the target from the remembered tips, since the task was lost.
-  bool returned_ = false;        ///< A recovery was made because this target had come back.
-  Scalar whole_ = Scalar(0);     ///< Distance to the posture at the start of the recovery,
-  Scalar left_ = Scalar(0);      ///< and the least since then.
-  Scalar waited_ = Scalar(0);    ///< Without progress [s].
+  /// Distance from this target to the tip of the last recovery.
+  Scalar tried_ = std::numeric_limits<Scalar>::infinity();
+  /// Largest distance of the target from the nearest remembered tip since the task was lost.
+  Scalar farthest_ = Scalar(0);
+  bool returned_ = false;      ///< Whether the return of this target has caused a recovery.
+  Scalar whole_ = Scalar(0);   ///< Distance to the posture at the start of the recovery.
+  Scalar left_ = Scalar(0);    ///< Smallest distance to the posture since then.
+  Scalar waited_ = Scalar(0);  ///< Time without progress [s].
   bool active_ = false;
 };
 

@@ -7,11 +7,11 @@
 #include "fpbm/task/reference.hpp"
 #include "fpbm/task/target_filter.hpp"
 
-/// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower or a
+/// Sources of references for a tick: a Reference, which continues at constant acceleration, a PathFollower, or a
 /// TargetFilter.
 namespace fpbm {
 
-/// The reference some seconds into the tick.
+/// The reference after `seconds` [s] of the tick.
 template <typename Space, typename Scalar>
 [[nodiscard]] Reference<Space, Scalar> source_ahead(const Reference<Space, Scalar>& source, Scalar seconds) noexcept {
   return ahead(source, seconds);
@@ -21,8 +21,8 @@ template <typename Source, typename Scalar>
   return source.ahead(seconds);
 }
 
-/// Advances a source after a tick of dt [s]. stopping: the arm stops, so that a path follower waits. A filter of
-/// targets continues.
+/// Advances a source after a tick of dt [s]. stopping: whether the arm stops. Then a PathFollower waits, and a
+/// TargetFilter continues.
 template <typename Space, typename Scalar>
 void advance_source(const Reference<Space, Scalar>&, Scalar, bool) noexcept {}
 template <typename Path, typename Scalar>
@@ -34,7 +34,7 @@ void advance_source(TargetFilter<Space, Scalar>& source, Scalar, bool) noexcept 
   source.advance();
 }
 
-/// The reference of a single task, from its source. StackSpace has an overload with a source for each task.
+/// Reference of a single task from its source. The overload for StackSpace has a source for each task.
 template <typename Space, typename Scalar, typename Source, typename = std::enable_if_t<!kIsProduct<Space>>>
 [[nodiscard]] Reference<Space, Scalar> joined(Space, Scalar seconds, const Source& source) noexcept {
   return source_ahead(source, seconds);

@@ -8,16 +8,17 @@
 
 namespace fpbm {
 
-/// What the gains of a scheme meet in a tick.
+/// Properties of a tick that determine whether the gains of a scheme are stable.
 template <typename Scalar = double>
 struct TickOfGains {
-  Scalar dt;                ///< [s]
-  Scalar integral_gain;     ///< kᵢ [1/s³], or [1/s²] at velocity level.
-  bool continues = false;   ///< Whether it continues the tick before: several tasks, or levels at velocity level.
-  bool null_space = false;  ///< Whether they are gains of the null space, to which TickFeedback does not apply.
+  Scalar dt;             ///< Length of the tick [s].
+  Scalar integral_gain;  ///< kᵢ [1/s³], or [1/s²] at velocity level.
+  /// Whether the tick continues the previous tick: several tasks, or several levels at velocity level.
+  bool continues = false;
+  bool null_space = false;  ///< Whether these are gains of the null space, to which TickFeedback does not apply.
 };
 
-/// The gains of one error, by name: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
+/// Gains of one error with their names: k₁ [1/s] and k₂ [1/s²], or k₂ alone [1/s] at velocity level.
 template <typename Scalar>
 struct NamedGains {
   const char* name1;
@@ -26,13 +27,13 @@ struct NamedGains {
   Scalar k2;
 };
 
-/// Throws std::invalid_argument where a tick does not damp an error with these gains.
+/// Throws std::invalid_argument if a tick with these gains does not damp the error (sim/stability.hpp).
 template <Level kLevel, typename Scalar>
 void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Scalar>& tick) {
   const auto& [name1, k1, name2, k2] = gains;
   const Scalar h = tick.dt;
   const Scalar integral = tick.integral_gain;
-  // With time scaled by the share: an error that decays as much more slowly.
+  // With time scaled by the share, the error decays more slowly by this factor.
   const auto stable = [&](Scalar share, Scalar ki) {
     if constexpr (kLevel == Level::kVelocity) {
       const Scalar x1 = share * gains.k2 * h;
@@ -68,13 +69,13 @@ void require_stable_gains(const NamedGains<Scalar>& gains, const TickOfGains<Sca
   }
 }
 
-/// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6, but a spring that moves the
-/// joints far within a tick leaves the posture in which its acceleration does not disturb the task: of 18 rest postures
-/// 0.3 rad a joint away, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and five at 0.25
+/// Largest stiffness kₚh² of the null space at acceleration level. RK4 is stable up to 6. But a stiff spring moves the
+/// joints so far within a tick that its acceleration disturbs the task in the new posture. Of 18 rest postures at 0.3
+/// rad per joint, with critical damping at 1 ms, none loses the task at 0.03, two at 0.1 and five at 0.25
 /// (TickGains.a_stiff_rest_posture_leaves_the_task_alone).
 inline constexpr double kSpring = 0.1;
 
-/// Which of the library's parameters a scheme has.
+/// Whether a scheme has the members of this library for its parameters.
 template <typename Scheme, typename = void>
 inline constexpr bool kWraps = false;
 template <typename Scheme>
@@ -92,9 +93,10 @@ inline constexpr bool kHasSprings = false;
 template <typename Scheme>
 inline constexpr bool kHasSprings<Scheme, std::void_t<decltype(Scheme::null_space.stiffness_range())>> = true;
 
-/// Throws std::invalid_argument where a tick does not damp the errors that a scheme feeds back: of the task, k₁ and k₂
-/// or k, with the tracker's integral; of the null space, whose stiffness is between the joints' own.
-/// Accepts a scheme without these members. An overload for a scheme type of your own is found in its namespace.
+/// Throws std::invalid_argument if a tick does not damp the errors that a scheme feeds back: the task error, with k₁
+/// and k₂ or k, and with the tracker's integral; the null-space error, with the smallest and the largest stiffness of
+/// the joints. Accepts a scheme without these members. For a scheme type of your own, an overload in its namespace is
+/// used.
 template <typename Scheme, typename Scalar>
 void require_stable(const Scheme& scheme, const TickOfGains<Scalar>& tick) {
   constexpr Level kLevel = Scheme::kLevel;

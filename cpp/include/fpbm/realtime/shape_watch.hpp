@@ -4,11 +4,12 @@
 
 namespace fpbm {
 
-/// Whether shapes near an arm have moved since the arm came to rest.
+/// Detects whether shapes near an arm have moved since the arm stopped.
 template <typename Scalar>
 class ShapeWatch {
  public:
-  /// One more tick. room: a measure of the shapes' distances [m]. least: the least change of it that counts [m].
+  /// Call once per tick. Returns whether the shapes have moved. room: a measure of their distances [m]. least: smallest
+  /// change of room that counts [m].
   [[nodiscard]] bool moved(bool at_rest, Scalar room, Scalar least) noexcept {
     if (rests_ && std::abs(room - room_) > least) return true;
     if (at_rest && !rests_) room_ = room;
@@ -19,8 +20,8 @@ class ShapeWatch {
   void reset() noexcept { rests_ = false; }
 
  private:
-  bool rests_ = false;       ///< The arm has come to rest.
-  Scalar room_ = Scalar(0);  ///< When it did.
+  bool rests_ = false;       ///< Whether the arm has stopped.
+  Scalar room_ = Scalar(0);  ///< `room` when the arm stopped [m].
 };
 
 }  // namespace fpbm

@@ -13,13 +13,13 @@
 
 namespace fpbm {
 
-/// Result of a tick of a stack. status, scale and sigma are those of the first level, unless only a lower level is
-/// slowed: then status is kSlowed. error: x ⊖ f(q) of each task; a coordinate that a task does not select has no error
+/// Result of a tick of a stack. status, scale and sigma are those of the first level, except that status is kSlowed if
+/// only a lower level is slowed. error: x ⊖ f(q) of each task. A coordinate that a task does not select has no error
 /// (task_error).
 template <typename... Levels, int N, typename Scalar>
 struct Tick<StackSpace<Levels...>, N, Scalar> : TickOfRows<StackSpace<Levels...>::kRows, N, Scalar> {
-  /// Share of each level that the limits left; 0 if a task of the level has stopped (LowerLevels) or has no finite
-  /// reference. The first is scale.
+  /// Task scale of each level; 0 if a task of the level has stopped (LowerLevels) or has no finite reference. scales[0]
+  /// is scale.
   std::array<Scalar, sizeof...(Levels)> scales{};
 };
 
@@ -34,8 +34,8 @@ void take_scale(Tick<StackSpace<Levels...>, N, Scalar>& tick, const Motion& moti
   tick.scales = motion.scales;
 }
 
-/// A level with a reference that is not finite was left out: its scale is 0. If a lower level is slowed or left out,
-/// the status is at least kSlowed.
+/// Sets the scale to 0 for each level that was left out because a reference is not finite. If a lower level is slowed
+/// or left out, the status is at least kSlowed.
 template <typename... Levels, int N, typename Scalar>
 void report_lower_levels(Tick<StackSpace<Levels...>, N, Scalar>& tick) noexcept {
   StackSpace<Levels...>::each([&](auto space, auto i, int row) noexcept {
@@ -58,7 +58,7 @@ template <typename... Levels, int N, typename Scalar>
   return scale;
 }
 
-/// The levels' Jacobians, for the limits.
+/// Jacobians of the levels, for the limits.
 template <typename... Levels, int N, typename Scalar>
 [[nodiscard]] auto jacobian_in_metres(const Kinematics<StackSpace<Levels...>, N, Scalar>& kinematics) noexcept {
   return std::apply(
@@ -68,7 +68,7 @@ template <typename... Levels, int N, typename Scalar>
       kinematics.levels);
 }
 
-/// The reference of a stack, from a source for each task in the order of the stack.
+/// Reference of a stack, from a source for each task in the order of the stack.
 template <typename... Levels, typename Scalar, typename... Sources>
 [[nodiscard]] auto joined(StackSpace<Levels...>, Scalar seconds, const Sources&... sources) noexcept {
   using Space = StackSpace<Levels...>;

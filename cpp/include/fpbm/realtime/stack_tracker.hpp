@@ -11,7 +11,7 @@
 
 namespace fpbm {
 
-/// Throws std::invalid_argument where a scheme has feedback gains, which the tasks of a stack have, or where a tick
+/// Throws std::invalid_argument if the scheme has feedback gains, since the tasks of a stack have gains, or if a tick
 /// does not damp the error of a task with its gains.
 template <typename Scheme, typename... Levels, typename Scalar>
 void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, const TickOfGains<Scalar>& tick) {
@@ -36,15 +36,15 @@ void require_stack_gains(const Scheme& scheme, const Stack<Levels...>& stack, co
   std::apply([&](const auto&... task) { (require(task), ...); }, stack.tasks());
 }
 
-/// require_stable() for the scheme of a stack. The tracker's integral acts with the gains of the tasks.
+/// require_stable() for the scheme of a stack. The integral of the tracker acts with the gains of the tasks.
 template <typename Scheme, typename Stack_, typename Scalar>
 void require_stable(const ByLevels<Scheme, Stack_>& by_levels, const TickOfGains<Scalar>& tick) {
   require_stable(by_levels.scheme, TickOfGains<Scalar>{tick.dt, Scalar(0), tick.continues});
 }
 
-/// A Tracker of a stack of tasks. more: the further arguments of Tracker's constructors, limits, qdd0 and what the
-/// robot keeps clear of. Throws std::invalid_argument as Tracker does, where a task does not suit the robot, a level
-/// has more rows than the robot has joints, or the scheme has feedback gains.
+/// Tracker of a stack of tasks. more: further arguments of Tracker's constructors: limits, qdd0 and guard. Throws
+/// std::invalid_argument as Tracker does, and if a task does not suit the robot, a level has more rows than the robot
+/// has joints, or the scheme has feedback gains.
 template <typename Guard_ = Unguarded, typename Robot, typename... Levels, typename Scheme, typename Start,
           typename... More>
 [[nodiscard]] auto stack_tracker(const Robot& robot, const Stack<Levels...>& stack, const Scheme& scheme,

@@ -11,21 +11,22 @@
 
 namespace fpbm {
 
-/// Detects an arm that comes no nearer to its target.
+/// Detects an arm that makes no progress toward its target (docs/realtime.md, Unreachable targets).
 ///
-/// Progress is an error below the least one so far by a step, or a target that has moved by 0.002 (TaskDistance). The
-/// arm has stalled if there is no progress for stall_time. It continues when its target moves, or a shape near it.
+/// Progress is an error below the smallest error so far by a step, or a displacement of the target by more than 0.002
+/// (TaskDistance). The arm has stalled if there is no progress for stall_time. The arm continues if its target or a
+/// shape near it moves.
 ///
 /// If limits slow the arm, or its target is far, a step is 0.002, and errors below 0.002 do not count. If the arm also
-/// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/16 of the least error. If the arm is
-/// only damped, it may approach its target slowly: a step is 1/64 of the least error, and errors below 0.0001 do not
-/// count.
+/// crawls, with every joint below 1 % of its velocity bound, a step is at least 1/16 of the smallest error. If the arm
+/// is only damped, it may approach its target slowly: a step is 1/64 of the smallest error, and errors below 0.0001 do
+/// not count.
 template <typename Space, typename Scalar = double>
 class StallDetector {
  public:
   using Point = typename Space::template Point<Scalar>;
 
-  /// stall_time: [s], infinite for never. Throws std::invalid_argument unless positive.
+  /// stall_time: [s], infinite if the arm never stalls. Throws std::invalid_argument if stall_time is not positive.
   StallDetector(Scalar stall_time, Scalar dt) : stall_time_(stall_time), dt_(dt) {
     if (!(stall_time > Scalar(0))) {
       validation::fail("stall_time", stall_time, "positive, or infinite");
@@ -34,14 +35,14 @@ class StallDetector {
 
   [[nodiscard]] bool stalled() const noexcept { return waited_ > stall_time_; }
 
-  /// Whether a target has moved since the last progress.
+  /// Whether the target has moved since the last progress.
   [[nodiscard]] bool has_moved(const Point& target, Scalar length) const noexcept {
     return Distance::between(target, target_, length) > Distance::kProgress;
   }
 
-  /// One more tick that does not do the whole task. error: distance to the target. length: the arm's characteristic
-  /// length [m]. damped: the arm is neither slowed nor far from its target. crawls: every joint has a velocity bound
-  /// and moves at less than 1 % of it.
+  /// Call after a tick that does not execute the whole task. error: distance to the target. length: the arm's
+  /// characteristic length [m]. damped: the arm is neither slowed nor far from its target. crawls: every joint has a
+  /// velocity bound, and moves at less than 1 % of this bound.
   void update(const Point& target, Scalar error, Scalar length, bool damped, bool crawls) noexcept {
     Scalar step = Distance::kProgress;
     if (damped) step = std::min(step, least_ * kApproach);
@@ -56,13 +57,13 @@ class StallDetector {
     }
   }
 
-  /// One more tick of an arm that has stalled. True if shapes near the arm have moved since it came to rest, so that
-  /// the arm is to try again. room: a measure of their distances [m].
+  /// Call in each tick of a stalled arm. Returns true if shapes near the arm have moved since the arm stopped, so that
+  /// the arm should try again. room: a measure of their distances [m].
   [[nodiscard]] bool wait(bool at_rest, Scalar room, Scalar length) noexcept {
     return shapes_.moved(at_rest, room, Distance::kProgress * length);
   }
 
-  /// The arm is to try again.
+  /// Restarts the detection, for another attempt.
   void reset() noexcept {
     shapes_.reset();
     least_ = std::numeric_limits<Scalar>::infinity();
@@ -73,18 +74,18 @@ class StallDetector {
   using Distance = TaskDistance<Space, Scalar>;
 
   static constexpr Scalar kSmall = Scalar(1e-4);  ///< 0.1 mm for an arm of 1 m.
-  /// Share of its error by which a damped arm comes nearer in stall_time: an arm whose target is exactly at the
-  /// workspace boundary still does so after a minute (Stall.is_not_a_slow_approach).
+  /// Relative decrease of the error in stall_time that is progress for a damped arm. An arm whose target is exactly at
+  /// the workspace boundary still makes this progress after a minute (Stall.is_not_a_slow_approach).
   static constexpr Scalar kApproach = Scalar(1) / Scalar(64);
 
-  /// Share of its error by which a crawling arm comes nearer in stall_time: at constant speed, it then arrives within
-  /// 16 stall times.
+  /// Relative decrease of the error in stall_time that is progress for a crawling arm. At constant speed, the arm then
+  /// arrives within 16 stall times.
   static constexpr Scalar kCrawlStep = Scalar(1) / Scalar(16);
 
   Scalar stall_time_;
   Scalar dt_;
-  Scalar waited_ = Scalar(0);  ///< Without progress [s].
-  Scalar least_ = std::numeric_limits<Scalar>::infinity();
+  Scalar waited_ = Scalar(0);                               ///< Time without progress [s].
+  Scalar least_ = std::numeric_limits<Scalar>::infinity();  ///< Smallest error so far.
   ShapeWatch<Scalar> shapes_;
   Point target_ = Space::template origin<Scalar>();
 };

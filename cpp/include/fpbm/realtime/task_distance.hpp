@@ -8,17 +8,17 @@
 
 namespace fpbm {
 
-/// Distance in a task space that has lengths and angles: ‖(Δp/length, Δφ)‖, with the arm's characteristic length [m]
-/// and angles in radians. Of a stack, the tasks of the first level count.
+/// Distance in a task space with lengths and angles: ‖(Δp/length, Δφ)‖, with the arm's characteristic length [m] and
+/// angles in radians. For a stack, only the tasks of the first level count.
 template <typename Space, typename Scalar>
 struct TaskDistance {
   using Twist = Vector<Space::kRows, Scalar>;
   using Point = typename Space::template Point<Scalar>;
 
-  /// Least displacement of a target that counts as a motion, and most of a step of progress.
+  /// Smallest displacement of a target that counts as a motion, and largest step of progress.
   static constexpr Scalar kProgress = Scalar(2e-3);
 
-  /// What a distance must fall by to count as progress.
+  /// Decrease of a distance that counts as progress.
   [[nodiscard]] static Scalar step(Scalar distance) noexcept { return std::min(kProgress, distance / Scalar(4)); }
 
   [[nodiscard]] static Scalar norm(Twist twist, Scalar length) noexcept {

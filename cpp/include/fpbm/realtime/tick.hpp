@@ -9,25 +9,26 @@
 
 namespace fpbm {
 
-/// Result of one tick of a control loop, of a task whose errors have so many rows.
+/// Result of one tick of a control loop. Rows: number of rows of the task error.
 template <int Rows, int N, typename Scalar>
 struct TickOfRows {
-  Vector<N, Scalar> q;         ///< Command for the tick's end [rad], or [m] for a prismatic joint.
-  Vector<N, Scalar> qd;        ///< Its velocity [rad/s].
-  Vector<N, Scalar> qdd;       ///< Mean acceleration over the tick [rad/s²].
-  Status status;               ///< Where it failed, why the arm brakes.
-  Scalar scale;                ///< Share of the task that the limits left: 1 all of it, 0 where the arm brakes.
-  JointBits saturated;         ///< Bit i is set where joint i is on a bound.
-  Scalar sigma;                ///< Lower bound on σ_min(J), tight within a factor √M: at the tick's start, or in its
-                               ///< middle where several levels have bounds on acceleration.
-  Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the tick's start [m, rad].
+  Vector<N, Scalar> q;    ///< Command for the end of the tick [rad], or [m] for a prismatic joint.
+  Vector<N, Scalar> qd;   ///< Velocity at the end of the tick [rad/s].
+  Vector<N, Scalar> qdd;  ///< Mean acceleration over the tick [rad/s²].
+  Status status;          ///< Status of the tick. If failed, the reason why the arm brakes.
+  Scalar scale;           ///< Task scale: 1 for the whole task, 0 if the arm brakes.
+  JointBits saturated;    ///< Bit i is set if joint i is on a bound.
+  /// Lower bound on σ_min(J), tight within a factor √M: at the start of the tick, or in its middle for several tasks at
+  /// acceleration level.
+  Scalar sigma;
+  Vector<Rows, Scalar> error;  ///< x ⊖ f(q) at the start of the tick [m, rad].
 };
 
 /// Result of one tick of a control loop.
 template <typename Space, int N, typename Scalar = double>
 struct Tick : TickOfRows<Space::kRows, N, Scalar> {};
 
-/// Multiplies the scale of a tick, and takes over the scale of a motion.
+/// Multiplies the scale of a tick by a fraction. take_scale() sets the scale to the scale of a motion.
 template <typename Space, int N, typename Scalar>
 void multiply_scale(Tick<Space, N, Scalar>& tick, Scalar share) noexcept {
   tick.scale *= share;
@@ -36,11 +37,11 @@ template <typename Space, int N, typename Scalar, typename Motion>
 void take_scale(Tick<Space, N, Scalar>& tick, const Motion& motion) noexcept {
   tick.scale = motion.scale;
 }
-/// Reports levels below the first: none.
+/// Reports the levels below the first level. A single task has none.
 template <typename Space, int N, typename Scalar>
 void report_lower_levels(Tick<Space, N, Scalar>&) noexcept {}
 
-/// Share of a task below the first level that the limits left. row: the first row of its error. There is none.
+/// Scale of a task below the first level. row: first row of its error. A single task has no lower level.
 template <typename Space, int N, typename Scalar>
 [[nodiscard]] Scalar lower_scale(const Tick<Space, N, Scalar>&, int) noexcept {
   return Scalar(1);
@@ -49,36 +50,39 @@ template <typename Space, int N, typename Scalar>
 template <typename Scalar = double>
 struct TrackerOptions {
   Scalar dt = Scalar(1e-3);  ///< Length of a tick [s].
-  /// Largest error that the feedback sees, of the position [the arm's characteristic lengths] and of the orientation
-  /// [rad]: a farther target, out of reach perhaps, pulls no harder.
+  /// Largest error that the feedback uses, of the position [characteristic lengths of the arm] and of the orientation
+  /// [rad]. A larger error, for example of an unreachable target, does not increase the feedback.
   Scalar error_bound = Scalar(0.1);
-  /// Gain of ∫(x ⊖ f(q)) dt, which is added to the reference's acceleration [1/s³] or velocity [1/s²] and removes the
-  /// error that a constant bias leaves (PID feedback: Guo et al. 2018); stable below k₁k₂. The integral waits while
-  /// the task is slowed or damped, or its target farther than error_bound, and adds integral_bound at most
-  /// [characteristic lengths and radians per s², or per s]. Each task of a stack has an integral.
+  /// Gain kᵢ of ∫(x ⊖ f(q)) dt, which is added to the acceleration [1/s³] or velocity [1/s²] of the reference. It
+  /// removes the steady-state error due to a constant bias (PID feedback: Guo et al. 2018). Stable below k₁k₂
+  /// (docs/realtime.md, Integral of the error). The integral is constant while the task is slowed or damped, or the
+  /// error exceeds error_bound. It adds integral_bound at most [characteristic lengths and radians per s², or per s].
+  /// Each task of a stack has an integral.
   Scalar integral_gain = Scalar(0);
   Scalar integral_bound = Scalar(1);
-  /// An arm that is slowed, or farther than error_bound from its target, and comes no nearer for this time [s] rests
-  /// until its target moves, or until resume(). Infinite: it never gives up.
+  /// If an arm is slowed, or farther than error_bound from its target, and makes no progress for this time [s], the arm
+  /// stops until its target moves, or until resume(). Infinite: the arm never stalls.
   Scalar stall_time = Scalar(2);
-  SingularDamping<Scalar> singular = SingularDamping<Scalar>();  ///< Used where the scheme has none.
-  /// Damping of the null space [1/s] for a scheme of acceleration level that has none; 0: none. Without damping the
-  /// self-motion of these schemes never comes to rest. 2 is the library's usual value: self-motion decays to 1 % in
+  /// Damping near singular postures, for a scheme that has none.
+  SingularDamping<Scalar> singular = SingularDamping<Scalar>();
+  /// Null-space damping [1/s] for a scheme of acceleration level that has none; 0: none. Without damping, the
+  /// self-motion of these schemes never stops. With 2, the usual value of this library, self-motion decays to 1 % in
   /// 2.3 s.
   Scalar null_damping = Scalar(2);
-  /// Whether a stalled arm may move to a posture that it remembers, if the target can be reached from there (Recovery).
+  /// Whether a stalled arm may move to a remembered posture from which the target is reachable (Recovery).
   bool recovery = true;
-  /// Whether the first level comes before speed. The lower levels leave the first level a reserve of the limits: 0.7 of
-  /// each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its references are
-  /// held at rest, and the joints come to rest in its null space, which takes longer than the stop of each joint by
-  /// itself. A task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays where it
-  /// is. Without effect on resolve_measured(), and on a tracker of a single level.
+  /// Whether the first level has priority over speed. The lower levels leave the first level a reserve of the limits:
+  /// 0.7 of each bound on acceleration and 0.35 of each bound on velocity. stop() keeps the first level: its references
+  /// are held at rest, and the joints stop in its null space. This takes longer than a stop of each joint by itself. A
+  /// task that is farther than 0.001 characteristic lengths, or 0.001 rad, from its reference stays at its current
+  /// point. No effect on resolve_measured(), and on a tracker of a single level.
   bool keep_first_level = false;
-  /// Largest age of the states that resolve_measured() is given [ticks]: the time from the measurement to the start of
-  /// the tick in which the robot realises the answer. 0: exact states of this moment, as a simulation has them.
+  /// Largest age of the states that are passed to resolve_measured() [ticks]: the time from the measurement to the
+  /// start of the tick in which the robot realises the command. 0: exact and current states, as in a simulation.
   int measured_delay = 3;
 
-  /// The damping for a scheme of an arm whose task has so many rows: without a null space, none of it.
+  /// Damping for a scheme of an arm with dof joints, whose task has the given number of rows. Without a null space,
+  /// there is no null-space damping.
   [[nodiscard]] DefaultDamping<Scalar> damping(Eigen::Index dof, Eigen::Index rows) const noexcept {
     return {singular, dof > rows ? null_damping : Scalar(0)};
   }

@@ -5,7 +5,7 @@
 
 namespace fpbm {
 
-/// How a constant motion moves the joints in a tick: an acceleration, or a velocity at velocity level.
+/// Motion of the joints in a tick of a constant acceleration, or of a constant velocity at velocity level.
 template <Level kLevel, int N, typename Scalar = double>
 struct TickMotion {
   using JointVector = Vector<N, Scalar>;
@@ -14,24 +14,24 @@ struct TickMotion {
 
   Scalar dt;  ///< Length of the tick [s].
 
-  /// The mean motion from a state to another.
+  /// Mean motion from one state to another.
   [[nodiscard]] JointVector between(const JointState& state, const JointState& next) const noexcept {
     return kSecondOrder ? rate(state.qd, next.qd) : next.qd;
   }
 
-  /// The state after a tick of a motion u.
+  /// State after a tick with the motion u.
   [[nodiscard]] JointState after(const JointState& state, const JointVector& u) const noexcept {
     if constexpr (kSecondOrder) return {moved(state, u), plus(state.qd, u, dt)};
     return {plus(state.q, u, dt), u};
   }
 
-  /// The position after a tick of constant acceleration.
+  /// Position after a tick of constant acceleration.
   [[nodiscard]] JointVector moved(const JointState& state, const JointVector& qdd) const noexcept {
     const Scalar half = dt / Scalar(2);
     return plus(state.q, entrywise(qdd, [&](Eigen::Index i) { return state.qd.coeff(i) + half * qdd.coeff(i); }), dt);
   }
 
-  /// The state in the tick's middle at constant acceleration.
+  /// State in the middle of a tick of constant acceleration.
   [[nodiscard]] JointState middle(const JointState& state, const JointVector& qdd) const noexcept {
     const TickMotion half{dt / Scalar(2)};
     return {half.moved(state, qdd), plus(state.qd, qdd, half.dt)};
@@ -43,7 +43,7 @@ struct TickMotion {
   }
 
  private:
-  /// from + seconds change.
+  /// from + seconds · change.
   [[nodiscard]] static JointVector plus(const JointVector& from, const JointVector& change, Scalar seconds) noexcept {
     return entrywise(from, [&](Eigen::Index i) { return from.coeff(i) + seconds * change.coeff(i); });
   }

@@ -7,13 +7,13 @@
 
 namespace fpbm {
 
-/// The references of a tick that a step of RK4 asks for: at its start, middle and end.
+/// References of an RK4 step: at the start, in the middle and at the end of a tick.
 template <typename Space, typename Scalar = double>
 struct TickReferences {
   std::array<Reference<Space, Scalar>, 3> stages;
   Number<Scalar> dt;  ///< Length of the tick [s].
 
-  /// ahead(seconds): the reference some seconds into the tick; noexcept.
+  /// ahead(seconds): reference after `seconds` [s] of the tick; noexcept.
   template <typename Ahead>
   [[nodiscard]] static TickReferences of(Ahead&& ahead, Number<Scalar> dt) noexcept {
     return {{ahead(Number<Scalar>(0)), ahead(dt / Number<Scalar>(2)), ahead(dt)}, dt};
@@ -23,9 +23,9 @@ struct TickReferences {
     return stages[seconds < dt ? (seconds > Number<Scalar>(0) ? 1 : 0) : 2];
   }
 
-  /// The reference of a tick with one acceleration: that of its middle, with the acceleration
-  /// xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6, by which positions follow x at the ends of ticks
-  /// (docs/equations.md).
+  /// Reference of a tick with one acceleration (docs/equations.md, A tick with one acceleration): the reference in the
+  /// middle, with the acceleration xdd − h²x⁗/24 = xdd − (xdd₀ − 2xdd + xdd₁)/6. With this acceleration, positions
+  /// follow x at the ends of ticks.
   [[nodiscard]] Reference<Space, Scalar> middle() const noexcept {
     Reference<Space, Scalar> reference = stages[1];
     for (Eigen::Index i = 0; i < reference.xdd.size(); ++i) {
@@ -36,7 +36,8 @@ struct TickReferences {
     return reference;
   }
 
-  /// The same seen from a point, in place of displacements from it. Other: lanes, say, where Scalar is not.
+  /// Converts displacements from the point `start` to references in the base frame. Other: scalar type of the result,
+  /// for example with lanes.
   template <typename Other>
   [[nodiscard]] TickReferences<Space, Other> from(const typename Space::template Point<Other>& start) const noexcept {
     TickReferences<Space, Other> placed{{}, dt};

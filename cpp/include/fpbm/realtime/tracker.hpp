@@ -16,21 +16,22 @@
 
 /// One tick of a control loop.
 ///
-/// After construction nothing here allocates, throws, locks, does I/O or loops without a bound, whatever numbers are
-/// passed in, and the same inputs give the same bits. Where no motion can be found, the arm brakes.
+/// After construction, nothing here allocates, throws, locks, does I/O or loops without a bound, for any input. The
+/// same inputs give the same bits. If no motion can be computed, the arm brakes.
 namespace fpbm {
 
-/// Moves an arm tick by tick under a scheme, within its joint limits, through singular postures, to rest.
+/// Moves an arm tick by tick with a scheme, within its joint limits and through singular postures, until the arm is at
+/// rest (docs/realtime.md).
 ///
-/// tick() integrates the tracker's own state by RK4: commands for an arm that takes positions or velocities and follows
-/// them closely. resolve_measured() answers for a measured state: the acceleration for a torque controller to realise.
-/// Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
+/// tick() integrates the tracker's own state by RK4. Its result is a command for an arm that accepts positions or
+/// velocities and follows them closely. resolve_measured() computes the acceleration for a measured state, for a torque
+/// controller. Never pass a measured state to tick(): the feedback would act twice, and noise would enter the command.
 ///
-/// A step of RK4 that keeps every bound is not changed; otherwise the tick's mean motion is limited (Limiter). At
-/// acceleration level a tick of several tasks, or one at whose start the limits do not admit the motion or damping
-/// acts, has one acceleration, and no step of RK4.
+/// If an RK4 step keeps every bound, the tick is this step. Otherwise the mean motion of the step is limited (Limiter).
+/// At acceleration level, a tick of several tasks has one acceleration, and no RK4 step. The same applies to a tick at
+/// whose start the limits do not admit the motion or damping is active.
 ///
-/// With a Guard<kLevel, N, Scalar> in place of Unguarded it also keeps clear of shapes.
+/// With a Guard<kLevel, N, Scalar> in place of Unguarded, the arm avoids self-collision and obstacles.
 template <typename Arm, typename Space, typename Scheme, typename Guard_ = Unguarded>
 class Tracker {
  public:
@@ -47,14 +48,15 @@ class Tracker {
   using Options = TrackerOptions<Scalar>;
   using JointLimiter = Limiter<kLevel, N, Scalar>;
 
-  /// Starts from a state, or at rest, within the arm's own limits or given ones. Throws std::invalid_argument where an
-  /// option is out of range, the scheme does not fit the arm, its gains are too high for the tick, a limit is missing
-  /// (Limits), or the state breaks one. The scheme gets the options' damping where the scheme has none.
+  /// Starts from a state, or at rest, within the limits of the arm or given limits. Throws std::invalid_argument if an
+  /// option is out of range, the scheme does not suit the arm, its gains are too high for the tick, a limit is missing
+  /// (Limits), or the state violates a limit. If the scheme has no damping, the tracker sets the damping of the
+  /// options.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits)
       : Tracker(arm, Space{}, scheme, start, options, limits, filled<JointVector>(start.q.size())) {}
 
-  /// qdd0: acceleration of the tick before, for bounds on jerk. guard: what the arm keeps clear of.
+  /// qdd0: acceleration of the previous tick, for bounds on jerk. guard: shapes to avoid.
   Tracker(const Arm& arm, Space, const Scheme& scheme, const JointState& start, const Options& options,
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
       : arm_(arm),
@@ -88,13 +90,13 @@ class Tracker {
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointVector& q0, const Options& options = {})
       : Tracker(arm, space, scheme, JointState{q0, filled<JointVector>(q0.size())}, options) {}
 
-  /// One tick toward a reference, which continues at constant acceleration until the tick's end.
+  /// One tick toward a reference, which continues at constant acceleration until the end of the tick.
   Result tick(const Target& reference) noexcept {
     return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, kept_.dt()));
   }
 
-  /// One tick behind a source of references: a PathFollower, whose clock advances unless the arm stops, or a
-  /// TargetFilter, which continues. A stack has a source for each task, in the order of the stack, or References.
+  /// One tick with a source of references: a PathFollower, whose clock advances unless the arm stops, or a
+  /// TargetFilter, which continues. For a stack, pass a source for each task in the order of the stack, or References.
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
     const Result result =
@@ -103,7 +105,7 @@ class Tracker {
     return result;
   }
 
-  /// One tick toward references.
+  /// One tick with references.
   Result advance(References references) noexcept {
     const JointState& state = kept_.state();
     const auto& correction = kept_.correction();
@@ -156,9 +158,10 @@ class Tracker {
     return result;
   }
 
-  /// A tick whose step is made elsewhere (TrackerBatch): begin() takes the error at its start, and says whether
-  /// references are to be corrected(); finish() takes the corrected reference of the tick's middle, where the step led,
-  /// and the motion at its start: joint velocities, or accelerations at acceleration level.
+  /// For a tick whose RK4 step is computed elsewhere (TrackerBatch). begin(): error at the start of the tick. Returns
+  /// whether references must be corrected() before the step. finish(): `now` is the reference at the start of the tick,
+  /// not corrected. `middle` is the corrected reference in its middle. `next` is the state after the step. `at_start`
+  /// is the motion at the start: joint velocities, or accelerations at acceleration level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
     kept_.correction().begin(error, length);
     return kept_.correction().active();
@@ -174,8 +177,8 @@ class Tracker {
     return result.status;
   }
 
-  /// The acceleration within the limits for a measured state, up to options.measured_delay ticks old; the tracker's own
-  /// state does not change. It never stalls: without feedback of the tip a measured arm would sag.
+  /// Acceleration within the limits for a measured state that is at most options.measured_delay ticks old. The
+  /// tracker's own state does not change. Never stalls: without feedback of the tip, a measured arm would sag.
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
@@ -196,8 +199,8 @@ class Tracker {
     return result;
   }
 
-  /// Brings every joint to rest as fast as the limits allow, whatever the reference, until resume() is called. With
-  /// options.keep_first_level, the joints come to rest in the null space of the first level.
+  /// Brings every joint to rest as fast as the limits allow, for any reference, until resume() is called. With
+  /// options.keep_first_level, the joints stop in the null space of the first level.
   void stop() noexcept { kept_.stop(); }
   void resume() noexcept {
     kept_.resume();
@@ -210,7 +213,7 @@ class Tracker {
   [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
-  /// within all bounds. False, without an effect, if there is no lower level k.
+  /// within all bounds. If there is no lower level k, returns false without an effect.
   bool enable(int k, bool on) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to enable");
     if (!arm_.enable(k, on)) return false;
@@ -218,8 +221,9 @@ class Tracker {
     return true;
   }
 
-  /// Reorders levels of one type: level k becomes what was level order[k], and so do its references. The integrals
-  /// start at zero. The commands stay within all bounds. False, without an effect, as Stack::reorder().
+  /// Reorders levels of the same type: level k becomes the former level order[k], with its references. The integrals
+  /// start at zero. The commands stay within all bounds. Returns false without an effect in the cases of
+  /// Stack::reorder().
   template <typename Order>
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
@@ -230,11 +234,12 @@ class Tracker {
     return true;
   }
 
-  /// What the arm keeps clear of, and how near it was at the last tick's start. World shapes may be moved in it.
+  /// The guard: shapes to avoid, and their distances at the start of the last tick. Shapes of the world can be moved in
+  /// it.
   [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
   [[nodiscard]] const Guard_& guard() const noexcept { return kept_.guard(); }
 
-  /// Tip f(q) of the tracker's own state, where a PathFollower usually starts.
+  /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
     Kinematics<Space, N, Scalar> kinematics;
     arm_.kinematics(state().q, kinematics);
@@ -251,8 +256,8 @@ class Tracker {
     kept_.correction().begin(result.error, kinematics.length);
   }
 
-  /// The scheme's answer where update() was called. σ comes from the scheme's factorisation, or from a factorisation of
-  /// JJᵀ if the scheme does not report σ.
+  /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
+  /// the scheme does not report σ.
   static void resolve(Loop& loop, const Target& reference, X& dx, Result& result) noexcept {
     result.sigma = Scalar(-1);
     result.status = loop.resolve(reference, dx, &result.sigma);
@@ -265,7 +270,7 @@ class Tracker {
   typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level_;
   Measured measured_;
-  JointVector answer_;  ///< The last one for a measured state.
+  JointVector answer_;  ///< Last command for a measured state.
 };
 
 }  // namespace fpbm

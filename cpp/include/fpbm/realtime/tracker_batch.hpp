@@ -17,13 +17,13 @@
 
 namespace fpbm {
 
-/// Trackers of one arm side by side, one a lane, which follow one path, each from its own tip.
+/// Trackers of one arm in parallel, one for each SIMD lane. All trackers follow the same path, each from its own tip.
 ///
-/// The evaluations of a tick's step are made in lanes; each tracker ends its tick by itself. So limits are kept
-/// exactly, and every tick is the one that its tracker makes alone from the same state, to round-off. Where limits
-/// press for seconds, above all with bounds on jerk, a motion amplifies round-off errors as it amplifies a change of
-/// its start (docs/sweeps.md). A lane whose step is not finite, near a singular posture or where the scheme fails,
-/// leaves the tick to its tracker. No lane influences another.
+/// The RK4 step of a tick is computed in lanes. Each tracker ends its tick by itself. Therefore limits are kept
+/// exactly, and every tick equals the tick of its tracker alone from the same state, up to round-off. If limits are
+/// active for seconds, above all bounds on jerk, a motion amplifies round-off errors as it amplifies a change of its
+/// start (docs/sweeps.md). If the step of a lane is not finite, near a singular posture or because the scheme fails,
+/// its tracker computes the whole tick. No lane influences another lane.
 template <typename Tracker, typename Arm, typename Space, typename Scheme>
 class TrackerBatch {
  public:
@@ -32,8 +32,8 @@ class TrackerBatch {
   static constexpr int N = Arm::kDof;
   static constexpr std::size_t kLanes = In::size();
 
-  /// arm, scheme: those of the trackers, damping included, in lanes. trackers: one a lane, their tips where the path
-  /// starts. Throws std::invalid_argument where there are too many or too few.
+  /// arm, scheme: arm and scheme of the trackers in lanes, with the same damping. trackers: one for each lane, with the
+  /// tip at the start of the path. Throws std::invalid_argument if the number of trackers is not the number of lanes.
   TrackerBatch(const Arm& arm, Space, const Scheme& scheme, std::vector<Tracker> trackers)
       : arm_(arm), scheme_(scheme), trackers_(std::move(trackers)) {
     validation::require_size("trackers", static_cast<Eigen::Index>(trackers_.size()), kLanes);
@@ -42,10 +42,11 @@ class TrackerBatch {
   }
 
   [[nodiscard]] const std::vector<Tracker>& trackers() const noexcept { return trackers_; }
-  /// The worst of each tracker's ticks.
+  /// Most severe status of the ticks of each tracker.
   [[nodiscard]] const std::array<Status, kLanes>& status() const noexcept { return status_; }
 
-  /// One tick of each. way: displacements from where each tip started. Writes all of a sample but its index and time.
+  /// One tick of each tracker. way: displacements from the start of each tip. Sets all members of `sample` except index
+  /// and time.
   void tick(const TickReferences<Space, Scalar>& way, Sample<Space, N, In>& sample) noexcept {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const State<N, Scalar> state = trackers_[lane].state();
@@ -80,7 +81,7 @@ class TrackerBatch {
   using Loop = ClosedLoop<Arm, Scheme, Space>;
   using X = typename Loop::X;
 
-  /// A lane of the references as its tracker corrects them.
+  /// Replaces one lane of the references by the references that its tracker corrects.
   void correct(TickReferences<Space, In>& references, std::size_t lane) const noexcept {
     for (Reference<Space, In>& all : references.stages) {
       const Reference<Space, Scalar> own = trackers_[lane].corrected(of_lane(all, lane));
@@ -90,7 +91,7 @@ class TrackerBatch {
     }
   }
 
-  /// A step of RK4 where loop was updated; dx: dx/dt at its start. Says in which lanes it is finite.
+  /// RK4 step after loop.update(). Sets dx to dx/dt at the start. Returns the lanes in which the step is finite.
   [[nodiscard]] static Mask<In> step(Loop& loop, const TickReferences<Space, In>& references, X& x, X& dx) noexcept {
     const auto derivative = [&](Scalar seconds, const X& stage_x, X& stage_dx) noexcept {
       return loop.evaluate(references(seconds), stage_x, stage_dx);
@@ -98,18 +99,18 @@ class TrackerBatch {
     Status status = loop.resolve(references.stages[0], dx);
     if (!failed(status)) status = RK4::step(derivative, Scalar(0), references.dt, dx, x);
     if (failed(status)) return Mask<In>(false);
-    const In zero = x.sum() * In(0);  // Inf and NaN make NaN of it.
+    const In zero = x.sum() * In(0);  // Inf and NaN make the sum NaN.
     return zero == In(0);
   }
 
-  /// The end of a tracker's tick that was stepped to x, with dx/dt at its start.
+  /// Ends the tick of a tracker. x: state after the step. dx: dx/dt at the start.
   [[nodiscard]] Status finish(std::size_t lane, const Reference<Space, In>& now, const Reference<Space, In>& middle,
                               const X& x, const X& dx) noexcept {
     State<N, Scalar> next{column(x, 0, lane), column(x, x.cols() - 1, lane)};
     return trackers_[lane].finish(of_lane(now, lane), of_lane(middle, lane), next, column(dx, dx.cols() - 1, lane));
   }
 
-  /// A tracker's whole tick.
+  /// Computes the whole tick of a tracker.
   [[nodiscard]] Status alone(std::size_t lane, const TickReferences<Space, Scalar>& way) noexcept {
     return trackers_[lane].advance(way.template from<Scalar>(lane_of(start_, lane))).status;
   }
@@ -129,10 +130,11 @@ class TrackerBatch {
   std::array<Status, kLanes> status_;
 };
 
-/// track() of a batch along a path: each motion's ticks, one for each time of the grid.
+/// track() of a batch along a path, one tick of each motion for each time of the grid.
 ///
-/// `record(const Sample&)` is called once per tick, in lanes, noexcept; where it returns a bool, false ends all motions
-/// there. The grid's step must be the trackers'. Returns the number of ticks; how each went is in batch.status().
+/// `record(const Sample&)` is called once per tick, in lanes, and must be noexcept. If `record` returns false, all
+/// motions end. The step of the grid must be the tick of the trackers. Returns the number of ticks. The statuses are in
+/// batch.status().
 template <typename Batch, typename Path, typename Recorder>
 int track_batch(Batch& batch, const Path& path, const TimeGrid<typename Batch::Scalar>& grid,
                 Recorder&& record) noexcept {
