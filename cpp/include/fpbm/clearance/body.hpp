@@ -32,7 +32,9 @@ struct Body {
 
   /// The capsule in the base frame. frame: pose of the joint of the link.
   [[nodiscard]] Capsule<Scalar> placed_by(const Transform<Scalar>& frame) const noexcept {
-    return placed(in_link, frame);
+    if (!is_direction) return placed(in_link, frame);
+    const Vector<3, Scalar> x = point_by(frame);
+    return {x, x, in_link.radius};
   }
   /// The point or the direction of a bound in the base frame. frame: pose of the joint of the link.
   [[nodiscard]] Vector<3, Scalar> point_by(const Transform<Scalar>& frame) const noexcept {

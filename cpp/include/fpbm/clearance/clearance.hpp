@@ -100,13 +100,8 @@ class Clearance {
     if (i >= obstacles_.size() || obstacles_[i].shape.index() != shape.index()) return false;
     obstacles_[i].shape = shape;
     obstacles_[i].velocity = velocity;
-    obstacles_[i].moved = true;
+    ++obstacles_[i].moves;
     return true;
-  }
-
-  /// Marks all obstacles as not moved.
-  void read_obstacles() noexcept {
-    for (auto& each : obstacles_) each.moved = false;
   }
 
   /// Enables null-space motion away from shapes. Throws std::invalid_argument if a number is out of range.
@@ -181,7 +176,6 @@ class Clearance {
     for (std::size_t i = 0; i < placed.bodies.size(); ++i) {
       Capsule<Scalar>& body = placed.bodies[i];
       body = bodies_[i].placed_by(frame(bodies_[i]));
-      if (bodies_[i].is_direction) body.a = body.b = bodies_[i].point_by(frame(bodies_[i]));
       placed.centres[i] = (body.a + body.b) / Scalar(2);
     }
     for (std::size_t i = 0; i < placed.speed_points.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "fpbm/clearance/advancement.hpp"
 #include "fpbm/clearance/motion_away.hpp"

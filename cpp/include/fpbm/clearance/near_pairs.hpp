@@ -30,7 +30,8 @@ class NearPairs {
         nearest_(clearance.pairs().size()),
         is_known_(clearance.pairs().size(), 0),
         displacement_(clearance.bodies().size(), Scalar(0)),
-        by_obstacle_(clearance.obstacles().size(), Scalar(0)) {
+        by_obstacle_(clearance.obstacles().size(), Scalar(0)),
+        seen_(clearance.obstacles().size(), 0) {
     here_.state.q = filled<JointVector>(clearance.robot().dof());
   }
 
@@ -38,17 +39,17 @@ class NearPairs {
   [[nodiscard]] const Placement& here() const noexcept { return here_; }
 
   /// Computes the bodies in a posture, which need not be near the previous posture.
-  void go_to(Clearance& clearance, const JointVector& q) noexcept {
+  void go_to(const Clearance& clearance, const JointVector& q) noexcept {
     set_displacements(clearance, clearance.robot().drives().rates(JointVector(q - here_.state.q)).cwiseAbs());
     constexpr Scalar kRoundOff = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
     for (std::size_t i = 0; i < least_.size(); ++i) {
       const ShapePair& pair = clearance.pairs()[i];
       const Scalar change = displacement_[pair.first] + (pair.world ? Scalar(0) : displacement_[pair.second]);
       least_[i] -= change + kRoundOff * (std::abs(least_[i]) + change);
-      if (pair.world && clearance.obstacles()[pair.second].moved) least_[i] = -kUnbounded;
+      if (pair.world && clearance.obstacles()[pair.second].moves != seen_[pair.second]) least_[i] = -kUnbounded;
       is_known_[i] = 0;
     }
-    clearance.read_obstacles();
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = clearance.obstacles()[i].moves;
     clearance.place(q, here_);
   }
 
@@ -110,6 +111,7 @@ class NearPairs {
   std::vector<unsigned char> is_known_;   ///< Whether nearest_ is computed for this posture.
   std::vector<Scalar> displacement_;      ///< Displacement bound of each body [m].
   std::vector<Scalar> by_obstacle_;       ///< Displacement of each obstacle [m].
+  std::vector<std::size_t> seen_;         ///< Obstacle::moves at the last go_to().
   Scalar largest_ = Scalar(0);            ///< Largest displacement_of() of any pair [m].
 };
 

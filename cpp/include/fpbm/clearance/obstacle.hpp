@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <variant>
@@ -28,8 +29,8 @@ struct Obstacle {
 
   std::string name;
   WorldShape<Scalar> shape;
-  Vector3 velocity;   ///< Velocity of all points with which the obstacle is expected to continue [m/s].
-  bool moved = true;  ///< Whether the shape has moved since NearPairs last read it.
+  Vector3 velocity;       ///< Velocity of all points with which the obstacle is expected to continue [m/s].
+  std::size_t moves = 0;  ///< Number of calls of Clearance::move().
 
   Obstacle(std::string its_name, const WorldShape<Scalar>& its_shape, const Vector3& its_velocity = Vector3::Zero())
       : name(std::move(its_name)), shape(its_shape), velocity(its_velocity) {}
