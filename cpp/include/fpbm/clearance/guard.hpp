@@ -44,6 +44,7 @@ class Guard {
   /// pair if a pair is closer than the margin, or if the arm cannot stop with all margins kept.
   void require_clear(const JointLimits& limits, const JointState& start, const JointVector& last) {
     validation::require_size("clearance's joints", clearance_.robot().dof(), start.q.size());
+    late_ = plan_.latency(limits);
     if (empty()) return;
     near_pairs_.go_to(clearance_, start.q);
     const auto [pair, distance] = clearance_.nearest_pair(near_pairs_.here(), 0, clearance_.shape_pairs());
@@ -100,7 +101,7 @@ class Guard {
     const Scalar average = h * ticks;
     const Scalar time = average + kSoft;
     // After the acceleration u of this tick is reduced to zero, the velocity is q̇ + late h u.
-    const Scalar late = plan_.latency(limits);
+    const Scalar late = late_;
     JointSweep<Clearance> sweep(clearance_, sweep_);
     const JointVector way = ticks / (Scalar(1) + plan_.average()) * sweep_.way;
     sweep.way = drives.rates(way);
@@ -195,7 +196,7 @@ class Guard {
   /// Adds rows for the bounds on speeds that the motion u would exceed.
   void bound_speeds(const JointLimits& limits, const JointState& state, const JointVector& u,
                     Rows<N, kRows, Scalar>& rows) noexcept {
-    fpbm::bound_speeds(clearance_, ahead_, limits, state, plan_.latency(limits), u, rows);
+    fpbm::bound_speeds(clearance_, ahead_, limits, state, late_, u, rows);
   }
 
   /// Whether any active row is the row of a pair. rows: bit k is set if row k is active.
@@ -279,7 +280,8 @@ class Guard {
   typename Clearance::Placement middle_;  ///< In the middle of the tick.
   typename Clearance::Placement ahead_;   ///< At the end of the stop.
   StopPlan<kLevel, N, Scalar> plan_;
-  Sweep<N, Scalar> sweep_;  ///< Of the tick that leads to the plan, and of the plan.
+  Sweep<N, Scalar> sweep_;   ///< Of the tick that leads to the plan, and of the plan.
+  Scalar late_ = Scalar(1);  ///< StopPlan::latency() [ticks].
   Scalar room_ = Scalar(0);
   Eigen::Index near_ = 0;  ///< Number of rows for pairs.
 };
