@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "fpbm/clearance/guard.hpp"
 #include "fpbm/clearance/task_bounds.hpp"
@@ -508,6 +510,74 @@ void expect_arms_apart(bool with_torso) {
 TEST(Guard, keeps_two_arms_apart) {
   expect_arms_apart<14, Level::kVelocity>(false);
   expect_arms_apart<16, Level::kAcceleration>(true);
+}
+
+/// Postures of a motion that a wall and the arm's own shapes block, for a number of joints at compile time or run time.
+template <int N, int Joints, Level kLevel>
+[[nodiscard]] std::vector<Vector<N>> blocked_motion(const Tree<>& tree, const Vector<N>& q, double y_most, double jerk,
+                                                    int& pressed) {
+  const Robot<N, double, Joints> robot(tree);
+  auto bounds = robot.limits();
+  bounds.jerk = jerk * bounds.acceleration;
+  const Limits<kLevel, N> limits(bounds, kTick);
+  const auto scheme = [] {
+    if constexpr (kLevel == Level::kVelocity) {
+      return MVN<N>();
+    } else {
+      return Balanced<N>(0.0, UnitWeights{}, NullSpace<N>().with_damping(2.0));
+    }
+  }();
+  const TaskGains<> gains = kLevel == Level::kVelocity ? TaskGains<>(5.0) : TaskGains<>(10.0, 25.0);
+  const Stack stack(PositionTask<>{frame_of(tree, "tip"), gains}, PostureTask<N>{gains});
+  using Shapes = Guard<kLevel, N, double, Joints>;
+  const Obstacle<> post("post", Capsule<>{{0.4, -0.45, 0.0}, {0.4, -0.45, 1.0}, 0.05});
+  typename Shapes::Clearance clearance(tree, sticks(tree, 0.04), {post}, 0.01);
+  PositionBounds<> wall{{tree.frames.front().link}};
+  wall.upper(1) = y_most;
+  wall.deceleration = 1.0;
+  clearance.keep(wall);
+  auto tracker = stack_tracker<Shapes>(robot, stack, scheme, State<N>{q, 0.0 * q}, TrackerOptions<>{kTick}, limits,
+                                       Vector<N>(0.0 * q), Shapes(clearance));
+  auto target = decltype(tracker)::Target::hold(tracker.tip());
+  const Vector<3> home = std::get<0>(target.x);
+  Random random(11);
+  std::vector<Vector<N>> motion;
+  for (int k = 0; k < 2000; ++k) {
+    if (k % 250 == 0) std::get<0>(target.x) = home + Vector<3>(random.uniform(3, -0.4, 0.4));
+    const double y = -0.45 + 0.1 * std::sin(2e-3 * k);
+    if (k % 7 == 0) {
+      const Capsule<> moved{{0.4, y, 0.0}, {0.4, y, 1.0}, 0.05};
+      EXPECT_TRUE(tracker.guard().clearance().move(0, moved, Vector<3>(0.0, 0.2 * std::cos(2e-3 * k), 0.0)));
+    }
+    const auto tick = tracker.tick(target);
+    pressed += tick.status == Status::kBlocked || std::get<0>(tracker.tip())(1) > y_most - 2e-3 ? 1 : 0;
+    motion.push_back(tick.q);
+  }
+  return motion;
+}
+
+template <int N, int Joints, Level kLevel>
+void expect_same_for_both_sizes(const Chain<>& chain, const Vector<N>& q, double y_most) {
+  const Tree<> tree = tree_of(chain);
+  for (const double jerk : {std::numeric_limits<double>::infinity(), 100.0}) {
+    if (kLevel == Level::kVelocity && std::isfinite(jerk)) continue;
+    int pressed = 0;
+    const auto fixed = blocked_motion<N, Joints, kLevel>(tree, q, y_most, jerk, pressed);
+    const auto open = blocked_motion<N, kOpen, kLevel>(tree, q, y_most, jerk, pressed);
+    double apart = 0.0;
+    for (std::size_t k = 0; k < fixed.size(); ++k) {
+      apart = std::max(apart, (fixed[k] - open[k]).cwiseAbs().maxCoeff());
+    }
+    EXPECT_LE(apart, 1e-9) << "jerk " << jerk;
+    EXPECT_GT(pressed, 200);
+    std::printf("%d drives, %d joints: apart by %.1e, %d ticks blocked\n", N, Joints, apart, pressed);
+  }
+}
+TEST(Guard, is_the_same_for_joints_counted_at_run_time) {
+  const Vector<7> coupled{0.1, 0.2, -0.3, 0.1, -2.0, 0.1, 1.9};
+  expect_same_for_both_sizes<7, 7, Level::kAcceleration>(presets::panda(), ready(), 0.1);
+  expect_same_for_both_sizes<7, 7, Level::kVelocity>(presets::panda(), ready(), 0.1);
+  expect_same_for_both_sizes<7, 8, Level::kAcceleration>(coupled_panda(), coupled, 0.3);
 }
 
 TEST(Guard, names_what_is_wrong) {
