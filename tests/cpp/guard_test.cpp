@@ -580,6 +580,30 @@ TEST(Guard, is_the_same_for_joints_counted_at_run_time) {
   expect_same_for_both_sizes<7, 8, Level::kAcceleration>(coupled_panda(), coupled, 0.3);
 }
 
+/// A joint that follows with a negative ratio approaches a wall as its leader moves away: the pair needs a row.
+TEST(Guard, has_a_row_for_a_joint_that_follows_with_a_negative_ratio) {
+  Chain<> chain;
+  chain.joints.resize(2);
+  chain.joints[0].bounds = {-1.0, 1.0, 1.0, 5.0};
+  chain.joints[1].type = JointType::kPrismatic;
+  chain.joints[1].axis = Vector<3>::UnitX();
+  chain.joints[1].bounds = {-3.0, 3.0};
+  chain.joints[1].mimic = {0, -2.0, 0.0};
+  const std::vector<LinkCapsule<>> ball = {{2, {Vector<3>::Zero(), Vector<3>::Zero(), 0.05}, "ball"}};
+  constexpr double kMargin = 0.01;
+  const Vector<1> q(-0.2);  // The ball is at x = 0.4 cos 0.2.
+  const double wall = 0.4 * std::cos(0.2) + 0.05 + kMargin + 1e-4;
+  const Clearance<1, double, kOpen> clearance(chain, ball,
+                                              {{"wall", HalfSpace<>{Vector<3>(-Vector<3>::UnitX()), -wall}}}, kMargin);
+  const Limits<Level::kAcceleration, 1> limits(clearance.robot().limits(), kTick);
+  Guard<Level::kAcceleration, 1, double, kOpen> guard(clearance);
+  const State<1> state{q, Vector<1>::Zero()};
+  guard.require_clear(limits, state, Vector<1>::Zero());
+  const auto rows = guard.rows(limits, state);
+  ASSERT_GE(rows.count, 1);
+  EXPECT_LT(rows.g(0, 0), 0.0);  // The leader must not decrease much.
+}
+
 TEST(Guard, names_the_invalid_argument) {
   const Chain<> chain = presets::panda();
   const auto bounded = [&](int link, double lower, double velocity) {
