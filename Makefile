@@ -18,7 +18,7 @@ CXX_SOURCES = $(shell find cpp python tests bench examples web ros2 -name '*.[ch
 
 .DELETE_ON_ERROR:
 .PHONY: help demo page test homes test-cpp test-python test-docs test-view clang sanitize nightly arm64 arm64-wheel windows macos cross firmware packages fuzz soak motions grasp peers lint \
-        format stubs docs notebooks bench count stalls worst sdist wheel clean
+        prose format stubs docs notebooks bench count stalls worst sdist wheel clean
 
 help:
 	@echo 'make demo             reproduce the paper: tables, figures and a report in ./$(OUT)'
@@ -39,7 +39,8 @@ help:
 	@echo 'make grasp            10,000 motions of a tray in two arms, and a few by Pink, Mink, PlaCo and roboplan'
 	@echo 'make peers            the programs of docs/coming_from.md, in environments of their own'
 	@echo 'make fuzz             look for input that breaks the tracker, for SECONDS=$(SECONDS)'
-	@echo 'make lint             formatting, static analysis, imports, types, stubs'
+	@echo 'make lint             formatting, static analysis, imports, types, stubs, spelling, terms to avoid'
+	@echo 'make prose            draw sentences to read: SEED=1 COUNT=20'
 	@echo 'make bench            every benchmark, against the peers that are found; QUICK=1 for a first look'
 	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make worst            the longest ticks that a search has found; SEARCH=600 searches on'
@@ -186,12 +187,20 @@ lint: $(VENV)/package $(VENV)/lint
 	clang-tidy --quiet tools/umbrella.cpp -- -std=c++17 -I$(CURDIR)/cpp/include -isystem /usr/include/eigen3
 	$(PYTHON) tools/headers.py --check
 	$(PYTHON) tools/documented.py
+	$(PYTHON) tools/prose.py check
+	git ls-files -z | xargs -0 $(BIN)/codespell
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy --python-executable $(BIN)/python
 	$(BIN)/python tools/stubs.py --check
 	$(BIN)/python -m mypy.stubtest fpbm_cpp._core --mypy-config-file pyproject.toml --allowlist tools/stubtest.txt
+
+# Sentences drawn at random from pages, comments and messages; another SEED draws others.
+prose: SEED ?= 1
+prose: COUNT ?= 20
+prose:
+	@$(PYTHON) tools/prose.py draw --seed $(SEED) --count $(COUNT)
 
 format: $(VENV)/lint
 	tools/need.sh clang-format
