@@ -1,4 +1,4 @@
-# Every target installs what it needs: Debian packages where they are missing, Python packages into .venv.
+# Every target installs the packages that it needs: missing Debian packages, and Python packages into .venv.
 
 PYTHON ?= python3
 VENV := .venv
@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 OUT ?= demo
 SECONDS ?= 600
 JOBS ?= $(shell nproc)
-# A wheel to install in place of building the package from its sources.
+# A wheel to install instead of building the package from its sources.
 WHEEL ?=
 PACKAGE := $(shell find cpp python cmake -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 EIGEN := /usr/include/eigen3/Eigen/Core:libeigen3-dev
@@ -45,7 +45,7 @@ help:
 	@echo 'make count            compare the instructions of each step with those recorded'
 	@echo 'make worst            the longest ticks that a search has found; SEARCH=600 searches on'
 	@echo 'make stalls           the loads of each step that wait for stores, against those recorded'
-	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; write the Python stubs afresh'
+	@echo 'make format, stubs    format all sources and list the headers in fpbm.hpp; rewrite the Python stubs'
 	@echo 'make docs             build the documentation in ./build/docs, its notebooks executed'
 	@echo 'make notebooks        only the notebooks, executed, as .ipynb in ./build/notebooks'
 	@echo 'make test-docs        run every code block of the README and the documentation'
@@ -61,7 +61,7 @@ page:
 
 test: test-cpp test-python
 
-# LAWS=OFF: only the rest, as after make sanitize for make clang, which is the same compiler.
+# LAWS=OFF leaves out the laws, for example in make clang after make sanitize, which has the same compiler.
 test-cpp: preset = release
 clang: preset = clang
 sanitize: preset = sanitize
@@ -89,7 +89,7 @@ arm64-wheel:
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	PYTHON=$(BIN)/python tools/arm64_wheel.sh build/arm64-wheel $(TESTS)
 
-# Zig carries what a Mac's programs are linked with; nothing here runs them.
+# Zig has the libraries that programs for macOS are linked with; the programs are not run here.
 macos: $(VENV)/macos
 	tools/need.sh cmake ninja:ninja-build $(EIGEN) /usr/src/googletest/CMakeLists.txt:googletest
 	for preset in macos-aarch64 macos-x86_64; do \
@@ -160,7 +160,7 @@ peers: $(VENV)/package $(VENV)/test
 	-tools/need.sh /usr/lib/python3/dist-packages/PyKDL$(call SUFFIX,/usr/bin/python3):python3-pykdl
 	FPBM_PEERS=build/stack_peers $(BIN)/python -m pytest tests/docs/test_coming_from.py -s
 
-# The corpus stays in build/fuzz, so that the next run goes on from it.
+# The corpus stays in build/fuzz, so that the next run continues from it.
 fuzz:
 	tools/need.sh clang++:clang cmake ninja:ninja-build $(EIGEN)
 	tools/need.sh $(call clang_library,fuzzer)
@@ -236,7 +236,7 @@ bench: $(VENV)/package $(VENV)/test $(VENV)/bench
 	cmake --build --preset bench --parallel $(JOBS)
 	$(BIN)/python bench/run.py build/bench/bench $(if $(QUICK),--quick)
 
-# Fails where a step takes more instructions than recorded; RECORD=1 records them.
+# Fails if a step takes more instructions than recorded; RECORD=1 records them.
 count:
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
 	cmake --preset bench
@@ -253,7 +253,7 @@ worst:
 	build/bench/bench/bench_worst 50
 	$(PYTHON) bench/worst.py build/bench/bench/bench_worst
 
-# Fails where a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
+# Fails if a step has more loads that wait for stores than recorded; RECORD=1 records them. After count where make runs
 # both, since they compile one program.
 stalls: $(filter count,$(MAKECMDGOALS))
 	tools/need.sh g++ cmake ninja:ninja-build $(EIGEN) valgrind
@@ -282,20 +282,20 @@ $(VENV)/test $(VENV)/lint $(VENV)/browser $(VENV)/docs: pyproject.toml | $(VENV)
 	$(BIN)/python -m pip install --quiet --no-compile --group $(notdir $@)
 	@touch $@
 
-# What makes distributions and what cross-compiles need no package installed.
+# Tools for distributions and for cross-compilation need no installed package.
 $(VENV)/wheel $(VENV)/macos $(VENV)/packages: pyproject.toml
 	PYTHON=$(PYTHON) tools/venv.sh $(VENV)
 	$(BIN)/python -m pip install --quiet --group $(notdir $@)
 	@touch $@
 
-# Who else is timed from Python, each as far as it is to be had.
+# Peers that are timed from Python, if they are available.
 $(VENV)/bench: pyproject.toml | $(VENV)/package
 	-for peer in pinocchio qp tsid toolbox pink mink; do $(BIN)/python -m pip install --quiet --group bench-$$peer; done
 	@touch $@
 
-# What arms and motions are compared with, as far as it is to be had: tests without their peer are skipped. Of ManipulaPy only
-# the URDFs are read, of those after it the meshes, so what they need is left out; Debian's PyKDL is for a Python of Debian's
-# version.
+# Peers that arms and motions are compared with, if they are available: tests without their peer are skipped. ManipulaPy
+# is read for its URDFs only, and the packages after ManipulaPy for their meshes, so they are installed without
+# dependencies. Debian's PyKDL is for a Python of Debian's version.
 SUFFIX = $(shell $(1) -c 'import sysconfig; print(sysconfig.get_config_var("EXT_SUFFIX"))' 2> /dev/null)
 $(VENV)/peers: pyproject.toml | $(VENV)/package
 	-for group in peers franka; do $(BIN)/python -m pip install --quiet --no-compile --group $$group; done

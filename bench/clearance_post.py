@@ -1,9 +1,9 @@
 """A post that crosses a Panda's work space in MuJoCo, which counts contacts: `python bench/clearance.py post`.
 
 The arm holds its tip where it is. It is led by the tracker's positions and velocities, a thousand times a second, by a
-computed torque. The post is vertical, goes straight at one speed, through a point of the forearm or the hand, and is
-no obstacle to itself: nothing stops it. The tracker is told where it is and how fast, at each tick. Posts whose way
-comes nearer to the arm's first axis than COLUMN are left out: the two links there can go nowhere.
+computed torque. The post is vertical, moves straight at one speed through a point of the forearm or the hand, and
+nothing stops it. The tracker is told where it is and how fast, at each tick. Posts whose path is nearer to the arm's
+first axis than COLUMN are left out: the two links there cannot move away.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ MADE: dict[str, Any] = {}  # Before workers are forked, which share it.
 class Crossing(NamedTuple):
     speed: float
     touched: int  # Ticks with a contact of the post and the arm.
-    deepest: float  # Least distance that MuJoCo saw in these [m], 0 without any.
+    deepest: float  # Smallest distance that MuJoCo measured in these [m], 0 without any.
     distance: float  # Least distance of the tracker's capsules from one another and from the post [m].
     lag: float  # Of the arm behind the tracker, at most [rad].
     error: float  # Of the tip, at the end [m].
@@ -95,7 +95,7 @@ def crossing(task: tuple[float, int, bool]) -> Crossing:
 
     clearance = replace(made.clearance, obstacles=[post(foot)], margin=MARGIN)
     scheme = fp.FPBM(0.6, np.ones(7), 20, 100, null_damping=2)
-    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}  # It goes back behind the post.
+    options = {"clearance": clearance if guarded else None, "stall_time": math.inf}  # The tip returns behind the post.
     tracker = fp.Tracker(made.arm, scheme, READY, limits=made.limits, **options)
     model, target = MADE["model"], tracker.tip
     data = mujoco.MjData(model)

@@ -90,7 +90,7 @@ struct Motion {
   std::array<double, 5> excess;  ///< Of q [rad]; of Δq, Δ²q, Δ³q and Δ²q̇ relative to the bounds.
   bool both_saturated = false;   ///< Bounds were active on joints of both arms.
   bool at_rest = true;
-  double time = 0;  ///< Of all ticks [ns].
+  double time = 0;  ///< Total time of all ticks [ns].
 };
 
 Motion run(std::uint64_t seed, bool stops) {

@@ -202,7 +202,7 @@ struct Found {
   int tick = 0;
 };
 
-/// The motion of a case in a file with lines "name tick numbers". Without numbers if the file has no such line.
+/// The motion of a case in a file with lines "name tick numbers". Without numbers if the file does not have the line.
 inline Found found_in(const std::string& file, const std::string& name) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

@@ -2,8 +2,8 @@
 
 Needs fpbm_cpp[clearance], clang-format, the packages in ARMS and, for the UR10e, of which none has meshes, ROS's
 ur_description in ROS_PACKAGE_PATH. A preset and a URDF file of the same arm place links alike up to their digits: the
-pose of the file's link i in the frame of the preset's joint i is the same in all postures. What it differs by is
-printed and added to the radius, and so is what rounding to 0.1 mm takes away.
+pose of the file's link i in the frame of the preset's joint i is the same in all postures. The difference is printed
+and added to the radius, and so is the error of rounding to 0.1 mm.
 """
 
 import importlib.metadata
@@ -102,13 +102,13 @@ class Robot(NamedTuple):
     """The links of a preset by the URDF file of its meshes."""
 
     capsules: list[Capsule]  # In the frames of the file's joints.
-    poses: NDArray[np.float64]  # Of these frames in those of the preset's joints, the base first.
+    poses: NDArray[np.float64]  # Positions of these frames in the frames of the preset's joints, the base first.
     off: NDArray[np.float64]  # How far each of these poses is off, at most [m].
     turned: NDArray[np.float64]  # And turned [rad].
 
 
 def version(source: Source) -> str:
-    """Of the package that has the meshes."""
+    """Name of the package that has the meshes."""
     if source.ros is not None:
         file = find_mesh(located(source.package, source.urdf), f"package://{source.ros}/package.xml")
         found = re.search("<version>(.*)</version>", file.read_text() if file else "")
@@ -157,7 +157,7 @@ def is_of_arm(link: str) -> bool:
 
 
 def read(name: str) -> Robot:
-    """Raises ValueError where the preset and the file are not the same arm, or a mesh is not found."""
+    """Raises ValueError if the preset and the file are not the same arm, or a mesh is not found."""
     with urdf_of(name) as urdf:
         return _read(name, urdf, ARMS[name].tip)
 
@@ -184,7 +184,7 @@ def _read(name: str, urdf: Path, tip: str) -> Robot:
 
 
 def written(robot: Robot) -> Iterator[str]:
-    """The capsules as C++ in the frames of the preset's joints, each larger by what the numbers' digits leave out."""
+    """The capsules as C++ in the frames of the preset's joints, each larger by the rounding error of its numbers."""
     for link, a, b, radius, name in ((c.link, c.a, c.b, c.radius, c.name) for c in robot.capsules):
         pose = robot.poses[link]
         exact = np.array([pose[:3, :3] @ end + pose[:3, 3] for end in (a, b)])
@@ -236,8 +236,8 @@ def main() -> None:
 
 #include "fpbm/clearance/clearance.hpp"
 
-/// Capsules on the links of the presets [m]. They contain the meshes that the makers give for collisions, in every
-/// posture; cables, tools and what else is mounted they do not. Written by tools/preset_capsules.py.
+/// Capsules on the links of the presets [m]. They contain the collision meshes of the manufacturers in every posture,
+/// but no cables, tools or other mounted parts. Written by tools/preset_capsules.py.
 namespace fpbm::presets::capsules {{
 
 {functions}

@@ -1,7 +1,7 @@
 """Finds the sentences of the repository: its pages, its comments, and the texts that programs show.
 
 tools/prose.py reads them. Comments of C++ and JavaScript and their string literals are found by one regular expression,
-and those of Python by its own parser.
+and comments and strings of Python by its own parser.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def _braces(text: str) -> Iterator[tuple[str, Lines]]:
     """Languages with the comments of C: C++, JavaScript and CSS."""
     found: list[tuple[int, int, str, bool]] = []
     messages: list[tuple[str, Lines]] = []
-    end = 0  # Of the last literal.
+    end = 0  # End of the last literal.
     for token in TOKEN.finditer(text):
         number = text.count("\n", 0, token.start()) + 1
         start = text.rfind("\n", 0, token.start()) + 1
@@ -159,7 +159,7 @@ def _braces(text: str) -> Iterator[tuple[str, Lines]]:
 
 
 def _message(parts: Lines) -> Iterator[tuple[str, Lines]]:
-    """The paragraphs of a text that a program shows; none if its words are no sentence."""
+    """The paragraphs of a text that a program shows; none if its words are not a sentence."""
     joined = "".join(part for _, part in parts)
     if PROSE.search(joined):
         lines = [(parts[0][0] + i, line) for i, line in enumerate(joined.splitlines())]
@@ -207,7 +207,7 @@ def _hash_comments(text: str) -> Iterator[tuple[str, Lines]]:
 
 
 class _Shown(HTMLParser):
-    """Collects the texts of a web page, and those of its attributes that are shown or read aloud."""
+    """Collects the texts of a web page, and the attributes that are shown or read aloud."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""What is measured of a motion, from joint positions and velocities by NumPy alone, scales excepted."""
+"""Measures of a motion, from joint positions and velocities by NumPy alone, scales excepted."""
 
 from __future__ import annotations
 

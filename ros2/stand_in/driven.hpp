@@ -34,7 +34,7 @@ class Driven {
     command.fill(std::numeric_limits<double>::quiet_NaN());  // As hardware that was never commanded.
   }
 
-  /// Loads and configures. False where the controller refuses.
+  /// Loads and configures. False if the controller refuses.
   [[nodiscard]] bool load(const Overrides& overrides = {}) {
     description.controller_manager_update_rate = description.update_rate = rate;
     if (controller_->init(description, overrides) != controller_interface::return_type::OK) return false;

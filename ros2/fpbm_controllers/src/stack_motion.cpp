@@ -53,7 +53,7 @@ constexpr int kPerLevel = Stack::kTasks / Stack::kLevels;
   return Stack(level(0), level(1), level(2), level(3));
 }
 
-/// Throws std::invalid_argument, with the task's name, where a tick does not damp the error of a task with its gains.
+/// Throws std::invalid_argument, with the task's name, if a tick does not damp the error of a task with its gains.
 void require_stable_tasks(const std::vector<MotionTask>& tasks, const fpbm::TickOfGains<>& tick) {
   constexpr fpbm::Level kLevel = fpbm::Level::kAcceleration;
   for (const MotionTask& task : tasks) {

@@ -38,7 +38,7 @@ namespace {
   return vector;
 }
 
-/// Throws where the joints of the parameters are not those of the tree that have a drive.
+/// Throws if the joints of the parameters are not those of the tree that have a drive.
 void require_joints(const std::vector<std::string>& given, const fpbm::Tree<>& tree) {
   std::vector<std::string> driven;
   std::string list;

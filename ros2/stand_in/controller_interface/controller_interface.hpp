@@ -47,7 +47,7 @@ class LifecycleNode {
     topics[topic] = std::weak_ptr<rclcpp::Publisher<Message>>(made);
     return made;
   }
-  /// Throws where the period is not a number, or less than a nanosecond.
+  /// Throws if the period is not a number, or less than a nanosecond.
   template <typename Rep, typename Period, typename Callback>
   std::shared_ptr<rclcpp::TimerBase> create_wall_timer(std::chrono::duration<Rep, Period> period, Callback callback) {
     if (!(period.count() >= Rep(1e-9))) throw std::invalid_argument("timer period must be positive");

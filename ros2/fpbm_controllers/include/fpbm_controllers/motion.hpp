@@ -69,9 +69,9 @@ class Motion {
   Motion& operator=(const Motion&) = delete;
   virtual ~Motion() = default;
 
-  /// Starts at rest from a posture. Throws std::invalid_argument where the posture is beyond a limit.
+  /// Starts at rest from a posture. Throws std::invalid_argument if the posture is beyond a limit.
   virtual void begin(const Joints& q) = 0;
-  /// A new target of a task. False where its stamp rejects it.
+  /// A new target of a task. False if its stamp rejects it.
   virtual bool push(std::size_t task, const Target& target) noexcept = 0;
   /// One tick: sets the status, and the scale and the errors of each task.
   virtual void tick(Report& report) noexcept = 0;
@@ -85,15 +85,15 @@ class Motion {
 };
 
 /// Of one tip, by a tracker of a pose: less than half of the time of a stack, and of robots of fewer than six joints
-/// too. settings: with one task, without a reference frame. Throws std::invalid_argument where a gain is too high for
+/// too. settings: with one task, without a reference frame. Throws std::invalid_argument if a gain is too high for
 /// the tick.
 [[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
 
-/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument where a gain is too high for the tick, or a task
+/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or a task
 /// does not suit the robot.
 [[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
 
-/// Hands a target to the filter of a task. False where its stamp rejects the target.
+/// Hands a target to the filter of a task. False if its stamp rejects the target.
 template <typename Filter>
 bool push_to(Filter& filter, const Target& target) noexcept {
   const auto push = [&](auto... stamp) noexcept {

@@ -25,7 +25,7 @@ template <typename Header>
   return static_cast<double>(header.stamp.sec) + 1e-9 * static_cast<double>(header.stamp.nanosec);
 }
 
-/// None where a number is not finite, or the quaternion's length not 1 but for errors of 0.01.
+/// None if a number is not finite, or the quaternion's length not 1 but for errors of 0.01.
 [[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::PoseStamped& message) {
   const auto& p = message.pose.position;
   const auto& o = message.pose.orientation;
@@ -38,7 +38,7 @@ template <typename Header>
   return target;
 }
 
-/// None where a number is not finite.
+/// None if a number is not finite.
 [[nodiscard]] inline std::optional<Target> target_of(const geometry_msgs::msg::TwistStamped& message) {
   const auto& v = message.twist.linear;
   const auto& w = message.twist.angular;

@@ -40,9 +40,9 @@ class TargetController : public controller_interface::ControllerInterface {
   using Joints = fpbm::Vector<kDof>;
   using JointLimits = fpbm::JointLimits<kDof>;
 
-  /// Throws std::invalid_argument where a parameter does not fit.
+  /// Throws std::invalid_argument if a parameter does not fit.
   void read_parameters();
-  /// Throws std::invalid_argument where the controller is not called once in a tick of its update rate.
+  /// Throws std::invalid_argument if the controller is not called once in a tick of its update rate.
   void require_rate() const;
   /// The described joints, with a frame for each task's frame and then one for each reference frame, and the tool.
   [[nodiscard]] fpbm::Tree<> described() const;
@@ -53,11 +53,11 @@ class TargetController : public controller_interface::ControllerInterface {
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
   /// The narrowest of those of the robot, ros2_control, the preset and the parameters, which are logged.
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
-  /// Those of the preset, for each arm of a tree. Throws std::invalid_argument where an arm is not the preset.
+  /// Those of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   void close();
 
-  /// Throws std::runtime_error, which names the joint, where an interface cannot be read or the arm moves.
+  /// Throws std::runtime_error, which names the joint, if an interface cannot be read or the arm moves.
   [[nodiscard]] Joints start();
 
   void take_targets() noexcept;
