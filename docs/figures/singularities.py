@@ -99,7 +99,7 @@ def wampler(motion: Motion) -> Resolve:
 
 
 def nakamura_hanafusa(motion: Motion) -> Resolve:
-    """k₀ (1 − w/w₀)² where the manipulability w = √det(JJᵀ) is below w₀; k₀ = ε², and w₀ that of σ_min = ε."""
+    """k₀ (1 − w/w₀)² if w = √det(JJᵀ) is below w₀; k₀ = ε², and w₀ is the manipulability at σ_min = ε."""
     w0 = motion.edge * np.prod(np.linalg.svd(motion.jacobian(motion.singular), compute_uv=False)[:-1])
 
     def damping(J: Vector) -> float:

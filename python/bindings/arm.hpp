@@ -67,7 +67,7 @@ struct Arm : Model {
 };
 
 /// Calls visitor(arm, Space) with the task space of that name, and with the AnyArm of an arm, or null of a robot.
-/// Throws std::invalid_argument if there is no such task, or a robot has no stack.
+/// Throws std::invalid_argument if the task does not exist, or a robot has no stack.
 template <typename Visitor>
 auto visit_space(const Model& model, const std::string& task, bool has_stack, Visitor&& visitor) {
   if (const auto* arm = dynamic_cast<const Arm*>(&model)) {

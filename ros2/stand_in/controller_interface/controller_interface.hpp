@@ -14,8 +14,9 @@
 #include <utility>
 #include <vector>
 
-// Stands in for ros2_control's header of this name and for those that it brings along: only what the controller uses,
-// with interfaces that are plain numbers. Signatures are those of ros2_control 4.46 (Jazzy) and 6.8 (Rolling).
+// Stands in for ros2_control's header of this name and for the headers that it includes: only the interface that the
+// controller uses, with interfaces that are plain numbers. Signatures are those of ros2_control 4.46 (Jazzy) and 6.8
+// (Rolling).
 namespace rclcpp_lifecycle {
 
 class State {};
@@ -64,7 +65,7 @@ class LifecycleNode {
     return parameters_->get_parameter(name);
   }
 
-  std::map<std::string, std::any> topics;  ///< Weak, as what the node knows of them.
+  std::map<std::string, std::any> topics;  ///< Weak, like the references of the node.
   std::vector<std::weak_ptr<rclcpp::TimerBase>> timers;
 
  private:

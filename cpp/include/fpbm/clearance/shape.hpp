@@ -6,7 +6,7 @@
 /// Solid shapes on the links of an arm or in its environment [m].
 namespace fpbm {
 
-/// Segment start + t way, with t in [0, 1].
+/// Segment start + t·way, with t in [0, 1].
 template <typename Scalar = double>
 struct Segment {
   Vector<3, Scalar> start;

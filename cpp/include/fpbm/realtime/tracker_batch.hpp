@@ -45,8 +45,8 @@ class TrackerBatch {
   /// Most severe status of the ticks of each tracker.
   [[nodiscard]] const std::array<Status, kLanes>& status() const noexcept { return status_; }
 
-  /// One tick of each tracker. way: displacements from the start of each tip. Sets all members of `sample` except index
-  /// and time.
+  /// One tick of each tracker. `way`: displacements from the start of each tip. Sets all members of `sample` except
+  /// index and time.
   void tick(const TickReferences<Space, Scalar>& way, Sample<Space, N, In>& sample) noexcept {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const State<N, Scalar> state = trackers_[lane].state();

@@ -19,7 +19,7 @@ namespace fpbm_controllers {
 
 /// The pose of a frame, in the base frame or relative to another frame.
 struct MotionTask {
-  std::string gains_of;  ///< What messages put before the names of the gains.
+  std::string gains_of;  ///< Prefix of the names of the gains in messages.
   int level;             ///< From 0.
   fpbm::TaskGains<> gains;
   fpbm::LinkFrame<> frame;
@@ -53,7 +53,7 @@ struct MotionSettings {
   MotionScheme scheme;
   fpbm::TrackerOptions<> options;
   fpbm::Limits<fpbm::Level::kAcceleration, Eigen::Dynamic> limits;
-  fpbm::TargetBounds<> bounds;  ///< Of each task's reference.
+  fpbm::TargetBounds<> bounds;  ///< Bounds on each task's reference.
   fpbm::TargetFilterOptions<> filter;
 };
 

@@ -15,7 +15,7 @@ namespace fpbm_controllers {
 /// Why an arm was stopped until it is activated again.
 enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 
-/// How a tick went for a task.
+/// Result of a tick for a task.
 struct TaskReport {
   double scale = 1.0;              ///< Share of the task that the limits left.
   double position_error = 0.0;     ///< Of its frame, on the filter's reference [m],
@@ -24,7 +24,7 @@ struct TaskReport {
   fpbm::Transform<> at;            ///< Its frame, in the base frame or the reference frame.
 };
 
-/// How a tick went: numbers only, so that the loop allocates nothing for it.
+/// Result of a tick: numbers only, so that the loop allocates nothing for it.
 struct Report {
   static constexpr std::size_t kTasks = 8;  ///< At most.
 
@@ -39,7 +39,7 @@ struct Report {
   std::array<TaskReport, kTasks> tasks;
 };
 
-/// What a fault was, and what to do.
+/// Description of a fault, with advice.
 [[nodiscard]] inline std::string message_of(const Report& report, const std::vector<std::string>& joints) {
   const std::string joint = "joint '" + joints.at(report.fault_joint) + "': ";
   const std::string advice = ": the arm stops. Deactivate the controller, then activate it.";

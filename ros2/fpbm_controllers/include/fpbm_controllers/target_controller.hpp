@@ -51,9 +51,9 @@ class TargetController : public controller_interface::ControllerInterface {
   /// The tasks with the frames of that tree.
   [[nodiscard]] std::vector<MotionTask> motion_tasks(const fpbm::Tree<>& tree) const;
   [[nodiscard]] MotionScheme scheme(Eigen::Index dof) const;
-  /// The narrowest of those of the robot, ros2_control, the preset and the parameters, which are logged.
+  /// The narrowest limits of the robot, ros2_control, the preset and the parameters; the limits are logged.
   [[nodiscard]] JointLimits limits(const fpbm::Tree<>& tree) const;
-  /// Those of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
+  /// The limits of the preset, for each arm of a tree. Throws std::invalid_argument if an arm is not the preset.
   [[nodiscard]] JointLimits preset_limits(const fpbm::Tree<>& tree) const;
   void close();
 
