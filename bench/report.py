@@ -291,7 +291,7 @@ def page(results: Results) -> str:
     lines = ["# Benchmark results", ""]
     if values["quick"]:
         lines += ["By a quick run: figures are rough.", ""]
-    lines += ["Reading the tables, and limits of the measurements: [bench/README.md](../README.md).", "", *summary(results)]
+    lines += ["Definitions, and limits of the measurements: [bench/README.md](../README.md).", "", *summary(results)]
     lines += [
         "![Steps of each library, tails, growth with n, sweeps](results.png)",
         "",

@@ -1,6 +1,6 @@
 """Prints the program of README's section "In a control loop", whose cost for a user .ci/run measures.
 
-    readme_program.py [HEADING] > program.cpp
+readme_program.py [HEADING] > program.cpp
 """
 
 import re

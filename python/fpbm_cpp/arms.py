@@ -63,7 +63,7 @@ class Joint(Data):
     """One joint of a chain. For a prismatic joint, read m instead of rad."""
 
     type: str = parameter("Type of the joint.", default="revolute", choices=("revolute", "continuous", "prismatic"))
-    placement: ArrayField = parameter("Frame in the frame of the previous joint, both at zero.", FRAME, default=IDENTITY)
+    placement: ArrayField = parameter("Frame in the previous joint's frame, both at zero.", FRAME, default=IDENTITY)
     axis: ArrayField = parameter("Axis in the joint's frame; its length is ignored.", default=(0, 0, 1), shape="(3,)")
     lower: float = parameter("Lower bound of the position.", default=-inf, infinite=True, unit="rad")
     upper: float = parameter("Upper bound of the position.", default=inf, infinite=True, unit="rad")

@@ -251,7 +251,7 @@ def test_shapes_and_their_frames(write) -> None:
 
 
 def test_parts_of_a_link_are_told_apart(write) -> None:
-    """Where two capsules take less room; each part of an L is inside one of them, and so are the cut faces."""
+    """If two capsules have a smaller volume; each part of an L is inside one of them, and so are the cut faces."""
     long, across = (
         geometry('box size="0.1 0.1 0.8"', '<origin xyz="0 0 0.4"/>'),
         geometry('box size="0.8 0.1 0.1"', '<origin xyz="0.4 0 0"/>'),
@@ -429,7 +429,7 @@ def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
 
 
 def samples(shape: object, rng: np.random.Generator) -> Array:
-    """Points of a body as Pinocchio has it, all vertices of a mesh among them."""
+    """Points of a body in Pinocchio, all vertices of a mesh among them."""
     kind = type(shape).__name__
     if kind.startswith("BVH"):
         vertices = shape.vertices()
@@ -468,7 +468,7 @@ heavy = pytest.mark.skipif("FPBM_ALL_HOMES" not in os.environ, reason="takes min
     "name", [pytest.param(name, marks=heavy) if name in ("xarm7", "ur10") else name for name in ARMS]
 )
 def test_every_vertex_of_an_arm_is_inside_its_capsules(name: str, once) -> None:
-    """By our own reader exactly; by Pinocchio's, in random postures, faces as well, as far as its readers are exact."""
+    """By our own reader exactly; by Pinocchio's, in random postures, also faces, as far as its readers are exact."""
     pin = pytest.importorskip("pinocchio")
     path, tip, base, most = ARMS[name]
     file = str(ROBOTS / path)

@@ -24,7 +24,7 @@ EIGEN = Path("/usr/include/eigen3")
 PAIRS = 6_000  # Of each kind, in each round.
 ROUNDS = 2  # 167 for a million pairs of each kind.
 TOLERANCE = 1e-9
-APART = 1e-6  # Of the size: how far apart cores must be for round-off of 1e-15 to leave nine digits of a normal.
+APART = 1e-6  # Distance of cores at which a round-off error of 1e-15 leaves nine digits of a normal, by size.
 
 Array = NDArray[np.float64]
 Exact = NDArray[np.longdouble]
@@ -85,7 +85,7 @@ def some(rng: np.random.Generator, share: float, n: int) -> NDArray[np.bool_]:
 
 
 def segments(rng: np.random.Generator, n: int) -> Array:
-    """Start and way: of all lengths, some of them zero, some in whole numbers."""
+    """Start and displacement: of all lengths, some of them zero, some in whole numbers."""
     start, way = (power(rng, -3, 1, n) * rng.uniform(-1, 1, (n, 3)) for _ in range(2))
     whole = some(rng, 0.2, n)
     start, way = (np.where(whole, rng.integers(-2, 3, (n, 3)), x) for x in (start, way))
@@ -197,7 +197,7 @@ def exact_half_space(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def exact_box(pairs: Array) -> tuple[Exact, Exact]:
-    """The same of capsules and boxes: the least over ends and edges, or the least way out by separating axes."""
+    """The same of capsules and boxes: the least over ends and edges, or the penetration depth by separating axes."""
     a, b, r, p, columns, half = np.split(pairs.astype(np.longdouble), [3, 6, 7, 10, 19], axis=1)
     R = columns.reshape(-1, 3, 3).transpose(0, 2, 1)
     a, u = (np.einsum("nij,ni->nj", R, x) for x in (a - p, b - a))

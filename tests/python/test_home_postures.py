@@ -1,4 +1,4 @@
-"""Clearance.from_urdf accepts robots' home postures with the default margin; what a start that is too close says."""
+"""Clearance.from_urdf accepts robots' home postures with the default margin; the error of a start that is too close."""
 
 from __future__ import annotations
 
@@ -245,7 +245,7 @@ def test_the_message_names_both_remedies() -> None:
     fp.Tracker(arm, fp.MVN(), q, clearance=fp.Clearance(capsules, allowed=eval(proposed[1])))
 
 
-# What decides where capsules are cut
+# Input of the cuts of capsules
 
 
 def test_a_face_that_is_cut_twice_is_covered() -> None:

@@ -25,7 +25,7 @@ def random_joints(rng, n):
 
 
 def quickest_stop(ruckig, qd, qdd, acceleration, jerk):
-    """Duration of a stop and its way, by Ruckig."""
+    """Duration and distance of a stop, by Ruckig."""
     given = ruckig.InputParameter(1)
     given.control_interface = ruckig.ControlInterface.Velocity
     given.current_position, given.current_velocity, given.current_acceleration = [0.0], [qd], [qdd]

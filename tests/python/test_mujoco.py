@@ -12,7 +12,7 @@ import pytest
 import fpbm_cpp as fp
 
 mujoco = pytest.importorskip("mujoco")
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script that lies there.
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))  # As for a script in this folder.
 example = importlib.import_module("08_mujoco_panda")
 panda_mjcf = importlib.import_module("panda_mjcf")
 tray = importlib.import_module("19_mujoco_tray")
@@ -126,7 +126,7 @@ def test_torques_do_not_chatter(motion):
 @pytest.mark.parametrize("name", ["too far", "too near"])
 def test_out_of_reach_the_arm_rests(motion, name):
     tip = last(motion, name, "tip")
-    assert tip.min() > 0.05  # Out of reach indeed.
+    assert tip.min() > 0.05  # The target is unreachable.
     assert np.ptp(tip) < 1e-4
     assert abs(last(motion, name, "qd")).max() < 0.03
 

@@ -25,7 +25,7 @@ SCHEMES = {
 
 
 class Case:
-    """An arm in a random state, and what is asked of its tip."""
+    """An arm in a random state, and a reference of its tip."""
 
     def __init__(self, name, arm, task, seed):
         rng = np.random.default_rng(seed)

@@ -254,7 +254,7 @@ def test_a_tracker_of_a_robot_needs_a_stack(write) -> None:
 
 @pytest.mark.parametrize("level", ["acceleration", "velocity"])
 def test_a_grasp_holds_within_limits(level: str) -> None:
-    """The tray jumps beyond what the limits allow; positions, velocities and accelerations by differences of q.
+    """The tray jumps farther than the limits allow; positions, velocities and accelerations by differences of q.
 
     A tick by velocity moves the grasp by h²/2 of its acceleration, which no gain undoes within that tick.
     """

@@ -1,4 +1,4 @@
-"""Serial arms from joints, tables and presets, and what they say of themselves."""
+"""Serial arms from joints, tables and presets, and their representations."""
 
 import pickle
 

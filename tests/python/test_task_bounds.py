@@ -1,4 +1,4 @@
-"""Bounds on coordinates of tasks from Python: they hold for any task, scheme and robot, and say what is wrong."""
+"""Bounds on coordinates of tasks from Python: they hold for any task, scheme and robot, and report errors."""
 
 import pickle
 
