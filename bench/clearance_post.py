@@ -27,10 +27,10 @@ READY = np.array([0.0, -0.7854, 0.0, -2.3562, 0.0, 1.5708, 0.7854])
 MARGIN = 0.02
 RADIUS, HEIGHT = 0.04, 1.1
 COLUMN = 0.25  # [m]
-FAR = 0.95  # Where a post starts and ends, from where it is nearest to the axis [m].
-STIFFNESS, DAMPING = 2500.0, 100.0  # Of the errors' accelerations [1/s²], [1/s].
+FAR = 0.95  # Distance of a post's start and end from its nearest point to the axis [m].
+STIFFNESS, DAMPING = 2500.0, 100.0  # Feedback gains on position [1/s²] and velocity [1/s].
 
-MADE: dict[str, Any] = {}  # Before workers are forked, which share it.
+MADE: dict[str, Any] = {}  # Filled before workers are forked, which share it.
 
 
 class Crossing(NamedTuple):

@@ -117,7 +117,7 @@ def summary(results: Results) -> list[str]:
     lines = ["A step in C++: kinematics and scheme.", "", *comparison(results, "step", CPLUSPLUS, steps)]
     if results.values.get("limited"):
         rows = ["panda/pose/acceleration", "panda/pose/jerk", "panda/position/acceleration"]
-        lines += ["The same within joint limits, in states where they are met.", ""]
+        lines += ["The same with joint limits, in states with active limits.", ""]
         lines += comparison(results, "limited", LIMITED, rows, kind="bounds")
     if results.values.get("python"):
         calls = ["panda/pose/fpbm", "panda/pose/mvn"]

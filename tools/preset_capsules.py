@@ -103,7 +103,7 @@ class Robot(NamedTuple):
 
     capsules: list[Capsule]  # In the frames of the file's joints.
     poses: NDArray[np.float64]  # Positions of these frames in the frames of the preset's joints, the base first.
-    off: NDArray[np.float64]  # How far each of these poses is off, at most [m].
+    off: NDArray[np.float64]  # Largest deviation of each of these poses [m].
     turned: NDArray[np.float64]  # And turned [rad].
 
 
@@ -135,7 +135,7 @@ def frames(arm: SerialArm, q: Sequence[float]) -> Iterator[Frame]:
 
 @contextmanager
 def urdf_of(name: str) -> Iterator[Path]:
-    """The URDF file of a preset, beside the meshes that it names."""
+    """The URDF file of a preset, in a folder with its meshes."""
     source = ARMS[name]
     urdf = located(source.package, source.urdf)
     if source.meshes is None:

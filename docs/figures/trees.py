@@ -158,7 +158,7 @@ def reach() -> Iterator[np.ndarray]:
 
 
 def wipe() -> Iterator[np.ndarray]:
-    """Example 18: a base that moves easily, and one that does not."""
+    """Example 18: a light base and a heavy base."""
     example = importlib.import_module("18_wipe_a_table")
     robot, runs, driven = example.robot, {}, {}
     for name, weight in {"light base": 0.05, "heavy base": 60.0}.items():

@@ -56,7 +56,7 @@ class Driven {
     }
     controller_->assign_interfaces(std::move(commands), std::move(states));
     last_velocity_ = last_acceleration_ = {};
-    // An arm that does not follow its command starts where it stands.
+    // An arm that does not follow its command starts at its measured posture.
     for (std::size_t i = 0; i < kDof; ++i) last_[i] = std::abs(command[i] - q[i]) < 0.05 ? command[i] : q[i];
     first_ = true;
     seconds_since_call_ = 0.0;

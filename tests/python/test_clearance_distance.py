@@ -222,7 +222,7 @@ def exact_box(pairs: Array) -> tuple[Exact, Exact]:
 
 
 def gaps(kind: str, pairs: Array, normals: Array) -> Exact:
-    """How far the shapes of each pair are apart along its normal: at most their distance, for any unit vector."""
+    """Gap between the shapes of each pair along its normal: at most their distance, for any unit vector."""
     n = normals.astype(np.longdouble)
     a, b, r = np.split(pairs[:, :7].astype(np.longdouble), [3, 6], axis=1)
     lowest = np.minimum(dot(n, a), dot(n, b)) - r

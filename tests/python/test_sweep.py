@@ -72,7 +72,7 @@ def same(a, b):
 
 
 def expect_run(sweep, i, k, run):
-    """Motion i, k is this run, summed up."""
+    """The key figures of motion i, k are those of this run."""
     size = np.abs(run.qd).max(axis=1)
     assert sweep.status[i, k] is run.status.code
     assert sweep.time[i, k] == run.status.time

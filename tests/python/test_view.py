@@ -475,7 +475,7 @@ def test_rotation_upside_down():
 
 
 def with_mimic():
-    """A rail, and a joint that follows another by a half."""
+    """A rail, and a joint that mimics another by a half."""
     frame = np.eye(4)
     frame[:3, :3] = fp.rotation([0.3, -0.8, 0.4])
     frame[:3, 3] = [0.2, 0.1, 0.4]

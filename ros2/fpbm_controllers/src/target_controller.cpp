@@ -136,7 +136,7 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
   topics_->exchange().report.set(Report{});
   const Joints& q = motion_->state().q;
   if (const auto joint = command(q, Joints::Zero(q.size()))) {
-    RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays as it was",
+    RCLCPP_WARN(get_node()->get_logger(), "joint '%s': its command is locked by another thread, and stays unchanged",
                 params_.joints[*joint].c_str());
   }
   return CallbackReturn::SUCCESS;

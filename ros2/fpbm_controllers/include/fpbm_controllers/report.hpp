@@ -78,7 +78,7 @@ struct Report {
     for (std::size_t k = tasks.size(); well && k-- > 0;) {
       if (report.tasks[k].refused <= before.tasks[k].refused) continue;
       message.level = Message::WARN;
-      message.message = "targets" + of_task(tasks[k]) + " are refused: their stamps are not newer than those before";
+      message.message = "targets" + of_task(tasks[k]) + " are rejected: their stamps are not newer than earlier stamps";
     }
   }
   const auto add = [&message](const std::string& key, const std::string& value) {
@@ -98,7 +98,7 @@ struct Report {
   });
   add("following error [rad]", std::to_string(report.following_error));
   for_each_task([&](const std::string& task, const TaskReport& values) {
-    add(task + "targets refused", std::to_string(values.refused));
+    add(task + "targets rejected", std::to_string(values.refused));
   });
   add("ticks with a locked interface", std::to_string(report.missed));
   add("calls that came too soon", std::to_string(report.early));
