@@ -157,7 +157,8 @@ MotionScheme TargetController::scheme(Eigen::Index dof) const {
 
 /// The controller manager calls a controller in every n-th of the manager's ticks.
 void TargetController::require_rate() const {
-  if (is_async()) throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
+  if (is_async())
+    throw std::invalid_argument("is_async: must be false, since a write could mix the commands of two ticks");
   const unsigned int own = get_update_rate();
   if (own > 0 && manager_rate_ % own == 0) return;
   const auto wanted = static_cast<unsigned int>(get_node()->get_parameter("update_rate").as_int());

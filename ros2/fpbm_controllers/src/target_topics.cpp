@@ -41,7 +41,8 @@ void log_events(const Report& report, Exchange& exchange, const rclcpp::Logger& 
   for (std::size_t k = 0; k < exchange.names.size(); ++k) {
     const std::uint64_t refused = report.tasks[k].refused;
     if (refused <= before.tasks[k].refused) continue;
-    RCLCPP_WARN(logger, "%s targets%s rejected: their stamps are not newer than earlier stamps. Check the sender's clock.",
+    RCLCPP_WARN(logger,
+                "%s targets%s rejected: their stamps are not newer than earlier stamps. Check the sender's clock.",
                 std::to_string(refused - before.tasks[k].refused).c_str(), of_task(exchange.names[k]).c_str());
   }
   if (report.missed > before.missed) {

@@ -67,7 +67,8 @@ std::vector<TaskSettings> task_settings(const target_controller::Params& params)
     const TaskSettings& task = tasks.back();
     require(++counts[static_cast<std::size_t>(task.level)] <= kPerLevel,
             task.parameter("level") + ": level " + std::to_string(task.level + 1) + " has " +
-                std::to_string(kPerLevel) + " tasks before this one, the largest number: put the task on another level");
+                std::to_string(kPerLevel) +
+                " tasks before this one, the largest number: put the task on another level");
   }
   require(counts[0] > 0, "tasks: none has level 1: give the tasks of the highest priority level 1");
   return tasks;
