@@ -30,7 +30,7 @@ class Motion(NamedTuple):
     duration: float
     status: str
     distance: float  # The least of capsules, beyond the margin [m].
-    excess: tuple[float, ...]  # Of each of the joints' bounds, as a share of it; of positions [rad].
+    excess: tuple[float, ...]  # Excess over the joints' bounds, as a share of each bound; of positions [rad].
     checks: int  # Of the meshes,
     contacts: int  # how many met,
     apart: float  # and how far apart they were where the capsules were nearest [m].

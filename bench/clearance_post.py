@@ -38,8 +38,8 @@ class Crossing(NamedTuple):
     touched: int  # Ticks with a contact of the post and the arm.
     deepest: float  # Smallest distance that MuJoCo measured in these [m], 0 without any.
     distance: float  # Least distance of the tracker's capsules from one another and from the post [m].
-    lag: float  # Of the arm behind the tracker, at most [rad].
-    error: float  # Of the tip, at the end [m].
+    lag: float  # Largest lag of the arm behind the tracker [rad].
+    error: float  # Error of the tip at the end [m].
 
 
 def model_of(name: str, capsule_radius: float) -> Any:

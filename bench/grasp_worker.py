@@ -29,7 +29,7 @@ PLACES = {"right": -0.4, "left": 0.4}  # Along y [m].
 # Costs of the relative pose, of the object's pose and of the posture: the costs of the object and the posture as in
 # Pink's and Mink's examples. Their squares are in the programs.
 COSTS = (100.0, 1.0, 1e-3)
-TOLERANCE = 1e-10  # Of quadratic programs, as in bench/stack_solvers.py.
+TOLERANCE = 1e-10  # Tolerance of quadratic programs, as in bench/stack_solvers.py.
 
 
 class Random:
@@ -332,7 +332,7 @@ def partly(now: Array, target: Array, gain: float) -> Array:
 
 
 def excess(limits: fp.JointLimits, q: Array) -> list[float]:
-    """Of positions [rad]; of velocities and accelerations as shares of the bounds, by differences of q."""
+    """Excess of positions [rad]; of velocities and accelerations as shares of the bounds, by differences of q."""
     shares = [
         float((np.abs(np.diff(q, k, axis=0)) / DT**k / bound).max() - 1)
         for k, bound in ((1, limits.velocity), (2, limits.acceleration))

@@ -18,7 +18,7 @@ import fpbm_cpp as fp
 
 TICKS = 20_000
 BLOCK = 100  # Ticks of which a ratio of times is taken.
-TOLERANCE = 5e-3  # Of the tip's motion in a tick, relative: peers move along its tangent.
+TOLERANCE = 5e-3  # Relative tolerance of the tip's motion in a tick: peers move along its tangent.
 
 
 class Reference(NamedTuple):

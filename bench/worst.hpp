@@ -19,7 +19,7 @@ namespace bench {
 using Numbers = std::vector<double>;
 
 constexpr int kPhases = 6;
-constexpr int kPhaseNumbers = 13;  ///< Of a phase: displacement, rotation, their rates, duration.
+constexpr int kPhaseNumbers = 13;  ///< Numbers of a phase: displacement, rotation, their rates, duration.
 constexpr double kFar = 0.8;       ///< Largest displacement along each axis [m].
 constexpr double kTurn = 1.5;      ///< Largest rotation about each axis [rad].
 constexpr double kFast = 1.5;      ///< Largest rate along or about each axis [m/s, rad/s].

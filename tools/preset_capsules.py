@@ -122,7 +122,7 @@ def located(package: str, place: str) -> Path:
 
 
 def frames(arm: SerialArm, q: Sequence[float]) -> Iterator[Frame]:
-    """Of the base and of each joint after its motion, in the base frame."""
+    """Frames of the base and of each joint after its motion, in the base frame."""
     frame = np.eye(4)
     yield frame
     for joint, angle in zip(arm.joints, q):

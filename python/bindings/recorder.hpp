@@ -12,10 +12,10 @@ namespace fpbm::bindings {
 template <typename Space>
 struct Output {
   MotionBuffers<Space, kDynamic> buffers = {};
-  double* scale = nullptr;      ///< Of each tick, of a motion that keeps limits,
+  double* scale = nullptr;      ///< Scale of each tick of a motion within limits,
   bool* saturated = nullptr;    ///< and a row of joints.
   double* clearance = nullptr;  ///< Distance of the nearest pair, written by the code that computes it.
-  double* scales = nullptr;     ///< Of a stack: a row of levels,
+  double* scales = nullptr;     ///< For a stack: a row of levels,
   double* errors = nullptr;     ///< and the errors of all tasks.
   MotionSummary<>* summary = nullptr;
   const std::atomic<bool>* stop = nullptr;

@@ -46,7 +46,7 @@ struct StackTarget {
 struct StackPlan {
   Tree<> tree;
   std::vector<StackTask> tasks;
-  std::vector<std::optional<StackTarget>> targets;  ///< Of each task, if it says one.
+  std::vector<std::optional<StackTarget>> targets;  ///< Target of each task, if the task has one.
   int levels = 0;
   AnyStack velocity;      ///< The tasks with their gains at velocity level,
   AnyStack acceleration;  ///< and at acceleration level.

@@ -144,7 +144,7 @@ class Driven {
   bool watched = true;
   std::int64_t calls = 0;
   long allocated = 0;
-  double excess = -1e9;               ///< Of a bound on position or velocity [rad, rad/s].
+  double excess = -1e9;               ///< Excess over a bound on position or velocity [rad, rad/s].
   double acceleration_excess = -1.0;  ///< As a share of the bound.
   double jerk_excess = -1.0;          ///< As a share of the bound.
 

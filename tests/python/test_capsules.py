@@ -415,7 +415,7 @@ def fitted(path: str, tip: str, base: str | None, per_link: int) -> fp.Clearance
 
 
 def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
-    """Of the base and of each joint, in the base frame."""
+    """Frames of the base and of each joint, in the base frame."""
     frames = [np.eye(4)]
     for each, position in zip(arm.joints, q):
         step = np.eye(4)

@@ -21,7 +21,7 @@ coal = pytest.importorskip("coal", reason="needs Coal: pip install coal")
 
 ROOT = Path(__file__).parents[2]
 EIGEN = Path("/usr/include/eigen3")
-PAIRS = 6_000  # Of each kind, in each round.
+PAIRS = 6_000  # Pairs of each kind in each round.
 ROUNDS = 2  # 167 for a million pairs of each kind.
 TOLERANCE = 1e-9
 APART = 1e-6  # Distance of cores at which a round-off error of 1e-15 leaves nine digits of a normal, by size.

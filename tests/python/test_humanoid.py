@@ -24,7 +24,7 @@ DOF = 17
 TICK = 1e-3  # [s]
 
 # Targets, allowed steps and tolerances of Isaac Lab's test of its controller by Pink: isaac-sim/IsaacLab, BSD-3-Clause,
-# source/isaaclab/test/controllers/test_ik_configs/pink_ik_g1_test_configs.json. Of the left hand: position [m] and
+# source/isaaclab/test/controllers/test_ik_configs/pink_ik_g1_test_configs.json. The left hand has position [m] and
 # quaternion (w, x, y, z) in the world. The targets of the right hand are the mirror images. The robot's pelvis is at
 # ROOT, a step takes 20 ms, and all joints start at zero.
 ROOT = np.array([[0.0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0.75], [0, 0, 0, 1]])

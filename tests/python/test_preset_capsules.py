@@ -48,7 +48,7 @@ def written(name: str) -> dict[tuple[int, str], list[tuple[Array, Array, float]]
 
 
 def link_frames(arm: fp.SerialArm, q: Array) -> list[Array]:
-    """Of the base and of each joint after its motion, in the base frame."""
+    """Frames of the base and of each joint after its motion, in the base frame."""
     frames = [np.eye(4)]
     for joint, angle in zip(arm.joints, q):
         turn = np.eye(4)

@@ -94,7 +94,8 @@ def expect_agreement(lanes, alone):
     """The same sweep to round-off."""
     np.testing.assert_array_equal(lanes.status, alone.status)
     for name in FIGURES:
-        differences = name in ("peak_acceleration", "final_acceleration")  # Of velocities, at velocity level.
+        differences = name in ("peak_acceleration", "final_acceleration")  # Differences of velocities, at velocity
+        # level.
         tolerance = 1e-10 if differences else 1e-12
         np.testing.assert_allclose(getattr(lanes, name), getattr(alone, name), tolerance, tolerance, err_msg=name)
 

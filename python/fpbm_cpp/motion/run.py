@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-Paths: TypeAlias = Path | Mapping[str, Path]  # Of the task that follows a path, or of several tasks by name.
+Paths: TypeAlias = Path | Mapping[str, Path]  # Path of one task, or paths of several tasks by name.
 ARRAYS = ("t", "q", "qd", "qdd", "x", "x_ref", "error")
-LIMITED = ("scale", "saturated", "clearance")  # Of runs within joint limits, and with a clearance.
+LIMITED = ("scale", "saturated", "clearance")  # Arrays of runs within joint limits, or with a clearance.
 OF_STACKS = ("scales", "task_errors")
 
 

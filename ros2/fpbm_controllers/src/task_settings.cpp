@@ -10,7 +10,7 @@ namespace fpbm_controllers {
 
 namespace {
 
-constexpr int kLevels = 4;    // Of an fpbm::AnyStack,
+constexpr int kLevels = 4;    // Levels of an fpbm::AnyStack,
 constexpr int kPerLevel = 2;  // and tasks of frames on each.
 
 void require(bool good, const std::string& message) {

@@ -84,13 +84,13 @@ class Motion {
   virtual void locate(Report& report) const noexcept = 0;
 };
 
-/// Of one tip, by a tracker of a pose: less than half of the time of a stack, and of robots of fewer than six joints
-/// too. settings: with one task, without a reference frame. Throws std::invalid_argument if a gain is too high for
-/// the tick.
+/// Motion of one tip by a tracker of a pose, in less than half of the time of a stack; also for robots of fewer than
+/// six joints. settings: with one task, without a reference frame. Throws std::invalid_argument if a gain is too high
+/// for the tick.
 [[nodiscard]] std::unique_ptr<Motion> make_tip_motion(const MotionSettings& settings);
 
-/// Of any tasks, by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or a task
-/// does not suit the robot.
+/// Motion of any tasks by a tracker of a stack. Throws std::invalid_argument if a gain is too high for the tick, or a
+/// task does not suit the robot.
 [[nodiscard]] std::unique_ptr<Motion> make_stack_motion(const MotionSettings& settings);
 
 /// Hands a target to the filter of a task. False if its stamp rejects the target.

@@ -17,8 +17,8 @@ enum class Fault : std::uint8_t { kNone, kFollowing, kUnreadable, kLocked };
 
 /// Result of a tick for a task.
 struct TaskReport {
-  double scale = 1.0;              ///< Share of the task that the limits left.
-  double position_error = 0.0;     ///< Of its frame, on the filter's reference [m],
+  double scale = 1.0;              ///< Task scale.
+  double position_error = 0.0;     ///< Error of its frame from the filter's reference [m],
   double orientation_error = 0.0;  ///< and [rad].
   std::uint64_t refused = 0;       ///< Targets whose stamps were not newer than those before.
   fpbm::Transform<> at;            ///< Its frame, in the base frame or the reference frame.

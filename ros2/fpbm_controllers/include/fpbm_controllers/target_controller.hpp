@@ -83,7 +83,7 @@ class TargetController : public controller_interface::ControllerInterface {
   std::optional<fpbm::Limits<fpbm::Level::kAcceleration, kDof>> limits_;
   std::optional<TargetTopics> topics_;
 
-  // Of an active controller, and of the loop alone.
+  // Only for an active controller, and only for its loop.
   std::unique_ptr<Motion> motion_;
   Pace pace_;
   std::array<std::uint64_t, Report::kTasks> seen_{};  ///< The count of each task's newest target.
