@@ -24,7 +24,7 @@ inline bool is_candidate(const PyObject* /*object*/) {
   return true;
 }
 
-/// Whatever numpy.asarray takes: an argument that is checked and converted here, so that a wrong one is a ValueError
+/// Any input of numpy.asarray: an argument that is checked and converted here, so that a wrong one is a ValueError
 /// with its name.
 class ArrayLike : public py::object {
  public:

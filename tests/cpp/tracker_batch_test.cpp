@@ -255,7 +255,7 @@ TYPED_TEST(TrackerBatchLaws, tick_from_equal_states_as_each_by_itself) {
   }
 }
 
-/// Bitwise, in any lane, whatever the other lanes contain.
+/// Bitwise, in any lane, for all contents of the other lanes.
 TYPED_TEST(TrackerBatchLaws, do_not_feel_one_another) {
   using All = Motions<TypeParam>;
   using Case = typename TypeParam::Case;

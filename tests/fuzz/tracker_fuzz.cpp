@@ -40,7 +40,7 @@ void require_same(const Result& a, const Result& b) {
           "the same input gives the same bits");
 }
 
-/// Checks that hold for every result, whatever the input.
+/// Checks that hold for every result and every input.
 template <typename Result>
 void require_sane(const Result& result) {
   require(result.qdd.allFinite(), "accelerations are finite");
@@ -249,7 +249,7 @@ void run_tracker(Bytes& bytes, const Arm& arm, Space space, const Scheme& scheme
     }
   }
 
-  // Whatever happened before, the tip can be held where it is; unless joints without bounds have become too fast.
+  // After any input, the tip can be held at its point, unless joints without bounds have become too fast.
   tracker.resume();
   const fpbm::State<N> before = tracker.state();
   wild = wild || before.qd.norm() > 1e3 || before.q.norm() > 1e6;

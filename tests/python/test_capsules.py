@@ -35,7 +35,7 @@ trimesh = pytest.importorskip("trimesh")
 
 
 def outside(points: Array, fits: Sequence[Fit | Capsule], radii: Array | float = 0.0) -> float:
-    """How far the points, or balls about them, reach out of all capsules: not positive where none does."""
+    """Largest distance of the points, or of balls around them, outside all capsules: not positive if all are inside."""
     return float(np.max(np.min([distances(points, f.a, f.b) + radii - f.radius for f in fits], axis=0)))
 
 
@@ -251,7 +251,7 @@ def test_shapes_and_their_frames(write) -> None:
 
 
 def test_parts_of_a_link_are_told_apart(write) -> None:
-    """If two capsules have a smaller volume; each part of an L is inside one of them, and so are the cut faces."""
+    """Two capsules with a smaller volume: each part of an L is inside one of them, and so are the cut faces."""
     long, across = (
         geometry('box size="0.1 0.1 0.8"', '<origin xyz="0 0 0.4"/>'),
         geometry('box size="0.8 0.1 0.1"', '<origin xyz="0.4 0 0"/>'),

@@ -1,9 +1,9 @@
 """Distances and normals of capsules, half-spaces and boxes against Coal (Pan, Chitta and Manocha 2012), and exact ones.
 
 Coal has closed forms for two capsules, which lose digits where these are short and near parallel, and for a capsule and
-a half-space. For a capsule and a box it iterates (GJK, EPA), which ends within a tolerance, and sometimes without a
-result where the two touch. So all pairs are compared with an enumeration of all features in extended precision, and
-with Coal those in which it agrees with that; how many these are is printed, and asserted.
+a half-space. For a capsule and a box, Coal iterates (GJK, EPA) to a tolerance, and sometimes has no result if the two
+touch. So all pairs are compared with an enumeration of all features in extended precision, and with Coal those in which
+it agrees with that; how many these are is printed, and asserted.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from fpbm_cpp.io.capsule_gaps import link_frames, postures
 
 MOTIONS = int(os.environ.get("FPBM_MOTIONS", "20"))
 TICKS = 2000
-EVERY = 20  # So many ticks are between two postures that Coal measures: 20 ms.
+EVERY = 20  # Ticks between two postures that Coal measures: 20 ms.
 TABLE = fp.Cuboid(two_arms.pose([0.75, 0, 0.7], [0, 0, 0]), [0.3, 0.6, 0.02], name="table")
 
 

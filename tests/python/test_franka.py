@@ -1,6 +1,6 @@
 """The tracker through the real libfranka, against a simulated robot that speaks its protocol.
 
-That robot follows whatever it is sent. So the commands are checked here, by libfranka's own conditions.
+The simulated robot follows every command. Therefore the commands are checked here, by libfranka's own conditions.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def from_rest_to_rest(ticks: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.
 
 @pytest.fixture(scope="module", autouse=True)
 def schedule():
-    """libfranka gives its thread the highest priority; the tests after these are to have none."""
+    """libfranka gives its thread the highest priority; later tests have normal priority."""
     before = os.sched_getscheduler(0), os.sched_getparam(0)
     yield
     os.sched_setscheduler(0, *before)
@@ -123,7 +123,7 @@ def test_libfranka_has_nothing_to_refuse(motion):
     assert refused(*from_rest_to_rest(np.arange(len(motion.q)), np.array(motion.q))) == set()
     shares = motion.shares()
     assert max(shares.values()) <= ROUNDING
-    assert shares["velocity"] > 0.1  # It was a motion indeed.
+    assert shares["velocity"] > 0.1  # The arm moved.
     assert shares["jerk"] < 0.2  # Which the bare targets would not keep.
 
 

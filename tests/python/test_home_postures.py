@@ -202,7 +202,7 @@ def test_pieces_of_cut_triangles_are_inside(once) -> None:
 
 @with_robots
 def test_the_same_each_time(once) -> None:
-    """Every day of an arm whose fit is quick."""
+    """By default for an arm whose fit is fast."""
     urdf, tip, base, most = (*OTHERS["z1"][:3], 2) if "FPBM_ALL_HOMES" in os.environ else ARMS["ur5"]
     assert tuple(capsules_of(ROBOTS / urdf, tip, base, per_link=most)) == tuple(
         once(fitted, urdf, tip, base, most).capsules

@@ -136,7 +136,7 @@ def test_rows_are_kept_and_the_task_where_the_null_space_serves(level):
         elif kept.scale == 1:
             missed.append(np.linalg.norm(J @ (kept.u - desired)) / np.linalg.norm(J @ desired))
     assert len(missed) > 50
-    assert np.max(missed) < 5e-3  # Self-motion has a price, lest it grow where J and G are all but dependent.
+    assert np.max(missed) < 5e-3  # Self-motion has a cost, so that it stays bounded if J and G are almost dependent.
 
 
 def test_velocities_are_limited_too():

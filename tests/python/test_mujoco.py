@@ -103,7 +103,7 @@ def test_the_tip_is_on_the_circle(motion):
 
 def test_the_arm_settles_after_the_push(motion):
     joints = motion.during("push", "q")
-    assert abs(joints - joints[0]).max() > 0.1  # It was pushed indeed.
+    assert abs(joints - joints[0]).max() > 0.1  # The push displaced the arm.
     assert motion.settled() < 1.5  # [s]
     assert last(motion, "push", "tip").max() < 1e-4
 
@@ -112,7 +112,7 @@ def test_no_bound_is_broken_at_any_step(motion):
     position, velocity = motion.clearance()
     assert np.all(position > 0)
     assert np.all(velocity > 0)
-    assert position.min() < 0.01  # Bounds were met indeed.
+    assert position.min() < 0.01  # Bounds were active.
     assert velocity.min() < 0.03
     assert np.all(abs(np.array(motion.torque)).max(axis=0) < panda_mjcf.TORQUE)
 

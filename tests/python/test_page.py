@@ -177,7 +177,7 @@ def test_let_it_drift(page, which):
 
 
 def test_every_control(page):
-    """Whatever is chosen while the arm moves, it continues to move, within its limits."""
+    """After every choice during a motion, the arm continues to move within its limits."""
     rng = np.random.default_rng(0)
     page.evaluate("fpbm.pause()")
     for which, (arm, _, _, limits, _, _) in enumerate(ARMS):

@@ -21,7 +21,7 @@ STATES = 1000
 
 
 class Link(NamedTuple):
-    """A joint, and where it is seen from the one before."""
+    """A joint, and its placement in the frame of the previous joint."""
 
     placement: Array
     axis: Array
@@ -56,7 +56,7 @@ def frame(R: Array, p: Array) -> Array:
 
 
 def read_urdf(path: str, tip: str) -> tuple[list[Link], Array]:
-    """The least that reads a URDF, so that nothing is shared with the package's reader."""
+    """A minimal reader of URDF files, which shares no code with the package's reader."""
 
     def numbers(element: ElementTree.Element | None, key: str, default: str) -> Array:
         return np.array((default if element is None else element.get(key, default)).split(), dtype=float)

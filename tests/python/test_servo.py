@@ -394,7 +394,8 @@ def visit(page, servo, text):
     page.goto(servo.url)
     eventually(page, servo._server.get_clients)
     page.get_by_text(text).wait_for()
-    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # That there is no graphics processor.
+    page.add_style_tag(content=".mantine-Notifications-root { display: none }")  # The warning that there is no graphics
+    # processor.
     page.wait_for_timeout(2000)  # The scene comes last.
 
 

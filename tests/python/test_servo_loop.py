@@ -1,4 +1,4 @@
-"""The loop behind the handle: whatever is asked of it, the arm keeps its limits, follows where it can, and rests."""
+"""The loop behind the handle: the arm keeps its limits, follows reachable targets and comes to rest, for every input."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ def test_is_not_led_astray_by_lies():
         target_filter.advance()
     assert_within(*(np.array(column) for column in zip(*states)), **LINEAR)
     target_filter.reset([0.3, 0.1])
-    assert target_filter.push([0.0, 0.1], 0.5)  # On a clock that is learnt anew.
+    assert target_filter.push([0.0, 0.1], 0.5)  # The offset of the clock is estimated again.
     x, xd, _ = moved(target_filter, 2000)
     np.testing.assert_array_equal(x[-1], [0.0, 0.1])
     np.testing.assert_array_equal(xd[-1], 0)
@@ -143,7 +143,7 @@ def test_is_not_led_astray_by_lies():
 
 @pytest.mark.parametrize(("bounds", "longest"), [((1.5, 8.0, 300.0), 1.15), ((3.0, 3.0, 10.0), 1.4)])
 def test_orientations_end_at_rest_without_chatter(bounds, longest):
-    """Little later than the largest of their angles alone would, and the acceleration swings no more often."""
+    """Slightly later than for the largest angle alone, and the acceleration does not oscillate more often."""
     rng = np.random.default_rng(9)
     angular = dict(zip(ANGULAR, bounds))
     ratios = []

@@ -735,7 +735,7 @@ def test_damaged_file_is_read_or_refused(at: float, length: int, instead: str, w
         assert np.all(np.isfinite(chain[1]))
 
 
-# Robots of others
+# Robots of other packages
 
 
 def robots() -> Path | None:

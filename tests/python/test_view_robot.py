@@ -124,7 +124,7 @@ def test_each_hand_has_a_handle():
 
 
 def test_a_level_that_waits_is_named():
-    """And the joint limits, which do not slow the hands, are not said to."""
+    """The page does not report joint limits that do not slow the hands."""
     with hands() as servo:
         goal = servo.target["left_tip"].copy()
         goal[:3, 3] += [0.1, 0.1, 0.15]

@@ -145,9 +145,9 @@ CallbackReturn TargetController::on_deactivate(const rclcpp_lifecycle::State&) {
 /// One tick a call, always of the length that the limits were made for: a late call makes the arm late, never fast.
 ///
 /// An interface that another thread has locked is not an error: after an error, the controller manager would deactivate
-/// the controller in motion. The arm waits until all joints have taken a command; if that takes too long, it starts
-/// anew at rest from there, and stays. Where readings stay locked, the last falls behind the command, and the arm
-/// stops.
+/// the controller in motion. The arm waits until all joints have taken a command. If the wait is too long, the arm
+/// restarts at rest at its last command, and stays. Where readings stay locked, the last falls behind the command, and
+/// the arm stops.
 return_type TargetController::update(const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!pace_.due(period.seconds())) {
     ++report_.early;
