@@ -292,7 +292,7 @@ class Roboplan:
 
 
 class Peer(NamedTuple):
-    packages: tuple[str, ...]  # To install; the version is that of the first.
+    packages: tuple[str, ...]  # Packages to install; the version is the version of the first.
     make: Callable[[Panda, Options], Solver]
 
 

@@ -97,7 +97,7 @@ void refused(Robot& robot) {
   robot.tick(200);
   check(stand_in::warnings == before + 4, "refused: warnings of frame, NaN, quaternion, twist",
         stand_in::warnings - before);
-  robot.hear("~/target_pose", pose_message(elsewhere, 1.0));  // Older than those before.
+  robot.hear("~/target_pose", pose_message(elsewhere, 1.0));  // Older than the previous stamps.
   robot.tick(200);
   check(distance(robot.tip(), start) < 1e-4, "refused: displacement of the tip [m, rad]", distance(robot.tip(), start));
   const auto& said = robot.said<DiagnosticArray>("/diagnostics");

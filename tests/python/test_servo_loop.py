@@ -1,4 +1,4 @@
-"""The loop behind the handle: the arm keeps its limits, follows reachable targets and comes to rest, for every input."""
+"""The loop behind the handle: for every input, the arm keeps its limits, follows if possible and comes to rest."""
 
 from __future__ import annotations
 
