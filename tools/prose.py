@@ -90,10 +90,10 @@ def find(sentences: Iterable[Sentence], terms: list[Term], places: list[Place]) 
 
 
 def draw(sentences: Iterable[Sentence], seed: int, count: int) -> list[Sentence]:
-    """Up to `count` sentences of each kind, equal for equal seeds. Cells and headings of few words are left out."""
+    """Up to `count` sentences of each kind, equal for equal seeds. Texts of few words are left out."""
     kinds: dict[str, list[Sentence]] = {kind: [] for kind in KINDS}
     for sentence in sentences:
-        if len(WORD.findall(sentence.text)) >= 4:
+        if len(WORD.findall(CODE.sub("", sentence.text))) >= 4:
             kinds[sentence.kind].append(sentence)
     generator = random.Random(seed)
     return [drawn for found in kinds.values() for drawn in generator.sample(found, min(count, len(found)))]
