@@ -184,7 +184,7 @@ def robot(name: str) -> Robot:
     with known.urdf_of(name) as given, flat_urdf(name) as flat:
         srdf = given.parents[1] / "srdf/panda.srdf"
         clearance = fp.Clearance.from_urdf(given, source.tip, srdf=srdf if srdf.exists() else None, margin=MARGIN)
-        clearance = replace(clearance, allowed=[*clearance.allowed, *source.never_meet])
+        clearance = replace(clearance, allowed=[*clearance.allowed, *source.never_collide])
         arm = fp.SerialArm.from_urdf(given, source.tip)
         meshes = Meshes(flat, source.tip, arm, clearance)
     limits = fp.SerialArm.preset(name).limits

@@ -214,7 +214,7 @@ inline fpbm::Clearance<7> surroundings() {
       {"post 2", post(0.35, -0.17)},
       {"lid", fpbm::Cuboid<>{{Vector3(0.2, 0.0, 1.05), fpbm::Matrix<3, 3>::Identity()}, Vector3(0.4, 0.3, 0.05)}}};
   fpbm::Clearance<7> clearance(Panda::chain(), fpbm::presets::capsules::panda(), obstacles, 0.005,
-                               fpbm::presets::never_meet::panda());
+                               fpbm::presets::never_collide::panda());
   return clearance;
 }
 

@@ -37,7 +37,7 @@ int main() {
   };
   const auto panda = fpbm::presets::panda();
   const auto capsules = fpbm::presets::capsules::panda();
-  const Clearance clearance(panda, capsules, around, 0.01, fpbm::presets::never_meet::panda());  // margin [m]
+  const Clearance clearance(panda, capsules, around, 0.01, fpbm::presets::never_collide::panda());  // margin [m]
   const Clearance nothing(panda, {}, {}, 0.0);
 
   run("no clearance", nothing, clearance);

@@ -1,9 +1,9 @@
-"""Writes preset_capsules.hpp: capsules that contain the links of the presets, from the collision meshes of others.
+"""Writes preset_capsules.hpp: capsules that contain the collision meshes of the links of the presets.
 
-Needs fpbm_cpp[clearance], clang-format, the packages in ARMS and, for the UR10e, of which none has meshes, ROS's
-ur_description in ROS_PACKAGE_PATH. A preset and a URDF file of the same arm place links alike up to their digits: the
-pose of the file's link i in the frame of the preset's joint i is the same in all postures. The difference is printed
-and added to the radius, and so is the error of rounding to 0.1 mm.
+Needs fpbm_cpp[clearance], clang-format and the packages in ARMS. No package has meshes of the UR10e: they are read from
+ROS's ur_description in ROS_PACKAGE_PATH. The pose of link i of a URDF file in the frame of joint i of the preset of the
+same arm is the same in all postures, up to the digits of the file. The largest difference is printed and added to the
+radius, as is the error of rounding to 0.1 mm.
 """
 
 import importlib.metadata
@@ -39,7 +39,7 @@ class Source(NamedTuple):
     origin: str  # Who made the meshes, and their licence.
     meshes: tuple[str, str, str] | None = None  # Package, folder and suffix of meshes that the URDF's package lacks.
     ros: str | None = None  # ROS package that has them.
-    never_meet: tuple[tuple[str, str], ...] = ()  # Links whose capsules do: tests/python/test_preset_capsules.py.
+    never_collide: tuple[tuple[str, str], ...] = ()  # Links whose capsules do: tests/python/test_preset_capsules.py.
 
 
 FRANKA = "Franka's franka_description, Apache-2.0"
@@ -52,7 +52,7 @@ ARMS = {
         "panda_link8",
         "Franka Emika Panda, without a hand.",
         FRANKA,
-        never_meet=(("panda_link5", "panda_link7"),),
+        never_collide=(("panda_link5", "panda_link7"),),
     ),
     "fr3": Source(
         "franky-sim",
@@ -60,7 +60,7 @@ ARMS = {
         "fr3_link8",
         "Franka Research 3, without a hand.",
         FRANKA,
-        never_meet=(("fr3_link5", "fr3_link7"),),
+        never_collide=(("fr3_link5", "fr3_link7"),),
     ),
     "iiwa14": Source(
         "rtb-data",
@@ -68,7 +68,7 @@ ARMS = {
         "tool0",
         "KUKA LBR iiwa 14 R820.",
         "ROS-Industrial's kuka_lbr_iiwa_support, Apache-2.0",
-        never_meet=(("link_5", "link_7"),),
+        never_collide=(("link_5", "link_7"),),
     ),
     "gen3": Source(
         "ManipulaPy",
@@ -85,7 +85,7 @@ ARMS = {
         "Universal Robots UR5e.",
         UR,
         ("airo-models", "airo_models/arms/ur5e/collision", ".obj"),
-        never_meet=(("forearm_link", "wrist_2_link"),),
+        never_collide=(("forearm_link", "wrist_2_link"),),
     ),
     "ur10e": Source(
         "ManipulaPy",
@@ -214,8 +214,8 @@ def function(name: str, robot: Robot) -> str:
 """
 
 
-def never_meet(name: str) -> str:
-    pairs = ", ".join(f'{{"{a}", "{b}"}}' for a, b in ARMS[name].never_meet)
+def never_collide(name: str) -> str:
+    pairs = ", ".join(f'{{"{a}", "{b}"}}' for a, b in ARMS[name].never_collide)
     return f"[[nodiscard]] inline std::vector<LinkNames> {name}() {{ return {{{pairs}}}; }}"
 
 
@@ -225,8 +225,8 @@ def main() -> None:
         off = f"{1e3 * robot.off.max():.2g} mm and {robot.turned.max():.2g} rad"
         print(f"{name}: {len(robot.capsules)} capsules, of links that are off by {off} at most")
     functions = "\n".join(function(name, robot) for name, robot in robots.items())
-    pairs = "\n".join(map(never_meet, robots))
-    every = ", ".join(f'{{"{name}", capsules::{name}, never_meet::{name}}}' for name in robots)
+    pairs = "\n".join(map(never_collide, robots))
+    every = ", ".join(f'{{"{name}", capsules::{name}, never_collide::{name}}}' for name in robots)
     HEADER.write_text(f"""\
 #pragma once
 
@@ -243,23 +243,23 @@ namespace fpbm::presets::capsules {{
 {functions}
 }}  // namespace fpbm::presets::capsules
 
-/// Links of the presets that never meet within the bounds of their joints, though their capsules do: for Clearance's
-/// last argument. They stay 5 mm apart and more.
-namespace fpbm::presets::never_meet {{
+/// Links of the presets whose capsules may overlap although the links never collide within the joint bounds: pass them
+/// as the last argument of Clearance. These links are always at least 5 mm apart.
+namespace fpbm::presets::never_collide {{
 
 using LinkNames = std::pair<std::string, std::string>;
 
 {pairs}
 
-}}  // namespace fpbm::presets::never_meet
+}}  // namespace fpbm::presets::never_collide
 
 namespace fpbm::presets {{
 
-/// A preset's capsules by its name, for programs that learn it at run time.
+/// Capsules of a preset by name, for programs that read the name at run time.
 struct PresetCapsules {{
   const char* name;
   std::vector<LinkCapsule<>> (*capsules)();
-  std::vector<never_meet::LinkNames> (*never_meet)();
+  std::vector<never_collide::LinkNames> (*never_collide)();
 }};
 inline constexpr PresetCapsules kAllCapsules[] = {{{every}}};
 

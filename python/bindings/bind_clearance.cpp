@@ -96,7 +96,7 @@ class PyClearance {
     return nearest_at(clearance_, joint_vector(q, "q", static_cast<int>(clearance_.robot().dof())));
   }
   [[nodiscard]] Pairs pairs() const { return names(clearance_.pairs()); }
-  [[nodiscard]] Pairs left_out() const { return names(clearance_.left_out()); }
+  [[nodiscard]] Pairs excluded_pairs() const { return names(clearance_.excluded_pairs()); }
 
  private:
   [[nodiscard]] Pairs names(const std::vector<ShapePair>& pairs) const {
@@ -124,7 +124,7 @@ py::typing::Tuple<py::typing::List<PlainCapsule>, py::typing::List<PlainPair>> p
     for (const auto& [link, capsule, title] : preset.capsules()) {
       capsules.append(py::make_tuple(link, array_of(capsule.a), array_of(capsule.b), capsule.radius, title));
     }
-    return py::make_tuple(capsules, py::cast(preset.never_meet()));
+    return py::make_tuple(capsules, py::cast(preset.never_collide()));
   }
   validation::reject("name", " = '" + name + "': must be one of " + names);
 }
@@ -169,7 +169,7 @@ void bind_clearance(py::module_& m) {
       .def(py::init<const Model&, const py::object&>(), py::arg("arm"), py::arg("clearance"))
       .def("nearest", &PyClearance::nearest, py::arg("q"))
       .def("pairs", &PyClearance::pairs)
-      .def("left_out", &PyClearance::left_out);
+      .def("excluded_pairs", &PyClearance::excluded_pairs);
 }
 
 }  // namespace fpbm::bindings

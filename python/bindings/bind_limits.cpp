@@ -11,7 +11,7 @@ namespace fpbm::bindings {
 namespace {
 
 /// A motion within limits, in Python.
-struct PyMotion {
+struct PySaturatedMotion {
   Array u;
   double scale;
   py::array_t<bool> saturated;
@@ -47,8 +47,9 @@ class PyLimiter {
   PyLimiter(const py::object& limits, double dt, const std::string& level)
       : any_(make(joint_limits(limits), dt, level)) {}
 
-  [[nodiscard]] PyMotion motion(const ArrayLike& J, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& desired,
-                                const OptionalArray& last, const OptionalRows& bounds) const {
+  [[nodiscard]] PySaturatedMotion motion(const ArrayLike& J, const ArrayLike& q, const ArrayLike& qd,
+                                         const ArrayLike& desired, const OptionalArray& last,
+                                         const OptionalRows& bounds) const {
     const auto rows = real_array(J, "J", 2).shape(0);
     if (rows < 1 || rows > dof()) {
       validation::fail("J's number of rows", static_cast<double>(rows), "from 1 to the number of joints");
@@ -61,7 +62,7 @@ class PyLimiter {
         limited_motion(any_, jacobian, state, wanted, before, bounds ? rows_of(*bounds, dof()) : LimiterRows{}));
   }
 
-  [[nodiscard]] PyMotion brake(const ArrayLike& q, const ArrayLike& qd, const OptionalArray& last) const {
+  [[nodiscard]] PySaturatedMotion brake(const ArrayLike& q, const ArrayLike& qd, const OptionalArray& last) const {
     const State<kDynamic> state = state_of(q, qd);
     return python(braking_motion(any_, state, last_of(last)));
   }
@@ -84,7 +85,7 @@ class PyLimiter {
     return last ? joint_vector(*last, "last", dof()) : Vector<kDynamic>::Zero(dof());
   }
 
-  static PyMotion python(const Saturated<kDynamic>& found) {
+  static PySaturatedMotion python(const SaturatedMotion<kDynamic>& found) {
     py::array_t<bool> saturated(found.u.size());
     for (Eigen::Index i = 0; i < found.u.size(); ++i) saturated.mutable_at(i) = ((found.joints >> i) & 1U) != 0;
     return {array_of(found.u), found.scale, saturated};
@@ -97,10 +98,11 @@ class PyLimiter {
 
 void bind_limits(py::module_& m) {
   const auto none = py::none();
-  py::class_<PyMotion>(m, "LimitedMotion", "A motion of one tick within limits.")
-      .def_readonly("u", &PyMotion::u, "Accelerations [rad/s^2], or velocities [rad/s] at velocity level, shape (n,).")
-      .def_readonly("scale", &PyMotion::scale, "Task scale, from 0 to 1.")
-      .def_readonly("saturated", &PyMotion::saturated, "Which joints are on a bound, shape (n,).");
+  py::class_<PySaturatedMotion>(m, "SaturatedMotion", "A motion of one tick within limits.")
+      .def_readonly("u", &PySaturatedMotion::u,
+                    "Accelerations [rad/s^2], or velocities [rad/s] at velocity level, shape (n,).")
+      .def_readonly("scale", &PySaturatedMotion::scale, "Task scale, from 0 to 1.")
+      .def_readonly("saturated", &PySaturatedMotion::saturated, "Which joints are on a bound, shape (n,).");
 
   py::class_<PyLimiter>(m, "Limiter",
                         R"(Keeps joint limits in your own control loop, for any Jacobian.

@@ -15,18 +15,18 @@ using Outcomes = py::typing::Tuple<Status, double, int, Arrays>;
 Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const ArrayLike& q0, const ArrayLike& qd0,
                  double dt, double hold, const std::string& task, const py::object& options) {
   const State<kDynamic> start{joint_vector(q0, "q0", arm.dof()), joint_vector(qd0, "qd0", arm.dof())};
-  const std::optional<Limited> limited = limited_of(options, arm, path);
-  const TimeGrid<double> grid(duration_of(path, limited), dt, hold);
-  return visit_space(arm, task, limited && limited->stack, [&](const auto* any, auto space) -> Outcomes {
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
+  const TimeGrid<double> grid(duration_of(path, limit_options), dt, hold);
+  return visit_space(arm, task, limit_options && limit_options->stack, [&](const auto* any, auto space) -> Outcomes {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
-    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limited ? &*limited : nullptr);
+    MotionArrays<Space> arrays(grid.samples(), arm.dof(), limit_options ? &*limit_options : nullptr);
     const Output<Space> output = arrays.output();
     const Motion<Space> motion{any, same, scheme, start, grid};
     RolloutResult<kDynamic> result;
     {
       const py::gil_scoped_release others_may_run;
-      result = limited ? motion.track(*limited, output) : motion.simulate(output);
+      result = limit_options ? motion.track(*limit_options, output) : motion.simulate(output);
     }
     return py::make_tuple(result.status, result.time, result.samples, arrays.all());
   });
@@ -34,17 +34,18 @@ Outcomes rollout(const Model& arm, const Path& path, const Scheme& scheme, const
 
 }  // namespace
 
-std::optional<Limited> limited_of(const py::object& given, const Model& model, const Path& path) {
+std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model, const Path& path) {
   if (given.is_none()) return std::nullopt;
   const auto number = [&](const char* name) { return py::cast<double>(given.attr(name)); };
   const py::object limits = given.attr("limits");
   const py::object clearance = given.attr("clearance");
-  Limited limited{limits.is_none() ? model.limits() : joint_limits(limits),
-                  {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
-                   SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
-                  clearance_of(model, clearance),
-                  !clearance.is_none()};
-  add_bounds(limited.clearance, model, given.attr("bounds"));
+  LimitOptions limit_options{
+      limits.is_none() ? model.limits() : joint_limits(limits),
+      {1e-3, number("error_bound"), number("integral_gain"), number("integral_bound"), number("stall_time"),
+       SingularDamping<>(number("singular_radius"), number("singular_brake")), number("null_damping")},
+      clearance_of(model, clearance),
+      !clearance.is_none()};
+  add_bounds(limit_options.clearance, model, given.attr("bounds"));
   if (const py::object stack = given.attr("stack"); !stack.is_none()) {
     StackOptions options{read_stack(stack, model), {}, 0.0};
     const auto lead = [&](const std::string& name, const Path& each) {
@@ -61,14 +62,14 @@ std::optional<Limited> limited_of(const py::object& given, const Model& model, c
     for (const auto& [name, each] : py::cast<py::dict>(given.attr("other_paths"))) {
       lead(py::cast<std::string>(name), py::cast<const Path&>(each));
     }
-    limited.stack = std::make_shared<const StackOptions>(std::move(options));
+    limit_options.stack = std::make_shared<const StackOptions>(std::move(options));
   }
-  return limited;
+  return limit_options;
 }
 
 void bind_sim(py::module_& m) {
   m.def("rollout", &rollout, py::arg("arm"), py::arg("path"), py::arg("scheme"), py::arg("q0"), py::arg("qd0"),
-        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limited") = py::none());
+        py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none());
 }
 
 }  // namespace fpbm::bindings

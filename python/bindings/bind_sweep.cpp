@@ -41,20 +41,21 @@ py::typing::Tuple<Array, int> check_sweep(const Model& arm, const Path& path, co
                                           const ArrayLike& q0s, double dt, double hold, const std::string& task,
                                           const py::object& options) {
   const Array rows = starts(q0s, arm.dof());
-  const std::optional<Limited> limited = limited_of(options, arm, path);
-  const TimeGrid<double> grid(duration_of(path, limited), dt, hold);
-  visit_space(arm, task, limited && limited->stack, [&](const auto* any, auto space) {
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
+  const TimeGrid<double> grid(duration_of(path, limit_options), dt, hold);
+  visit_space(arm, task, limit_options && limit_options->stack, [&](const auto* any, auto space) {
     using Space = decltype(space);
     const AnyPath<Space> same = path.as<Space>();
     const JointVector rest = JointVector::Zero(arm.dof());
     for (std::size_t i = 0; i < schemes.size(); ++i) {
       // Whether a start is within limits depends on the row, all else on the scheme alone.
-      const py::ssize_t checked = limited ? rows.shape(0) : 1;
+      const py::ssize_t checked = limit_options ? rows.shape(0) : 1;
       for (py::ssize_t k = 0; k < checked; ++k) {
         try {
-          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid}.require(limited ? &*limited : nullptr);
+          Motion<Space>{any, same, *schemes[i], {row(rows, k), rest}, grid}.require(limit_options ? &*limit_options
+                                                                                                  : nullptr);
         } catch (const ParameterError& wrong) {
-          const std::string which = limited ? ", q0s[" + std::to_string(k) + "]" : "";
+          const std::string which = limit_options ? ", q0s[" + std::to_string(k) + "]" : "";
           throw ParameterError("schemes", static_cast<int>(i), wrong.value(),
                                "schemes[" + std::to_string(i) + "]" + which + ": " + wrong.what());
         }
@@ -80,7 +81,7 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     throw std::invalid_argument("which and q0s: must have equal lengths");
   }
   const TimeGrid<double> grid(path.duration(), dt, hold);
-  const std::optional<Limited> limited = limited_of(options, arm, path);
+  const std::optional<LimitOptions> limit_options = limit_options_of(options, arm, path);
   py::array_t<Outcome> outcomes(rows.shape(0));
   Outcome* const into = outcomes.mutable_data();
   return arm.visit(task, [&](const auto&, auto space) -> Chunk {
@@ -91,12 +92,13 @@ Chunk sweep_chunk(const Arm& arm, const Path& path, const Schemes& schemes, cons
     for (std::size_t i = 0; i < which.size(); ++i) {
       jobs.push_back({schemes.at(which[i]), row(rows, static_cast<py::ssize_t>(i))});
       if (motions) {
-        jobs.back().output = whole.emplace_back(grid.samples(), arm.dof(), limited ? &*limited : nullptr).output();
+        jobs.back().output =
+            whole.emplace_back(grid.samples(), arm.dof(), limit_options ? &*limit_options : nullptr).output();
       }
     }
     {
       const py::gil_scoped_release others_may_run;
-      sweep(arm, same, grid, jobs, limited ? &*limited : nullptr, lane_code, stop.flag, into);
+      sweep(arm, same, grid, jobs, limit_options ? &*limit_options : nullptr, lane_code, stop.flag, into);
     }
     py::typing::List<Arrays> arrays;
     for (const MotionArrays<Space>& each : whole) arrays.append(each.all());
@@ -136,10 +138,10 @@ void bind_sweep(py::module_& m) {
   m.def("processor_kinds", &processor_kinds);
   m.def("use_lanes", &use_lanes, py::arg("code"));
   m.def("check_sweep", &check_sweep, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("q0s"), py::arg("dt"),
-        py::arg("hold"), py::arg("task"), py::arg("limited") = py::none());
+        py::arg("hold"), py::arg("task"), py::arg("limit_options") = py::none());
   m.def("not_run", &not_run, py::arg("count"));
   m.def("sweep_chunk", &sweep_chunk, py::arg("arm"), py::arg("path"), py::arg("schemes"), py::arg("which"),
-        py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("limited"),
+        py::arg("q0s"), py::arg("dt"), py::arg("hold"), py::arg("task"), py::arg("motions"), py::arg("limit_options"),
         py::arg("stop"));
 }
 

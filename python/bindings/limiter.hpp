@@ -17,9 +17,9 @@ inline constexpr int kLimiterRows = Guard<Level::kAcceleration, kDynamic>::kRows
 using LimiterRows = Rows<kDynamic, kLimiterRows>;
 
 /// Limiter::motion() and Limiter::brake(). Compiled once, beside trackers.
-Saturated<kDynamic> limited_motion(const AnyLimiter& any, const Matrix<kDynamic, kDynamic>& J,
-                                   const State<kDynamic>& state, const JointVector& desired, const JointVector& last,
-                                   const LimiterRows& rows);
-Saturated<kDynamic> braking_motion(const AnyLimiter& any, const State<kDynamic>& state, const JointVector& last);
+SaturatedMotion<kDynamic> limited_motion(const AnyLimiter& any, const Matrix<kDynamic, kDynamic>& J,
+                                         const State<kDynamic>& state, const JointVector& desired,
+                                         const JointVector& last, const LimiterRows& rows);
+SaturatedMotion<kDynamic> braking_motion(const AnyLimiter& any, const State<kDynamic>& state, const JointVector& last);
 
 }  // namespace fpbm::bindings

@@ -16,7 +16,7 @@
 namespace fpbm::bindings {
 
 /// The path of a task of a stack.
-struct LedPath {
+struct TaskPath {
   std::size_t task;  ///< Index among the plan's tasks.
   std::variant<AnyPath<Position<3>>, AnyPath<Pose>> path;
 };
@@ -24,12 +24,12 @@ struct LedPath {
 /// Several tasks, some of which follow paths.
 struct StackOptions {
   StackPlan plan;
-  std::vector<LedPath> paths;  ///< The first is the motion's, of which samples have tip, reference and error.
-  double duration;             ///< Duration of the longest path [s].
+  std::vector<TaskPath> paths;  ///< The first is the motion's, of which samples have tip, reference and error.
+  double duration;              ///< Duration of the longest path [s].
 };
 
 /// How a motion keeps limits; the length of its tick is the grid's.
-struct Limited {
+struct LimitOptions {
   JointLimits<kDynamic> limits;
   TrackerOptions<> options;
   Clearance<kDynamic> clearance;
@@ -51,14 +51,14 @@ struct Motion {
 
   /// fpbm::track() of it. Throws std::invalid_argument if scheme, start, limits, options or clearance do
   /// not fit.
-  RolloutResult<kDynamic> track(const Limited& limited, const Output<Space>& output) const;
+  RolloutResult<kDynamic> track(const LimitOptions& limit_options, const Output<Space>& output) const;
 
   /// The tracker of it, for an arm of N joints. Throws as track() does.
   template <int N>
-  LaneTracker<Space, N> tracker(const Limited& limited) const;
+  LaneTracker<Space, N> tracker(const LimitOptions& limit_options) const;
 
   /// Throws as simulate() does, or as track() if there are limits.
-  void require(const Limited* limited) const;
+  void require(const LimitOptions* limit_options) const;
 };
 
 extern template struct Motion<Position<2>>;

@@ -17,7 +17,7 @@ using Arrays = py::typing::Dict<py::str, py::array>;
 /// Arrays for a motion of that many samples of n joints.
 template <typename Space>
 struct MotionArrays {
-  MotionArrays(py::ssize_t samples, py::ssize_t n, const Limited* limited)
+  MotionArrays(py::ssize_t samples, py::ssize_t n, const LimitOptions* limit_options)
       : t(samples),
         q({samples, n}),
         qd({samples, n}),
@@ -25,13 +25,13 @@ struct MotionArrays {
         x(points(samples)),
         x_ref(points(samples)),
         error({samples, py::ssize_t{Space::kRows}}) {
-    if (limited == nullptr) return;
+    if (limit_options == nullptr) return;
     scale = Array(samples);
     saturated = py::array_t<bool>({samples, n});
-    if (limited->keeps_clear) clearance = Array(samples);
-    if (limited->stack == nullptr) return;
-    scales = Array({samples, py::ssize_t{limited->stack->plan.levels}});
-    task_errors = Array({samples, py::ssize_t{limited->stack->plan.error_size()}});
+    if (limit_options->keeps_clear) clearance = Array(samples);
+    if (limit_options->stack == nullptr) return;
+    scales = Array({samples, py::ssize_t{limit_options->stack->plan.levels}});
+    task_errors = Array({samples, py::ssize_t{limit_options->stack->plan.error_size()}});
   }
 
   [[nodiscard]] Output<Space> output() {
@@ -87,11 +87,11 @@ struct MotionArrays {
 };
 
 /// How long a motion moves [s].
-inline double duration_of(const Path& path, const std::optional<Limited>& limited) {
-  return limited && limited->stack ? limited->stack->duration : path.duration();
+inline double duration_of(const Path& path, const std::optional<LimitOptions>& limit_options) {
+  return limit_options && limit_options->stack ? limit_options->stack->duration : path.duration();
 }
 
 /// How a motion keeps limits, of a LimitOptions of motion/simulation.py, or none.
-std::optional<Limited> limited_of(const py::object& given, const Model& model, const Path& path);
+std::optional<LimitOptions> limit_options_of(const py::object& given, const Model& model, const Path& path);
 
 }  // namespace fpbm::bindings

@@ -31,22 +31,22 @@ class Runner {
   [[nodiscard]] bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
 
   /// One motion by itself.
-  [[nodiscard]] Outcome alone(const Job<Space>& job, const Limited* limited) const {
+  [[nodiscard]] Outcome alone(const Job<Space>& job, const LimitOptions* limit_options) const {
     const Outcome nothing = Outcome::of_nothing();
     MotionSummary<> summary = nothing.summary;
     Output<Space> output = job.output;
     output.summary = &summary;
     output.stop = &stop_;
     const Motion<Space> one = motion(job);
-    const auto result = limited == nullptr ? one.simulate(output) : one.track(*limited, output);
+    const auto result = limit_options == nullptr ? one.simulate(output) : one.track(*limit_options, output);
     if (!failed(result.status) && result.samples < grid_.samples()) return nothing;
     if (result.samples == 0) summary = nothing.summary;
     return {static_cast<int>(result.status), result.samples, result.time, summary};
   }
 
   /// The members of jobs, which are of one level, in groups of as many as there are lanes; the last is filled up.
-  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members, const Limited* limited,
-                std::size_t lanes, RunInLanes<Space> run, Outcome* outcomes) const {
+  void in_lanes(const std::vector<Job<Space>>& jobs, const std::vector<std::size_t>& members,
+                const LimitOptions* limit_options, std::size_t lanes, RunInLanes<Space> run, Outcome* outcomes) const {
     using Source = std::conditional_t<std::is_same_v<Space, Position<2>>, JointVector, Chain<>>;
     const ArmInLanes<Space> arm(std::get<Source>(arm_.source));
     std::vector<Outcome> results(lanes, Outcome::of_nothing());
@@ -59,7 +59,7 @@ class Runner {
         const Job<Space>& job = jobs[members[std::min(first + lane, last - 1)]];
         const Scheme& scheme = *job.scheme;
         const auto damped = [&](auto law) {  // As its tracker is.
-          if (limited != nullptr) set_damping(law, limited->options.damping(kDof, Space::kRows));
+          if (limit_options != nullptr) set_damping(law, limit_options->options.damping(kDof, Space::kRows));
           return law;
         };
         const DiagonalWeights<kDof> weights = scheme.template diagonal_weights<kDof>(kDof);
@@ -69,7 +69,7 @@ class Runner {
           schemes.acceleration.push_back(damped(scheme.template law<Level::kAcceleration>(weights, arm.limits())));
         }
         starts.emplace_back(job.q0);
-        if (limited != nullptr) trackers.push_back(motion(job).template tracker<kDof>(*limited));
+        if (limit_options != nullptr) trackers.push_back(motion(job).template tracker<kDof>(*limit_options));
       }
       run(arm, path_, grid_, schemes, starts, std::move(trackers), stop_, results.data());
       for (std::size_t i = first; i < last; ++i) outcomes[members[i]] = results[i - first];
@@ -114,28 +114,27 @@ template <typename Space>
   return members;
 }
 
-/// Runs each job on one arm along one path, as simulate() would or, where limited is not null, track(); and writes an
-/// outcome for each. Where code is not null, it runs motions of one task side by side, with results that do not depend
-/// on which.
-/// Once stop is set, which is looked at in every sample, all that are not done yet are not run.
+/// Runs each job on one arm along one path, as simulate() would or, where limit_options is not null, track(); and
+/// writes an outcome for each. Where code is not null, it runs motions of one task side by side, with results that do
+/// not depend on which. Once stop is set, which is looked at in every sample, all that are not done yet are not run.
 /// Throws std::invalid_argument if a scheme, a start or the limits do not fit the arm.
 template <typename Space>
 void sweep(const Arm& arm, const AnyPath<Space>& path, const TimeGrid<double>& grid,
-           const std::vector<Job<Space>>& jobs, const Limited* limited, const LaneCode* code,
+           const std::vector<Job<Space>>& jobs, const LimitOptions* limit_options, const LaneCode* code,
            const std::atomic<bool>& stop, Outcome* outcomes) {
   const Runner<Space> runner(arm, path, grid, stop);
   std::fill_n(outcomes, jobs.size(), Outcome::of_nothing());
   if constexpr (!std::is_same_v<Space, PlanarPose>) {
-    const bool of_a_stack = limited != nullptr && limited->stack != nullptr;
+    const bool of_a_stack = limit_options != nullptr && limit_options->stack != nullptr;
     if (code != nullptr && runs_in_lanes(arm) && !of_a_stack) {
       for (const Level level : {Level::kVelocity, Level::kAcceleration}) {
-        runner.in_lanes(jobs, side_by_side(jobs, level), limited, static_cast<std::size_t>(code->lanes),
+        runner.in_lanes(jobs, side_by_side(jobs, level), limit_options, static_cast<std::size_t>(code->lanes),
                         std::get<RunInLanes<Space>>(code->run), outcomes);
       }
     }
   }
   for (std::size_t i = 0; i < jobs.size() && !runner.stopped(); ++i) {
-    if (outcomes[i].status == Outcome::kNotRun) outcomes[i] = runner.alone(jobs[i], limited);
+    if (outcomes[i].status == Outcome::kNotRun) outcomes[i] = runner.alone(jobs[i], limit_options);
   }
 }
 

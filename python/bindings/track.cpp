@@ -13,24 +13,28 @@ namespace fpbm::bindings {
 namespace {
 
 template <typename Space>
-TrackerOptions<> options_of(const Motion<Space>& motion, const Limited& limited) {
-  TrackerOptions<> options = limited.options;
+TrackerOptions<> options_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
+  TrackerOptions<> options = limit_options.options;
   options.dt = motion.grid.dt();
   return options;
 }
 
 template <typename Space>
-std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const Limited& limited) {
-  return make_tracker<Space>(motion.scheme, {*motion.arm, motion.start, options_of(motion, limited), limited.limits,
-                                             JointVector::Zero(motion.start.q.size()), limited.clearance});
+std::unique_ptr<AnyTracker<Space>> tracker_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
+  return make_tracker<Space>(motion.scheme,
+                             {*motion.arm, motion.start, options_of(motion, limit_options), limit_options.limits,
+                              JointVector::Zero(motion.start.q.size()), limit_options.clearance});
 }
 
 template <typename Space>
-StackMotion stack_motion_of(const Motion<Space>& motion, const Limited& limited) {
-  return {limited.stack->plan, motion.scheme,
-          motion.start,        options_of(motion, limited),
-          limited.limits,      JointVector::Zero(motion.start.q.size()),
-          limited.clearance};
+StackMotion stack_motion_of(const Motion<Space>& motion, const LimitOptions& limit_options) {
+  return {limit_options.stack->plan,
+          motion.scheme,
+          motion.start,
+          options_of(motion, limit_options),
+          limit_options.limits,
+          JointVector::Zero(motion.start.q.size()),
+          limit_options.clearance};
 }
 
 /// A frame in space as a point of Space.
@@ -66,20 +70,20 @@ Vector<Space::kRows> rows_of(const JointVector& error) noexcept {
 /// The paths of a stack, laid out from where their tasks are.
 class Followers {
  public:
-  Followers(const StackMotion& tasks, const std::vector<LedPath>& paths) {
-    for (const LedPath& led : paths) {
-      const Transform<> at = tasks.frame_of(tasks.plan().tasks[led.task]);
+  Followers(const StackMotion& tasks, const std::vector<TaskPath>& paths) {
+    for (const TaskPath& task_path : paths) {
+      const Transform<> at = tasks.frame_of(tasks.plan().tasks[task_path.task]);
       std::visit(
           [&](const auto& path) {
             using Space = typename std::decay_t<decltype(path)>::Space;
             each_.emplace_back(AnyFollower<Space>(path, point_of<Space>(at)));
           },
-          led.path);
+          task_path.path);
     }
   }
 
   /// As long as the followers are.
-  [[nodiscard]] StackMotion::Sources sources(const StackPlan& plan, const std::vector<LedPath>& paths) {
+  [[nodiscard]] StackMotion::Sources sources(const StackPlan& plan, const std::vector<TaskPath>& paths) {
     StackMotion::Sources sources;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       std::visit([&](auto& one) { sources.emplace_back(&plan.tasks[paths[i].task], &one); }, each_[i]);
@@ -98,12 +102,13 @@ class Followers {
 /// fpbm::track() of a stack: the sample's tip, reference and error are those of the task that follows the first path,
 /// its J, for summaries, is the Jacobian of the arm's tip.
 template <typename Space>
-RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& limited, const Output<Space>& output) {
-  StackMotion tasks = stack_motion_of(motion, limited);
+RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const LimitOptions& limit_options,
+                                    const Output<Space>& output) {
+  StackMotion tasks = stack_motion_of(motion, limit_options);
   StackTracker& tracker = tasks.tracker();
   const StackPlan& plan = tasks.plan();
-  const std::vector<LedPath>& paths = limited.stack->paths;
-  const StackTask& led = plan.tasks[paths.front().task];
+  const std::vector<TaskPath>& paths = limit_options.stack->paths;
+  const StackTask& task_path = plan.tasks[paths.front().task];
   Followers followers(tasks, paths);
   const StackMotion::Sources sources = followers.sources(plan, paths);
   Recorder<Space> record(output, Level::kAcceleration);
@@ -112,7 +117,7 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& 
   auto placed = tracker.clearance().placement();
   for (int k = 0; k < motion.grid.samples(); ++k) {
     const State<kDynamic> state = tracker.state();
-    const auto tip = point_of<Space>(tasks.frame_of(led));
+    const auto tip = point_of<Space>(tasks.frame_of(task_path));
     const auto reference = Reference<Space>::hold(point_of<Space>(followers.first()));
     if (output.summary != nullptr) motion.arm->kinematics(state.q, kinematics);
     if (output.clearance != nullptr) {
@@ -128,7 +133,7 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& 
         row = std::copy_n(error.data(), error.size(), row);
       }
     }
-    const Vector<Space::kRows> error = rows_of<Space>(StackMotion::error_of(led, tick));
+    const Vector<Space::kRows> error = rows_of<Space>(StackMotion::error_of(task_path, tick));
     if (!record({k, result.time, state.q, state.qd, tick.qdd, tip, reference, error, kinematics.J}, tick)) break;
   }
   record.finish();
@@ -138,11 +143,11 @@ RolloutResult<kDynamic> track_stack(const Motion<Space>& motion, const Limited& 
 }  // namespace
 
 template <typename Space>
-RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Output<Space>& output) const {
-  if (limited.stack != nullptr) {
-    return track_stack(*this, limited, output);
+RolloutResult<kDynamic> Motion<Space>::track(const LimitOptions& limit_options, const Output<Space>& output) const {
+  if (limit_options.stack != nullptr) {
+    return track_stack(*this, limit_options, output);
   }
-  const auto tracker = tracker_of(*this, limited);
+  const auto tracker = tracker_of(*this, limit_options);
   Recorder<Space> record(output, Level::kAcceleration);
   AnyFollower<Space> follower(path, tracker->tip());
   const auto& clearance = tracker->clearance();
@@ -160,16 +165,16 @@ RolloutResult<kDynamic> Motion<Space>::track(const Limited& limited, const Outpu
 
 template <typename Space>
 template <int N>
-LaneTracker<Space, N> Motion<Space>::tracker(const Limited& limited) const {
-  return LaneTracker<Space, N>(tracker_of(*this, limited));
+LaneTracker<Space, N> Motion<Space>::tracker(const LimitOptions& limit_options) const {
+  return LaneTracker<Space, N>(tracker_of(*this, limit_options));
 }
 
 template <typename Space>
-void Motion<Space>::require(const Limited* limited) const {
-  if (limited != nullptr && limited->stack != nullptr) {
-    (void)stack_motion_of(*this, *limited);
-  } else if (limited != nullptr) {
-    (void)tracker_of(*this, *limited);
+void Motion<Space>::require(const LimitOptions* limit_options) const {
+  if (limit_options != nullptr && limit_options->stack != nullptr) {
+    (void)stack_motion_of(*this, *limit_options);
+  } else if (limit_options != nullptr) {
+    (void)tracker_of(*this, *limit_options);
   } else {
     (void)scheme.make<Space>(*arm);
   }
@@ -179,8 +184,8 @@ template struct Motion<Position<2>>;
 template struct Motion<PlanarPose>;
 template struct Motion<Position<3>>;
 template struct Motion<Pose>;
-template LaneTracker<Position<2>, 4> Motion<Position<2>>::tracker<4>(const Limited&) const;
-template LaneTracker<Position<3>, 7> Motion<Position<3>>::tracker<7>(const Limited&) const;
-template LaneTracker<Pose, 7> Motion<Pose>::tracker<7>(const Limited&) const;
+template LaneTracker<Position<2>, 4> Motion<Position<2>>::tracker<4>(const LimitOptions&) const;
+template LaneTracker<Position<3>, 7> Motion<Position<3>>::tracker<7>(const LimitOptions&) const;
+template LaneTracker<Pose, 7> Motion<Pose>::tracker<7>(const LimitOptions&) const;
 
 }  // namespace fpbm::bindings

@@ -9,11 +9,11 @@ from . import arms, paths, robots, schemes, tasks
 from ._core import (
     MAX_DOF,
     Kinematics,
-    LimitedMotion,
     Limiter,
     Nearest,
     PathFollower,
     SaturatedLevels,
+    SaturatedMotion,
     Status,
     TargetFilter,
     Tick,
@@ -45,7 +45,7 @@ from .viewer import servo, view
 __all__ = ["LANES", "Run", "RunStatus", "Sweep", "Tuning", "load", "simulate", "sweep", "track", "tune"]
 __all__ += ["servo", "view"]
 __all__ += ["Capsule", "Clearance", "Cuboid", "HalfSpace", "Nearest"]
-__all__ += ["Kinematics", "LimitedMotion", "Limiter", "PathFollower", "Status", "TargetFilter", "Tick"]
+__all__ += ["Kinematics", "Limiter", "PathFollower", "SaturatedMotion", "Status", "TargetFilter", "Tick"]
 __all__ += ["SaturatedLevels", "TaskBounds", "Tracker", "failed", "saturate"]
 __all__ += ["MAX_DOF", "ParameterError", "ResolutionError", "SweepInterrupted", "TuneInterrupted"]
 __all__ += ["__version__", "rotation", "rotation_vector"]

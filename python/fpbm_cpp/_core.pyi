@@ -13,7 +13,7 @@ __all__: list[str] = [
     "Arm",
     "Clearance",
     "Kinematics",
-    "LimitedMotion",
+    "SaturatedMotion",
     "Limiter",
     "MAX_DOF",
     "Model",
@@ -329,7 +329,7 @@ class Clearance:
     The compiled part of a clearance, for one robot.
     """
     def __init__(self, arm: Model, clearance: typing.Any) -> None: ...
-    def left_out(self) -> list[tuple[str, str]]: ...
+    def excluded_pairs(self) -> list[tuple[str, str]]: ...
     def nearest(self, q: numpy.typing.ArrayLike) -> Nearest | None: ...
     def pairs(self) -> list[tuple[str, str]]: ...
 
@@ -343,7 +343,7 @@ class Stop:
         Callable from any thread.
         """
 
-class LimitedMotion:
+class SaturatedMotion:
     """
     A motion of one tick within limits.
     """
@@ -390,7 +390,7 @@ class Limiter:
     ) -> None: ...
     def brake(
         self, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, *, last: numpy.typing.ArrayLike | None = None
-    ) -> LimitedMotion:
+    ) -> SaturatedMotion:
         """
         The motion that brings every joint to rest; arguments and result as for motion.
         """
@@ -403,7 +403,7 @@ class Limiter:
         *,
         last: numpy.typing.ArrayLike | None = None,
         rows: tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None,
-    ) -> LimitedMotion:
+    ) -> SaturatedMotion:
         """
         Motion u of the next tick for a desired motion: J u = J r + s J (desired - r), with a braking motion r and
         the largest s <= 1 within the limits. If s is near zero, u is a motion that still moves the tip toward the target.

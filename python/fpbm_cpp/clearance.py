@@ -203,9 +203,9 @@ class Clearance(Data):
         """Names of the checked pairs, one entry for each pair of capsules; a pair of names may occur several times."""
         return self._of(arm).pairs()
 
-    def left_out(self, arm: Arm | Robot) -> list[tuple[str, str]]:
+    def excluded_pairs(self, arm: Arm | Robot) -> list[tuple[str, str]]:
         """Names of the pairs that are not checked because they overlap in every posture."""
-        return self._of(arm).left_out()
+        return self._of(arm).excluded_pairs()
 
     def _of(self, arm: Arm | Robot) -> CoreClearance:
         """The compiled part for an arm or a robot, cached for the next call."""

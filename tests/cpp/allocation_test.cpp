@@ -279,7 +279,7 @@ AllocationCount planted(void (*allocate)()) {
 /// Volatile, so that the compiler does not remove an allocation together with its release.
 void* volatile seen;
 
-TEST(AllocationWatch, sees_every_form_of_new) {
+TEST(AllocationWatch, detects_every_form_of_new) {
   constexpr auto kWide = std::align_val_t(64);
   EXPECT_EQ(planted([] { seen = ::operator new(8), ::operator delete(seen); }).by_new, kSteps + 1);
   EXPECT_EQ(planted([] { seen = ::operator new[](8), ::operator delete[](seen); }).by_new, kSteps + 1);

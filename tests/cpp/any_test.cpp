@@ -167,7 +167,7 @@ TEST(AnyWeights, are_the_weights_that_they_hold) {
     EXPECT_EQ(any.is_unit(), weights.is_unit());
     EXPECT_EQ(any.template inverse_bound<double>(), weights.template inverse_bound<double>());
     expect_same(any.root(a), Vector<kOpen>(weights.root(a)), "root");
-    expect_same(any.unroot(a), Vector<kOpen>(weights.unroot(a)), "unroot");
+    expect_same(any.inverse_root(a), Vector<kOpen>(weights.inverse_root(a)), "inverse_root");
     expect_same(any.root_transpose(Jt), Matrix<kOpen, 2>(weights.root_transpose(Jt)), "root_transpose");
     const auto found = any.with_unit(J);
     const auto expected = weights.with_unit(J);

@@ -47,16 +47,16 @@ class Distances : public ::testing::Test {
 
   Scalar radius() { return chance(0.2) ? Scalar(0) : size(); }
 
-  Capsule<Scalar> capsule(const Segment<Scalar>& core) { return {core.start, core.start + core.way, radius()}; }
+  Capsule<Scalar> capsule(const Segment<Scalar>& core) { return {core.start, core.start + core.extent, radius()}; }
 
   /// A second segment: anywhere, nearly parallel, through a point of the first segment, or with an end at a point of
   /// the first segment.
   Segment<Scalar> other(const Segment<Scalar>& first) {
     Segment<Scalar> second = segment();
-    if (chance(0.3)) second.way = near_parallel(first.way);
+    if (chance(0.3)) second.extent = near_parallel(first.extent);
     const Scalar on_second = chance(0.5) ? std::round(uniform(0, 1)) : uniform(0, 1);
     const Scalar on_first = chance(0.5) ? std::round(uniform(0, 1)) : uniform(0, 1);
-    if (chance(0.5)) second.start = first.at(on_first) - on_second * second.way;
+    if (chance(0.5)) second.start = first.at(on_first) - on_second * second.extent;
     // So near that the difference of the points has few significant digits.
     if (chance(0.5)) second.start += static_cast<Scalar>(std::pow(10.0, random_.uniform(-18.0, -2.0))) * direction();
     return second;
@@ -83,7 +83,7 @@ class Distances : public ::testing::Test {
     Segment<Scalar> core = segment();
     const Vector3 corner = half.cwiseProduct(whole().cwiseMin(Scalar(1)).cwiseMax(Scalar(-1)));
     if (chance(0.6)) core = other({corner, half.cwiseProduct(vector())});
-    if (chance(0.3)) core.way = near_parallel(half.cwiseProduct(Vector3::Unit(chance(0.5) ? 1 : 2)));
+    if (chance(0.3)) core.extent = near_parallel(half.cwiseProduct(Vector3::Unit(chance(0.5) ? 1 : 2)));
     const Transform<Scalar> at = chance(0.3) ? Transform<Scalar>{} : pose();
     return {placed(capsule(core), at), {at, half}};
   }

@@ -102,11 +102,12 @@ TEST(Separation, its_gradient_is_that_of_the_distance) {
   EXPECT_GE(compared, trials(40000));
 }
 
-/// Whether all pairs keep their margin along the trajectory `sweep` from q.
-[[nodiscard]] bool keeps_apart(Clearance<kOpen>& clearance, const Joints& q, const Sweep<kOpen>& sweep) {
+/// Whether all pairs keep their margin along the trajectory `displacement` from q.
+[[nodiscard]] bool keeps_margins(Clearance<kOpen>& clearance, const Joints& q,
+                                 const StopDisplacement<kOpen>& displacement) {
   NearPairs<Clearance<kOpen>> near(clearance);
-  near.go_to(clearance, q);
-  return Advancement<Clearance<kOpen>>(clearance).keeps_apart(clearance, near, sweep, 0.0);
+  near.set_posture(clearance, q);
+  return Advancement<Clearance<kOpen>>(clearance).keeps_margins(clearance, near, displacement, 0.0);
 }
 
 template <typename Scalar>
@@ -152,7 +153,7 @@ void expect_all_near_pairs() {
           post.a(1) = post.b(1) = Scalar(random.uniform(-1.0, 1.0));
           ASSERT_TRUE(clearance.move(0, post, Vector<3, Scalar>::Zero()));
         }
-        near.go_to(clearance, q);
+        near.set_posture(clearance, q);
         clearance.place(q, placed);
         near.set_displacements(clearance, (random.uniform(0.0, 0.1) * Joints::Ones(joints)).template cast<Scalar>());
         const auto needs = [&](const ShapePair& pair) { return clearance.margin() + near.displacement_of(pair); };
@@ -181,9 +182,9 @@ TEST(NearPairs, are_those_of_the_distances_in_float) {
   expect_all_near_pairs<float>();
 }
 
-/// If keeps_apart() returns true, no sampled posture of the trajectory is closer than the margin. It returns true for
+/// If keeps_margins() returns true, no sampled posture of the trajectory is closer than the margin. It returns true for
 /// at least 90 % of the trajectories without a sampled violation.
-TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
+TEST(KeepsMargins, is_never_unsafe_and_rarely_conservative) {
   int sure = 0;
   int clear = 0;
   for (const auto& [name, tree] : robots()) {
@@ -196,21 +197,23 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
       const double size = std::pow(10.0, random.uniform(-2.0, 0.0));
       const Joints none = Joints::Zero(n);
       const Joints unknown = Joints::Constant(n, std::numeric_limits<double>::quiet_NaN());
-      Sweep<kOpen> sweep{size * random.uniform(n, -1.0, 1.0), 0.05 * size * random.uniform(n, -1.0, 1.0), none, none,
-                         unknown};
+      StopDisplacement<kOpen> displacement{size * random.uniform(n, -1.0, 1.0),
+                                           0.05 * size * random.uniform(n, -1.0, 1.0), none, none, unknown};
       const bool gains = seed % 5 == 0;  // The trajectory includes a tick from rest, as in accepts().
-      if (gains) sweep.begun = sweep.way + 2.0 * sweep.tick;
+      if (gains) displacement.start_velocity = displacement.line + 2.0 * displacement.ramp_correction;
       const Joints either = 0.02 * size * random.uniform(n, -1.0, 1.0);
-      if (seed % 2 == 0) sweep.low = either.cwiseMin(0.0);
-      if (seed % 3 == 0) sweep.high = either.cwiseMax(0.0);
-      const bool kept = keeps_apart(clearance, q, sweep);
+      if (seed % 2 == 0) displacement.low = either.cwiseMin(0.0);
+      if (seed % 3 == 0) displacement.high = either.cwiseMax(0.0);
+      const bool kept = keeps_margins(clearance, q, displacement);
       double least = 1e9;
       for (int place = 0; place < 60; ++place) {
         const double t = random.uniform(0.0, 1.0);
-        const Joints rest = sweep.low + Joints(random.uniform(n, 0.0, 1.0)).cwiseProduct(sweep.high - sweep.low);
+        const Joints rest =
+            displacement.low + Joints(random.uniform(n, 0.0, 1.0)).cwiseProduct(displacement.high - displacement.low);
         const double s = place < 30 ? place / 29.0 : t;
         const double most = gains ? std::min(2.0 * s, 1.0) : 1.0;
-        const Joints between = q + s * sweep.way + random.uniform(0.0, most) * sweep.tick + rest;
+        const Joints between =
+            q + s * displacement.line + random.uniform(0.0, most) * displacement.ramp_correction + rest;
         least = std::min(least, clearance.nearest_pair(between).second);
       }
       if (kept) {
@@ -224,17 +227,20 @@ TEST(KeepsApart, is_never_wrong_and_seldom_shy) {
   std::printf("sure of %d of %d sweeps that are clear\n", sure, clear);
 }
 
-/// If a number is NaN or infinite, keeps_apart() returns false.
-TEST(KeepsApart, is_unsure_of_what_is_not_finite) {
+/// If a number is NaN or infinite, keeps_margins() returns false.
+TEST(KeepsMargins, is_unsure_of_what_is_not_finite) {
   Random random(5);
   auto clearance = surrounded(tree_of(presets::panda()), random);
   const Joints q = (Joints(7) << 0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8).finished();
   const Joints none = Joints::Zero(7);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int part = 0; part < 4; ++part) {
-      Sweep<kOpen> sweep{none, none, none, none, none};
-      (part == 0 ? sweep.way : part == 1 ? sweep.tick : part == 2 ? sweep.low : sweep.high)(3) = bad;
-      EXPECT_FALSE(keeps_apart(clearance, q, sweep)) << "part " << part;
+      StopDisplacement<kOpen> displacement{none, none, none, none, none};
+      (part == 0   ? displacement.line
+       : part == 1 ? displacement.ramp_correction
+       : part == 2 ? displacement.low
+                   : displacement.high)(3) = bad;
+      EXPECT_FALSE(keeps_margins(clearance, q, displacement)) << "part " << part;
     }
   }
 }

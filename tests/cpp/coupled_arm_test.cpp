@@ -147,7 +147,7 @@ TEST(CoupledArm, bounds_a_leader_by_its_followers) {
   expect_leader_within_both<float>();
 }
 
-TEST(CoupledArm, says_which_joint_has_no_room) {
+TEST(CoupledArm, names_the_joint_without_range) {
   const auto refusal = [](const Mimic<>& mimic, const char* name = "") {
     Chain<> chain = three_joints<double>(mimic, {-1.0, 2.0, 3.0, 4.0});
     chain.joints[0].name = chain.joints[1].name = name;

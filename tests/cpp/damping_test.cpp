@@ -354,7 +354,7 @@ RealMatrix damped_inverse(const Weights& weights, const SingularDamping<Scalar>&
   Matrix<N, M, Scalar> inverse;
   for (int i = 0; i < M; ++i) {
     const Vector<N, Scalar> column = gram.solved([i](const auto& solutions) -> Vector<N, Scalar> {
-      return solutions.motion(solutions.shares(Vector<M, Scalar>::Unit(i)));
+      return solutions.motion(solutions.coefficients(Vector<M, Scalar>::Unit(i)));
     });
     inverse.col(i) = weights.root(column);
   }
@@ -581,7 +581,7 @@ double speed_at_the_edge(double brake, std::uint32_t seed) {
 }
 
 /// With the brake, an arm with an unreachable target stops at the workspace boundary.
-TEST(DampedMotion, comes_to_rest_at_the_edge) {
+TEST(DampedMotion, stops_at_the_workspace_boundary) {
   double without_brake = 0.0;
   for (std::uint32_t seed = 0; seed < 5; ++seed) {
     EXPECT_LT(speed_at_the_edge(100.0, seed), 1e-3) << "seed " << seed;

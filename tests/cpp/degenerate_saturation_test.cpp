@@ -34,7 +34,7 @@ struct Problem {
 };
 
 template <int M, int N>
-[[nodiscard]] Saturated<N> saturate(const Problem& p) {
+[[nodiscard]] SaturatedMotion<N> saturate(const Problem& p) {
   const Vector<N> unit = Vector<N>::Ones(p.J.cols());
   NullSpaceSaturation<M, N, double> saturation(Matrix<M, N>(p.J), unit);
   return saturation(Box<N>{p.lower, p.upper}, Vector<N>(p.rest), Vector<N>(p.desired));
@@ -124,7 +124,7 @@ void check(const std::string& kind, Eigen::Index m, Eigen::Index n, int& all, in
   Random random(31);
   for (int k = 0; k < problems_of_each_kind(); ++k) {
     const Problem p = make(kind, m, n, random);
-    const Saturated<N> found = saturate<M, N>(p);
+    const SaturatedMotion<N> found = saturate<M, N>(p);
     SCOPED_TRACE(kind + ", " + std::to_string(m) + " × " + std::to_string(n) + ", problem " + std::to_string(k));
     ASSERT_TRUE((p.lower.array() <= found.u.array()).all() && (found.u.array() <= p.upper.array()).all());
     const Eigen::VectorXd task = p.J * (p.desired - p.rest);

@@ -244,7 +244,7 @@ TEST(StepLength, is_said_to_be_too_long_where_the_tip_error_is_its_fault) {
 
 /// If the start velocity differs from the velocity of the path, the status does not attribute the error to the step
 /// length.
-TEST(StepLength, is_not_blamed_for_a_wrong_start) {
+TEST(StepLength, is_not_reported_for_a_wrong_start) {
   int wrong = 0;
   for (int seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -139,7 +139,7 @@ void expect_no_target_lost(const Arm& arm) {
   }
 }
 
-TEST(FarTargets, are_no_targets_within_reach) {
+TEST(FarTargets, do_not_include_reachable_targets) {
   for (int n = 2; n <= 4; ++n) expect_no_target_lost<Position<2>>(any_planar_arm(Vector<N>::Ones(n)));
   expect_no_target_lost<Position<3>>(any_arm(presets::panda()));
   expect_no_target_lost<Pose>(any_arm(presets::panda()));

@@ -230,7 +230,7 @@ TEST(Guard, slides_along_a_wall) {
 }
 
 /// The hand avoids a moving post, and the tip returns after the post has passed.
-TEST(Guard, gives_way_to_a_post) {
+TEST(Guard, avoids_a_moving_post) {
   for (const double speed : {0.1, 0.25, 0.5}) {
     const auto post_at = [](double y) { return Capsule<>{{0.35, y, 0.3}, {0.35, y, 1.0}, 0.03}; };
     auto tracker = panda_tracker({{"post", post_at(-0.6)}});
@@ -255,7 +255,7 @@ TEST(Guard, gives_way_to_a_post) {
 
 /// Posts that cross the workspace anywhere except at the first axis do not touch an arm. Its hand has many capsules, so
 /// that more rows apply than a tick can use.
-TEST(Guard, gives_way_to_posts_from_all_sides) {
+TEST(Guard, avoids_posts_from_all_sides) {
   const Chain<> chain = presets::panda();
   auto capsules = presets::capsules::panda();
   for (const double side : {-1.0, 1.0}) {
@@ -264,7 +264,7 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
     capsules.push_back({7, {across(0.0, 0.153), across(0.059, 0.153), 0.026}, "hand"});
     capsules.push_back({7, {across(0.007, 0.213), across(0.013, 0.173), 0.015}, "finger"});
   }
-  std::vector<std::pair<std::string, std::string>> allowed = presets::never_meet::panda();
+  std::vector<std::pair<std::string, std::string>> allowed = presets::never_collide::panda();
   for (const char* part : {"hand", "finger"}) {
     for (const char* link : {"panda_link4", "panda_link5"}) allowed.emplace_back(part, link);
   }
@@ -310,7 +310,7 @@ TEST(Guard, gives_way_to_posts_from_all_sides) {
 
 /// An arm that an obstacle displaces from its target stalls at rest. If the obstacle moves on, the arm moves away at
 /// low speed. The arm returns only after the obstacle has left.
-TEST(Guard, goes_back_when_a_shape_leaves) {
+TEST(Guard, returns_when_a_shape_leaves) {
   const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
   auto tracker = panda_tracker({{"post", post_at(-0.7)}});
   const auto home = Reference<Position<3>>::hold(tracker.tip());
@@ -335,7 +335,7 @@ TEST(Guard, goes_back_when_a_shape_leaves) {
 }
 
 /// If an obstacle jumps closer than the margin, or into the arm, the arm only moves away from it.
-TEST(Guard, goes_out_of_a_shape_that_jumped) {
+TEST(Guard, moves_away_from_a_shape_that_jumped) {
   for (const double nearer : {1e-6, 1e-3, 8e-3, 0.03}) {
     const auto post_at = [](double y) { return Capsule<>{{0.3, y, 0.3}, {0.3, y, 1.0}, 0.1}; };
     auto tracker = panda_tracker({{"post", post_at(-0.7)}});
@@ -580,7 +580,7 @@ TEST(Guard, is_the_same_for_joints_counted_at_run_time) {
   expect_same_for_both_sizes<7, 8, Level::kAcceleration>(coupled_panda(), coupled, 0.3);
 }
 
-TEST(Guard, names_what_is_wrong) {
+TEST(Guard, names_the_invalid_argument) {
   const Chain<> chain = presets::panda();
   const auto bounded = [&](int link, double lower, double velocity) {
     const Vector<3> upper = Vector<3>::Constant(2.0);

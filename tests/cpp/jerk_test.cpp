@@ -100,7 +100,7 @@ void expect_one_joint_to_keep_its_bounds() {
   EXPECT_LE(worst.jerk, kSlack);
 }
 
-TEST(Jerk, one_joint_keeps_all_bounds_whatever_it_is_asked_for) {
+TEST(Jerk, one_joint_keeps_all_bounds_for_any_desired_motion) {
   expect_one_joint_to_keep_its_bounds<Level::kAcceleration>();
   expect_one_joint_to_keep_its_bounds<Level::kVelocity>();
 }

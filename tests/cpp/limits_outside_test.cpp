@@ -92,7 +92,7 @@ TEST(Outside, joints_return_as_fast_as_they_may) {
 
 /// After stop(), a joint beyond its bound comes to rest like the other joints, in the shortest time if measured states
 /// are exact. It does not move to its bound.
-TEST(Outside, joints_come_to_rest_when_told_to_stop) {
+TEST(Outside, joints_stop_on_request) {
   const SerialArm<7> panda(panda_without_jerk());
   const JointLimits<7>& bounds = panda.limits();
   for (const int delay : {0, 3}) {

@@ -385,7 +385,7 @@ TEST(Limits, keep_velocity_bounds_that_depend_on_position) {
   }
 }
 
-TEST(Limits, say_what_is_wrong_with_them) {
+TEST(Limits, name_the_invalid_bound) {
   auto bounds = JointLimits<2>::none(2);
   using Accelerations = Limits<Level::kAcceleration, 2>;
   EXPECT_EQ(complaint([&] { Accelerations(bounds, kTick); }), "");

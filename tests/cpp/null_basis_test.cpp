@@ -58,7 +58,7 @@ TEST_P(NullBasisOf, is_orthonormal_and_annihilated) {
 }
 
 /// Rows that are linearly dependent, exactly or up to round-off; rows and columns of zeros; a zero matrix.
-TEST_P(NullBasisOf, is_so_at_every_rank) {
+TEST_P(NullBasisOf, is_orthonormal_at_every_rank) {
   const Eigen::Index m = GetParam().rows;
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     Random random(seed);

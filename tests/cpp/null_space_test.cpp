@@ -34,7 +34,7 @@ JointLimits<4> some_limits() {
   return limits;
 }
 
-TEST(NullSpace, centring_goes_down_the_gradient_of_its_cost) {
+TEST(NullSpace, centring_descends_the_gradient_of_its_cost) {
   const JointLimits<4> limits = some_limits();
   const auto null_space = NullSpace<4>{}.with_joint_centring(limits, 3.0);
   for (std::uint32_t seed = 0; seed < 20; ++seed) {

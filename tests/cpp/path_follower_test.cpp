@@ -141,7 +141,7 @@ TYPED_TEST(PathFollowers, are_there_within_a_ramp_and_a_quarter) {
 }
 
 /// From full speed to rest and back: during each ramp, the path time advances by half a ramp.
-TYPED_TEST(PathFollowers, take_half_a_ramps_way_to_rest) {
+TYPED_TEST(PathFollowers, stop_in_half_a_ramp_of_path_time) {
   for (const double ramp : {0.01, 0.5, 2.0}) {
     auto one = follower(static_cast<TypeParam>(ramp));
     one.advance(TypeParam(1));

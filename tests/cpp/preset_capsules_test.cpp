@@ -25,14 +25,15 @@ struct Case {
   std::string name;
   Chain<> chain;
   std::vector<LinkCapsule<>> capsules;
-  std::vector<presets::never_meet::LinkNames> never_meet;
+  std::vector<presets::never_collide::LinkNames> never_collide;
 };
 
 std::vector<Case> every_preset() {
   std::vector<Case> cases;
   for (const presets::Preset& arm : presets::kAll) {
     for (const presets::PresetCapsules& its : presets::kAllCapsules) {
-      if (std::string(arm.name) == its.name) cases.push_back({arm.name, arm.chain(), its.capsules(), its.never_meet()});
+      if (std::string(arm.name) == its.name)
+        cases.push_back({arm.name, arm.chain(), its.capsules(), its.never_collide()});
     }
   }
   return cases;
@@ -59,7 +60,7 @@ std::size_t links_named(const std::vector<LinkCapsule<>>& capsules, const std::s
 TEST(PresetCapsules, every_preset_has_them_on_every_link) {
   const std::vector<Case> cases = every_preset();
   EXPECT_EQ(cases.size(), std::size(presets::kAll));
-  for (const auto& [name, chain, capsules, never_meet] : cases) {
+  for (const auto& [name, chain, capsules, never_collide] : cases) {
     std::multiset<int> links;
     for (const LinkCapsule<>& each : capsules) {
       links.insert(each.link);
@@ -67,7 +68,7 @@ TEST(PresetCapsules, every_preset_has_them_on_every_link) {
       EXPECT_GT(each.capsule.radius, 0.02) << name << ' ' << each.name;
       EXPECT_LT(each.capsule.radius, 0.14) << name << ' ' << each.name;
     }
-    for (const auto& [first, second] : never_meet) {
+    for (const auto& [first, second] : never_collide) {
       EXPECT_EQ(Clearance<kOpen>(chain, capsules, {}, 0.0).pairs().size(),
                 Clearance<kOpen>(chain, capsules, {}, 0.0, {{first, second}}).pairs().size() +
                     links_named(capsules, first) * links_named(capsules, second));
@@ -80,9 +81,9 @@ TEST(PresetCapsules, every_preset_has_them_on_every_link) {
 }
 
 TEST(PresetCapsules, no_pair_overlaps_in_all_postures_and_none_at_home) {
-  for (const auto& [name, chain, capsules, never_meet] : every_preset()) {
-    Clearance<kOpen> clearance(chain, capsules, {}, 0.0, never_meet);
-    for (const ShapePair& pair : clearance.left_out()) {
+  for (const auto& [name, chain, capsules, never_collide] : every_preset()) {
+    Clearance<kOpen> clearance(chain, capsules, {}, 0.0, never_collide);
+    for (const ShapePair& pair : clearance.excluded_pairs()) {
       const auto [first, second] = clearance.names(pair);
       ADD_FAILURE() << name << ": " << first << " and " << second << " overlap in all postures";
     }
@@ -117,9 +118,9 @@ TEST(PresetCapsules, neighbours_touch) {
 
 TEST(PresetCapsules, two_pandas_have_those_of_each_arm) {
   Clearance<14> both(presets::two_pandas(), presets::capsules::two_pandas(), {}, 0.0,
-                     presets::never_meet::two_pandas());
-  Clearance<7> one(presets::panda(), presets::capsules::panda(), {}, 0.0, presets::never_meet::panda());
-  EXPECT_TRUE(both.left_out().empty());
+                     presets::never_collide::two_pandas());
+  Clearance<7> one(presets::panda(), presets::capsules::panda(), {}, 0.0, presets::never_collide::panda());
+  EXPECT_TRUE(both.excluded_pairs().empty());
   const std::size_t count = one.bodies().size();
   ASSERT_EQ(both.bodies().size(), 2 * count);
   auto placed = both.placement();

@@ -89,7 +89,7 @@ TEST(Presets, panda_agrees_with_other_models) {
 }
 
 /// Franka: "The arm can reach its maximum extension when joint 4 has angle −0.467002423653011 rad".
-TEST(Presets, panda_reaches_farthest_where_its_manufacturer_says) {
+TEST(Presets, panda_has_the_workspace_radius_of_its_data_sheet) {
   Chain<> to_wrist = presets::panda();
   to_wrist.tip = to_wrist.joints[5].placement;
   to_wrist.joints.resize(5);

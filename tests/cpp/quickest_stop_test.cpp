@@ -48,7 +48,7 @@ using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(QuickestStops, Scalars, );
 
 /// Simpson's rule is exact between two changes of the jerk. There are three changes.
-TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_says) {
+TYPED_TEST(QuickestStops, are_motions_within_their_bounds_to_their_end_position) {
   using Scalar = TypeParam;
   constexpr int kSteps = 400;
   for (int i = 0; i < trials(2000); ++i) {
@@ -78,7 +78,7 @@ TYPED_TEST(QuickestStops, are_motions_within_their_bounds_that_end_where_rest_sa
     }
     ASSERT_EQ(now.v, Scalar(0)) << where;
     ASSERT_EQ(now.a, Scalar(0)) << where;
-    ASSERT_EQ(now.q, stop.rest(start)) << where;
+    ASSERT_EQ(now.q, stop.end_position(start)) << where;
   }
 }
 
@@ -90,7 +90,7 @@ TYPED_TEST(QuickestStops, go_on_as_they_began) {
     const Scalar t = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
     const Scalar s = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
     const auto later = stop.ahead(start, t);
-    ASSERT_NEAR(stop.rest(later), stop.rest(start), 512 * this->kEpsilon * size) << i;
+    ASSERT_NEAR(stop.end_position(later), stop.end_position(start), 512 * this->kEpsilon * size) << i;
     ASSERT_NEAR(stop.ahead(later, s).q, stop.ahead(start, t + s).q, 1024 * this->kEpsilon * size) << i;
   }
 }
@@ -105,11 +105,11 @@ TYPED_TEST(QuickestStops, end_farther_the_more_the_axis_accelerates) {
     const auto held = [h, &from = start](Scalar u) {
       return AxisState<Scalar>{from.q + h * from.v + h * h * u / 2, from.v + h * u, u};
     };
-    Scalar rest = stop.rest(held(-most));
+    Scalar rest = stop.end_position(held(-most));
     for (int k = -19; k <= 20; ++k) {
       const auto state = held(most * static_cast<Scalar>(k) / 20);
-      ASSERT_GE(stop.rest(state), rest - 64 * this->kEpsilon * size) << i << ", " << k;
-      rest = stop.rest(state);
+      ASSERT_GE(stop.end_position(state), rest - 64 * this->kEpsilon * size) << i << ", " << k;
+      rest = stop.end_position(state);
     }
   }
 }
@@ -120,7 +120,7 @@ TYPED_TEST(QuickestStops, are_the_same_in_a_mirror) {
     const auto [stop, start, duration, size] = this->next();
     const AxisState<Scalar> mirrored{-start.q, -start.v, -start.a};
     const Scalar t = duration * static_cast<Scalar>(this->random_.uniform(0.0, 1.0));
-    ASSERT_EQ(stop.rest(mirrored), -stop.rest(start)) << i;
+    ASSERT_EQ(stop.end_position(mirrored), -stop.end_position(start)) << i;
     const auto one = stop.ahead(start, t);
     const auto other = stop.ahead(mirrored, t);
     ASSERT_EQ(other.q, -one.q) << i;
@@ -129,7 +129,7 @@ TYPED_TEST(QuickestStops, are_the_same_in_a_mirror) {
   }
 }
 
-TYPED_TEST(QuickestStops, of_an_axis_at_rest_leave_it_alone) {
+TYPED_TEST(QuickestStops, of_an_axis_at_rest_do_not_move) {
   const QuickestStop<TypeParam> stop{TypeParam(2), TypeParam(30)};
   const auto later = stop.ahead({TypeParam(0.7), TypeParam(0), TypeParam(0)}, TypeParam(0.1));
   EXPECT_EQ(later.q, TypeParam(0.7));

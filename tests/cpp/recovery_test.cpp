@@ -180,7 +180,7 @@ TEST(Recovery, leaves_arms_at_rest_while_the_target_is_unreachable) {
 }
 
 /// Two links with an unreachable target: no recovery.
-TEST(Recovery, does_not_begin_while_the_target_stays_out_of_reach) {
+TEST(Recovery, does_not_begin_while_the_target_stays_unreachable) {
   auto bounds = JointLimits<N>::none(2);
   for (int i = 0; i < 2; ++i) bounds.set(i, {-2.5, 2.5, 2.0, 10.0});
   const Vector<N> ones = Vector<N>::Ones(2);
@@ -213,7 +213,7 @@ TEST(Recovery, a_blocked_arm_stops_crawling) {
 }
 
 /// During a recovery, stop() and a reference that is not finite brake the arm. Afterwards, the arm returns.
-TEST(Recovery, is_left_by_stop_and_by_nonsense) {
+TEST(Recovery, is_ended_by_stop_and_by_invalid_targets) {
   const auto arm = any_arm(presets::panda());
   int recoveries = 0;
   for (int k = 0; k < 20 && recoveries < 2; ++k) {

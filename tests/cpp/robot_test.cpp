@@ -176,7 +176,7 @@ TEST(Tree, of_fixed_size_is_that_of_run_time_size) {
   EXPECT_LT(std::max({errors.frame, errors.J, errors.Jd}), 1e-12);
 }
 
-TEST(Tree, names_what_is_wrong) {
+TEST(Tree, names_the_invalid_argument) {
   const auto refusal = [](auto change) {
     Tree<> tree = two_pandas(true);
     change(tree);

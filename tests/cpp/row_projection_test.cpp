@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fpbm/limits/row_projection.hpp"
-#include "fpbm/limits/task_given_up.hpp"
+#include "fpbm/limits/smallest_task_change.hpp"
 #include "support/random.hpp"
 
 /// The motion that satisfies the rows and changes a task least.
@@ -105,12 +105,12 @@ TEST(TaskGivenUp, is_along_a_surface_s_normal) {
     const double mu = 1e-12;
     const Vector<3> second = (J * J.transpose()).inverse() * J * rows.g.col(1);
     if (second.dot(normal) < 0.3) continue;  // The change for the first row is not sufficient for the second row.
-    const Vector<3> change = task_given_up(J, mu, rows, desired).change;
+    const Vector<3> change = smallest_task_change(J, mu, rows, desired).delta;
     EXPECT_LE((change + normal).norm(), 1e-9) << "seed " << seed;
     const Matrix<Eigen::Dynamic, Eigen::Dynamic> open_J = J;
     const Rows<Eigen::Dynamic, 2> open_rows{rows.g, rows.b, rows.count};
     const Vector<Eigen::Dynamic> open_change =
-        task_given_up(open_J, mu, open_rows, Vector<Eigen::Dynamic>(desired)).change;
+        smallest_task_change(open_J, mu, open_rows, Vector<Eigen::Dynamic>(desired)).delta;
     EXPECT_LE((change - open_change).norm(), 1e-12) << "seed " << seed;
   }
 }
@@ -130,7 +130,8 @@ TEST(TaskGivenUp, knows_what_self_motion_could_do) {
       rows.b(0) = -1.0;
       rows.count = 1;
       const double expected = (g - inverse * (J * g)).squaredNorm() / g.squaredNorm();
-      EXPECT_NEAR(task_given_up(J, 1e-14, rows, Vector<7>(Vector<7>::Zero())).self_motion, expected, 1e-8)
+      EXPECT_NEAR(smallest_task_change(J, 1e-14, rows, Vector<7>(Vector<7>::Zero())).null_space_fraction, expected,
+                  1e-8)
           << "seed " << seed;
     }
   }
@@ -143,11 +144,11 @@ TEST(TaskGivenUp, is_nothing_where_rows_admit_the_motion) {
   rows.g = Random(2).uniform(7, 2, -1.0, 1.0);
   rows.b.setConstant(100.0);
   rows.count = 2;
-  EXPECT_EQ(task_given_up(J, 1e-3, rows, Vector<7>(Vector<7>::Ones())).change, Vector<3>(Vector<3>::Zero()));
+  EXPECT_EQ(smallest_task_change(J, 1e-3, rows, Vector<7>(Vector<7>::Ones())).delta, Vector<3>(Vector<3>::Zero()));
   rows.g.setZero();
   rows.b.setConstant(-1.0);
-  EXPECT_EQ(task_given_up(J, 1e-3, rows, Vector<7>(Vector<7>::Ones())).change, Vector<3>(Vector<3>::Zero()));
-  EXPECT_EQ(task_given_up(Matrix<3, 7>(Matrix<3, 7>::Zero()), 0.0, rows, Vector<7>(Vector<7>::Ones())).change,
+  EXPECT_EQ(smallest_task_change(J, 1e-3, rows, Vector<7>(Vector<7>::Ones())).delta, Vector<3>(Vector<3>::Zero()));
+  EXPECT_EQ(smallest_task_change(Matrix<3, 7>(Matrix<3, 7>::Zero()), 0.0, rows, Vector<7>(Vector<7>::Ones())).delta,
             Vector<3>(Vector<3>::Zero()));
 }
 

@@ -31,11 +31,11 @@ struct Problem {
 };
 
 template <int M, int N, typename Scalar>
-[[nodiscard]] Saturated<Eigen::Dynamic> saturate_as(const Problem& problem) {
+[[nodiscard]] SaturatedMotion<Eigen::Dynamic> saturate_as(const Problem& problem) {
   const auto cast = [](const Eigen::VectorXd& v) { return Vector<N, Scalar>(v.cast<Scalar>()); };
   const Box<N, Scalar> box{cast(problem.lower), cast(problem.upper)};
   const Matrix<M, N, Scalar> J = problem.J.cast<Scalar>();
-  const auto in_double = [](const Saturated<N, Scalar>& found) -> Saturated<Eigen::Dynamic> {
+  const auto in_double = [](const SaturatedMotion<N, Scalar>& found) -> SaturatedMotion<Eigen::Dynamic> {
     return {found.u.template cast<double>(), static_cast<double>(found.scale), found.joints, found.passes, found.rows};
   };
   const Eigen::Index count = problem.most.size();
@@ -52,7 +52,7 @@ template <int M, int N, typename Scalar>
   return in_double(saturation(box, cast(problem.rest), cast(problem.desired)));
 }
 
-[[nodiscard]] Saturated<Eigen::Dynamic> saturate(const Problem& problem) {
+[[nodiscard]] SaturatedMotion<Eigen::Dynamic> saturate(const Problem& problem) {
   constexpr int N = Eigen::Dynamic;
   switch (problem.J.rows()) {
     case 1: return saturate_as<1, N, double>(problem);

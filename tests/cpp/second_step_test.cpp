@@ -85,7 +85,7 @@ struct SecondStep {
     const Box<7> in_time = box_in_time(limits, state, last, box);
     NullSpaceSaturation<M, 7, double> saturation(J, limits.bounds().acceleration);
     const auto found = in_time.contains(desired)
-                           ? Saturated<7>{desired, 1.0, 0, 0}
+                           ? SaturatedMotion<7>{desired, 1.0, 0, 0}
                            : saturation(in_time, brake_in_proportion(limits, state, in_time), desired);
     first = found.scale;
     goal = found.u;
@@ -147,7 +147,7 @@ void check_motions(const std::string& name, const Chain<>& chain, double jerk_pe
       }
       const Vector<7> desired = law.motion(kinematics.J, task, near);
       const Matrix<M, 7> J = jacobian_in_metres(kinematics);
-      const Saturated<7> motion = limiter.motion(J, state, desired, last);
+      const SaturatedMotion<7> motion = limiter.motion(J, state, desired, last);
       const SecondStep<kLevel, M> step(limits, J, state, last, desired);
       const Eigen::MatrixXd gram = J * J.transpose();
       const double singular = gram.llt().solve(Eigen::MatrixXd::Identity(M, M)).trace();  // Σ 1/σ²

@@ -140,12 +140,13 @@ TYPED_TEST(RowFactors, solve_without_the_square_of_the_condition) {
     const Vector<M, S> b = random.uniform(M, -1.0, 1.0).template cast<S>();
     const Vector<N, S> a = random.uniform(N, -1.0, 1.0).template cast<S>();
     const RealVector least = inverse * real(b);
-    EXPECT_LE(this->distance(real(factor.sum(factor.shares(b))), least), round_off);
+    EXPECT_LE(this->distance(real(factor.combine(factor.coefficients(b))), least), round_off);
     const RealVector left = real(a) - inverse * (real(A) * real(a));
-    EXPECT_LE(static_cast<double>((real(factor.without(a)) - left).norm()), round_off * static_cast<double>(a.norm()));
+    EXPECT_LE(static_cast<double>((real(factor.project(a)) - left).norm()), round_off * static_cast<double>(a.norm()));
     const RealVector force = inverse.transpose() * least;
     const auto size = static_cast<double>(inverse.norm() * least.norm());
-    EXPECT_LE(static_cast<double>((real(factor.back(factor.shares(b))) - force).norm()), round_off * size);
+    EXPECT_LE(static_cast<double>((real(factor.back_substitute(factor.coefficients(b))) - force).norm()),
+              round_off * size);
     const auto trace = static_cast<double>(inverse.squaredNorm());
     EXPECT_NEAR(static_cast<double>(factor.inverse_trace()), trace, round_off * trace);
   });

@@ -57,7 +57,7 @@ double worst_over(double range, int samples) {
   return worst;
 }
 
-TEST(SinCos, is_exact_to_round_off_in_reach) {
+TEST(SinCos, is_exact_to_round_off_within_its_range) {
   for (const double range : {1e-8, 0.1, 0.8, 1.6, 4.0, 10.0, 1e3, 1e5, ReducedSinCos::kReach}) {
     EXPECT_LE(worst_over(range, 50000), 2e-16) << "range " << range;
   }
@@ -79,7 +79,7 @@ TEST(SinCos, is_exact_at_multiples_of_a_quarter_turn) {
   EXPECT_LE(worst, 2e-16);
 }
 
-TEST(SinCos, falls_back_beyond_its_reach) {
+TEST(SinCos, falls_back_beyond_its_range) {
   for (const double angle : {std::nextafter(ReducedSinCos::kReach, 1e9), 1e6, -1e9, 1e15, 1e300}) {
     EXPECT_LE(error_at(angle), 2e-16) << angle;
   }

@@ -179,7 +179,7 @@ void expect_to_keep_bounds() {
   EXPECT_GE(joints, trials(1500));
 }
 
-TEST(SlowJoints, keep_their_bounds_whatever_they_are_asked_for) {
+TEST(SlowJoints, keep_their_bounds_for_any_desired_motion) {
   expect_to_keep_bounds<Level::kAcceleration, double>();
   expect_to_keep_bounds<Level::kVelocity, double>();
   expect_to_keep_bounds<Level::kAcceleration, float>();

@@ -64,7 +64,7 @@ Soaked soak_among_shapes(double ticks) {
   const auto z = NullSpace<7>{}.with_damping(4.0).with_rest_posture(q0, 4.0);
   const auto scheme = FPBM<7>(0.6, UnitWeights{}, 20.0, 100.0, z);
   const Obstacle<> wall("wall", HalfSpace<>{{0.0, 0.0, 1.0}, 0.38});
-  const Clearance<7> clearance(panda, presets::capsules::panda(), {wall}, 0.01, presets::never_meet::panda());
+  const Clearance<7> clearance(panda, presets::capsules::panda(), {wall}, 0.01, presets::never_collide::panda());
   const Limits<Level::kAcceleration, 7> limits(arm.limits(), 1e-3);
   const InPlane path(Path(Circle(0.1), kTicksPerCircle * 1e-3), Vector<3>::UnitX(), Vector<3>::UnitZ());
   return soak(Tracker(arm, Position<3>{}, scheme, State<7>{q0, zero}, {}, limits, zero, Shapes(clearance)), path,

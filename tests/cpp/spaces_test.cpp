@@ -49,7 +49,7 @@ TEST(Spaces, orientation_error_is_good_up_to_half_a_turn) {
   }
 }
 
-TEST(Spaces, planar_angles_take_the_shorter_way) {
+TEST(Spaces, planar_angles_take_the_shorter_direction) {
   EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 3.0}, {0, 0, -3.0})(2), 6.0 - kTwoPi, 1e-15);
   EXPECT_NEAR(PlanarPose::difference<double>({0, 0, 40.0}, {0, 0, 1.0})(2), 39.0 - 6 * kTwoPi, 1e-14);
 }

@@ -666,7 +666,7 @@ TEST(Stack, a_stopped_task_has_no_integral) {
 }
 
 /// The state that holds lower levels during a stop or a failure is discarded: the same targets are reached afterwards.
-TEST(Stack, goes_on_after_a_stop_and_after_a_failure) {
+TEST(Stack, continues_after_a_stop_and_after_a_failure) {
   for (const bool fails : {false, true}) {
     Cup cup(Vector<3>(0.0, 0.1, 0.0));
     cup.run(100);

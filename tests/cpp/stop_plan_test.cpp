@@ -14,7 +14,7 @@ constexpr double kTick = 1e-3;
 
 /// The shares add up to the whole velocity, the displacement equals the sum over the ticks, and the steps keep the
 /// bounds on deceleration and jerk.
-TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
+TEST(StopProfile, keeps_its_bounds_and_covers_its_stopping_distance) {
   Random random(1);
   for (int trial = 0; trial < trials(3000); ++trial) {
     const double acceleration = std::pow(10.0, random.uniform(-1.0, 1.5));
@@ -29,7 +29,7 @@ TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
     double way = 0.0;
     double before = 0.0;
     for (int k = 0; k < static_cast<int>(profile.ticks()) + 3; ++k) {
-      const double b = profile.share(k) * velocity / kTick;
+      const double b = profile.removed_fraction(k) * velocity / kTick;
       ASSERT_LE(b, acceleration * (1.0 + 1e-12));
       ASSERT_LE(std::abs(b - before), jerk * kTick * (1.0 + 1e-12)) << trial;
       way += kTick * (v - kTick * b / 2.0);
@@ -37,22 +37,22 @@ TEST(StopProfile, keeps_its_bounds_and_knows_its_way) {
       before = b;
     }
     EXPECT_NEAR(v, 0.0, 1e-13 * velocity * profile.ticks());
-    EXPECT_NEAR(way, kTick * velocity * profile.way(Level::kAcceleration), 1e-12 * way);
+    EXPECT_NEAR(way, kTick * velocity * profile.coasting_ticks(Level::kAcceleration), 1e-12 * way);
   }
 }
 
 struct Worst {
-  double bounds = 0.0;    ///< Relative excess over the bounds of a joint.
-  double envelope = 0.0;  ///< Excess of a velocity over a manufacturer's envelope [rad/s].
-  double sweep = 0.0;     ///< Distance of a posture beyond the displacements of Sweep [rad].
+  double bounds = 0.0;        ///< Relative excess over the bounds of a joint.
+  double envelope = 0.0;      ///< Excess of a velocity over a manufacturer's envelope [rad/s].
+  double displacement = 0.0;  ///< Distance of a posture beyond the displacements of StopDisplacement [rad].
 };
 
 /// Smallest s·way + t·tick + rest of a trajectory, minus the displacement of a posture, along one direction g of joint
 /// space. Positive if the posture is outside.
-[[nodiscard]] double beyond(const Sweep<Eigen::Dynamic>& sweep, const Eigen::VectorXd& g,
+[[nodiscard]] double beyond(const StopDisplacement<Eigen::Dynamic>& displacement, const Eigen::VectorXd& g,
                             const Eigen::VectorXd& place) {
-  const double least = std::min(g.dot(sweep.way), 0.0) + std::min(g.dot(sweep.tick), 0.0) +
-                       g.cwiseProduct(sweep.low).cwiseMin(g.cwiseProduct(sweep.high)).sum();
+  const double least = std::min(g.dot(displacement.line), 0.0) + std::min(g.dot(displacement.ramp_correction), 0.0) +
+                       g.cwiseProduct(displacement.low).cwiseMin(g.cwiseProduct(displacement.high)).sum();
   return least - g.dot(place);
 }
 
@@ -106,11 +106,12 @@ void stop_at_random(const Chain<>& chain, std::uint32_t seed, Worst& worst) {
     const State<Eigen::Dynamic> moving = state;
     const Joints moving_last = last;
     StopPlan<kLevel, Eigen::Dynamic> plan(limits, state, last);
-    const auto sweep = plan.sweep(limits, from, state);
+    const auto displacement = plan.displacement(limits, from, state);
     const Joints ways[3] = {random.uniform(n, -1.0, 1.0), random.uniform(n, -1.0, 1.0), Joints::Unit(n, tick % n)};
     int ticks = 0;
     for (; ticks < 20000 && !(state.qd.isZero(1e-12) && last.isZero(1e-8)); ++ticks) {
-      for (const Joints& g : ways) worst.sweep = std::max(worst.sweep, beyond(sweep, g, state.q - from.q));
+      for (const Joints& g : ways)
+        worst.displacement = std::max(worst.displacement, beyond(displacement, g, state.q - from.q));
       step(plan.next(limits, state, last));
     }
     ASSERT_LT(ticks, 20000) << "seed " << seed;
@@ -132,11 +133,11 @@ void expect_stops_to_keep_bounds() {
     }
     EXPECT_LE(worst.bounds, 1e-9);
     EXPECT_LE(worst.envelope, 1e-9);
-    EXPECT_LE(worst.sweep, 1e-12);
+    EXPECT_LE(worst.displacement, 1e-12);
   }
 }
 
-TEST(StopPlan, keeps_all_bounds_and_stays_within_its_sweep) {
+TEST(StopPlan, keeps_all_bounds_and_stays_within_its_displacement_bounds) {
   expect_stops_to_keep_bounds<Level::kAcceleration>();
   expect_stops_to_keep_bounds<Level::kVelocity>();
 }

@@ -122,7 +122,7 @@ using Kinds = ::testing::Types<Kind<Position<2>, double>, Kind<Position<3>, floa
 TYPED_TEST_SUITE(TargetFilters, Kinds, );
 
 /// From rest and from any motion, under any bounds, for all previous targets.
-TYPED_TEST(TargetFilters, come_to_rest_on_the_last_target) {
+TYPED_TEST(TargetFilters, stop_on_the_last_target) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   Random random(41);
@@ -147,7 +147,7 @@ TYPED_TEST(TargetFilters, come_to_rest_on_the_last_target) {
 }
 
 /// Invalid messages of all types do not violate the bounds, and the next valid target is reached.
-TYPED_TEST(TargetFilters, keep_their_bounds_whatever_is_pushed) {
+TYPED_TEST(TargetFilters, keep_their_bounds_for_any_targets) {
   using Space = typename TypeParam::S;
   using Scalar = typename TypeParam::T;
   Random random(42);
@@ -388,7 +388,7 @@ TEST(TargetFilter, does_not_overshoot) {
 }
 
 /// Half a turn and more: each rotation is the smaller one.
-TEST(TargetFilter, turns_by_the_shorter_way) {
+TEST(TargetFilter, turns_in_the_shorter_direction) {
   Watched<PlanarPose, double> planar({0.0, 0.0, 3.0}, kBounds);
   planar.filter.push({0.0, 0.0, -3.0});
   for (int k = 0; k < 1000; ++k) {
@@ -436,7 +436,7 @@ TEST(StampClock, learns_from_the_least_delayed) {
     for (int k = 0; k < 600000; ++k) {
       if (k % 33 == 0) {
         const double stamp = now(k) - (k % 330 == 0 ? 0.0 : random.uniform(0.0, 0.02));
-        if (clock.hear(stamp)) newest = stamp;
+        if (clock.accept(stamp)) newest = stamp;
       }
       if (k > 1000) worst = std::max(worst, std::abs(newest + clock.age() - now(k)));
       clock.advance();
@@ -447,23 +447,23 @@ TEST(StampClock, learns_from_the_least_delayed) {
 
 TEST(StampClock, takes_only_news) {
   StampClock<double> clock(1e-3, 0.2, {});
-  EXPECT_TRUE(clock.hear(50.0));
-  EXPECT_FALSE(clock.hear(50.0));
-  EXPECT_FALSE(clock.hear(49.9));
-  EXPECT_FALSE(clock.hear(kNaN));
-  EXPECT_FALSE(clock.hear(std::numeric_limits<double>::infinity()));
+  EXPECT_TRUE(clock.accept(50.0));
+  EXPECT_FALSE(clock.accept(50.0));
+  EXPECT_FALSE(clock.accept(49.9));
+  EXPECT_FALSE(clock.accept(kNaN));
+  EXPECT_FALSE(clock.accept(std::numeric_limits<double>::infinity()));
   for (int k = 0; k < 100; ++k) clock.advance();
   EXPECT_NEAR(clock.age(), 0.1, 1.1e-5);
-  EXPECT_NEAR(clock.hear(50.06).value(), 0.06, 1e-12);  // 40 ms late.
+  EXPECT_NEAR(clock.accept(50.06).value(), 0.06, 1e-12);  // 40 ms late.
   EXPECT_NEAR(clock.age(), 0.04, 1.1e-5);
-  clock.forget();
-  EXPECT_TRUE(clock.hear(0.0));
+  clock.reset();
+  EXPECT_TRUE(clock.accept(0.0));
 
   StampClock<double> known(1e-3, 0.2, 7.0);
-  EXPECT_TRUE(known.hear(6.9));
+  EXPECT_TRUE(known.accept(6.9));
   EXPECT_NEAR(known.age(), 0.1, 1e-12);
-  EXPECT_FALSE(known.hear(7.3));  // From the future.
-  EXPECT_TRUE(known.hear(7.1));
+  EXPECT_FALSE(known.accept(7.3));  // From the future.
+  EXPECT_TRUE(known.accept(7.1));
   EXPECT_NEAR(known.age(), -0.1, 1e-12);
 }
 

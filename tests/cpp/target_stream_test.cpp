@@ -260,24 +260,24 @@ TEST(TargetStream, old_messages_stay_rejected) {
     const double t = k * kTick;
     if (k % 10 == 0) {  // 100 Hz, up to 0.1 s late: reordered by up to ten positions.
       const double stamp = t - random.uniform(0.0, 0.1);
-      ASSERT_EQ(clock.hear(stamp).has_value(), stamp > newest || k == 0) << k;
+      ASSERT_EQ(clock.accept(stamp).has_value(), stamp > newest || k == 0) << k;
       newest = std::max(newest, stamp);
     }
     if (k % 100 == 50) {  // A queue that is flushed.
-      for (int i = 20; i >= 0; --i) ASSERT_FALSE(clock.hear(newest - 0.033 * i)) << k;
+      for (int i = 20; i >= 0; --i) ASSERT_FALSE(clock.accept(newest - 0.033 * i)) << k;
     }
     if (k % 30 == 7) {
-      ASSERT_FALSE(clock.hear(t - 5e4)) << k;  // A second sender.
-      ASSERT_FALSE(clock.hear(std::numeric_limits<double>::quiet_NaN()));
+      ASSERT_FALSE(clock.accept(t - 5e4)) << k;  // A second sender.
+      ASSERT_FALSE(clock.accept(std::numeric_limits<double>::quiet_NaN()));
     }
     clock.advance();
   }
   for (int k = 0; k < 5000; ++k) {  // A message that is sent again and again.
     if (k % 20 == 0) {
-      ASSERT_FALSE(clock.hear(newest)) << k;
+      ASSERT_FALSE(clock.accept(newest)) << k;
     }
     if (k % 20 == 3) {
-      ASSERT_FALSE(clock.hear(newest - 0.1)) << k;
+      ASSERT_FALSE(clock.accept(newest - 0.1)) << k;
     }
     clock.advance();
   }

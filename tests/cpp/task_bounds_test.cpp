@@ -256,7 +256,7 @@ TEST(TaskBounds, keep_speeds) {
 }
 
 /// Invalid bounds are rejected, and the message names the error.
-TEST(TaskBounds, name_what_is_wrong) {
+TEST(TaskBounds, name_the_invalid_argument) {
   const Chain<> chain = presets::panda();
   const auto with = [&](const auto& bounds) {
     return complaint([&] { Clearance<7>(chain, {}, {}, 0.0).keep(bounds); });

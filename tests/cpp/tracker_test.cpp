@@ -251,7 +251,7 @@ void expect_to_stop(const Scheme& scheme) {
   EXPECT_TRUE(follower.done());
   EXPECT_LE(tracker.tick(follower).error.norm(), 1e-9);
 }
-TEST(Tracker, stops_on_request_and_goes_on) {
+TEST(Tracker, stops_on_request_and_resumes) {
   expect_to_stop(settling());
   expect_to_stop(settling_velocity());
 }
@@ -284,7 +284,7 @@ void expect_to_come_back(const char* name, const Scheme& scheme) {
     EXPECT_EQ(tracker.tick(home).status, Status::kOk);
   }
 }
-TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
+TEST(Tracker, stops_at_the_workspace_boundary_and_returns) {
   expect_to_come_back<Pose>("FPBM, pose", settling());
   expect_to_come_back<Position<3>>("FPBM, position", settling<kOpen>());
   expect_to_come_back<Pose>("MVN, pose", settling_velocity());
@@ -293,7 +293,7 @@ TEST(Tracker, comes_to_rest_at_the_edge_of_its_reach_and_comes_back) {
 
 /// If limits admit only a small part of the desired acceleration of a stiff feedback, the result for a measured state
 /// still changes smoothly: accelerations rarely alternate.
-TEST(Tracker, does_not_chatter_out_of_reach) {
+TEST(Tracker, does_not_chatter_beyond_the_workspace_boundary) {
   const Vector<7> weights = (Vector<7>() << 8, 8, 4, 4, 2, 1, 1).finished();
   const auto z = NullSpace<7>{}.with_damping(10.0).with_rest_posture(bent(), 25.0);
   const auto stiff = FPBM<7>(0.6, DiagonalWeights<7>(weights), 60.0, 900.0, z);
@@ -440,7 +440,7 @@ TEST(Tracker, holds_at_rest_for_an_hour) {
   EXPECT_LE((tracker.state().q - start).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(Tracker, says_what_is_wrong_with_its_arguments) {
+TEST(Tracker, names_the_invalid_argument) {
   const auto make = [](const TrackerOptions<>& options) {
     return complaint([&] { (void)panda_tracker(settling(), options); });
   };

@@ -1,4 +1,4 @@
-#include "fpbm/limits/yield.hpp"
+#include "fpbm/limits/least_squares_blend.hpp"
 
 #include <gtest/gtest.h>
 

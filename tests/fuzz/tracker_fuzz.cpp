@@ -149,7 +149,7 @@ fpbm::SingularDamping<> any_damping(Bytes& bytes, bool& wild) {
 fpbm::Clearance<7> any_clearance(Bytes& bytes) {
   static const auto chain = fpbm::presets::panda();
   static const auto capsules = fpbm::presets::capsules::panda();
-  static const auto never_meet = fpbm::presets::never_meet::panda();
+  static const auto never_collide = fpbm::presets::never_collide::panda();
   std::vector<fpbm::Obstacle<>> obstacles;
   const std::uint8_t which = bytes.byte();
   fpbm::Vector<3> place, way;
@@ -166,7 +166,7 @@ fpbm::Clearance<7> any_clearance(Bytes& bytes) {
       obstacles.push_back({"post", fpbm::Capsule<>{place, place + way, 0.1 * size}});
     }
   }
-  return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_meet};
+  return {chain, capsules, obstacles, bytes.chance(128) ? 0.0 : bytes.spread(1e-4, 0.05), never_collide};
 }
 
 /// guard: none, or the clearance of the arm.

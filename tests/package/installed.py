@@ -61,8 +61,8 @@ def every_lane() -> str:
     """For each kind of processor that this one is of, and for none."""
     kinds = ["none", *fp._core.processor_kinds()]
     if sys.platform == "linux" and platform.machine() == "x86_64":
-        left_out = [kind for kind in ("avx2", "avx512") if find_spec(f"fpbm_cpp._lanes_{kind}") is None]
-        assert not left_out, f"the wheel has no code for {left_out}"
+        excluded_pairs = [kind for kind in ("avx2", "avx512") if find_spec(f"fpbm_cpp._lanes_{kind}") is None]
+        assert not excluded_pairs, f"the wheel has no code for {excluded_pairs}"
     said = {}
     for kind in kinds:
         child = run(sys.executable, __file__, "sweep", FPBM_LANES=kind)

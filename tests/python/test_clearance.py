@@ -165,12 +165,12 @@ def test_pairs_are_all_but_neighbours_and_those_that_may_meet() -> None:
         for b in list(link)[:i]:
             assert ((a, b) in pairs) == (link[a] - link[b] > 1)
     assert len(pairs) == len(set(pairs))
-    assert CLEARANCE.left_out(PANDA) == []
+    assert CLEARANCE.excluded_pairs(PANDA) == []
 
 
 def test_pairs_that_overlap_in_every_posture_are_left_out() -> None:
     thick = fp.Clearance([*CAPSULES[:1], fp.Capsule(2, [0, 0, 0], [0, 0, 0], 0.3, "elbow")], margin=0.02)
-    assert thick.left_out(PANDA) == [("elbow", "base")]
+    assert thick.excluded_pairs(PANDA) == [("elbow", "base")]
     assert thick.pairs(PANDA) == []
     assert thick.nearest(PANDA, READY) is None
     tracker = fp.Tracker(PANDA, fp.MAN(), READY, clearance=thick)
@@ -425,7 +425,10 @@ def test_from_urdf(in_a_folder: Path) -> None:
     assert clearance.allowed == (("l0", "l1"), ("l0", "l2"))
     assert (clearance.margin, clearance.obstacles) == (0.02, (TABLE,))
     pairs = [(f"l{i}", f"l{j}") for i in range(8) for j in range(i - 1) if (i, j) != (2, 0)]
-    assert {*clearance.pairs(arm), *clearance.left_out(arm)} == {*pairs, *((f"l{i}", "table") for i in range(1, 8))}
+    assert {*clearance.pairs(arm), *clearance.excluded_pairs(arm)} == {
+        *pairs,
+        *((f"l{i}", "table") for i in range(1, 8)),
+    }
     more = fp.Clearance.from_urdf("arm.urdf", "l7", srdf="arm.srdf", allowed=[("l5", "l7")], per_link=1)
     assert more.allowed == (("l0", "l1"), ("l0", "l2"), ("l5", "l7"))
     upper = fp.Clearance.from_urdf("arm.urdf", "l7", "l3", per_link=1)

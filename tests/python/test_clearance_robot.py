@@ -60,7 +60,7 @@ def test_no_contact_of_two_arms_driven_together(fault: bool, tmp_path: Path) -> 
         names = {each.name for each in clearance.capsules}
         pairs = [(a, b) for a in names for b in names if a < b and across(a, b)]
         guarded = fp.Clearance(clearance.capsules, [TABLE], allowed=[*clearance.allowed, *pairs])
-    assert not any(across(*pair) for pair in clearance.left_out(robot))
+    assert not any(across(*pair) for pair in clearance.excluded_pairs(robot))
     bodies = two_arms.Bodies(coal, urdf, robot, [TABLE], {frozenset(pair) for pair in clearance.allowed})
     acceleration = [1.0 if "finger" in name else 10.0 for name in robot.joint_names]
     limits = fp.JointLimits(**{**robot.bounds(), "acceleration": acceleration})
@@ -131,7 +131,7 @@ def test_the_preset_is_made_of_that_of_its_arms() -> None:
     assert clearance == fp.Clearance.from_arms(ARMS, BOTH, PLACES, obstacles=[TABLE], margin=0.02)
     assert robot.joints == fp.Robot.from_arms(ARMS, PLACES).joints
     pairs = clearance.pairs(robot)
-    assert clearance.left_out(robot) == []
+    assert clearance.excluded_pairs(robot) == []
     assert ("left_panda_link7", "right_panda_link3") in pairs
     assert ("left_panda_link3", "right_panda_link0") in pairs
     assert ("right_panda_link4", "table") in pairs
@@ -241,7 +241,7 @@ def test_capsules_of_links_are_where_the_robot_has_them(options: dict[str, Any],
         (x, y, _), ends = frame.offset[:3, 3], (np.linalg.inv(frame.offset) @ [*end, 1.0] for end in (each.a, each.b))
         assert np.abs([end[:2] for end in ends]).max() < 1e-9, (x, y)
     link = {each.name: each.link for each in clearance.capsules}
-    pairs = [tuple(sorted(pair)) for pair in (*clearance.pairs(robot), *clearance.left_out(robot))]
+    pairs = [tuple(sorted(pair)) for pair in (*clearance.pairs(robot), *clearance.excluded_pairs(robot))]
     expected = [
         (a, b)
         for a in sorted(link)

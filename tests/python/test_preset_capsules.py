@@ -148,7 +148,7 @@ def test_links_that_never_meet(name: str) -> None:
     tool = load_tool()
     (listed,) = re.findall(rf"LinkNames> {name}\(\) \{{\n  return \{{(.*)\}};", HEADER.read_text())
     pairs = re.findall(r'\{"(\w+)", "(\w+)"\}', listed)
-    assert tuple(pairs) == tool.ARMS[name].never_meet
+    assert tuple(pairs) == tool.ARMS[name].never_collide
     preset = fp.SerialArm.preset(name)
     for pair in pairs:
         with urdf_of(tool, name) as urdf:

@@ -47,7 +47,7 @@ class Link:
     def fits(self) -> list[Fit]:
         return [part.fit for part in self.parts]
 
-    def may_meet(self, later: Link) -> bool:
+    def may_collide(self, later: Link) -> bool:
         """Whether a link with an equal or larger number is neither this link nor its child."""
         return later.number > self.number and later.parent != self.number
 
@@ -67,7 +67,7 @@ class Gaps:
         self._left_out: dict[tuple[int, int], Array] = {}
         hulls = [_outer(link) for link in links]
         for i, j in combinations(range(len(links)), 2):
-            if not links[i].may_meet(links[j]):
+            if not links[i].may_collide(links[j]):
                 continue
             poses = inverse[:, links[i].number] @ frames[:, links[j].number]
             gaps = capsules_apart(links[i].fits, links[j].fits, poses)

@@ -41,7 +41,7 @@ class Postures:
             (i, j): inverse[:, one.number] @ frames[:, other.number]
             for i, one in enumerate(links)
             for j, other in enumerate(links)
-            if one.may_meet(other) and (i, j) not in but
+            if one.may_collide(other) and (i, j) not in but
         }
         self.touching = {pair for pair in self.poses if self._touch(*pair)}
 

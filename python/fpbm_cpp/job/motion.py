@@ -21,7 +21,7 @@ from ..clearance import Clearance
 from ..errors import not_one_of, wrong
 from ..io import write_whole
 from ..motion.run import Paths, Run
-from ..motion.simulation import led_paths, simulate, track, without_limits
+from ..motion.simulation import simulate, task_and_paths, track, without_limits
 from ..parameter import REQUIRED
 from ..paths import PATH_OPTIONS, Path
 from ..robots import Robot
@@ -154,9 +154,9 @@ def prepare(job: Table) -> Motion:
     motion = Motion(full, taken(job, full), arm, path, scheme, options, stack, limits, clearance, bounds)
     with job_errors():
         try:
-            name, kind, led, others = led_paths(path, options.task, stack)
+            name, kind, followed, others = task_and_paths(path, options.task, stack)
             alone = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
-            check_sweep(arm, led, [scheme], options.q0, options.dt, options.hold, kind, alone)
+            check_sweep(arm, followed, [scheme], options.q0, options.dt, options.hold, kind, alone)
         except ValueError:
             motion.run()  # Raises the same error, with the names in the job.
             raise
@@ -181,7 +181,7 @@ def filled(job: Table, arm: Arm | Robot) -> Table:
     if stack is None and run["task"] not in TIP_TASKS:
         raise JobError(not_one_of("run.task", run["task"], TIP_TASKS))
     with job_errors():
-        run["task"], kind, *_ = led_paths(make("path", pieces, arm), job.get("run", {}).get("task"), stack)
+        run["task"], kind, *_ = task_and_paths(make("path", pieces, arm), job.get("run", {}).get("task"), stack)
         if "q0" not in run:
             preset = job["arm"].get("name")
             run["q0"] = list(READY.get(preset) or ready(arm, kind, stack))

@@ -164,7 +164,7 @@ class Run:
         """Kind of the task that follows the path: 'position' or 'pose'."""
         if self.stack is None:
             return self.task
-        return "pose" if isinstance(self.led, PoseTask) else "position"
+        return "pose" if isinstance(self.path_task, PoseTask) else "position"
 
     @property
     def paths(self) -> dict[str, Path]:
@@ -173,7 +173,7 @@ class Run:
         return {self.task: given[self.task], **given}
 
     @property
-    def led(self) -> FrameTask:
+    def path_task(self) -> FrameTask:
         """The task of x, x_ref and error."""
         return PositionTask() if self.stack is None else self.stack.follower(self.task)
 

@@ -82,9 +82,9 @@ def simulate(
         If the motion stops early, return the run before the stop instead of raising.
     """
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, led, others = led_paths(path, task, stack)
+    name, kind, followed, others = task_and_paths(path, task, stack)
     law = None if stack is None else without_limits(arm, stack, name)._replace(other_paths=others)
-    outcome = rollout(arm, led, scheme, q0, options["qd0"], dt, hold, kind, law)
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, law)
     if stack is not None:
         options["stack"] = stack
         for limited in ("scale", "saturated"):
@@ -136,7 +136,7 @@ def track(
         As for Tracker.
     """
     options = motion_options(arm, dt, hold, qd0)
-    name, kind, led, others = led_paths(path, task, stack)
+    name, kind, followed, others = task_and_paths(path, task, stack)
     limited = LimitOptions(
         limits,
         error_bound,
@@ -152,39 +152,39 @@ def track(
         name,
         others,
     )
-    outcome = rollout(arm, led, scheme, q0, options["qd0"], dt, hold, kind, limited)
-    return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_options(limited)})
+    outcome = rollout(arm, followed, scheme, q0, options["qd0"], dt, hold, kind, limited)
+    return make_run(outcome, q0, arm, path, scheme, name, {**options, **limit_arguments(limited)})
 
 
-def led_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
+def path_task(task: str | None, stack: Stack | None) -> tuple[str, str]:
     """Name and kind of the task that follows the path; the kind is 'position' or 'pose'."""
     if stack is None:
         return task or "position", task or "position"
     if not isinstance(stack, Stack):
         raise wrong("stack", stack, f" = {stack!r:.80}: must be a Stack")
-    led = stack.follower(task)
-    return led.name, "pose" if isinstance(led, PoseTask) else "position"
+    followed = stack.follower(task)
+    return followed.name, "pose" if isinstance(followed, PoseTask) else "position"
 
 
-def led_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, dict[str, Path]]:
+def task_and_paths(path: Paths, task: str | None, stack: Stack | None) -> tuple[str, str, Path, dict[str, Path]]:
     """Name and kind of the run's task, its path, and the paths of the other tasks. Raises ParameterError."""
     if not isinstance(path, Mapping):
-        return *led_task(task, stack), path, {}
+        return *path_task(task, stack), path, {}
     if stack is None or not path:
         raise wrong("path", path, f" = {path!r:.80}: must be one path, or paths by task names of a stack")
-    for each, led in path.items():
-        led_task(each, stack)
-        if not isinstance(led, Path):
-            raise wrong(f"path[{each!r}]", led, f" = {led!r:.80}: must be a path")
+    for each, followed in path.items():
+        path_task(each, stack)
+        if not isinstance(followed, Path):
+            raise wrong(f"path[{each!r}]", followed, f" = {followed!r:.80}: must be a path")
     name = next(iter(path)) if task is None else task
     if name not in path:
         raise not_one_of("task", name, path)
-    return *led_task(name, stack), path[name], {each: led for each, led in path.items() if each != name}
+    return *path_task(name, stack), path[name], {each: followed for each, followed in path.items() if each != name}
 
 
-def limit_options(limited: LimitOptions) -> dict[str, Any]:
+def limit_arguments(options: LimitOptions) -> dict[str, Any]:
     """The options of a run, without its task and its paths, which are separate fields."""
-    return {name: value for name, value in limited._asdict().items() if name not in ("task", "other_paths")}
+    return {name: value for name, value in options._asdict().items() if name not in ("task", "other_paths")}
 
 
 def without_limits(arm: Arm | Robot, stack: Stack, task: str) -> LimitOptions:

@@ -18,7 +18,7 @@ from ..robots import Robot
 from ..schemes import Scheme
 from ..tasks import Stack
 from .run import LIMITED
-from .simulation import LimitOptions, led_task, limit_options, make_run, motion_options, without_limits
+from .simulation import LimitOptions, limit_arguments, make_run, motion_options, path_task, without_limits
 from .workers import run_chunks
 
 # True for a progress bar in the terminal or in a notebook, or a function of (done, total).
@@ -171,7 +171,7 @@ def sweep(
         raise wrong("workers", workers, ": must not be given with an executor, which has its own workers")
     if workers is not None and workers < 1:
         raise wrong("workers", workers, f" = {workers}: must be 1 at least")
-    name, kind = led_task(task, stack)
+    name, kind = path_task(task, stack)
     limited = LimitOptions(
         limits, error_bound, integral_gain, integral_bound, stall_time, singular_radius, singular_brake, null_damping
     )
@@ -181,7 +181,7 @@ def sweep(
     if limits is None and stack is not None:
         kept = without_limits(arm, stack, name)
     options = motion_options(arm, dt, hold)
-    options.update({} if kept is None else limit_options(kept) if limits is not None else {"stack": stack})
+    options.update({} if kept is None else limit_arguments(kept) if limits is not None else {"stack": stack})
     starts, samples = check_sweep(arm, path, list(laws), q0s, dt, hold, kind, kept)
     shape, total = (len(laws), len(starts)), len(laws) * len(starts)
     parts = _parts(total, len(starts), samples)

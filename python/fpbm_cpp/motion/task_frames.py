@@ -23,7 +23,7 @@ def tracks(run: Run) -> list[tuple[Array, Array]]:
         if name != run.task:
             p = frames[name][:, :3, 3]
             found.append((p, p + _in_base(run, name, run.errors[name][:, :3])))
-    if run.led.reference_frame is not None:
+    if run.path_task.reference_frame is not None:
         p = frames[run.task][:, :3, 3]
         found[0] = p, p + _in_base(run, run.task, run.position_error)
     return found

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arms import Arm, JointLimits
 from ..errors import TuneInterrupted
 from ..motion.run import Run
-from ..motion.simulation import led_task
+from ..motion.simulation import path_task
 from ..motion.sweeping import Progress, Sweep, reporting, sweep
 from ..parameter import Parameter
 from ..paths import Path
@@ -137,7 +137,7 @@ def tune(
         return trials_of(done, name, of_run, tolerance)
 
     def tuning(steps: dict[str, tuple[float, float]]) -> Tuning:
-        return Tuning(joined(tried), steps, name, unit, arm, path, start, led_task(task, stack)[0])
+        return Tuning(joined(tried), steps, name, unit, arm, path, start, path_task(task, stack)[0])
 
     size = len(space.names)
     halves = ((least(size, seed), Trials.scores, count - count // 2), (front(size, seed), Trials.peaks, count // 2))

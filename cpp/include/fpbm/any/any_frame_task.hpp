@@ -115,7 +115,7 @@ class AnyFrameTask {
     if (count_ == 0) return;
     if (kind_ == FrameCoordinates::kCenterOfMass) return evaluate_center(robot, state, x, xd, S, level);
     if (reference_) {
-      evaluate_frame(SeenFrom<Robot>(robot, state, *reference_), state, x, xd, S, level);
+      evaluate_frame(RelativeView<Robot>(robot, state, *reference_), state, x, xd, S, level);
     } else {
       evaluate_frame(robot, state, x, xd, S, level);
     }

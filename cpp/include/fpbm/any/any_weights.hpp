@@ -43,8 +43,8 @@ class AnyWeights {
   }
 
   template <typename = void>
-  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> unroot(const Vector<Eigen::Dynamic>& a) const noexcept {
-    return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.unroot(a); });
+  [[nodiscard, gnu::noinline]] Vector<Eigen::Dynamic> inverse_root(const Vector<Eigen::Dynamic>& a) const noexcept {
+    return held([&](const auto& weights) -> Vector<Eigen::Dynamic> { return weights.inverse_root(a); });
   }
 
   template <int Columns>

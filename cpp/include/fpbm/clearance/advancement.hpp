@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -14,7 +15,7 @@ namespace fpbm {
 /// Pairs that Advancement checks.
 enum class Pairs : unsigned char {
   kAll,
-  kAtRest,  ///< All pairs except pairs with a moving obstacle.
+  kStatic,  ///< All pairs except pairs with a moving obstacle.
 };
 
 /// Checks by conservative advancement (Mirtich 1996) whether all pairs keep their margin along a stopping trajectory:
@@ -31,61 +32,64 @@ class Advancement {
   using Placement = typename Clearance::Placement;
 
   explicit Advancement(const Clearance& clearance)
-      : bounds_(clearance), ahead_(clearance.placement()), open_(clearance.pairs().size()) {}
+      : bounds_(clearance), ahead_(clearance.placement()), unproved_(clearance.pairs().size()) {}
 
-  /// Whether all pairs are proved to keep their margin along the trajectory `drives` from the posture of the near
-  /// pairs. A pair that is closer than its margin at the start, because an obstacle has moved, must not come closer.
+  /// Whether all pairs are proved to keep their margin along the trajectory `stop` from the posture of the near pairs.
+  /// A pair that is closer than its margin at the start, because an obstacle has moved, must not come closer.
   /// time: duration of the trajectory, during which moving obstacles continue [s].
   template <int N>
-  [[nodiscard]] bool keeps_apart(const Clearance& clearance, NearPairs<Clearance>& near, const Sweep<N, Scalar>& drives,
-                                 Scalar time, Pairs pairs = Pairs::kAll) noexcept {
-    const auto all = [&](Eigen::Index i) {
-      return drives.way.coeff(i) + drives.tick.coeff(i) + drives.low.coeff(i) + drives.high.coeff(i);
+  [[nodiscard]] bool keeps_margins(const Clearance& clearance, NearPairs<Clearance>& near,
+                                   const StopDisplacement<N, Scalar>& stop, Scalar time,
+                                   Pairs pairs = Pairs::kAll) noexcept {
+    const auto sum = [&](Eigen::Index i) {
+      return stop.line.coeff(i) + stop.ramp_correction.coeff(i) + stop.low.coeff(i) + stop.high.coeff(i);
     };
-    if (!is_finite(entrywise(drives.way, all))) return false;
-    const Motion motion{JointSweep<Clearance>(clearance, drives), clearance.robot().drives().rates(drives.begun), time};
-    near.set_displacements(clearance, motion.sweep.way.cwiseAbs() + motion.sweep.rest, time);
+    if (!is_finite(entrywise(stop.line, sum))) return false;
+    const Motion motion{JointDisplacement<Clearance>(clearance, stop),
+                        clearance.robot().drives().rates(stop.start_velocity), time};
+    near.set_displacements(clearance, motion.displacement.line.cwiseAbs() + motion.displacement.deviation, time);
     const auto needs = [&](const ShapePair& pair) noexcept {
-      if (pairs == Pairs::kAtRest && near.moves(pair) > Scalar(0)) return -std::numeric_limits<Scalar>::infinity();
-      return clearance.margin() + near.displacement_of(pair);
+      const bool skipped = pairs == Pairs::kStatic && near.obstacle_displacement(pair) > Scalar(0);
+      return skipped ? -std::numeric_limits<Scalar>::infinity() : clearance.margin() + near.displacement_of(pair);
     };
     bounds_.begin();
-    Scalar whole(1);
-    Scalar step = whole;
+    Scalar remaining(1);
+    Scalar step = remaining;
     std::size_t count = 0;
     near.each(clearance, needs, [&](std::size_t i, const Nearest<Scalar>& found) noexcept {
       const ShapePair& pair = clearance.pairs()[i];
-      Open& open = open_[count];
-      open = {i, whole, bounds_.of(clearance, pair, motion.sweep)};
-      const Scalar sure = sure_step(clearance, near.here(), pair, found, motion, open.bound, near.moves(pair), whole);
-      open.until = sure;
-      if (!(sure == whole)) ++count;
-      step = std::min(sure, step);
+      Unproved& open = unproved_[count];
+      open = {i, remaining, bounds_.of(clearance, pair, motion.displacement)};
+      open.until = proved_fraction(clearance, near.here(), pair, found, motion, open.bound,
+                                   near.obstacle_displacement(pair), remaining);
+      step = std::min(open.until, step);
+      if (!(open.until == remaining)) ++count;
     });
     for (int advance = 1; advance < kAdvances; ++advance) {
       if (!(step > Scalar(0))) return false;
-      if (step == whole) return true;
-      whole -= step;
-      const Scalar done = Scalar(1) - whole;
-      clearance.place(JointVector(near.here().state.q + done * drives.way), ahead_);
-      step = whole;
-      std::size_t left = 0;
+      if (step == remaining) return true;
+      remaining -= step;
+      const Scalar done = Scalar(1) - remaining;
+      clearance.place(JointVector(near.here().state.q + done * stop.line), ahead_);
+      step = remaining;
+      std::size_t kept = 0;
       for (std::size_t k = 0; k < count; ++k) {
-        Open open = open_[k];
-        if (!(open.until - done > kProven * whole)) {
+        Unproved open = unproved_[k];
+        if (!(open.until - done > kProven * remaining)) {
           const ShapePair& pair = clearance.pairs()[open.pair];
-          if (clearance.roughly(ahead_, pair) >= needs(pair)) continue;
+          if (clearance.distance_lower_bound(ahead_, pair) >= needs(pair)) continue;
           const Nearest<Scalar> found = clearance.nearest_of(ahead_, pair);
-          const Scalar sure = sure_step(clearance, ahead_, pair, found, motion, open.bound, near.moves(pair), whole);
-          if (sure == whole) continue;
-          open.until = done + sure;
+          const Scalar proved = proved_fraction(clearance, ahead_, pair, found, motion, open.bound,
+                                                near.obstacle_displacement(pair), remaining);
+          if (proved == remaining) continue;
+          open.until = done + proved;
         }
         step = std::min(open.until - done, step);
-        open_[left++] = open;
+        unproved_[kept++] = open;
       }
-      count = left;
+      count = kept;
     }
-    return step == whole;
+    return step == remaining;
   }
 
  private:
@@ -99,50 +103,62 @@ class Advancement {
   static constexpr Scalar kIntrusion = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);  // [m]
 
   struct Motion {
-    JointSweep<Clearance> sweep;
-    AllJoints begun;  ///< Joint velocities at the start of the trajectory.
-    Scalar time;      ///< Duration of the trajectory [s].
+    JointDisplacement<Clearance> displacement;
+    AllJoints start_velocity;  ///< Velocities of all joints at the start of the trajectory.
+    Scalar time;               ///< Duration of the trajectory [s].
   };
 
   /// A pair that is not proved to keep its margin to the end of the trajectory.
-  struct Open {
+  struct Unproved {
     std::size_t pair;
     Scalar until;  ///< Fraction of the trajectory in which the pair is proved to keep its margin.
     DisplacementBound<Scalar> bound;
   };
 
-  /// Fraction of the trajectory, at most the remaining fraction `whole`, in which the pair is proved to keep its
-  /// margin: the smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). Not positive if there is
-  /// none. moves: displacement bound of the second shape if it is a moving obstacle [m].
-  [[nodiscard]] static Scalar sure_step(const Clearance& clearance, const Placement& placed, const ShapePair& pair,
-                                        const Nearest<Scalar>& nearest, const Motion& motion,
-                                        const DisplacementBound<Scalar>& bound, Scalar moves, Scalar whole) noexcept {
-    const JointSweep<Clearance>& sweep = motion.sweep;
-    const bool at_start = whole == Scalar(1);
-    if (nearest.distance >= clearance.margin() + moves + bound.displacement(whole)) return whole;
+  /// Fraction of the trajectory, at most the fraction `remaining`, in which the pair is proved to keep its margin: the
+  /// smallest root of the lower bounds on its gaps (docs/clearance.md, "Proof"). Not positive if there is none.
+  /// obstacle: displacement bound of the second shape if it is a moving obstacle [m].
+  [[nodiscard]] static Scalar proved_fraction(const Clearance& clearance, const Placement& placed,
+                                              const ShapePair& pair, const Nearest<Scalar>& nearest,
+                                              const Motion& motion, const DisplacementBound<Scalar>& bound,
+                                              Scalar obstacle, Scalar remaining) noexcept {
+    const JointDisplacement<Clearance>& p = motion.displacement;
+    const bool at_start = remaining == Scalar(1);
+    if (nearest.distance >= clearance.margin() + obstacle + bound.displacement(remaining)) return remaining;
     const Separation<Clearance> plane(clearance, placed, pair, nearest);
     if (nearest.distance < clearance.margin() - kIntrusion && at_start) {
       const auto gradient = plane.of_distance();
-      return gradient.dot(sweep.way) + sweep.least(gradient) >= Scalar(0) ? whole : Scalar(0);
+      return gradient.dot(p.line) + p.least(gradient) >= Scalar(0) ? remaining : Scalar(0);
     }
-    Scalar sure = whole;
+    Scalar proved = remaining;
     for (int k = 0; k < 2 * plane.seconds; ++k) {
       const auto g = plane.gradient_of(k % 2, k / 2);
       const Scalar gap =
           plane.gap(k % 2, k / 2) - clearance.margin() - bound.c0 - motion.time * std::max(plane.closing, Scalar(0));
-      const Scalar slope = bound.c1 - std::min(g.dot(sweep.way), Scalar(0));
-      Scalar far = furthest(gap + sweep.least(g), slope, bound.c2, whole);
-      if (far < whole && at_start && sweep.opens(g, motion.begun)) {
-        far = std::max(furthest(gap + sweep.least_of_own(g), bound.c1, bound.c2, whole), far);
+      const Scalar slope = bound.c1 - std::min(g.dot(p.line), Scalar(0));
+      Scalar fraction = largest_fraction(gap + p.least(g), slope, bound.c2, remaining);
+      if (fraction < remaining && at_start && p.opens(g, motion.start_velocity)) {
+        fraction =
+            std::max(largest_fraction(gap + p.least_of_single_stops(g), bound.c1, bound.c2, remaining), fraction);
       }
-      sure = std::min(far, sure);
+      proved = std::min(fraction, proved);
     }
-    return sure;
+    return proved;
+  }
+
+  /// Largest t ≤ remaining with gap − slope t − curvature t² ≥ 0; −1 if the gap is negative, or a number is NaN. The
+  /// form of the root avoids cancellation.
+  [[nodiscard]] static Scalar largest_fraction(Scalar gap, Scalar slope, Scalar curvature, Scalar remaining) noexcept {
+    using std::sqrt;
+    if (!(gap >= Scalar(0))) return Scalar(-1);
+    if (gap >= remaining * (slope + remaining * curvature)) return remaining;
+    const Scalar t = Scalar(2) * gap / (slope + sqrt(slope * slope + Scalar(4) * curvature * gap));
+    return t >= Scalar(0) ? t : Scalar(-1);
   }
 
   DisplacementBounds<Clearance> bounds_;
   Placement ahead_;
-  std::vector<Open> open_;
+  std::vector<Unproved> unproved_;
 };
 
 }  // namespace fpbm

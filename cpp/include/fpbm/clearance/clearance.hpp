@@ -14,7 +14,6 @@
 #include "fpbm/clearance/placement.hpp"
 #include "fpbm/model/robot.hpp"
 #include "fpbm/model/spread_posture.hpp"
-#include "fpbm/task/link_frame.hpp"
 
 namespace fpbm {
 
@@ -66,7 +65,7 @@ class Clearance {
     };
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       for (std::size_t j = 0; j < bodies_.size(); ++j) {
-        if (!may_meet(bodies_[i].link, bodies_[j].link) || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
+        if (!may_collide(bodies_[i].link, bodies_[j].link) || is_allowed(bodies_[i].name, bodies_[j].name)) continue;
         pairs_.push_back(pair_of_bodies(i, j));
       }
       for (std::size_t j = 0; j < obstacles_.size(); ++j) {
@@ -74,7 +73,7 @@ class Clearance {
         pairs_.push_back({i, j, true, robot_.moved_by(bodies_[i].link), 0});
       }
     }
-    leave_out_overlaps();
+    exclude_overlaps();
     shape_pairs_ = pairs_.size();
   }
 
@@ -82,6 +81,7 @@ class Clearance {
   [[nodiscard]] const std::vector<Body>& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const std::vector<ShapePair>& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const std::vector<Obstacle<Scalar>>& obstacles() const noexcept { return obstacles_; }
+  [[nodiscard]] const Levers<Scalar>& levers() const noexcept { return levers_; }
   [[nodiscard]] Scalar margin() const noexcept { return margin_; }
 
   [[nodiscard]] Names names(const ShapePair& pair) const {
@@ -92,7 +92,7 @@ class Clearance {
   [[nodiscard]] std::size_t shape_pairs() const noexcept { return shape_pairs_; }
 
   /// Excluded pairs: they overlap in all of many postures, so no motion could keep their margin.
-  [[nodiscard]] const std::vector<ShapePair>& left_out() const noexcept { return left_out_; }
+  [[nodiscard]] const std::vector<ShapePair>& excluded_pairs() const noexcept { return excluded_pairs_; }
 
   /// Moves obstacle i, which is then expected to continue with the velocity [m/s]. Returns false without effect if
   /// obstacle i does not exist or has another type of shape.
@@ -119,26 +119,10 @@ class Clearance {
     bounds.add_to(*this);
   }
 
-  /// The origin of a frame as the body of a bound. Throws std::invalid_argument if the link does not exist.
-  [[nodiscard]] Body point_of(const LinkFrame<Scalar>& frame, const std::string& name) const {
-    return body_of(frame, frame.offset().p, name);
-  }
-
-  /// An axis of a frame, a unit vector, as the body of a bound. Throws std::invalid_argument if the link does not
-  /// exist.
-  [[nodiscard]] Body direction_of(const LinkFrame<Scalar>& frame, const Vector3& axis, const std::string& name) const {
-    Body body = body_of(frame, frame.offset().R * axis, name);
-    body.is_direction = true;
-    each_joint(robot_.moved_by(body.link), [&](Eigen::Index k) { body.levers(k) = Scalar(robot_.turns(k) ? 1 : 0); });
-    const Matrix<3, 3, Scalar> R = robot_.in_joint(frame.link(), frame.offset()).R;
-    body.in_link.a = body.in_link.b = R * axis;
-    return body;
-  }
-
   /// Adds the bound n·x ≥ offset on the point or direction x of a body. The radius of the body is −margin(), so that
   /// the margin of shapes does not apply to the bound. deceleration: largest deceleration toward the bound [m/s²], or
   /// [1/s²] of a direction.
-  void keep_above(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
+  void add_lower_bound(Body body, const Vector3& n, Scalar offset, Scalar deceleration) {
     if (!(deceleration > Scalar(0))) validation::fail("acceleration", deceleration, "positive, or infinite");
     body.deceleration = deceleration;
     pairs_.push_back({bodies_.size(), obstacles_.size(), true, robot_.moved_by(body.link), 0});
@@ -185,7 +169,7 @@ class Clearance {
   }
 
   /// Lower bound on the distance of a pair [m]. Cheaper than nearest_of().
-  [[nodiscard]] Scalar roughly(const Placement& placed, const ShapePair& pair) const noexcept {
+  [[nodiscard]] Scalar distance_lower_bound(const Placement& placed, const ShapePair& pair) const noexcept {
     const Scalar size = bodies_[pair.first].size;
     const Vector3& centre = placed.centres[pair.first];
     if (pair.world) return obstacles_[pair.second].at_least(centre, size);
@@ -213,7 +197,7 @@ class Clearance {
                                                             std::size_t end) const noexcept {
     std::pair<std::size_t, Scalar> found{pairs_.size(), std::numeric_limits<Scalar>::infinity()};
     for (std::size_t i = first; i < end; ++i) {
-      if (roughly(placed, pairs_[i]) >= found.second) continue;
+      if (distance_lower_bound(placed, pairs_[i]) >= found.second) continue;
       const Scalar distance = nearest_of(placed, pairs_[i]).distance;
       if (distance < found.second) found = {i, distance};
     }
@@ -240,7 +224,7 @@ class Clearance {
     validation::reject(argument, ": is too large: its lever about a joint must be finite");
   }
   /// Whether the links differ and neither is the parent of the other. In a chain, the later link is first.
-  [[nodiscard]] bool may_meet(int first, int second) const noexcept {
+  [[nodiscard]] bool may_collide(int first, int second) const noexcept {
     return first > second && robot_.parent(first) != second;
   }
   [[nodiscard]] ShapePair pair_of_bodies(std::size_t i, std::size_t j) const noexcept {
@@ -248,20 +232,7 @@ class Clearance {
     const JointBits second = robot_.moved_by(bodies_[j].link);
     return {i, j, false, first & ~second, second & ~first};
   }
-  /// A point of the link of a frame as the body of a bound. The point is given in the frame of the link, for the tip in
-  /// the frame of the tip.
-  [[nodiscard]] Body body_of(const LinkFrame<Scalar>& frame, const Vector3& point, const std::string& name) const {
-    robot_.require_link("frame", frame.link());
-    const bool is_tip = frame.link() == Tree::kTip;
-    const int link = is_tip ? robot_.joints() : frame.link();
-    const Transform<Scalar> to_joint = robot_.in_joint(link, {});
-    Transform<Scalar> at;
-    at.p = point;
-    const Vector3 in_link = is_tip ? (inverse(to_joint) * robot_.in_joint(frame.link(), at)).p : point;
-    return {levers_, link, to_joint, {in_link, in_link, -margin_}, name};
-  }
-
-  void leave_out_overlaps() {
+  void exclude_overlaps() {
     if (pairs_.empty()) return;
     constexpr int kPostures = 256;
     std::vector<bool> apart(pairs_.size(), false);
@@ -270,11 +241,12 @@ class Clearance {
       place(spread_posture(robot_.limits(), k), placed);
       for (std::size_t p = 0; p < pairs_.size(); ++p) {
         if (apart[p]) continue;
-        apart[p] = roughly(placed, pairs_[p]) >= margin_ || nearest_of(placed, pairs_[p]).distance >= margin_;
+        apart[p] =
+            distance_lower_bound(placed, pairs_[p]) >= margin_ || nearest_of(placed, pairs_[p]).distance >= margin_;
       }
     }
     std::vector<ShapePair> kept;
-    for (std::size_t p = 0; p < pairs_.size(); ++p) (apart[p] ? kept : left_out_).push_back(pairs_[p]);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) (apart[p] ? kept : excluded_pairs_).push_back(pairs_[p]);
     pairs_ = kept;
   }
 
@@ -285,7 +257,7 @@ class Clearance {
   std::vector<SpeedBound> speed_bounds_;
   std::vector<Obstacle<Scalar>> obstacles_;
   std::vector<ShapePair> pairs_;
-  std::vector<ShapePair> left_out_;
+  std::vector<ShapePair> excluded_pairs_;
   Scalar margin_;
   Away<Scalar> away_;
 };

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fpbm/clearance/advance.hpp"
+#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/clearance/joint_displacement.hpp"
 
 namespace fpbm {
 
@@ -33,21 +34,21 @@ struct DisplacementBound {
   /// Adds the terms of `joints` to the bounds: the joints that move the body.
   template <typename Clearance>
   void add(const Clearance& clearance, const typename Clearance::Body& body, JointBits joints,
-           const JointSweep<Clearance>& sweep) noexcept {
-    Scalar way(0);  // Σ |p_j| of the revolute joints before joint k. `rest` is Σ e_j.
-    Scalar rest(0);
+           const JointDisplacement<Clearance>& displacement) noexcept {
+    Scalar line(0);       // Σ |p_j| of the revolute joints before joint k.
+    Scalar deviation(0);  // Σ e_j of the same joints.
     each_joint(joints, [&](Eigen::Index k) noexcept {
       const Scalar lever = body.levers(k);
-      const Scalar v = std::abs(sweep.way(k));
-      const Scalar e = sweep.rest(k);
+      const Scalar v = std::abs(displacement.line(k));
+      const Scalar e = displacement.deviation(k);
       const Scalar half = clearance.robot().turns(k) ? Scalar(0.5) : Scalar(0);
       d0 += lever * e;
       d1 += lever * v;
-      c0 += lever * e * (half * e + rest);
-      c1 += lever * (v * (Scalar(2) * half * e + rest) + e * way);
-      c2 += lever * v * (half * v + way);
-      way += Scalar(2) * half * v;
-      rest += Scalar(2) * half * e;
+      c0 += lever * e * (half * e + deviation);
+      c1 += lever * (v * (Scalar(2) * half * e + deviation) + e * line);
+      c2 += lever * v * (half * v + line);
+      line += Scalar(2) * half * v;
+      deviation += Scalar(2) * half * e;
     });
   }
 };
@@ -65,19 +66,19 @@ class DisplacementBounds {
   /// Discards the bounds of the previous trajectory.
   void begin() noexcept { is_known_.assign(is_known_.size(), 0); }
 
-  /// Sum of the bounds of both shapes of a pair. sweep: the same trajectory in all calls after begin().
+  /// Sum of the bounds of both shapes of a pair. displacement: the same trajectory in all calls after begin().
   [[nodiscard]] Bound of(const Clearance& clearance, const ShapePair& pair,
-                         const JointSweep<Clearance>& sweep) noexcept {
+                         const JointDisplacement<Clearance>& displacement) noexcept {
     const auto& first = clearance.bodies()[pair.first];
     if (!pair.world) {
       Bound bound;
-      bound.add(clearance, first, pair.by_first, sweep);
-      if (pair.by_second != 0) bound.add(clearance, clearance.bodies()[pair.second], pair.by_second, sweep);
+      bound.add(clearance, first, pair.by_first, displacement);
+      if (pair.by_second != 0) bound.add(clearance, clearance.bodies()[pair.second], pair.by_second, displacement);
       return bound;
     }
     if (is_known_[pair.first] == 0) {
       by_body_[pair.first] = {};
-      by_body_[pair.first].add(clearance, first, pair.by_first, sweep);
+      by_body_[pair.first].add(clearance, first, pair.by_first, displacement);
       is_known_[pair.first] = 1;
     }
     return by_body_[pair.first];

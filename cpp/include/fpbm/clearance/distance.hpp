@@ -46,7 +46,7 @@ template <typename Scalar>
 [[nodiscard]] Nearest<Scalar> nearest(const Capsule<Scalar>& first, const Cuboid<Scalar>& second) noexcept {
   const Segment<Scalar> core = first.core();
   const auto to_box = second.pose.R.transpose();
-  const NearestToBox<Scalar> cores({to_box.lazyProduct(core.start - second.pose.p), to_box.lazyProduct(core.way)},
+  const NearestToBox<Scalar> cores({to_box.lazyProduct(core.start - second.pose.p), to_box.lazyProduct(core.extent)},
                                    second.half);
   const Vector<3, Scalar> normal = second.pose.R.lazyProduct(cores.normal);
   return Nearest<Scalar>::of_core(cores.gap, normal, core.at(cores.t), first.radius);

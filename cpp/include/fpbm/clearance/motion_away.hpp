@@ -18,14 +18,14 @@ template <typename Clearance>
   const Away<Scalar>& away = clearance.away();
   AllJoints sum = AllJoints::Zero(clearance.robot().joints());
   for (const ShapePair& pair : clearance.pairs()) {
-    if (clearance.roughly(placed, pair) >= clearance.margin() + away.range) continue;
+    if (clearance.distance_lower_bound(placed, pair) >= clearance.margin() + away.range) continue;
     const Nearest<Scalar> found = clearance.nearest_of(placed, pair);
     const Separation<Clearance> plane(clearance, placed, pair, found);
     for (int e = 0; e < 2; ++e) {
       const Scalar near = Scalar(1) - (plane.gap(e) - clearance.margin()) / away.range;
       if (!(near > Scalar(0))) continue;
-      const Scalar share = std::min(near, Scalar(1));
-      sum += away.gain * share * share * plane.gradient_of(e);
+      const Scalar fraction = std::min(near, Scalar(1));
+      sum += away.gain * fraction * fraction * plane.gradient_of(e);
     }
   }
   return clearance.robot().drives().by_drive(sum);

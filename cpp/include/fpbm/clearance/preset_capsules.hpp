@@ -108,9 +108,9 @@ namespace fpbm::presets::capsules {
 
 }  // namespace fpbm::presets::capsules
 
-/// Links of the presets whose capsules may overlap although the links never meet within the joint bounds: pass them as
-/// the last argument of Clearance. These links are always at least 5 mm apart.
-namespace fpbm::presets::never_meet {
+/// Links of the presets whose capsules may overlap although the links never collide within the joint bounds: pass them
+/// as the last argument of Clearance. These links are always at least 5 mm apart.
+namespace fpbm::presets::never_collide {
 
 using LinkNames = std::pair<std::string, std::string>;
 
@@ -133,7 +133,7 @@ using LinkNames = std::pair<std::string, std::string>;
   return {};
 }
 
-}  // namespace fpbm::presets::never_meet
+}  // namespace fpbm::presets::never_collide
 
 namespace fpbm::presets {
 
@@ -141,11 +141,11 @@ namespace fpbm::presets {
 struct PresetCapsules {
   const char* name;
   std::vector<LinkCapsule<>> (*capsules)();
-  std::vector<never_meet::LinkNames> (*never_meet)();
+  std::vector<never_collide::LinkNames> (*never_collide)();
 };
 inline constexpr PresetCapsules kAllCapsules[] = {
-    {"panda", capsules::panda, never_meet::panda},    {"fr3", capsules::fr3, never_meet::fr3},
-    {"iiwa14", capsules::iiwa14, never_meet::iiwa14}, {"gen3", capsules::gen3, never_meet::gen3},
-    {"ur5e", capsules::ur5e, never_meet::ur5e},       {"ur10e", capsules::ur10e, never_meet::ur10e}};
+    {"panda", capsules::panda, never_collide::panda},    {"fr3", capsules::fr3, never_collide::fr3},
+    {"iiwa14", capsules::iiwa14, never_collide::iiwa14}, {"gen3", capsules::gen3, never_collide::gen3},
+    {"ur5e", capsules::ur5e, never_collide::ur5e},       {"ur10e", capsules::ur10e, never_collide::ur10e}};
 
 }  // namespace fpbm::presets

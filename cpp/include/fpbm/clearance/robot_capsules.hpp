@@ -38,7 +38,7 @@ namespace capsules {
 
 }  // namespace capsules
 
-namespace never_meet {
+namespace never_collide {
 
 [[nodiscard]] inline std::vector<LinkNames> two_pandas() {
   std::vector<LinkNames> both;
@@ -48,9 +48,9 @@ namespace never_meet {
   return both;
 }
 
-}  // namespace never_meet
+}  // namespace never_collide
 
-inline constexpr PresetCapsules kRobotCapsules[] = {{"two_pandas", capsules::two_pandas, never_meet::two_pandas}};
+inline constexpr PresetCapsules kRobotCapsules[] = {{"two_pandas", capsules::two_pandas, never_collide::two_pandas}};
 
 }  // namespace presets
 

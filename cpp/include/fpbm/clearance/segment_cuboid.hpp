@@ -27,7 +27,7 @@ struct NearestToBox {
     const Vector3 between = excess(segment.at(t), half);
     const Scalar squared = between.squaredNorm();
     gap = sqrt(squared);
-    if (tells_direction(squared, segment.way.squaredNorm() + half.squaredNorm())) {
+    if (tells_direction(squared, segment.extent.squaredNorm() + half.squaredNorm())) {
       normal = between / gap;
     } else {
       touch(segment, half, between);
@@ -85,9 +85,10 @@ struct NearestToBox {
   [[gnu::noinline, gnu::cold]] void touch(const Segment<Scalar>& segment, const Vector3& half,
                                           const Vector3& between) noexcept {
     using std::abs;
-    const Vector3& d = segment.way;
-    const auto reach = [&](const Vector3& n) { return n.cwiseAbs().dot(half) + abs(n.dot(d)) / Scalar(2); };
-    WidestGap<Scalar, decltype(reach)> widest(segment.at(Scalar(0.5)), reach, half.sum() + d.cwiseAbs().sum());
+    const Vector3& d = segment.extent;
+    const auto half_extent = [&](const Vector3& n) { return n.cwiseAbs().dot(half) + abs(n.dot(d)) / Scalar(2); };
+    WidestGap<Scalar, decltype(half_extent)> widest(segment.at(Scalar(0.5)), half_extent,
+                                                    half.sum() + d.cwiseAbs().sum());
     // Perpendicular to the segment, unless an end of the segment is nearest.
     const bool inside = Scalar(0) < t && t < Scalar(1);
     widest.offer(inside ? across(between, d) : between);

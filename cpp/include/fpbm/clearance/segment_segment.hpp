@@ -29,8 +29,8 @@ struct NearestOfSegments {
 
   NearestOfSegments(const Segment<Scalar>& first, const Segment<Scalar>& second) noexcept {
     using std::sqrt;
-    const Vector3& u = first.way;
-    const Vector3& v = second.way;
+    const Vector3& u = first.extent;
+    const Vector3& v = second.extent;
     const Vector3 w = first.start - second.start;
     const Vector3 c = cross(u, v);
     const Scalar uu = u.squaredNorm();
@@ -57,9 +57,9 @@ struct NearestOfSegments {
   [[gnu::noinline, gnu::cold]] Vector3 touching(const Vector3& u, const Vector3& v, const Vector3& w, const Vector3& c,
                                                 Vector3 between) const noexcept {
     using std::abs;
-    const auto reach = [&u, &v](const Vector3& n) { return (abs(n.dot(u)) + abs(n.dot(v))) / Scalar(2); };
+    const auto half_extent = [&u, &v](const Vector3& n) { return (abs(n.dot(u)) + abs(n.dot(v))) / Scalar(2); };
     const Scalar size = u.cwiseAbs().sum() + v.cwiseAbs().sum();
-    WidestGap<Scalar, decltype(reach)> widest(w + (u - v) / Scalar(2), reach, size);
+    WidestGap<Scalar, decltype(half_extent)> widest(w + (u - v) / Scalar(2), half_extent, size);
     // Perpendicular to each segment, unless its end is nearest.
     if (inside(s)) between = across(between, u);
     if (inside(t)) between = across(between, v);

@@ -88,8 +88,8 @@ struct Separation {
     return nearest_on(*second_, found_.on_first - (found_.distance + second_->radius) * found_.normal);
   }
 
-  [[nodiscard]] static AllJoints between(const AllJoints (&ends)[2], Scalar share) noexcept {
-    return ends[0] + share * (ends[1] - ends[0]);
+  [[nodiscard]] static AllJoints between(const AllJoints (&ends)[2], Scalar fraction) noexcept {
+    return ends[0] + fraction * (ends[1] - ends[0]);
   }
 
   /// Position, from 0 to 1, of the point on the axis of a capsule that is nearest to a point.

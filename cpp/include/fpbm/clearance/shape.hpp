@@ -6,13 +6,13 @@
 /// Solid shapes on the links of an arm or in its environment [m].
 namespace fpbm {
 
-/// Segment start + t·way, with t in [0, 1].
+/// Segment start + t extent, with t in [0, 1].
 template <typename Scalar = double>
 struct Segment {
   Vector<3, Scalar> start;
-  Vector<3, Scalar> way;
+  Vector<3, Scalar> extent;
 
-  [[nodiscard]] Vector<3, Scalar> at(Scalar t) const noexcept { return start + t * way; }
+  [[nodiscard]] Vector<3, Scalar> at(Scalar t) const noexcept { return start + t * extent; }
 };
 
 /// All points within `radius` of the segment from a to b; a sphere if a = b.

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "fpbm/clearance/clearance.hpp"
+#include "fpbm/clearance/bound_body.hpp"
 #include "fpbm/task/link_frame.hpp"
 
 namespace fpbm {
@@ -31,13 +31,13 @@ struct PositionBounds {
   /// Throws std::invalid_argument if a bound is out of range, or the link does not exist.
   template <int N, int Joints>
   void add_to(Clearance<N, Scalar, Joints>& clearance) const {
-    const auto body = [&](const std::string& bound) { return clearance.point_of(frame, bound + " of " + name); };
+    const auto body = [&](const std::string& bound) { return bound_point(clearance, frame, bound + " of " + name); };
     for (int i = 0; i < 3; ++i) {
       if (!(lower(i) < upper(i))) validation::fail(validation::element("lower", i), lower(i), "below upper");
       const std::string axis(1, "xyz"[i]);
       const Vector<3, Scalar> n = Vector<3, Scalar>::Unit(i);
-      if (std::isfinite(lower(i))) clearance.keep_above(body("lower " + axis), n, lower(i), deceleration);
-      if (std::isfinite(upper(i))) clearance.keep_above(body("upper " + axis), -n, -upper(i), deceleration);
+      if (std::isfinite(lower(i))) clearance.add_lower_bound(body("lower " + axis), n, lower(i), deceleration);
+      if (std::isfinite(upper(i))) clearance.add_lower_bound(body("upper " + axis), -n, -upper(i), deceleration);
     }
     clearance.bound_speed({body("speed"), rows, velocity});
   }
@@ -70,9 +70,9 @@ struct AxisBounds {
     validation::require_non_negative("lower", lower);
     if (!(lower < upper)) validation::fail("lower", lower, "below upper");
     constexpr Scalar kHalfTurn = Scalar(3.14159265358979323846);
-    const auto body = [&](const char* bound) { return clearance.direction_of(frame, a, bound + (" of " + name)); };
-    if (upper < kHalfTurn) clearance.keep_above(body("largest angle"), d, std::cos(upper), deceleration);
-    if (lower > Scalar(0)) clearance.keep_above(body("least angle"), -d, -std::cos(lower), deceleration);
+    const auto body = [&](const char* bound) { return bound_direction(clearance, frame, a, bound + (" of " + name)); };
+    if (upper < kHalfTurn) clearance.add_lower_bound(body("largest angle"), d, std::cos(upper), deceleration);
+    if (lower > Scalar(0)) clearance.add_lower_bound(body("least angle"), -d, -std::cos(lower), deceleration);
     clearance.bound_speed({body("speed"), {true, true, true}, velocity});
   }
 

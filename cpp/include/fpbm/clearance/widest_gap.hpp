@@ -21,12 +21,12 @@ template <typename Scalar>
   return result / sqrt(result.squaredNorm());
 }
 
-/// Component of a vector perpendicular to the direction `way`. Returns the vector if `way` is zero.
+/// Component of a vector perpendicular to the direction `direction`. Returns the vector if `direction` is zero.
 template <typename Scalar>
-[[nodiscard]] Vector<3, Scalar> across(const Vector<3, Scalar>& vector, const Vector<3, Scalar>& way) noexcept {
-  const Scalar squared = way.squaredNorm();
+[[nodiscard]] Vector<3, Scalar> across(const Vector<3, Scalar>& vector, const Vector<3, Scalar>& direction) noexcept {
+  const Scalar squared = direction.squaredNorm();
   if (!(squared > Scalar(0))) return vector;
-  return vector - vector.dot(way) / squared * way;
+  return vector - vector.dot(direction) / squared * direction;
 }
 
 /// Whether the difference of two nearest points is long enough to define a direction. gap_squared: squared length of

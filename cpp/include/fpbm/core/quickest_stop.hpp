@@ -24,7 +24,7 @@ struct AxisState {
 /// zero.
 ///
 /// A state with s > 0 is on the trajectory of jerk −J through a state with zero acceleration, whose velocity is v +
-/// a²/2J and whose position is q + va/J + a³/3J². From there, the stopping distance is way(v + a²/2J).
+/// a²/2J and whose position is q + va/J + a³/3J². From there, the stopping distance is stopping_distance(v + a²/2J).
 template <typename Scalar>
 struct QuickestStop {
   Scalar acceleration;  ///< A, positive; infinite if there is no bound.
@@ -36,7 +36,7 @@ struct QuickestStop {
   }
 
   /// Stopping distance from a velocity ≥ 0 with zero acceleration.
-  [[nodiscard]] Scalar way(Scalar velocity) const noexcept {
+  [[nodiscard]] Scalar stopping_distance(Scalar velocity) const noexcept {
     using std::sqrt;
     const Scalar ramp = acceleration / jerk;
     return velocity <= acceleration * ramp ? velocity * sqrt(velocity / jerk)
@@ -44,12 +44,12 @@ struct QuickestStop {
   }
 
   /// Position at the end of the stop.
-  [[nodiscard]] Scalar rest(const AxisState<Scalar>& state) const noexcept {
+  [[nodiscard]] Scalar end_position(const AxisState<Scalar>& state) const noexcept {
     const auto [q, v, a] = state;
     const Scalar s = sign(v, a);
-    const Scalar lost = a / jerk;
-    const Scalar most = std::max(s * v + a * lost / Scalar(2), Scalar(0));
-    return q + s * v * lost + a * lost * lost / Scalar(3) + s * way(most);
+    const Scalar ramp = a / jerk;
+    const Scalar fastest = std::max(s * v + a * ramp / Scalar(2), Scalar(0));
+    return q + s * v * ramp + a * ramp * ramp / Scalar(3) + s * stopping_distance(fastest);
   }
 
   /// State after `seconds` [s] of the stop, which starts with |a| ≤ A. After the end of the stop, the velocity and the
@@ -58,16 +58,16 @@ struct QuickestStop {
     using std::sqrt;
     const auto [q, v, a] = state;
     const Scalar s = sign(v, a);
-    const Scalar most = std::max(s * v + a * a / (Scalar(2) * jerk), Scalar(0));
+    const Scalar fastest = std::max(s * v + a * a / (Scalar(2) * jerk), Scalar(0));
     const Scalar ramp = acceleration / jerk;
-    const bool even = most > acceleration * ramp;
-    const Scalar last = even ? ramp : sqrt(most / jerk);
+    const bool even = fastest > acceleration * ramp;
+    const Scalar last = even ? ramp : sqrt(fastest / jerk);
     const Scalar first = std::max(s * a / jerk + last, Scalar(0));
-    const Scalar left = first + (even ? most / acceleration - ramp : Scalar(0)) + last - seconds;
-    const AxisState<Scalar> end{rest(state), Scalar(0), Scalar(0)};
-    if (!(left > Scalar(0))) return end;
+    const Scalar remaining = first + (even ? fastest / acceleration - ramp : Scalar(0)) + last - seconds;
+    const AxisState<Scalar> end{end_position(state), Scalar(0), Scalar(0)};
+    if (!(remaining > Scalar(0))) return end;
     // The last phase is computed backward from its end, so that velocity and acceleration reach zero together.
-    if (left <= last) return end.ahead(-left, s * jerk);
+    if (remaining <= last) return end.ahead(-remaining, s * jerk);
     if (seconds <= first) return state.ahead(seconds, -s * jerk);
     return state.ahead(first, -s * jerk).ahead(seconds - first, Scalar(0));
   }

@@ -89,20 +89,20 @@ class HeldJoints {
                           RoundOff&& round_off) noexcept {
     split(Z, joint, count_);
     const Scalar outside = R_[count_][count_];
-    const bool spare = count_ < Z.cols();
-    if (spare && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
-    const Free share = shares();
+    const bool is_free = count_ < Z.cols();
+    if (is_free && outside > kIndependent && rate <= kSteepest * outside) return add(joint, above);
+    const Free c = coefficients();
     Scalar amplified(1);
-    for (int i = 0; i < count_; ++i) amplified += std::abs(share.coeff(i));
+    for (int i = 0; i < count_; ++i) amplified += std::abs(c.coeff(i));
     if (rate * remaining <= round_off() * std::min(amplified, kAmplified)) {
       fixed_[index(joint)] = true;
       return true;
     }
-    if (spare && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
+    if (is_free && outside > kIdle && outside <= kIndependent && rate <= outside * outside / kEpsilon) {
       return add(joint, above);
     }
-    // With a smaller share, the released joint would leave its bound at a rate above kSteepest.
-    return replace(Z, joint, above, share, std::max(kRoundOff, rate / kSteepest));
+    // With a smaller coefficient, the released joint would leave its bound at a rate above kSteepest.
+    return replace(Z, joint, above, c, std::max(kRoundOff, rate / kSteepest));
   }
 
  private:
@@ -111,23 +111,23 @@ class HeldJoints {
   [[nodiscard]] static std::size_t index(Eigen::Index joint) noexcept { return static_cast<std::size_t>(joint); }
 
   /// c in Z_joint = Σ c_i Z_held(i), for the joint of the last split().
-  [[nodiscard]] Free shares() const noexcept {
-    Free share(count_);
+  [[nodiscard]] Free coefficients() const noexcept {
+    Free c(count_);
     for (int i = count_ - 1; i >= 0; --i) {
-      share(i) = R_[i][count_];
-      for (int j = i + 1; j < count_; ++j) share(i) -= R_[i][j] * share(j);
-      share(i) /= R_[i][i];
+      c(i) = R_[i][count_];
+      for (int j = i + 1; j < count_; ++j) c(i) -= R_[i][j] * c(j);
+      c(i) /= R_[i][i];
     }
-    return share;
+    return c;
   }
 
-  /// Holds a joint instead of the held joint that leaves its bound fastest, if the share of the held joint exceeds
-  /// `least`. Otherwise, returns false.
+  /// Holds a joint instead of the held joint that leaves its bound fastest, if the coefficient of the held joint
+  /// exceeds `least`. Otherwise, returns false.
   template <typename Basis>
-  [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& share, Scalar least) noexcept {
+  [[nodiscard]] bool replace(const Basis& Z, Eigen::Index joint, bool above, const Free& c, Scalar least) noexcept {
     int leaving = -1;
     for (int i = count_ - 1; i >= 0; --i) {
-      const Scalar inward = held_[i].above == above ? share(i) : -share(i);
+      const Scalar inward = held_[i].above == above ? c(i) : -c(i);
       if (inward > least) {
         least = inward;
         leaving = i;
@@ -138,7 +138,7 @@ class HeldJoints {
     solved_ = 0;
     for (int j = leaving; j < count_; ++j) {
       split(Z, held_[j].joint, j);
-      shorten(Q_[j], R_[j][j]);
+      divide(Q_[j], R_[j][j]);
     }
     find_fixed();
     return true;
@@ -146,7 +146,7 @@ class HeldJoints {
 
   /// Holds the joint of the last split().
   bool add(Eigen::Index joint, bool above) noexcept {
-    shorten(Q_[count_], R_[count_][count_]);
+    divide(Q_[count_], R_[count_][count_]);
     held_[count_++] = {joint, above};
     find_fixed();
     return true;
@@ -174,7 +174,7 @@ class HeldJoints {
     R_[k][k] = std::sqrt(squared_length(Q_[k].data(), Z.cols()));
   }
 
-  static void shorten(Free& vector, Scalar length) noexcept {
+  static void divide(Free& vector, Scalar length) noexcept {
     for (Eigen::Index k = 0; k < vector.size(); ++k) vector.coeffRef(k) /= length;
   }
 

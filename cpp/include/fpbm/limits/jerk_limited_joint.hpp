@@ -45,7 +45,7 @@ struct JerkLimitedJoint {
   /// Whether some state that differs from `at` by at most `error` is viable. Velocities may be differences of positions
   /// over a tick.
   [[nodiscard]] bool viable(const AxisState<Scalar>& at, const AxisState<Scalar>& error = {}) const noexcept {
-    return far_from_bounds(at) || viable_near_bounds(at, error);
+    return is_far_from_bounds(at) || is_viable_near_bounds(at, error);
   }
 
   /// Accelerations within the bounds on acceleration and jerk in the tick after the acceleration `last`.
@@ -60,9 +60,9 @@ struct JerkLimitedJoint {
   /// Accelerations in the interval `some` that lead to a viable state. If none does, the acceleration that leads
   /// nearest to a viable state. A joint beyond its range returns, and stops at its end.
   [[nodiscard]] Interval<Scalar> viable(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
-    const Scalar high = most(upper, q, qd, some);
-    const Scalar low = -most(lower, -q, -qd, {-some.high, -some.low});
-    return low <= high ? Interval<Scalar>{low, high} : between(some, q, qd);
+    const Scalar high = largest_viable(upper, q, qd, some);
+    const Scalar low = -largest_viable(lower, -q, -qd, {-some.high, -some.low});
+    return low <= high ? Interval<Scalar>{low, high} : least_excess(some, q, qd);
   }
 
   /// Largest acceleration b whose decrease to zero by steps of Jh changes the velocity by at most `amount`:
@@ -84,40 +84,40 @@ struct JerkLimitedJoint {
   }
 
  private:
-  [[nodiscard, gnu::noinline]] bool viable_near_bounds(const AxisState<Scalar>& at,
-                                                       const AxisState<Scalar>& error) const noexcept {
-    return keeps(upper, {at.q - error.q, at.v - error.v, at.a - error.a}, error.q / tick) &&
-           keeps(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
+  [[nodiscard, gnu::noinline]] bool is_viable_near_bounds(const AxisState<Scalar>& at,
+                                                          const AxisState<Scalar>& error) const noexcept {
+    return is_viable_toward(upper, {at.q - error.q, at.v - error.v, at.a - error.a}, error.q / tick) &&
+           is_viable_toward(lower, {-at.q - error.q, -at.v - error.v, -at.a - error.a}, error.q / tick);
   }
 
   /// Sufficient condition for a viable state, far from all bounds: |q̇| + u²/2J is within the bound on q̇, and a stop
   /// from this velocity ends before both envelopes. Most states satisfy this condition. If the result is false, the
   /// state may still be viable.
-  [[nodiscard]] bool far_from_bounds(const AxisState<Scalar>& at) const noexcept {
+  [[nodiscard]] bool is_far_from_bounds(const AxisState<Scalar>& at) const noexcept {
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar size = std::abs(at.a);
     const Scalar fastest = std::abs(at.v) + size * size * inverse_jerk / Scalar(2);
     const Scalar longest = (stop.acceleration + size) * inverse_jerk;
-    const auto room = [&](const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
-      return q - envelope.rest + most_excess(envelope, fastest, longest) <= Scalar(0);
+    const auto stops_before = [&](const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
+      return q - envelope.stop_position + excess_bound(envelope, fastest, longest) <= Scalar(0);
     };
-    return fastest <= velocity && room(upper, at.q) && room(lower, -at.q);
+    return fastest <= velocity && stops_before(upper, at.q) && stops_before(lower, -at.q);
   }
 
   /// Upper bound on the excess over an envelope that a stop adds [rad] or [m]: v (t + c/d + v/2d) for velocities up to
   /// v = fastest [rad/s], if the excess is largest within the time t = longest [s].
-  [[nodiscard]] static Scalar most_excess(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
-                                          Scalar longest) noexcept {
+  [[nodiscard]] static Scalar excess_bound(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar fastest,
+                                           Scalar longest) noexcept {
     return fastest * (longest + envelope.delay + fastest * envelope.softness / Scalar(2));
   }
 
   /// Whether a state satisfies the two conditions of docs/limits.md, Bounds on jerk, toward one end: w + a²/2J ≤ v for
   /// a > 0, up to `slack` [rad/s], and G ≤ 0.
-  [[nodiscard]] bool keeps(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
-                           Scalar slack) const noexcept {
+  [[nodiscard]] bool is_viable_toward(const VelocityEnvelope<kLevel, Scalar>& envelope, const AxisState<Scalar>& at,
+                                      Scalar slack) const noexcept {
     const Scalar rises = std::max(at.a, Scalar(0));
     return at.v + rises * rises / (Scalar(2) * stop.jerk) <= velocity + slack &&
-           !(envelope.excess(stop.jerk, {at.q - envelope.rest, at.v, at.a}) > Scalar(0));
+           !(envelope.excess(stop.jerk, {at.q - envelope.stop_position, at.v, at.a}) > Scalar(0));
   }
 
   /// Largest acceleration in the interval `some` after which the state is viable toward one end: the state satisfies
@@ -126,9 +126,9 @@ struct JerkLimitedJoint {
   ///
   /// If no acceleration leads to a viable state, returns some.low. Exception: a joint that would exceed the envelope by
   /// round-off only stops within the tick, at the acceleration −q̇/h.
-  [[nodiscard]] Scalar most(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
-                            Interval<Scalar> some, int rounds = 6) const noexcept {
-    const Scalar room = velocity - qd;
+  [[nodiscard]] Scalar largest_viable(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q, Scalar qd,
+                                      Interval<Scalar> some, int rounds = 6) const noexcept {
+    const Scalar speed_slack = velocity - qd;
     const Scalar greatest = std::max(some.high, Scalar(0));
     const Scalar inverse_jerk = Scalar(1) / stop.jerk;
     const Scalar gain = greatest * (tick + greatest * inverse_jerk / Scalar(2));
@@ -136,63 +136,66 @@ struct JerkLimitedJoint {
     // the excess is largest within the time `longest`.
     const Scalar top = std::max(qd + gain, Scalar(0));
     const Scalar longest = tick + (stop.acceleration + greatest) * inverse_jerk;
-    if (gain <= room && q - envelope.rest + most_excess(envelope, top, longest) <= Scalar(0)) return some.high;
-    const Scalar high = within_velocity(room, some);
-    if (!(envelope.rest < std::numeric_limits<Scalar>::infinity())) return high;
-    const Scalar from = q - envelope.rest;
+    if (gain <= speed_slack && q - envelope.stop_position + excess_bound(envelope, top, longest) <= Scalar(0))
+      return some.high;
+    const Scalar high = within_velocity(speed_slack, some);
+    if (!(envelope.stop_position < std::numeric_limits<Scalar>::infinity())) return high;
+    const Scalar from = q - envelope.stop_position;
     // Upper end of the search: the acceleration that the envelope admits without a bound on jerk. It is the solution if
     // the joint already brakes along the envelope, and slightly too large otherwise.
-    const Scalar falling = (envelope.furthest(q, qd, tick) - qd) / tick;
-    const auto beyond = [&](Scalar u) noexcept { return this->beyond(envelope, from, qd, u); };
+    const Scalar falling = (envelope.largest_velocity(q, qd, tick) - qd) / tick;
+    const auto excess = [&](Scalar u) noexcept { return this->excess_after(envelope, from, qd, u); };
     const Scalar found =
-        largest_below_zero(beyond, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
+        largest_below_zero(excess, some.low, from > Scalar(0) ? high : std::clamp(falling, some.low, high), rounds);
     if (found > some.low) return found;
     // At most some.low keeps the envelope. A joint that round-off has brought to its end stops there: with some.low,
     // the joint would leave its end at full jerk.
     const Scalar halts = std::clamp(-qd / tick, some.low, high);
-    return beyond(halts) <= round_off(envelope, q) ? halts : found;
+    return excess(halts) <= round_off(envelope, q) ? halts : found;
   }
 
-  /// Largest acceleration u in the interval `some` with which q̇ increases by at most `room` [rad/s] in the tick and
-  /// while the jerk −J then reduces u to zero: the positive root of u h + u²/2J = room, or u = room/h if `room` is
-  /// negative. If the velocity is unbounded, some.high.
-  [[nodiscard]] Scalar within_velocity(Scalar room, Interval<Scalar> some) const noexcept {
+  /// Largest acceleration u in the interval `some` with which q̇ increases by at most `speed_slack` [rad/s] in the tick
+  /// and while the jerk −J then reduces u to zero: the positive root of u h + u²/2J = speed_slack, or u = speed_slack/h
+  /// if `speed_slack` is negative. If the velocity is unbounded, some.high.
+  [[nodiscard]] Scalar within_velocity(Scalar speed_slack, Interval<Scalar> some) const noexcept {
     using std::sqrt;
-    const Scalar share = tick / room;
-    const Scalar fastest =
-        room > Scalar(0) ? Scalar(2) / (share + sqrt(share * share + Scalar(2) / (room * stop.jerk))) : room / tick;
+    const Scalar ratio = tick / speed_slack;
+    const Scalar fastest = speed_slack > Scalar(0)
+                               ? Scalar(2) / (ratio + sqrt(ratio * ratio + Scalar(2) / (speed_slack * stop.jerk)))
+                               : speed_slack / tick;
     return std::clamp(fastest, some.low, some.high);
   }
 
-  /// Largest excess over an envelope [rad] or [m] after a tick with the acceleration u. from: q − rest at the start of
+  /// Largest excess over an envelope [rad] or [m] after a tick with the acceleration u. from: q − r at the start of
   /// the tick. If from > 0, the joint is beyond its end. The result is then the position at the end of its shortest
-  /// stop, relative to `rest`.
-  [[nodiscard]] Scalar beyond(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
-                              Scalar u) const noexcept {
+  /// stop, relative to the stop position.
+  [[nodiscard]] Scalar excess_after(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar from, Scalar qd,
+                                    Scalar u) const noexcept {
     const Scalar next = qd + tick * u;
-    const Scalar way = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
-    if (from > Scalar(0)) return stop.rest({from + way, next, u});
-    const Scalar most = envelope.excess(stop.jerk, {from + way, next, u});
+    const Scalar displacement = tick * (kLevel == Level::kVelocity ? next : qd + tick * u / Scalar(2));
+    if (from > Scalar(0)) return stop.end_position({from + displacement, next, u});
+    const Scalar excess = envelope.excess(stop.jerk, {from + displacement, next, u});
     // The joint reverses within the tick, at from − qd²/2u.
-    return qd > Scalar(0) && next < Scalar(0) ? std::max(most, from - qd * qd / (Scalar(2) * u)) : most;
+    return qd > Scalar(0) && next < Scalar(0) ? std::max(excess, from - qd * qd / (Scalar(2) * u)) : excess;
   }
 
   /// viable() if few iterations find no acceleration that keeps the envelopes of both ends. More iterations find an
   /// acceleration, except for round-off errors. In this case, the bound on velocity has priority, and both envelopes
   /// are exceeded equally.
-  [[nodiscard, gnu::noinline]] Interval<Scalar> between(Interval<Scalar> some, Scalar q, Scalar qd) const noexcept {
+  [[nodiscard, gnu::noinline]] Interval<Scalar> least_excess(Interval<Scalar> some, Scalar q,
+                                                             Scalar qd) const noexcept {
     constexpr int kRounds = 20;
     const Interval<Scalar> mirrored{-some.high, -some.low};
-    const Scalar high = most(upper, q, qd, some, kRounds);
-    const Scalar low = -most(lower, -q, -qd, mirrored, kRounds);
+    const Scalar high = largest_viable(upper, q, qd, some, kRounds);
+    const Scalar low = -largest_viable(lower, -q, -qd, mirrored, kRounds);
     if (low <= high) return {low, high};
     const Scalar fastest = within_velocity(velocity - qd, some);
     const Scalar slowest = -within_velocity(velocity + qd, mirrored);
     if (!(slowest <= fastest)) return {(slowest + fastest) / Scalar(2), (slowest + fastest) / Scalar(2)};
     const Scalar slack = std::max(round_off(upper, q), round_off(lower, -q));
     const auto conflict = [&](Scalar u) noexcept {
-      const Scalar above = beyond(upper, q - upper.rest, qd, u);
-      const Scalar below = beyond(lower, -q - lower.rest, -qd, -u);
+      const Scalar above = excess_after(upper, q - upper.stop_position, qd, u);
+      const Scalar below = excess_after(lower, -q - lower.stop_position, -qd, -u);
       return std::max(above, below) <= slack ? Scalar(0) : above - below;
     };
     const Scalar u =
@@ -202,8 +205,8 @@ struct JerkLimitedJoint {
 
   /// Round-off error of a distance to one end [rad] or [m].
   [[nodiscard]] static Scalar round_off(const VelocityEnvelope<kLevel, Scalar>& envelope, Scalar q) noexcept {
-    return std::isfinite(envelope.rest)
-               ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.rest))
+    return std::isfinite(envelope.stop_position)
+               ? Scalar(8) * std::numeric_limits<Scalar>::epsilon() * (std::abs(q) + std::abs(envelope.stop_position))
                : Scalar(0);
   }
 };

@@ -77,7 +77,7 @@ class LevelSaturation {
       return Scalar(1);
     }
     NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space_, unit_, rows_);
-    const Saturated<N, Scalar> found = saturation(box_, u_, desired);
+    const SaturatedMotion<N, Scalar> found = saturation(box_, u_, desired);
     if (!found.u.allFinite()) return Scalar(0);
     u_ = found.u;
     return found.scale;

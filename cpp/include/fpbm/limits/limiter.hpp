@@ -5,14 +5,14 @@
 
 #include "fpbm/limits/box_in_time.hpp"
 #include "fpbm/limits/braking.hpp"
+#include "fpbm/limits/inverse_task_metric.hpp"
+#include "fpbm/limits/least_squares_blend.hpp"
 #include "fpbm/limits/limits.hpp"
 #include "fpbm/limits/one_level.hpp"
 #include "fpbm/limits/reserved_limits.hpp"
 #include "fpbm/limits/row_projection.hpp"
-#include "fpbm/limits/task_given_up.hpp"
 #include "fpbm/limits/tick_motions.hpp"
 #include "fpbm/limits/toward_goal.hpp"
-#include "fpbm/limits/yield.hpp"
 #include "fpbm/linalg/product.hpp"
 #include "fpbm/linalg/sums.hpp"
 
@@ -23,7 +23,8 @@ namespace fpbm {
 /// A motion within the box of Limits does not change. Otherwise the motion is saturated in the null space: other joints
 /// compensate for joints on their bounds. If they cannot, the task is scaled down along its direction. If the task
 /// scale is nearly zero, for example at the workspace boundary, the arm would stop permanently. Therefore, the smaller
-/// the scale, the more the motion is blended with a motion that still reduces the tip error (yield()).
+/// the scale, the more the motion is blended with a motion that still reduces the tip error
+/// (blend_with_least_squares()).
 ///
 /// With bounds on jerk, the limiter works in two passes (docs/limits.md, Bounds on jerk). The first pass ignores the
 /// last tick, and determines the goal. The second pass starts from the acceleration of the last tick, and moves toward
@@ -33,9 +34,9 @@ class Limiter {
  public:
   using JointVector = Vector<N, Scalar>;
   using JointState = State<N, Scalar>;
-  /// Result of motion(): Saturated, or SaturatedLevels for TaskLevels.
+  /// Result of motion(): SaturatedMotion, or SaturatedLevels for TaskLevels.
   template <typename Tasks>
-  using Found = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
+  using Result = decltype(with_scale(std::declval<const Tasks&>(), std::declval<const JointVector&>(), Scalar(1)));
 
   /// reserve: fraction of each joint's bound on acceleration that the levels below the first level leave to the first
   /// level. Of the bound on velocity, they leave half of this fraction. 0: the first level has no reserve, and all
@@ -63,91 +64,67 @@ class Limiter {
   /// tasks: Jacobian of one task level, or TaskLevels, which are saturated level by level (SaturationByLevel). rows:
   /// further bounds on the motion (RowProjection), kept as far as the limits admit.
   template <typename Tasks, int P = 0>
-  [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
-                                    const JointVector& last, const Rows<N, P, Scalar>& rows = {}) const noexcept {
+  [[nodiscard]] Result<Tasks> motion(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                     const JointVector& last, const Rows<N, P, Scalar>& rows = {}) const noexcept {
     if constexpr (P > 0) {
-      if (!rows.admit(desired)) return beside(rows, tasks, state, desired, last);
+      if (!rows.admit(desired)) return limit_with_rows(rows, tasks, state, desired, last);
     }
     return bounded(tasks, state, desired, last, rows);
   }
 
   /// motion() if the last acceleration has no effect: without bounds on jerk, or at rest.
   template <typename Tasks>
-  [[nodiscard]] Found<Tasks> motion(const Tasks& tasks, const JointState& state,
-                                    const JointVector& desired) const noexcept {
+  [[nodiscard]] Result<Tasks> motion(const Tasks& tasks, const JointState& state,
+                                     const JointVector& desired) const noexcept {
     return motion(tasks, state, desired, JointVector::Zero(state.q.size()));
   }
 
   /// Motion that resolves the first level as `desired` does, and brakes the joints in the null space of the first
   /// level.
   template <typename Tasks, int P = 0>
-  [[nodiscard]] Found<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
-                                                 const JointVector& desired, const JointVector& last,
-                                                 const Rows<N, P, Scalar>& rows = {}) const noexcept {
+  [[nodiscard]] Result<Tasks> stop_on_first_level(const Tasks& tasks, const JointState& state,
+                                                  const JointVector& desired, const JointVector& last,
+                                                  const Rows<N, P, Scalar>& rows = {}) const noexcept {
     const JointVector rest = brake_in_proportion(limits_, state, limits_.box(state, last));
-    return motion(only_first(tasks), state, braking_beside(tasks, desired, rest), last, rows);
+    return motion(only_first(tasks), state, braking_in_null_space(tasks, desired, rest), last, rows);
   }
 
   /// Braking motion, or a motion near the braking motion that the rows admit. The task scale is 0.
   template <int P = 0>
-  [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last,
-                                           const Rows<N, P, Scalar>& rows = {}) const noexcept {
+  [[nodiscard]] SaturatedMotion<N, Scalar> brake(const JointState& state, const JointVector& last,
+                                                 const Rows<N, P, Scalar>& rows = {}) const noexcept {
     return {rows.near(fpbm::brake(limits_, state, last), limits_.box(state, last)), Scalar(0), 0, 0};
   }
 
  private:
-  /// motion() for a desired motion u₀ that the rows do not admit. Limits the nearest motion that the rows admit
-  /// (docs/clearance.md, Algorithm, Rows):
-  ///
-  ///   min ‖J(u − u₀)‖²_A + μ‖u − u₀‖²   where g_k·u ≤ b_k,   ‖x‖²_A = xᵀAx,   A = μB⁻¹.
-  ///
-  /// Null-space motion has the small cost μ. Therefore the arm first avoids a shape by null-space motion. If this is
-  /// not sufficient, the tip slides along the shape. A is the identity, except in the direction of δ, the smallest
-  /// change of the task that satisfies the rows (task_given_up()). In this direction, its eigenvalue is
-  ///
-  ///   1/(1 + l²/kGivenUp),   l = max(1 − ν/kServes, 0),
-  ///
-  /// where ν is the fraction of null-space motion in the motion that the rows demand. If ν is almost zero, null-space
-  /// motion contributes almost nothing. With A = I, all joints would then move fast to reduce the tip error by a
-  /// millimetre.
-  ///
-  /// The task scale of each level is multiplied by 1 − c, where c = min(‖J_k(u − u₀)‖/‖J_k u₀‖, 1) is its relative
-  /// change, unless c ≤ kUnseen.
+  /// motion() for a desired motion u₀ that the rows do not admit: limits the nearest motion u that the rows admit
+  /// (inverse_task_metric()). The task scale of each level is multiplied by 1 − c, where c = min(‖J_k(u − u₀)‖/‖J_k
+  /// u₀‖, 1) is its relative change, unless c ≤ kNegligibleChange.
   template <typename Tasks, int P>
-  [[nodiscard]] Found<Tasks> beside(const Rows<N, P, Scalar>& rows, const Tasks& tasks, const JointState& state,
-                                    const JointVector& desired, const JointVector& last) const noexcept {
+  [[nodiscard]] Result<Tasks> limit_with_rows(const Rows<N, P, Scalar>& rows, const Tasks& tasks,
+                                              const JointState& state, const JointVector& desired,
+                                              const JointVector& last) const noexcept {
     const auto& J = first_level(tasks);
     constexpr int M = std::decay_t<decltype(J)>::RowsAtCompileTime;
-    const Scalar mu = kSelfMotion * squared_norm(J);
-    const auto [given_up, self_motion] = task_given_up(J, mu, rows, desired);
-    const Scalar square = squared_norm(given_up);
-    const Scalar lacks = std::max(Scalar(1) - self_motion / kServes, Scalar(0));
-    Matrix<M, M, Scalar> B;
-    B.resize(J.rows(), J.rows());
-    const Scalar price = square > Scalar(0) ? lacks * lacks * mu / kGivenUp / square : Scalar(0);
-    for (Eigen::Index j = 0; j < J.rows(); ++j) {
-      for (Eigen::Index i = 0; i < J.rows(); ++i) {
-        B.coeffRef(i, j) = price * given_up.coeff(i) * given_up.coeff(j) + (i == j ? mu : Scalar(0));
-      }
-    }
-    RowProjection<M, N, P, Scalar> projection(J, B, rows);
-    const JointVector wanted = projection(desired);
-    Found<Tasks> found = bounded(tasks, state, wanted, last, rows);
+    RowProjection<M, N, P, Scalar> projection(J, inverse_task_metric(J, rows, desired), rows);
+    const JointVector admitted = projection(desired);
+    Result<Tasks> found = bounded(tasks, state, admitted, last, rows);
     found.rows |= projection.active();
-    const JointVector change = entrywise(wanted, [&](Eigen::Index i) { return wanted.coeff(i) - desired.coeff(i); });
+    const JointVector change =
+        entrywise(admitted, [&](Eigen::Index i) { return admitted.coeff(i) - desired.coeff(i); });
     multiply_scales(found, tasks, [&](const auto& level) noexcept {
-      const Scalar lost = norm(product(level, change));
+      const Scalar removed = norm(product(level, change));
       const Scalar task = norm(product(level, desired));
-      if (!(lost > kUnseen * task)) return Scalar(1);
-      return lost < task ? Scalar(1) - lost / task : Scalar(0);
+      if (!(removed > kNegligibleChange * task)) return Scalar(1);
+      return removed < task ? Scalar(1) - removed / task : Scalar(0);
     });
     return found;
   }
 
   /// motion() for a desired motion that the rows admit, at least approximately.
   template <typename Tasks, int P>
-  [[nodiscard]] Found<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
-                                     const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
+  [[nodiscard]] Result<Tasks> bounded(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                      const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
     const Box<N, Scalar> box = limits_.box(state, last);
     if constexpr (kHasLower<Tasks>) {
       if (reserves_) return with_reserve(tasks, state, desired, last, rows, box);
@@ -155,7 +132,7 @@ class Limiter {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     auto saturation = saturation_of(tasks, unit_, rows);
     if (!limits_.bounds_jerk()) return within(saturation, tasks, state, box, rows, desired);
-    const Found<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
+    const Result<Tasks> found = within(saturation, tasks, state, box_in_time(limits_, state, last, box), rows, desired);
     return toward_goal(saturation, box, rows, box.nearest(motions(limits_, state.qd, last)),
                        approach(limits_, state.qd, found.u), found);
   }
@@ -163,8 +140,8 @@ class Limiter {
   /// u + N₁(r − u): resolves the first level as u does, and equals the braking motion r in the null space of the first
   /// level.
   template <typename Tasks>
-  [[nodiscard]] static JointVector braking_beside(const Tasks& tasks, const JointVector& u,
-                                                  const JointVector& r) noexcept {
+  [[nodiscard]] static JointVector braking_in_null_space(const Tasks& tasks, const JointVector& u,
+                                                         const JointVector& r) noexcept {
     return u + null_space_motion(only_first(tasks), JointVector(r - u));
   }
 
@@ -172,20 +149,22 @@ class Limiter {
   /// space. The lower levels are resolved within the limits minus the reserve, widened to include the motion of the
   /// first level.
   template <typename Tasks, int P>
-  [[nodiscard]] Found<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
-                                          const JointVector& last, const Rows<N, P, Scalar>& rows,
-                                          const Box<N, Scalar>& box) const noexcept {
+  [[nodiscard]] Result<Tasks> with_reserve(const Tasks& tasks, const JointState& state, const JointVector& desired,
+                                           const JointVector& last, const Rows<N, P, Scalar>& rows,
+                                           const Box<N, Scalar>& box) const noexcept {
     const bool jerk = limits_.bounds_jerk();
     const Box<N, Scalar> whole = jerk ? box_in_time(limits_, state, last, box) : box;
     Box<N, Scalar> lower = jerk ? lower_limits_.box_in_time(state) : lower_limits_.box(state, last);
     lower = {whole.nearest(lower.lower), whole.nearest(lower.upper)};
     auto saturation = saturation_of(tasks, unit_, rows);
-    Found<Tasks> found = with_scale(tasks, desired, Scalar(1));
+    Result<Tasks> found = with_scale(tasks, desired, Scalar(1));
     if (!lower.contains(desired)) {
       const JointVector rest = rows.near(brake_in_proportion(limits_, state, whole), whole);
-      const JointVector wanted = braking_beside(tasks, desired, rest);
-      found = saturation(whole, rest, wanted);
-      if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, whole, rows, wanted, found);
+      const JointVector first = braking_in_null_space(tasks, desired, rest);
+      found = saturation(whole, rest, first);
+      if (found.scale < Scalar(1)) {
+        blend_with_least_squares<kLevel>(first_level(tasks), state.qd, whole, rows, first, found);
+      }
       if (!is_finite(found.u)) {
         found.u = rest;
         set_scale(found, Scalar(0));
@@ -201,13 +180,15 @@ class Limiter {
 
   /// Motion within the bounds that realises as much as possible of the desired motion.
   template <typename Saturation, typename Tasks, int P>
-  [[nodiscard]] Found<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
-                                    const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
-                                    const JointVector& desired) const noexcept {
+  [[nodiscard]] Result<Tasks> within(Saturation& saturation, const Tasks& tasks, const JointState& state,
+                                     const Box<N, Scalar>& box, const Rows<N, P, Scalar>& rows,
+                                     const JointVector& desired) const noexcept {
     if (box.contains(desired)) return with_scale(tasks, desired, Scalar(1));
     const JointVector rest = rows.near(brake_in_proportion(limits_, state, box), box);
-    Found<Tasks> found = saturation(box, rest, desired);
-    if (found.scale < Scalar(1)) yield<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
+    Result<Tasks> found = saturation(box, rest, desired);
+    if (found.scale < Scalar(1)) {
+      blend_with_least_squares<kLevel>(first_level(tasks), state.qd, box, rows, desired, found);
+    }
     if (is_finite(found.u)) {
       resolve_lower(saturation, box, desired, found);
     } else {
@@ -217,15 +198,8 @@ class Limiter {
     return found;
   }
 
-  /// Cost μ of null-space motion in beside(), as a fraction of ‖J‖²_F.
-  static constexpr Scalar kSelfMotion = Scalar(1e-4);
-  /// Eigenvalue of A along δ in beside() if null-space motion contributes nothing (ν = 0): cost of a tip error in this
-  /// direction, relative to other directions.
-  static constexpr Scalar kGivenUp = Scalar(1e-3);
-  /// ν = ‖Nv‖²/‖v‖² (GivenUp::self_motion) from which on A = I in beside(): null-space motion then contributes enough.
-  static constexpr Scalar kServes = Scalar(0.1);
-  /// Relative change c of a level in beside() up to which its task scale is not reduced.
-  static constexpr Scalar kUnseen = Scalar(0.01);
+  /// Relative change c of a level in limit_with_rows() up to which its task scale is not reduced.
+  static constexpr Scalar kNegligibleChange = Scalar(0.01);
 
   Limits<kLevel, N, Scalar> limits_;
   Limits<kLevel, N, Scalar> lower_limits_;  ///< Limits of the levels below the first level.

@@ -47,7 +47,7 @@ class Limits {
       const JointBounds<Scalar> joint = usable_bounds<kLevel>(i, bounds_.joint(i), tick);
       bounds_.set(i, joint);
       const bool enveloped = std::isfinite(joint.deceleration);
-      const Scalar least = bounds_jerk(i) ? kSoft * joint.acceleration / joint.jerk : tick / Scalar(2);
+      const Scalar least = bounds_jerk(i) ? kOffset * joint.acceleration / joint.jerk : tick / Scalar(2);
       const Scalar delay = enveloped ? joint.velocity_offset / joint.deceleration : least;
       const Scalar deceleration = enveloped ? joint.deceleration : joint.acceleration;
       upper_.set(i, joint.upper, delay, deceleration);
@@ -156,8 +156,8 @@ class Limits {
  private:
   using Envelopes = VelocityEnvelopes<kLevel, N, Scalar>;
 
-  template <typename Reach>
-  [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Reach&& reach) const noexcept {
+  template <typename Accelerations>
+  [[nodiscard]] Box<N, Scalar> box_of(const State<N, Scalar>& state, Accelerations&& accelerations) const noexcept {
     Box<N, Scalar> box{state.q, state.q};
     // This loop includes joints with a bound on jerk, so that the compiler vectorises the loop. The next loop replaces
     // their bounds.
@@ -167,7 +167,7 @@ class Limits {
     for (Eigen::Index i = 0; jerk_bounds_ > 0 && i < state.q.size(); ++i) {
       if (!bounds_jerk(i)) continue;
       const auto joint = jerk_limited(i);
-      const auto [low, high] = joint.viable(reach(i, joint), state.q(i), state.qd(i));
+      const auto [low, high] = joint.viable(accelerations(i, joint), state.q(i), state.qd(i));
       set(box, i, {motion(state.qd(i), low), motion(state.qd(i), high)});
     }
     return box;
@@ -185,9 +185,9 @@ class Limits {
     const Scalar least = w - bounds_.acceleration(i) * tick_;
     const Scalar fastest = std::clamp(v, least, most);
     const Scalar slowest = std::clamp(-v, least, most);
-    // With this order of arguments, min and max ignore NaN, the result of furthest() if the range has no end.
-    Scalar up = std::max(slowest, std::min(fastest, upper_[i].furthest(q, w, tick_)));
-    Scalar down = std::min(fastest, std::max(slowest, -lower_[i].furthest(-q, -w, tick_)));
+    // With this order of arguments, min and max ignore NaN, the result of largest_velocity() if the range has no end.
+    Scalar up = std::max(slowest, std::min(fastest, upper_[i].largest_velocity(q, w, tick_)));
+    Scalar down = std::min(fastest, std::max(slowest, -lower_[i].largest_velocity(-q, -w, tick_)));
     if (down > up) down = up = (down + up) / Scalar(2);
     if constexpr (kLevel == Level::kAcceleration) {
       up = std::clamp((up - w) / tick_, -bounds_.acceleration(i), bounds_.acceleration(i));
@@ -220,7 +220,7 @@ class Limits {
   Eigen::Index jerk_bounds_ = 0;  ///< Number of joints with a bound on jerk.
 
   /// c J/A² of a joint with a bound on jerk and without a given envelope (docs/limits.md, Bounds on jerk).
-  static constexpr Scalar kSoft = Scalar(2);
+  static constexpr Scalar kOffset = Scalar(2);
 };
 
 }  // namespace fpbm

@@ -16,27 +16,27 @@ inline constexpr bool kHasLower = false;
 
 /// Result with the motion u and the same scale for every level.
 template <int M, int N, typename Scalar>
-[[nodiscard]] Saturated<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
-                                              Scalar scale) noexcept {
+[[nodiscard]] SaturatedMotion<N, Scalar> with_scale(const Matrix<M, N, Scalar>&, const Vector<N, Scalar>& u,
+                                                    Scalar scale) noexcept {
   return {u, scale, 0, 0};
 }
 
 /// Sets the scale of every level.
 template <int N, typename Scalar>
-void set_scale(Saturated<N, Scalar>& motion, Scalar scale) noexcept {
+void set_scale(SaturatedMotion<N, Scalar>& motion, Scalar scale) noexcept {
   motion.scale = scale;
 }
 
 /// Multiplies the scale of each level by the scale of this level in another motion.
 template <int N, typename Scalar>
-void multiply_scales(Saturated<N, Scalar>& motion, const Saturated<N, Scalar>& other) noexcept {
+void multiply_scales(SaturatedMotion<N, Scalar>& motion, const SaturatedMotion<N, Scalar>& other) noexcept {
   motion.scale *= other.scale;
 }
 
-/// Multiplies the scale of each level by share(J), where J is the Jacobian of the level.
-template <int M, int N, typename Scalar, typename Share>
-void multiply_scales(Saturated<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const Share& share) noexcept {
-  motion.scale *= share(J);
+/// Multiplies the scale of each level by factor(J), where J is the Jacobian of the level.
+template <int M, int N, typename Scalar, typename Factor>
+void multiply_scales(SaturatedMotion<N, Scalar>& motion, const Matrix<M, N, Scalar>& J, const Factor& factor) noexcept {
+  motion.scale *= factor(J);
 }
 
 template <int M, int N, typename Scalar, int P>
@@ -49,6 +49,6 @@ template <int M, int N, typename Scalar, int P>
 /// Resolves the levels below the first level. A single task has none.
 template <int M, int N, typename Scalar, int P>
 void resolve_lower(const NullSpaceSaturation<M, N, Scalar, P>&, const Box<N, Scalar>&, const Vector<N, Scalar>&,
-                   const Saturated<N, Scalar>&) noexcept {}
+                   const SaturatedMotion<N, Scalar>&) noexcept {}
 
 }  // namespace fpbm

@@ -31,15 +31,15 @@ class RowProjection {
     const Matrix<M, M, Scalar> gram = sum_of(B, gram_of(J));
     Cholesky<M, Scalar> cholesky;
     const bool regular = cholesky.factor(gram) == Status::kOk;
-    ways_.resize(J.cols(), P);
+    inverse_columns_.resize(J.cols(), P);
     u_.resize(J.cols());
     for (Eigen::Index k = 0; k < rows.count; ++k) {
-      JointVector way = column(rows.g, k);  // H⁻¹g = g − Jᵀ(B + JJᵀ)⁻¹J g.
+      JointVector direction = column(rows.g, k);  // H⁻¹g = g − Jᵀ(B + JJᵀ)⁻¹J g.
       if (regular) {
-        const JointVector lost = transpose_times(J, cholesky.solve(product(J, way)));
-        way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - lost.coeff(i); });
+        const JointVector removed = transpose_times(J, cholesky.solve(product(J, direction)));
+        direction = entrywise(direction, [&](Eigen::Index i) { return direction.coeff(i) - removed.coeff(i); });
       }
-      set_column(ways_, k, way);
+      set_column(inverse_columns_, k, direction);
       sizes_(k) = gain(k, k);
     }
   }
@@ -50,13 +50,13 @@ class RowProjection {
     u_ = desired;
     count_ = 0;
     solved = false;
-    bool meets = false;
+    bool is_partial = false;
     for (int change = 0; change < kChanges * P; ++change) {
-      if (!meets && !find()) {
+      if (!is_partial && !find_violated()) {
         solved = true;
         break;
       }
-      if (!step(meets)) break;
+      if (!step(is_partial)) break;
     }
     return u_;
   }
@@ -78,11 +78,11 @@ class RowProjection {
   /// The row to be added counts as linearly dependent on the active rows if the independent part of gᵀH⁻¹g is below
   /// this fraction of gᵀH⁻¹g.
   static constexpr Scalar kIndependent = std::numeric_limits<Scalar>::digits > 24 ? Scalar(1e-9) : Scalar(1e-5);
-  using Share = Vector<Eigen::Dynamic, Scalar>;
+  using Rates = Vector<Eigen::Dynamic, Scalar>;
 
-  /// Sets met_ to the row whose violation is largest in the norm of H. Returns false if no row is violated beyond
+  /// Sets violated_ to the row whose violation is largest in the norm of H. Returns false if no row is violated beyond
   /// round-off.
-  [[nodiscard]] bool find() noexcept {
+  [[nodiscard]] bool find_violated() noexcept {
     Scalar worst(0);
     for (Eigen::Index k = 0; k < rows_.count; ++k) {
       const Scalar beyond = rows_.excess(k, u_);
@@ -91,54 +91,56 @@ class RowProjection {
       const Scalar round_off = kRoundOff * (std::abs(rows_.b(k)) + rows_.magnitude(k, u_));
       if (!(size > Scalar(0)) || !(beyond > round_off) || !(beyond * beyond > worst * size) || is_active(k)) continue;
       worst = beyond * beyond / size;
-      met_ = k;
+      violated_ = k;
     }
     multiplier_ = Scalar(0);
     return worst > Scalar(0);
   }
 
-  /// Moves u toward row met_ until u satisfies the row, or until the multiplier of an active row decreases to zero. In
-  /// the first case, row met_ becomes active. In the second case, the active row is released, and `meets` is set, since
-  /// row met_ is still violated. Returns false if no motion satisfies the row.
-  [[nodiscard]] bool step(bool& meets) noexcept {
-    Share share(count_);  // Decrease of each active row's multiplier per increase of the multiplier of row met_.
-    if (!find_shares(share)) return false;
-    JointVector way = column(ways_, met_);
+  /// Moves u toward row violated_ until u satisfies the row, or until the multiplier of an active row decreases to
+  /// zero. In the first case, row violated_ becomes active. In the second case, the active row is released, and
+  /// `is_partial` is set, since row violated_ is still violated. Returns false if no motion satisfies the row.
+  [[nodiscard]] bool step(bool& is_partial) noexcept {
+    Rates rates(count_);  // Decrease of each active row's multiplier per increase of the multiplier of row violated_.
+    if (!find_rates(rates)) return false;
+    JointVector direction = column(inverse_columns_, violated_);
     for (Eigen::Index j = 0; j < count_; ++j) {
-      way = entrywise(way, [&](Eigen::Index i) { return way.coeff(i) - share(j) * ways_.coeff(i, active_[j]); });
+      direction = entrywise(direction, [&](Eigen::Index i) {
+        return direction.coeff(i) - rates(j) * inverse_columns_.coeff(i, active_[j]);
+      });
     }
     Scalar length = std::numeric_limits<Scalar>::infinity();
     Eigen::Index leaving = -1;
     for (Eigen::Index j = 0; j < count_; ++j) {
-      if (!(share(j) > Scalar(0)) || !(multipliers_[j] < length * share(j))) continue;
-      length = multipliers_[j] / share(j);
+      if (!(rates(j) > Scalar(0)) || !(multipliers_[j] < length * rates(j))) continue;
+      length = multipliers_[j] / rates(j);
       leaving = j;
     }
-    const Scalar slope = rows_.along(met_, way);
-    const bool independent = slope > kIndependent * sizes_(met_) && count_ < kMost;
-    const Scalar beyond = rows_.excess(met_, u_);
+    const Scalar slope = rows_.along(violated_, direction);
+    const bool independent = slope > kIndependent * sizes_(violated_) && count_ < kMost;
+    const Scalar beyond = rows_.excess(violated_, u_);
     if (independent && beyond <= length * slope) {
       length = beyond / slope;
       leaving = -1;
     } else if (leaving < 0) {
       return false;
     }
-    if (independent) u_ = entrywise(u_, [&](Eigen::Index i) { return u_.coeff(i) - length * way.coeff(i); });
+    if (independent) u_ = entrywise(u_, [&](Eigen::Index i) { return u_.coeff(i) - length * direction.coeff(i); });
     multiplier_ += length;
-    for (Eigen::Index j = 0; j < count_; ++j) multipliers_[j] -= length * share(j);
-    meets = leaving >= 0;
-    meets ? drop(leaving) : add_met();
+    for (Eigen::Index j = 0; j < count_; ++j) multipliers_[j] -= length * rates(j);
+    is_partial = leaving >= 0;
+    is_partial ? release(leaving) : activate();
     return true;
   }
 
-  void add_met() noexcept {
-    for (Eigen::Index j = 0; j < count_; ++j) gains_(count_, j) = by_met_(j);
-    gains_(count_, count_) = sizes_(met_);
-    active_[count_] = met_;
+  void activate() noexcept {
+    for (Eigen::Index j = 0; j < count_; ++j) gains_(count_, j) = by_violated_(j);
+    gains_(count_, count_) = sizes_(violated_);
+    active_[count_] = violated_;
     multipliers_[count_++] = multiplier_;
   }
 
-  void drop(Eigen::Index leaving) noexcept {
+  void release(Eigen::Index leaving) noexcept {
     --count_;
     for (Eigen::Index j = leaving; j < count_; ++j) {
       active_[j] = active_[j + 1];
@@ -147,24 +149,24 @@ class RowProjection {
     }
   }
 
-  /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, where the columns of G are the active rows and g is row met_. Returns false if the
+  /// r in (GᵀH⁻¹G) r = GᵀH⁻¹g, where the columns of G are the active rows and g is row violated_. Returns false if the
   /// active rows are dependent.
-  [[nodiscard]] bool find_shares(Share& share) noexcept {
+  [[nodiscard]] bool find_rates(Rates& rates) noexcept {
     if (count_ == 0) return true;
     Matrix<Eigen::Dynamic, Eigen::Dynamic, Scalar> gram(count_, count_);
     for (Eigen::Index j = 0; j < count_; ++j) {
-      share(j) = by_met_(j) = gain(active_[j], met_);
+      rates(j) = by_violated_(j) = gain(active_[j], violated_);
       for (Eigen::Index i = j; i < count_; ++i) gram(i, j) = gains_(i, j);
     }
     Cholesky<Eigen::Dynamic, Scalar> cholesky;
     if (cholesky.factor(gram) != Status::kOk) return false;
-    share = cholesky.solve(share);
+    rates = cholesky.solve(rates);
     return true;
   }
 
   /// gᵢᵀ H⁻¹ gⱼ
   [[nodiscard]] Scalar gain(Eigen::Index i, Eigen::Index j) const noexcept {
-    return sum_over(u_, [&](Eigen::Index k) { return rows_.g.coeff(k, i) * ways_.coeff(k, j); });
+    return sum_over(u_, [&](Eigen::Index k) { return rows_.g.coeff(k, i) * inverse_columns_.coeff(k, j); });
   }
 
   [[nodiscard]] bool is_active(Eigen::Index k) const noexcept {
@@ -172,14 +174,14 @@ class RowProjection {
   }
 
   Rows<N, P, Scalar> rows_;
-  Matrix<N, P, Scalar> ways_;  ///< Column k is H⁻¹g_k.
+  Matrix<N, P, Scalar> inverse_columns_;  ///< Column k is H⁻¹g_k.
   JointVector u_;
-  Eigen::Index met_ = 0;           ///< Violated row that becomes active next.
-  Scalar multiplier_ = Scalar(0);  ///< Multiplier of row met_.
+  Eigen::Index violated_ = 0;      ///< Violated row that becomes active next.
+  Scalar multiplier_ = Scalar(0);  ///< Multiplier of row violated_.
   Eigen::Index count_ = 0;
   Eigen::Index active_[kMost];
   Vector<P, Scalar> sizes_;             ///< gain(k, k)
-  Vector<kMost, Scalar> by_met_;        ///< gain() of the active rows with row met_.
+  Vector<kMost, Scalar> by_violated_;   ///< gain() of the active rows with row violated_.
   Matrix<kMost, kMost, Scalar> gains_;  ///< gain() of the active rows, lower triangle.
   Scalar multipliers_[kMost];
 };

@@ -45,16 +45,16 @@ struct Rows {
 
   /// Largest fraction, at most 1, of the step between two motions that the rows admit. The motion `from` satisfies the
   /// rows up to round-off.
-  [[nodiscard]] Scalar share(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
+  [[nodiscard]] Scalar admitted_fraction(const Vector<N, Scalar>& from, const Vector<N, Scalar>& to) const noexcept {
     constexpr Scalar kRoundOff = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
-    Scalar share(1);
+    Scalar fraction(1);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Scalar slack = kRoundOff * (std::abs(b(k)) + magnitude(k, from) + magnitude(k, to));
-      const Scalar room = slack - excess(k, from);
+      const Scalar round_off = kRoundOff * (std::abs(b(k)) + magnitude(k, from) + magnitude(k, to));
+      const Scalar slack = round_off - excess(k, from);
       const Scalar toward = change(k, from, to);
-      if (toward * share > room) share = room > Scalar(0) ? room / toward : Scalar(0);
+      if (toward * fraction > slack) fraction = slack > Scalar(0) ? slack / toward : Scalar(0);
     }
-    return share;
+    return fraction;
   }
 
   /// A motion in a box that satisfies the rows, or almost, near u. If u satisfies the rows, the result is u.
@@ -92,7 +92,9 @@ struct Rows<N, 0, Scalar> {
   [[nodiscard]] static const Vector<N, Scalar>& near(const Vector<N, Scalar>& u, const Box<N, Scalar>&) noexcept {
     return u;
   }
-  [[nodiscard]] static Scalar share(const Vector<N, Scalar>&, const Vector<N, Scalar>&) noexcept { return Scalar(1); }
+  [[nodiscard]] static Scalar admitted_fraction(const Vector<N, Scalar>&, const Vector<N, Scalar>&) noexcept {
+    return Scalar(1);
+  }
 };
 
 }  // namespace fpbm

@@ -7,7 +7,7 @@
 #include "fpbm/limits/box.hpp"
 #include "fpbm/limits/held_joints.hpp"
 #include "fpbm/limits/rows.hpp"
-#include "fpbm/limits/saturated.hpp"
+#include "fpbm/limits/saturated_motion.hpp"
 #include "fpbm/linalg/level_space.hpp"
 #include "fpbm/linalg/null_basis.hpp"
 #include "fpbm/linalg/self_motion.hpp"
@@ -69,8 +69,8 @@ class NullSpaceSaturation {
     add_rows(n);
   }
 
-  [[nodiscard]] Saturated<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
-                                                const JointVector& desired) noexcept {
+  [[nodiscard]] SaturatedMotion<N, Scalar> operator()(const Box<N, Scalar>& box, const JointVector& rest,
+                                                      const JointVector& desired) noexcept {
     using std::abs;
     const Eigen::Index joints = desired.size();
     const Eigen::Index n = Z_.rows();
@@ -92,7 +92,7 @@ class NullSpaceSaturation {
     }
     All u(n);
     for (Eigen::Index i = 0; i < n; ++i) u.coeffRef(i) = Scalar(0);
-    Saturated<N, Scalar> result{rest, Scalar(0), 0, 0};
+    SaturatedMotion<N, Scalar> result{rest, Scalar(0), 0, 0};
     held_.clear();
     const Eigen::Index most = kPasses * n;
     while (result.passes < most) {
@@ -105,9 +105,9 @@ class NullSpaceSaturation {
       Eigen::Index hit = -1;
       for (Eigen::Index i = 0; i < n; ++i) {
         if (!(abs(rate(i)) > still) || held_.has(i)) continue;
-        const Scalar reach = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
-        if (reach < step) {
-          step = reach > Scalar(0) ? reach : Scalar(0);
+        const Scalar distance = ((rate(i) > Scalar(0) ? upper(i) : lower(i)) - u(i)) / rate(i);
+        if (distance < step) {
+          step = distance > Scalar(0) ? distance : Scalar(0);
           hit = i;
         }
       }
@@ -188,7 +188,7 @@ class NullSpaceSaturation {
     }
   }
 
-  static void count(Saturated<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
+  static void count(SaturatedMotion<N, Scalar>& result, Eigen::Index held, Eigen::Index joints) noexcept {
     if (held < joints) result.joints |= joint_bit(held);
     if (held >= joints) result.rows |= std::uint32_t(1) << (held - joints);
   }

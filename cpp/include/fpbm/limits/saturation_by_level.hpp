@@ -63,7 +63,7 @@ class SaturationByLevel {
         result.u = goal;
       } else {
         NullSpaceSaturation<Eigen::Dynamic, N, Scalar, P> saturation(space, unit_, rows_);
-        const Saturated<N, Scalar> found = saturation(box, result.u, goal);
+        const SaturatedMotion<N, Scalar> found = saturation(box, result.u, goal);
         result.scales[k] = found.u.allFinite() ? found.scale : Scalar(0);
         if (found.u.allFinite()) result.u = found.u;
         result.joints |= found.joints;

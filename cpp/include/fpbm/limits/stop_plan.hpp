@@ -12,16 +12,17 @@
 namespace fpbm {
 
 /// Bounds on the joint displacements during a motion: at any time, the displacement from the start is
-/// s·way + t·tick + rest [rad] or [m]. s and t increase from 0 to 1, and each entry of `rest` is between low and high.
+/// s·line + t·ramp_correction + o [rad] or [m]. s and t increase from 0 to 1, and each entry of o is between low and
+/// high.
 template <int N, typename Scalar = double>
-struct Sweep {
-  Vector<N, Scalar> way;   ///< Displacement at the constant velocity after the ramp.
-  Vector<N, Scalar> tick;  ///< Correction of `way` for the last tick and the ramp.
-  Vector<N, Scalar> low;   ///< ≤ 0
-  Vector<N, Scalar> high;  ///< ≥ 0
-  /// Velocities at the start [rad/s]. s·way + t·tick is a combination of `begun` and −tick with non-negative
-  /// coefficients.
-  Vector<N, Scalar> begun;
+struct StopDisplacement {
+  Vector<N, Scalar> line;             ///< Displacement at the constant velocity after the ramp.
+  Vector<N, Scalar> ramp_correction;  ///< Correction of `line` for the last tick and the ramp.
+  Vector<N, Scalar> low;              ///< ≤ 0
+  Vector<N, Scalar> high;             ///< ≥ 0
+  /// Velocities at the start [rad/s]. s·line + t·ramp_correction is a combination of `start_velocity` and
+  /// −ramp_correction with non-negative coefficients.
+  Vector<N, Scalar> start_velocity;
 };
 
 /// Stopping trajectory from a viable state, known in closed form until rest (docs/clearance.md, Algorithm, Stopping
@@ -47,54 +48,53 @@ class StopPlan {
     const auto& bounds = limits.bounds();
     for (Eigen::Index i = 0; i < last.size(); ++i) {
       using std::abs;
-      if (limits.bounds_jerk(i)) let_go_ = std::max(let_go_, ticks_for(abs(last(i)), h * bounds.jerk(i)));
+      if (limits.bounds_jerk(i)) ramp_ticks_ = std::max(ramp_ticks_, ticks_for(abs(last(i)), h * bounds.jerk(i)));
     }
-    velocity_ += h * gained() * last;
+    velocity_ += h * ramp_velocity_change() * last;
     for (Eigen::Index i = 0; i < last.size(); ++i) {
       profile_ =
           profile_.together(StopProfile<Scalar>::quickest(velocity_(i), bounds.acceleration(i), bounds.jerk(i), h));
     }
-    profile_.wait = let_go_;
+    profile_.wait = ramp_ticks_;
     for (Eigen::Index i = 0; i < last.size(); ++i) {
-      if (!keeps_bounds(limits, i, state)) own_ |= joint_bit(i);
+      if (!keeps_bounds(limits, i, state)) stops_alone_ |= joint_bit(i);
     }
   }
 
-  /// Displacements of an arm at rest.
-  [[nodiscard]] Sweep<N, Scalar> sweep() const noexcept {
+  /// Displacement of an arm at rest: zero.
+  [[nodiscard]] StopDisplacement<N, Scalar> displacement() const noexcept {
     return {velocity_, velocity_, velocity_, velocity_, velocity_};
   }
 
   /// Displacement bounds from the state `before` the last tick until rest. start: state after the last tick, at the
   /// start of the plan.
-  [[nodiscard]] Sweep<N, Scalar> sweep(const JointLimits& limits, const State<N, Scalar>& before,
-                                       const State<N, Scalar>& start) const noexcept {
+  [[nodiscard]] StopDisplacement<N, Scalar> displacement(const JointLimits& limits, const State<N, Scalar>& before,
+                                                         const State<N, Scalar>& start) const noexcept {
     using std::abs;
     const Eigen::Index n = last_.size();
     const Scalar h = limits.tick();
     const JointVector zero = JointVector::Zero(n);
-    Sweep<N, Scalar> sweep{zero, zero, zero, zero, zero};
-    const Scalar ticks = Scalar(1) + profile_.way(kLevel);
-    // Deficit of the displacement, divided by h² last_, compared with the constant velocity after the ramp:
-    // gained() + 1/2 in the last tick (gained() at velocity level, where the velocity at the end of a tick counts), and
-    // late() in the ramp.
-    const Scalar lost = gained() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5)) + late();
+    StopDisplacement<N, Scalar> result{zero, zero, zero, zero, zero};
+    const Scalar ticks = Scalar(1) + profile_.coasting_ticks(kLevel);
+    // Deficit of the displacement in the last tick, compared with a tick at the velocity after the ramp, divided by h²
+    // last_. At velocity level, the velocity at the end of the tick counts.
+    const Scalar tick_deficit = ramp_velocity_change() + (kLevel == Level::kVelocity ? Scalar(0) : Scalar(0.5));
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (!is_own(i)) {
-        sweep.way(i) = h * ticks * velocity_(i);
-        sweep.tick(i) = -h * h * lost * last_(i);
-        sweep.begun(i) = before.qd(i);
+      if (!stops_alone(i)) {
+        result.line(i) = h * ticks * velocity_(i);
+        result.ramp_correction(i) = -h * h * (tick_deficit + ramp_deficit()) * last_(i);
+        result.start_velocity(i) = before.qd(i);
         continue;
       }
-      const auto [low, high] = own_reach(limits, i, start.qd(i));
+      const auto [low, high] = single_stop_displacement(limits, i, start.qd(i));
       const Scalar tick = start.q(i) - before.q(i);
       // Within a tick of constant acceleration a, the position leaves the interval between its end points by h²|a|/8 at
       // most.
       const Scalar between = kLevel == Level::kVelocity ? Scalar(0) : h * h / Scalar(8) * abs(last_(i));
-      sweep.low(i) = std::min(tick, Scalar(0)) - between + low;
-      sweep.high(i) = std::max(tick, Scalar(0)) + between + high;
+      result.low(i) = std::min(tick, Scalar(0)) - between + low;
+      result.high(i) = std::max(tick, Scalar(0)) + between + high;
     }
-    return sweep;
+    return result;
   }
 
   /// Accelerations of the next tick of the plan. state: state at the start of this tick. before: accelerations of the
@@ -104,12 +104,12 @@ class StopPlan {
     const Scalar h = limits.tick();
     JointVector u(before.size());
     for (Eigen::Index i = 0; i < u.size(); ++i) {
-      if (is_own(i)) {
+      if (stops_alone(i)) {
         u(i) = quickest(limits, i, state, before);
-      } else if (k_ < let_go_) {
-        u(i) = last_(i) * (Scalar(1) - (k_ + Scalar(1)) / let_go_);
+      } else if (k_ < ramp_ticks_) {
+        u(i) = last_(i) * (Scalar(1) - (k_ + Scalar(1)) / ramp_ticks_);
       } else if (k_ + Scalar(1) < profile_.ticks()) {
-        u(i) = -profile_.share(k_) * velocity_(i) / h;
+        u(i) = -profile_.removed_fraction(k_) * velocity_(i) / h;
       } else {
         u(i) = -state.qd(i) / h;  // Exactly to rest.
       }
@@ -118,27 +118,28 @@ class StopPlan {
     return u;
   }
 
-  /// Stopping distance of the plan divided by h times the velocity after the ramp.
-  [[nodiscard]] Scalar average() const noexcept { return profile_.way(kLevel); }
+  /// Number of ticks at the velocity after the ramp that cover the stopping distance of the plan.
+  [[nodiscard]] Scalar coasting_ticks() const noexcept { return profile_.coasting_ticks(kLevel); }
 
-  /// average() without rounding to whole ticks, approximately: a continuous function of the state.
-  [[nodiscard]] Scalar smooth_average(const JointLimits& limits) const noexcept {
+  /// coasting_ticks() without rounding to whole ticks, approximately: a continuous function of the state.
+  [[nodiscard]] Scalar smooth_coasting_ticks(const JointLimits& limits) const noexcept {
     using std::abs;
     Scalar most(0);
     for (Eigen::Index i = 0; i < velocity_.size(); ++i) {
       const Scalar speed = abs(velocity_(i));
       if (!(speed > Scalar(0))) continue;
       const Scalar deceleration = limits.bounds().acceleration(i);
-      const Scalar way = limits.bounds_jerk(i) ? QuickestStop<Scalar>{deceleration, limits.bounds().jerk(i)}.way(speed)
-                                               : speed * speed / (Scalar(2) * deceleration);
-      most = std::max(most, way / (limits.tick() * speed));
+      const Scalar distance = limits.bounds_jerk(i)
+                                  ? QuickestStop<Scalar>{deceleration, limits.bounds().jerk(i)}.stopping_distance(speed)
+                                  : speed * speed / (Scalar(2) * deceleration);
+      most = std::max(most, distance / (limits.tick() * speed));
     }
     return profile_.wait + most;
   }
 
   /// Change of the velocity due to an acceleration u of the next tick, until u has decreased to zero, divided by h u:
   /// 1 for the tick itself, plus (r − 1)/2 for a ramp of r ticks. r is the largest A/(h J) of all joints, rounded up.
-  [[nodiscard]] static Scalar latency(const JointLimits& limits) noexcept {
+  [[nodiscard]] static Scalar acting_ticks(const JointLimits& limits) noexcept {
     Scalar most(0);
     for (Eigen::Index i = 0; i < limits.bounds().jerk.size(); ++i) {
       if (!limits.bounds_jerk(i)) continue;
@@ -160,16 +161,18 @@ class StopPlan {
     return ceil((Scalar(1) - kRoundOff) * (acceleration / change));
   }
 
-  [[nodiscard]] bool is_own(Eigen::Index i) const noexcept { return (own_ >> i & 1U) != 0; }
+  [[nodiscard]] bool stops_alone(Eigen::Index i) const noexcept { return (stops_alone_ >> i & 1U) != 0; }
 
   /// Change of the velocity in the ramp, in which the acceleration a decreases to zero in r ticks, divided by h a: the
   /// sum of 1 − (k + 1)/r over k < r, which is (r − 1)/2.
-  [[nodiscard]] Scalar gained() const noexcept { return std::max(let_go_ - Scalar(1), Scalar(0)) / Scalar(2); }
+  [[nodiscard]] Scalar ramp_velocity_change() const noexcept {
+    return std::max(ramp_ticks_ - Scalar(1), Scalar(0)) / Scalar(2);
+  }
 
   /// Deficit of the displacement in the ramp, compared with r ticks at the constant velocity after the ramp, divided by
   /// h² a: (r − 1)(2r − 1)/12, or (r − 1)(r − 2)/6 at velocity level.
-  [[nodiscard]] Scalar late() const noexcept {
-    const Scalar r = std::max(let_go_, Scalar(1));
+  [[nodiscard]] Scalar ramp_deficit() const noexcept {
+    const Scalar r = std::max(ramp_ticks_, Scalar(1));
     return kLevel == Level::kVelocity ? std::max((r - Scalar(1)) * (r - Scalar(2)) / Scalar(6), Scalar(0))
                                       : (r - Scalar(1)) * (Scalar(2) * r - Scalar(1)) / Scalar(12);
   }
@@ -180,13 +183,13 @@ class StopPlan {
   [[nodiscard]] bool keeps_bounds(const JointLimits& limits, Eigen::Index i,
                                   const State<N, Scalar>& start) const noexcept {
     using std::abs;
-    const Scalar left = velocity_(i);
-    const Scalar v = start.qd(i) * left > left * left ? start.qd(i) : left;
+    const Scalar after_ramp = velocity_(i);
+    const Scalar v = start.qd(i) * after_ramp > after_ramp * after_ramp ? start.qd(i) : after_ramp;
     if (!(abs(v) <= limits.bounds().velocity(i))) return false;
     const Scalar h = limits.tick();
-    const Scalar coasts = h * (let_go_ + profile_.ramp - Scalar(1));
-    const Scalar deceleration = abs(left) / (h * (profile_.brake - profile_.ramp + Scalar(1)));
-    return limits.allows_stop(i, start.q(i) + coasts * v, v, deceleration);
+    const Scalar coasting = h * (ramp_ticks_ + profile_.ramp - Scalar(1));
+    const Scalar deceleration = abs(after_ramp) / (h * (profile_.brake - profile_.ramp + Scalar(1)));
+    return limits.allows_stop(i, start.q(i) + coasting * v, v, deceleration);
   }
 
   /// Acceleration of the next tick in the shortest stop of joint i alone.
@@ -200,31 +203,32 @@ class StopPlan {
   }
 
   /// Bounds on the displacement in the shortest stop of joint i alone [rad] or [m].
-  [[nodiscard]] Interval<Scalar> own_reach(const JointLimits& limits, Eigen::Index i, Scalar qd) const noexcept {
+  [[nodiscard]] Interval<Scalar> single_stop_displacement(const JointLimits& limits, Eigen::Index i,
+                                                          Scalar qd) const noexcept {
     using std::abs;
     const Scalar h = limits.tick();
     const Scalar most = limits.bounds().acceleration(i);
     if (!limits.bounds_jerk(i)) {
-      const Scalar way = abs(qd) * (abs(qd) / most + h) / Scalar(2);
-      return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), way} : Interval<Scalar>{-way, Scalar(0)};
+      const Scalar distance = abs(qd) * (abs(qd) / most + h) / Scalar(2);
+      return qd > Scalar(0) ? Interval<Scalar>{Scalar(0), distance} : Interval<Scalar>{-distance, Scalar(0)};
     }
     // Upper bound: the velocity never exceeds `top`. The joint moves at `top` until the acceleration is zero, and then
     // makes the shortest stop from `top`.
     const Scalar jerk = limits.bounds().jerk(i);
-    const Scalar lost = abs(last_(i)) / jerk;
-    const Scalar top = abs(qd) + abs(last_(i)) * lost / Scalar(2);
-    const Scalar way = top * (lost + Scalar(2) * h) + QuickestStop<Scalar>{most, jerk}.way(top);
+    const Scalar ramp = abs(last_(i)) / jerk;
+    const Scalar top = abs(qd) + abs(last_(i)) * ramp / Scalar(2);
+    const Scalar distance = top * (ramp + Scalar(2) * h) + QuickestStop<Scalar>{most, jerk}.stopping_distance(top);
     const bool forth = qd > Scalar(0) && velocity_(i) >= Scalar(0);
     const bool back = qd < Scalar(0) && velocity_(i) <= Scalar(0);
-    return {forth ? Scalar(0) : -way, back ? Scalar(0) : way};
+    return {forth ? Scalar(0) : -distance, back ? Scalar(0) : distance};
   }
 
-  StopProfile<Scalar> profile_;  ///< For the synchronised stop.
-  JointVector last_;             ///< Acceleration of the tick before the plan.
-  Scalar let_go_ = Scalar(0);    ///< Length r of the ramp in ticks: 0 if no jerk is bounded.
-  JointVector velocity_;         ///< Velocity after the ramp.
-  JointBits own_ = 0;            ///< Bit i is set if joint i follows its own shortest stop.
-  Scalar k_ = Scalar(0);         ///< Number of completed ticks.
+  StopProfile<Scalar> profile_;    ///< For the synchronised stop.
+  JointVector last_;               ///< Acceleration of the tick before the plan.
+  Scalar ramp_ticks_ = Scalar(0);  ///< Length r of the ramp in ticks: 0 if no jerk is bounded.
+  JointVector velocity_;           ///< Velocity after the ramp.
+  JointBits stops_alone_ = 0;      ///< Bit i is set if joint i follows its own shortest stop.
+  Scalar k_ = Scalar(0);           ///< Number of completed ticks.
 };
 
 }  // namespace fpbm

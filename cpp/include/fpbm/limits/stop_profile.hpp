@@ -39,14 +39,14 @@ struct StopProfile {
     return {std::max(wait, other.wait), longest, longest + std::max(longest - Scalar(1), even)};
   }
 
-  /// Stopping distance divided by h v. At velocity level, the displacement in a tick is h times the velocity at its
-  /// end.
-  [[nodiscard]] Scalar way(Level level) const noexcept {
+  /// Number of ticks at the velocity v that cover the stopping distance. At velocity level, the displacement in a tick
+  /// is h times the velocity at its end.
+  [[nodiscard]] Scalar coasting_ticks(Level level) const noexcept {
     return wait + (level == Level::kVelocity ? std::max(brake - Scalar(1), Scalar(0)) : brake) / Scalar(2);
   }
 
   /// Fraction of the velocity that tick k = 0, 1, … removes.
-  [[nodiscard]] Scalar share(Scalar k) const noexcept {
+  [[nodiscard]] Scalar removed_fraction(Scalar k) const noexcept {
     const Scalar at = k - wait;
     if (!(Scalar(0) <= at && at < brake)) return Scalar(0);
     return std::min({at + Scalar(1), ramp, brake - at}) / (ramp * (brake - ramp + Scalar(1)));

@@ -8,7 +8,7 @@
 
 #include "fpbm/core/types.hpp"
 #include "fpbm/limits/one_level.hpp"
-#include "fpbm/limits/saturated.hpp"
+#include "fpbm/limits/saturated_motion.hpp"
 
 namespace fpbm {
 
@@ -45,7 +45,7 @@ class TaskLevels {
 
 /// Joint motion within a box that resolves task levels.
 template <int N, typename Scalar, int K>
-struct SaturatedLevels : Saturated<N, Scalar> {
+struct SaturatedLevels : SaturatedMotion<N, Scalar> {
   std::array<Scalar, K> scales;  ///< Task scale s_k of each level. scales[0] is scale.
 };
 
@@ -83,11 +83,11 @@ void multiply_scales(SaturatedLevels<N, Scalar, K>& motion, const SaturatedLevel
   motion.scale = motion.scales[0];
 }
 
-template <int N, typename Scalar, typename... Matrices, typename Share>
+template <int N, typename Scalar, typename... Matrices, typename Factor>
 void multiply_scales(SaturatedLevels<N, Scalar, static_cast<int>(sizeof...(Matrices))>& motion,
-                     const TaskLevels<N, Scalar, Matrices...>& levels, const Share& share) noexcept {
-  motion.scales[0] *= share(levels.first());
-  levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= share(J); });
+                     const TaskLevels<N, Scalar, Matrices...>& levels, const Factor& factor) noexcept {
+  motion.scales[0] *= factor(levels.first());
+  levels.each_lower([&](std::size_t k, const auto& J) noexcept { motion.scales[k] *= factor(J); });
   motion.scale = motion.scales[0];
 }
 

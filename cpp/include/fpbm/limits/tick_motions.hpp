@@ -28,14 +28,14 @@ template <Level kLevel, int N, typename Scalar>
   if constexpr (kLevel == Level::kAcceleration) {
     return goal;
   } else {
-    Scalar share(1);
+    Scalar fraction(1);
     for (Eigen::Index i = 0; i < goal.size(); ++i) {
       if (!limits.bounds_jerk(i)) continue;
       const Scalar change = std::abs(goal(i) - qd(i));
       const Scalar most = limits.tick() * limits.jerk_limited(i).change(change);
-      if (share * change > most) share = most / change;
+      if (fraction * change > most) fraction = most / change;
     }
-    return entrywise(qd, [&](Eigen::Index i) { return qd(i) + share * (goal(i) - qd(i)); });
+    return entrywise(qd, [&](Eigen::Index i) { return qd(i) + fraction * (goal(i) - qd(i)); });
   }
 }
 

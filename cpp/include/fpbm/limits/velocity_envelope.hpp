@@ -19,12 +19,13 @@ namespace fpbm {
 /// number overflows if d is very large.
 template <Level kLevel, typename Scalar>
 struct VelocityEnvelope {
-  Scalar rest;      ///< r, largest admissible position [rad] or [m]; infinite if there is no end.
-  Scalar delay;     ///< c/d [s]
-  Scalar softness;  ///< 1/d [s²/rad] or [s²/m]
+  Scalar stop_position;  ///< r, largest admissible position [rad] or [m]; infinite if there is no end.
+  Scalar delay;          ///< c/d [s]
+  Scalar softness;       ///< 1/d [s²/rad] or [s²/m]
 
   [[nodiscard]] bool allows(Scalar q, Scalar qd) const noexcept {
-    return q <= rest && (qd <= Scalar(0) || qd * (qd * softness + Scalar(2) * delay) <= Scalar(2) * (rest - q));
+    return q <= stop_position &&
+           (qd <= Scalar(0) || qd * (qd * softness + Scalar(2) * delay) <= Scalar(2) * (stop_position - q));
   }
 
   /// Whether the envelope admits the whole stop from a velocity v ≥ 0 at a constant deceleration b.
@@ -33,10 +34,11 @@ struct VelocityEnvelope {
   /// holds for all velocities of the stop if it holds at the start of the stop and at the minimum of the left side,
   /// v = (c/d)/(1/b − 1/d), if the stop passes this velocity.
   [[nodiscard]] bool allows_stop(Scalar q, Scalar v, Scalar b) const noexcept {
-    if (!(v > Scalar(0))) return q <= rest;
-    const Scalar left = Scalar(2) * (rest - q) - v * v / b;  // e
-    const Scalar bend = Scalar(1) / b - softness;
-    return left >= Scalar(0) && allows(q, v) && (!(v * bend > delay) || left * bend >= delay * delay);
+    if (!(v > Scalar(0))) return q <= stop_position;
+    const Scalar left = Scalar(2) * (stop_position - q) - v * v / b;  // e
+    const Scalar extra_softness = Scalar(1) / b - softness;
+    return left >= Scalar(0) && allows(q, v) &&
+           (!(v * extra_softness > delay) || left * extra_softness >= delay * delay);
   }
 
   /// Largest velocity w⁺ after a tick of length h that the envelope admits at the position q⁺ after the tick: the root
@@ -45,16 +47,16 @@ struct VelocityEnvelope {
   ///
   /// Beyond r, the mirrored law applies: w⁺ is negative, and −w⁺ is the velocity from which the joint can still stop at
   /// r. NaN if there is no end.
-  [[nodiscard]] Scalar furthest(Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
+  [[nodiscard]] Scalar largest_velocity(Scalar q, [[maybe_unused]] Scalar w, Scalar h) const noexcept {
     using std::abs;
     using std::sqrt;
-    Scalar way = Scalar(2) * (rest - q);
-    Scalar late = delay + h;
+    Scalar twice_distance = Scalar(2) * (stop_position - q);
+    Scalar lag = delay + h;
     if constexpr (kLevel == Level::kAcceleration) {
-      way -= h * w;
-      late = delay + h / Scalar(2);
+      twice_distance -= h * w;
+      lag = delay + h / Scalar(2);
     }
-    return way / (sqrt(late * late + abs(way) * softness) + late);
+    return twice_distance / (sqrt(lag * lag + abs(twice_distance) * softness) + lag);
   }
 
   /// Largest G = q̇²/2d + q̇ c/d + q − r of a stop with the jerk −J (docs/limits.md, Bounds on jerk). G ≤ 0 within the
@@ -83,16 +85,16 @@ template <Level kLevel, int N, typename Scalar>
 class VelocityEnvelopes {
  public:
   void resize(Eigen::Index n) {
-    for (JointVector* row : {&rest_, &delay_, &softness_}) row->resize(n);
+    for (JointVector* row : {&stop_position_, &delay_, &softness_}) row->resize(n);
   }
 
   [[nodiscard]] VelocityEnvelope<kLevel, Scalar> operator[](Eigen::Index i) const noexcept {
-    return {rest_.coeff(i), delay_.coeff(i), softness_.coeff(i)};
+    return {stop_position_.coeff(i), delay_.coeff(i), softness_.coeff(i)};
   }
 
   /// delay: c/d [s]. Infinite deceleration: the deceleration is not limited.
-  void set(Eigen::Index i, Scalar rest, Scalar delay, Scalar deceleration) noexcept {
-    rest_(i) = rest;
+  void set(Eigen::Index i, Scalar stop_position, Scalar delay, Scalar deceleration) noexcept {
+    stop_position_(i) = stop_position;
     delay_(i) = delay;
     softness_(i) = Scalar(1) / deceleration;
   }
@@ -101,7 +103,7 @@ class VelocityEnvelopes {
   using JointVector = Vector<N, Scalar>;
 
   // A vector for each member, so that the compiler vectorises over the joints.
-  JointVector rest_;
+  JointVector stop_position_;
   JointVector delay_;
   JointVector softness_;
 };

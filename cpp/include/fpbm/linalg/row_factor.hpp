@@ -43,9 +43,9 @@ class RowFactor {
       each(kFirst, j, [&](Eigen::Index k) { whole += L_[j][k] * L_[j][k] * squares[k]; });
       each(next(j), m, [&](auto i) {
         Value* const row = Q_.data() + i * n;
-        const Value share = dot(n, row, column) * reciprocal_[j];
-        L_[i][j] = share;
-        subtract(n, row, share, column);
+        const Value coefficient = dot(n, row, column) * reciprocal_[j];
+        L_[i][j] = coefficient;
+        subtract(n, row, coefficient, column);
       });
     });
     const Value smallest = Value(Scalar(kPivotTolerance / static_cast<Number<Scalar>>(Eigen::Index(m)))) * whole;
@@ -55,19 +55,19 @@ class RowFactor {
       set_nan_unless(regular);
       return Status::kOk;
     } else {
-      return regular ? Status::kOk : lost(At);
+      return regular ? Status::kOk : failure(At);
     }
   }
 
   /// Sets all solutions of a lane to NaN if the mask of the lane is false.
   void set_nan_unless(const Mask<Scalar>& truth) noexcept {
-    // NaN in the first entry makes sum() and without() NaN, NaN in the last entry makes back() NaN.
+    // NaN in the first entry makes combine() and project() NaN, NaN in the last entry makes back_substitute() NaN.
     fpbm::set_nan_unless(truth, reciprocal_[0]);
     fpbm::set_nan_unless(truth, reciprocal_[rows() - 1]);
   }
 
   /// Coefficients s = D⁻¹L⁻¹b of A⁺b in the columns of Q: A⁺b = Q s.
-  [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+  [[nodiscard]] Vector<M, Value> coefficients(const Vector<M, Value>& b) const noexcept {
     Vector<M, Value> s = b;
     const auto m = rows();
     each(kFirst, m, [&](auto i) { each(kFirst, i, [&](Eigen::Index j) { s.coeffRef(i) -= L_[i][j] * s.coeff(j); }); });
@@ -79,18 +79,18 @@ class RowFactor {
   ///
   /// Each factor is applied to the result of the previous factor. This is slightly more accurate than I − Q D⁻¹ Qᵀ,
   /// because the computed columns of Q are not exactly orthogonal.
-  [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
+  [[nodiscard]] Vector<N, Value> project(const Vector<N, Value>& a) const noexcept {
     const auto n = extent<N>(Q_.rows());
-    Vector<N, Value> left = a;
+    Vector<N, Value> result = a;
     each(kFirst, rows(), [&](Eigen::Index i) {
       const Value* const column = Q_.data() + i * n;
-      subtract(n, left.data(), dot(n, column, left.data()) * reciprocal_[i], column);
+      subtract(n, result.data(), dot(n, column, result.data()) * reciprocal_[i], column);
     });
-    return left;
+    return result;
   }
 
-  /// Q s. If s = shares(b), this is A⁺b.
-  [[nodiscard]] Vector<N, Value> sum(const Vector<M, Value>& s) const noexcept {
+  /// Q s. If s = coefficients(b), this is A⁺b.
+  [[nodiscard]] Vector<N, Value> combine(const Vector<M, Value>& s) const noexcept {
     Vector<N, Value> y;
     y.resize(Q_.rows());
     if constexpr (kLong) {
@@ -106,8 +106,8 @@ class RowFactor {
     return y;
   }
 
-  /// (AAᵀ)⁻¹b = L⁻ᵀs, for s = shares(b).
-  [[nodiscard]] Vector<M, Value> back(const Vector<M, Value>& s) const noexcept {
+  /// (AAᵀ)⁻¹b = L⁻ᵀs, for s = coefficients(b).
+  [[nodiscard]] Vector<M, Value> back_substitute(const Vector<M, Value>& s) const noexcept {
     Vector<M, Value> x = s;
     for (Eigen::Index i = x.size() - 2; i >= 0; --i) {
       for (Eigen::Index j = x.size() - 1; j > i; --j) x(i) -= L_[j][i] * x(j);  // Descending: x(i + 1) is known last.
@@ -144,7 +144,7 @@ class RowFactor {
     }
   }
 
-  [[nodiscard, gnu::noinline]] static Status lost(const Matrix<N, M, Value>& At) noexcept {
+  [[nodiscard, gnu::noinline]] static Status failure(const Matrix<N, M, Value>& At) noexcept {
     for (Eigen::Index i = 0; i < At.cols(); ++i) {
       Value square(Scalar(0));
       for (Eigen::Index k = 0; k < At.rows(); ++k) square += At(k, i) * At(k, i);

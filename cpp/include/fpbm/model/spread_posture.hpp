@@ -15,11 +15,11 @@ template <int N, typename Scalar>
                                     137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193, 197, 199, 211, 223,
                                     227, 229, 233, 239, 241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311};
   return entrywise(limits.lower, [&](Eigen::Index i) {
-    const double way = (k + 1) * std::sqrt(static_cast<double>(kPrimes[i]));
-    const auto share = static_cast<Scalar>(way - std::floor(way));
+    const double multiple = (k + 1) * std::sqrt(static_cast<double>(kPrimes[i]));
+    const auto fraction = static_cast<Scalar>(multiple - std::floor(multiple));
     const Scalar low = std::isfinite(limits.lower(i)) ? limits.lower(i) : Scalar(-3);
     const Scalar high = std::isfinite(limits.upper(i)) ? limits.upper(i) : Scalar(3);
-    return low + share * (high - low);
+    return low + fraction * (high - low);
   });
 }
 

@@ -73,7 +73,7 @@ class Correction {
   }
 
   /// Sets the integrals of some rows to zero. row: first of these rows. rows: their number.
-  void forget(int row, int rows) noexcept {
+  void reset_integrals(int row, int rows) noexcept {
     for (int i = row; i < row + rows; ++i) integral_(i) = Scalar(0);
   }
 
@@ -88,8 +88,8 @@ class Correction {
       for (int i = 0; i < Part::kRows; ++i) integral(i) = integral_(row + i) + dt_ * error_(row + i);
       const Scalar size = gain_ * norm(in_lengths<Part>(integral, length_));
       if (!std::isfinite(size) || (!first && lower_scale(tick, row) < Scalar(1))) return;
-      const Scalar share = size > bound_ ? bound_ / size : Scalar(1);
-      for (int i = 0; i < Part::kRows; ++i) integral_(row + i) = share * integral(i);
+      const Scalar fraction = size > bound_ ? bound_ / size : Scalar(1);
+      for (int i = 0; i < Part::kRows; ++i) integral_(row + i) = fraction * integral(i);
     });
   }
 

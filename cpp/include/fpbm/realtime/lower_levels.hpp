@@ -45,7 +45,7 @@ class LowerLevels {
       Space::each([&](auto space, auto i, int row) noexcept {
         constexpr std::size_t kIndex = decltype(i)::value;
         if (!stopped_[kIndex]) return;
-        correction.forget(row, decltype(space)::kRows);
+        correction.reset_integrals(row, decltype(space)::kRows);
         std::get<kIndex>(stage.x) = std::get<kIndex>(kinematics.tip);
         for (int j = row; j < row + decltype(space)::kRows; ++j) error(j) = stage.xd(j) = stage.xdd(j) = Scalar(0);
       });
@@ -61,12 +61,12 @@ class LowerLevels {
     }
   }
 
-  /// Call at the end of a tick. follows: whether the arm follows the references. qd: joint velocities [rad/s]. room: a
-  /// measure of the distances of shapes near the arm [m]. length: the robot's characteristic length [m].
+  /// Call at the end of a tick. follows: whether the arm follows the references. qd: joint velocities [rad/s].
+  /// distance_sum: Guard::near_distance_sum() [m]. length: the robot's characteristic length [m].
   template <typename JointVector>
-  void end_tick(bool follows, const JointVector& qd, Scalar room, Scalar length) noexcept {
+  void end_tick(bool follows, const JointVector& qd, Scalar distance_sum, Scalar length) noexcept {
     if (!follows) return release();
-    if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, room, kMoved * length)) release();
+    if (any_stopped_ && shapes_.moved(largest_magnitude(qd) <= kRest, distance_sum, kMoved * length)) release();
   }
 
   /// Resets the detection: all tasks follow their references.

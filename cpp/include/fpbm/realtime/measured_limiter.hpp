@@ -64,7 +64,7 @@ class MeasuredLimiter {
                             const JointVector& last, const Rows<N, P, Scalar>& rows) const noexcept {
     const auto found = limiter_.motion(tasks, state, desired, last, rows);
     if (!bounds_jerk_) return found;
-    const Box<N, Scalar> box = in_reach(limits().box(state), last);
+    const Box<N, Scalar> box = within_jerk(limits().box(state), last);
     if (box.contains(found.u) && rows.admit(found.u)) return found;
     auto saturation = saturation_of(tasks, unit_, rows);
     return toward_goal(saturation, box, rows, box.nearest(last), found.u, found);
@@ -72,7 +72,7 @@ class MeasuredLimiter {
 
   /// As Limiter::brake(). At the end of the stop, the velocities decay as exp(−t/D). A low-pass filter with the time
   /// constant D/2 reduces noise. Large changes of the command are not filtered.
-  [[nodiscard]] Saturated<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
+  [[nodiscard]] SaturatedMotion<N, Scalar> brake(const JointState& state, const JointVector& last) const noexcept {
     if (!delayed_) return limiter_.brake(state, last);
     const Scalar D = kRest * limits().tick();
     const JointVector& most = limits().bounds().acceleration;
@@ -88,12 +88,12 @@ class MeasuredLimiter {
     JointVector smooth = u;
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       const Scalar change = u(i) - last(i);
-      const Scalar share = std::min(std::abs(change) / (kLarge * most(i)), Scalar(1));
-      smooth(i) = last(i) + std::max(filter_, share * share) * change;
+      const Scalar fraction = std::min(std::abs(change) / (kLarge * most(i)), Scalar(1));
+      smooth(i) = last(i) + std::max(filter_, fraction * fraction) * change;
       if (std::abs(smooth(i)) < kZero) smooth(i) = Scalar(0);  // Denormal numbers are slow.
     }
     smooth = wider.nearest(smooth);
-    return {in_reach({smooth, smooth}, last).lower, Scalar(0), 0, 0};
+    return {within_jerk({smooth, smooth}, last).lower, Scalar(0), 0, 0};
   }
 
  private:
@@ -129,23 +129,23 @@ class MeasuredLimiter {
       joint.velocity_offset = std::isfinite(d) ? T * d : Scalar(0);
       joint.deceleration = d;
       // The velocity of the envelope is −c at the end that Limits receives, and must be zero at the end of the range.
-      const Scalar beyond = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
-      joint.upper += beyond - end;
-      joint.lower -= beyond - end;
+      const Scalar extension = std::isfinite(d) ? T * T * d / Scalar(2) : Scalar(0);
+      joint.upper += extension - end;
+      joint.lower -= extension - end;
       bounds.set(i, joint);
     }
     return {bounds, H};
   }
 
   /// The box, clipped to the accelerations that the bound on jerk admits after `last`.
-  [[nodiscard]] Box<N, Scalar> in_reach(const Box<N, Scalar>& box, const JointVector& last) const noexcept {
+  [[nodiscard]] Box<N, Scalar> within_jerk(const Box<N, Scalar>& box, const JointVector& last) const noexcept {
     if (!bounds_jerk_) return box;
-    const auto reached = [&](const JointVector& u) {
+    const auto clipped = [&](const JointVector& u) {
       return entrywise(u, [&](Eigen::Index i) {
         return std::min(std::max(u.coeff(i), last.coeff(i) - step_.coeff(i)), last.coeff(i) + step_.coeff(i));
       });
     };
-    return {reached(box.lower), reached(box.upper)};
+    return {clipped(box.lower), clipped(box.upper)};
   }
 
   /// H g/h: 1.172, the smallest possible value (horizon()), times 1.28, a margin for accelerations that exceed the

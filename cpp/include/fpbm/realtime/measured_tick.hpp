@@ -10,23 +10,23 @@ namespace fpbm {
 
 /// Ends a tick of Tracker::resolve_measured(): computes the acceleration within the limits for a measured state. loop:
 /// kinematics and acceleration of the scheme in this state. `last`: last command. result: has the status of the scheme.
-template <typename Loop, typename Limiter, typename Kept, typename Space, int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> limit_measured(const Loop& loop, const Limiter& limiter, Kept& kept,
+template <typename Loop, typename Limiter, typename LimitedState, typename Space, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> limit_measured(const Loop& loop, const Limiter& limiter, LimitedState& tracker_state,
                                                const State<N, Scalar>& measured, const Vector<N, Scalar>& last,
                                                Tick<Space, N, Scalar>& result) noexcept {
   const auto& limits = limiter.limits();
-  auto& guard = kept.guard();
+  auto& guard = tracker_state.guard();
   auto rows = guard.rows(limits, measured);
-  if constexpr (Kept::kGuarded) {
+  if constexpr (LimitedState::kGuarded) {
     // If the tip rotates, the direction of its velocity after a tick of the limits differs from the direction after a
     // tick of the loop. Therefore, both ticks have rows.
     guard.bound_speeds(limits, measured, loop.qdd, rows);
-    const Scalar share = kept.dt() / limits.tick();
-    if (share < Scalar(1)) guard.bound_speeds(limits, measured, share * loop.qdd, rows);
+    const Scalar fraction = tracker_state.dt() / limits.tick();
+    if (fraction < Scalar(1)) guard.bound_speeds(limits, measured, fraction * loop.qdd, rows);
   }
   const auto tasks = jacobian_in_metres(loop.kinematics);
   auto found = with_scale(tasks, last, Scalar(0));
-  const bool braking = kept.stopping() || result.status >= Status::kStalled;
+  const bool braking = tracker_state.stopping() || result.status >= Status::kStalled;
   if (braking) {
     found.u = limiter.brake(measured, last).u;
   } else {
@@ -37,7 +37,7 @@ template <typename Loop, typename Limiter, typename Kept, typename Space, int N,
   if (found.scale < Scalar(1) && !braking) {
     result.status = guard.is_near(found.rows) ? Status::kBlocked : Status::kSlowed;
   }
-  if (result.status == Status::kOk) kept.correction().integrate(result);
+  if (result.status == Status::kOk) tracker_state.correction().integrate(result);
   return found.u;
 }
 

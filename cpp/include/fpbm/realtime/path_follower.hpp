@@ -34,8 +34,8 @@ class PathFollower {
   }
 
   /// Repeated calls have no effect.
-  void pause() noexcept { go_to(Scalar(0)); }
-  void resume() noexcept { go_to(Scalar(1)); }
+  void pause() noexcept { start_transition(Scalar(0)); }
+  void resume() noexcept { start_transition(Scalar(1)); }
 
   /// Path time p [s], and whether the path has ended.
   [[nodiscard]] Scalar time() const noexcept { return time_; }
@@ -43,7 +43,7 @@ class PathFollower {
 
   /// Reference after `seconds` [s].
   [[nodiscard]] Reference<Space, Scalar> ahead(Scalar seconds) const noexcept {
-    const Scalar p = time_ + (steady() ? to_ * seconds : way(seconds));
+    const Scalar p = time_ + (is_constant() ? target_ * seconds : path_time(seconds));
     if (time_ >= path_.duration() || p > path_.duration()) return Reference<Space, Scalar>::hold(end_);
     Reference<Space, Scalar> reference = sample_within(path_, p, time_);
     const auto [r, rd] = rate(elapsed_ + seconds);
@@ -59,18 +59,18 @@ class PathFollower {
 
   /// Advances the clock by `seconds` [s].
   void advance(Scalar seconds) noexcept {
-    if (steady()) {
+    if (is_constant()) {
       // Counts equal ticks, since a sum of their lengths would accumulate round-off errors.
       if (ticks_ == Scalar(0) || seconds != tick_) {
-        since_ = time_;
+        first_time_ = time_;
         tick_ = seconds;
         ticks_ = Scalar(0);
       }
       ticks_ += Scalar(1);
-      time_ = since_ + to_ * tick_ * ticks_;
+      time_ = first_time_ + target_ * tick_ * ticks_;
       return;
     }
-    time_ += way(seconds);
+    time_ += path_time(seconds);
     elapsed_ += seconds;
   }
 
@@ -86,70 +86,73 @@ class PathFollower {
   /// approaches target.
   ///
   /// slope_ < 0: r moves away from target. At first, the slope increases by 6 per ramp, and is zero after
-  /// brakes_ = −slope_/6 ramps. In this time, the gap increases by slope_²/12. Then a cubic of one ramp brings the gap
-  /// from left_ to zero.
+  /// reversal_ = −slope_/6 ramps. In this time, the gap increases by slope_²/12. Then a cubic of one ramp brings the
+  /// gap from cubic_gap_ to zero.
   ///
   /// slope_ ≥ 0: a cubic brings the gap to zero. At its start, the cubic has the slope slope_. Its duration is one
   /// ramp, or 3 gap_/slope_ if the cubic would overshoot in one ramp.
-  void go_to(Scalar target) noexcept {
-    if (target == to_) return;
+  void start_transition(Scalar target) noexcept {
+    if (target == target_) return;
     const auto [r, rd] = rate(elapsed_);
-    slope_ = (target > to_ ? rd : -rd) * ramp_;
+    slope_ = (target > target_ ? rd : -rd) * ramp_;
     // The remaining range of r in the direction of its slope is always at least this. max() and min() correct round-off
     // errors only.
-    const Scalar room = slope_ * slope_ / Scalar(12);
+    const Scalar least_gap = slope_ * slope_ / Scalar(12);
     gap_ = target > r ? target - r : r - target;
     if (slope_ < Scalar(0)) {
-      brakes_ = -slope_ / Scalar(6);
-      left_ = std::min(gap_ + room, Scalar(1));
-      lasts_ = Scalar(1);
-      push_ = Scalar(0);
+      reversal_ = -slope_ / Scalar(6);
+      cubic_gap_ = std::min(gap_ + least_gap, Scalar(1));
+      cubic_duration_ = Scalar(1);
+      cubic_slope_ = Scalar(0);
     } else {
-      brakes_ = Scalar(0);
-      left_ = gap_ = std::max(gap_, room);
-      lasts_ = slope_ > Scalar(3) * gap_ ? Scalar(3) * gap_ / slope_ : Scalar(1);
-      push_ = slope_ * lasts_;
+      reversal_ = Scalar(0);
+      cubic_gap_ = gap_ = std::max(gap_, least_gap);
+      cubic_duration_ = slope_ > Scalar(3) * gap_ ? Scalar(3) * gap_ / slope_ : Scalar(1);
+      cubic_slope_ = slope_ * cubic_duration_;
     }
-    to_ = target;
+    target_ = target;
     elapsed_ = ticks_ = Scalar(0);
   }
 
   /// Whether the rate is constant.
-  [[nodiscard]] bool steady() const noexcept { return elapsed_ / ramp_ >= brakes_ + lasts_; }
+  [[nodiscard]] bool is_constant() const noexcept { return elapsed_ / ramp_ >= reversal_ + cubic_duration_; }
 
   /// r and ṙ after `elapsed` [s] of the transition.
   [[nodiscard]] Rate rate(Scalar elapsed) const noexcept {
     const Scalar v = elapsed / ramp_;
-    if (v >= brakes_ + lasts_) return {to_, Scalar(0)};
+    if (v >= reversal_ + cubic_duration_) return {target_, Scalar(0)};
     Scalar gap = gap_ - v * (slope_ + Scalar(3) * v);
     Scalar slope = slope_ + Scalar(6) * v;
-    if (v >= brakes_) {
-      const Scalar w = (v - brakes_) / lasts_;
-      const Scalar rest = Scalar(1) - w;
-      gap = rest * rest * (left_ + bend() * w);
-      slope = rest * (push_ + Scalar(3) * bend() * w) / lasts_;
+    if (v >= reversal_) {
+      const Scalar w = (v - reversal_) / cubic_duration_;
+      const Scalar remaining = Scalar(1) - w;
+      gap = remaining * remaining * (cubic_gap_ + coefficient() * w);
+      slope = remaining * (cubic_slope_ + Scalar(3) * coefficient() * w) / cubic_duration_;
     }
     gap = std::clamp(gap, Scalar(0), Scalar(1));  // Outside by round-off only.
-    return to_ == Scalar(0) ? Rate{gap, -slope / ramp_} : Rate{Scalar(1) - gap, slope / ramp_};
+    return target_ == Scalar(0) ? Rate{gap, -slope / ramp_} : Rate{Scalar(1) - gap, slope / ramp_};
   }
 
-  /// Coefficient of the cubic: the gap is (1 − w)² (left_ + bend() w) after the fraction w of the duration lasts_.
-  [[nodiscard]] Scalar bend() const noexcept { return Scalar(2) * left_ - push_; }
+  /// Coefficient of the cubic: the gap is (1 − w)² (cubic_gap_ + coefficient() w) after the fraction w of the duration
+  /// cubic_duration_.
+  [[nodiscard]] Scalar coefficient() const noexcept { return Scalar(2) * cubic_gap_ - cubic_slope_; }
 
   /// ∫ r dt over the next `seconds` [s], clipped to the interval from 0 to `seconds`.
-  [[nodiscard]] Scalar way(Scalar seconds) const noexcept {
+  [[nodiscard]] Scalar path_time(Scalar seconds) const noexcept {
     const Scalar gap = ramp_ * (gaps((elapsed_ + seconds) / ramp_) - gaps(elapsed_ / ramp_));
-    const Scalar whole = to_ == Scalar(0) ? gap : seconds - gap;
+    const Scalar whole = target_ == Scalar(0) ? gap : seconds - gap;
     return std::clamp(whole, std::min(seconds, Scalar(0)), std::max(seconds, Scalar(0)));
   }
 
-  /// ∫ |to_ − r| dv over the first v ramps of the transition.
+  /// ∫ |target_ − r| dv over the first v ramps of the transition.
   [[nodiscard]] Scalar gaps(Scalar v) const noexcept {
-    const Scalar first = std::min(v, brakes_);
-    const Scalar w = std::clamp((v - brakes_) / lasts_, Scalar(0), Scalar(1));
-    const Scalar even = w * (Scalar(1) - w * (Scalar(1) - w / Scalar(3)));                    // ∫ (1 − w)² dw
-    const Scalar late = w * w * (Scalar(0.5) - w * (Scalar(2) / Scalar(3) - w / Scalar(4)));  // ∫ w (1 − w)² dw
-    return first * (gap_ - first * (slope_ / Scalar(2) + first)) + lasts_ * (left_ * even + bend() * late);
+    const Scalar first = std::min(v, reversal_);
+    const Scalar w = std::clamp((v - reversal_) / cubic_duration_, Scalar(0), Scalar(1));
+    const Scalar square_integral = w * (Scalar(1) - w * (Scalar(1) - w / Scalar(3)));  // ∫ (1 − w)² dw
+    const Scalar product_integral =
+        w * w * (Scalar(0.5) - w * (Scalar(2) / Scalar(3) - w / Scalar(4)));  // ∫ w (1 − w)² dw
+    return first * (gap_ - first * (slope_ / Scalar(2) + first)) +
+           cubic_duration_ * (cubic_gap_ * square_integral + coefficient() * product_integral);
   }
 
   Path path_;
@@ -157,19 +160,19 @@ class PathFollower {
   Point end_;
   Scalar ramp_;
   Scalar time_{0};
-  Scalar since_{0};  ///< Path time at the first of the equal ticks.
-  Scalar tick_{0};   ///< Length of an equal tick [s].
-  Scalar ticks_{0};  ///< Number of equal ticks.
+  Scalar first_time_{0};  ///< Path time at the first of the equal ticks.
+  Scalar tick_{0};        ///< Length of an equal tick [s].
+  Scalar ticks_{0};       ///< Number of equal ticks.
 
-  // The transition, with time in ramps: gap |to_ − r|, its slope −d(gap)/dt, and durations.
-  Scalar elapsed_;    ///< Time since the call [s].
-  Scalar to_{1};      ///< Target of the rate.
-  Scalar gap_{0};     ///< At the call.
-  Scalar slope_{0};   ///< At the call; negative if r moves away from to_.
-  Scalar brakes_{0};  ///< Duration in which a negative slope increases to zero.
-  Scalar left_{0};    ///< Gap at the start of the cubic.
-  Scalar push_{0};    ///< Slope at the start of the cubic, with time in durations of the cubic.
-  Scalar lasts_{1};   ///< Duration of the cubic.
+  // The transition, with time in ramps: gap |target_ − r|, its slope −d(gap)/dt, and durations.
+  Scalar elapsed_;            ///< Time since the call [s].
+  Scalar target_{1};          ///< Target of the rate.
+  Scalar gap_{0};             ///< At the call.
+  Scalar slope_{0};           ///< At the call; negative if r moves away from target_.
+  Scalar reversal_{0};        ///< Duration in which a negative slope increases to zero.
+  Scalar cubic_gap_{0};       ///< Gap at the start of the cubic.
+  Scalar cubic_slope_{0};     ///< Slope at the start of the cubic, with time in durations of the cubic.
+  Scalar cubic_duration_{1};  ///< Duration of the cubic.
 };
 
 }  // namespace fpbm

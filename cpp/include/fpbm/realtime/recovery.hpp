@@ -39,11 +39,11 @@ class Recovery {
   /// Whether the joints are moving to a remembered posture.
   [[nodiscard]] bool active() const noexcept { return active_; }
 
-  /// Whether a posture differs from the last one passed to remember() by more than kApart in some joint.
+  /// Whether a posture differs from the last one passed to remember() by more than kNewJoint in some joint.
   [[nodiscard]] bool is_new(const JointVector& q) const noexcept {
     if (count_ == 0) return true;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (std::abs(q(i) - seen_(i)) > kApart) return true;
+      if (std::abs(q(i) - last_remembered_(i)) > kNewJoint) return true;
     }
     return false;
   }
@@ -52,11 +52,11 @@ class Recovery {
   /// If the memory is full, the posture replaces the older of the two postures whose tips are nearest to each other.
   /// length: the arm's characteristic length [m].
   [[gnu::cold, gnu::noinline]] void remember(const JointVector& q, const Point& tip, Scalar length) noexcept {
-    seen_ = q;
+    last_remembered_ = q;
     for (int i = 0; i < count_; ++i) {
-      if (Distance::between(known_[i].tip, tip, length) < kSpread) return;
+      if (Distance::between(memory_[i].tip, tip, length) < kSpread) return;
     }
-    known_[count_ < kPostures ? count_++ : most_crowded(length)] = {q, tip, ++age_};
+    memory_[count_ < kPostures ? count_++ : most_crowded(length)] = {q, tip, ++age_};
   }
 
   /// Call after a tick that does not execute the whole task. Updates the largest distance of the target from the
@@ -74,13 +74,13 @@ class Recovery {
   [[gnu::cold, gnu::noinline]] bool begin(const JointVector& q, const Point& target, Scalar error,
                                           Scalar length) noexcept {
     const auto [distance, best] = nearest(target, length);
-    const Scalar bound = std::min(error, tried_);
+    const Scalar bound = std::min(error, last_distance_);
     const bool nearer = distance < bound - Distance::step(bound);
     if (!nearer && (returned_ || !(distance < kReturned * farthest_))) return false;
     returned_ = returned_ || !nearer;
-    tried_ = distance;
-    goal_ = known_[best].q;
-    whole_ = left_ = distance_to(q);
+    last_distance_ = distance;
+    goal_ = memory_[best].q;
+    start_distance_ = least_distance_ = distance_to(q);
     waited_ = Scalar(0);
     active_ = true;
     return true;
@@ -89,10 +89,10 @@ class Recovery {
   /// Call after a tick of the recovery. Returns true if the arm has arrived. The recovery also ends if there is no
   /// progress for the time `patience`.
   bool advance(const JointVector& q) noexcept {
-    const Scalar left = distance_to(q);
-    waited_ = left < left_ - kArrived * whole_ ? Scalar(0) : waited_ + dt_;
-    if (waited_ == Scalar(0)) left_ = left;
-    const bool arrived = left <= kArrived * whole_;
+    const Scalar distance = distance_to(q);
+    waited_ = distance < least_distance_ - kArrived * start_distance_ ? Scalar(0) : waited_ + dt_;
+    if (waited_ == Scalar(0)) least_distance_ = distance;
+    const bool arrived = distance <= kArrived * start_distance_;
     active_ = !arrived && waited_ <= patience_;
     return arrived;
   }
@@ -100,7 +100,7 @@ class Recovery {
   /// Call if the target has moved, or for another attempt. Every remembered posture is a candidate again.
   void renew() noexcept {
     active_ = returned_ = false;
-    tried_ = std::numeric_limits<Scalar>::infinity();
+    last_distance_ = std::numeric_limits<Scalar>::infinity();
   }
 
   /// Joint motion to the posture: velocities v = r (goal − q), or accelerations 4 kRate (v − q̇). The rate r ≤ kRate is
@@ -110,22 +110,23 @@ class Recovery {
   [[nodiscard, gnu::cold, gnu::noinline]] JointVector motion(const Limits<kLevel, N, Scalar>& limits,
                                                              const State<N, Scalar>& state) const noexcept {
     const auto& bounds = limits.bounds();
-    const JointVector left = entrywise(goal_, [&](Eigen::Index i) { return goal_(i) - state.q(i); });
+    const JointVector gap = entrywise(goal_, [&](Eigen::Index i) { return goal_(i) - state.q(i); });
     Scalar rate = kRate;
-    for (Eigen::Index i = 0; i < left.size(); ++i) {
-      const Scalar distance = std::abs(left(i));
+    for (Eigen::Index i = 0; i < gap.size(); ++i) {
+      const Scalar distance = std::abs(gap(i));
       if (rate * distance > bounds.velocity(i)) rate = bounds.velocity(i) / distance;
       if (rate * rate * distance > bounds.acceleration(i)) rate = std::sqrt(bounds.acceleration(i) / distance);
     }
-    return entrywise(left, [&](Eigen::Index i) {
-      if constexpr (kLevel == Level::kVelocity) return rate * left(i);
-      return Scalar(4) * kRate * (rate * left(i) - state.qd(i));
+    return entrywise(gap, [&](Eigen::Index i) {
+      if constexpr (kLevel == Level::kVelocity) return rate * gap(i);
+      return Scalar(4) * kRate * (rate * gap(i) - state.qd(i));
     });
   }
 
  private:
   // Not optimised. `fpbm_tests --gtest_filter='Recovery.brings*'` prints how many arms do not return with these values.
-  static constexpr Scalar kApart = Scalar(0.1);    ///< Change of a joint that may move the tip by kSpread [rad] or [m].
+  static constexpr Scalar kNewJoint =
+      Scalar(0.1);                                 ///< Change of a joint that may move the tip by kSpread [rad] or [m].
   static constexpr Scalar kSpread = Scalar(0.05);  ///< Smallest distance of two remembered tips, as TaskDistance.
   /// If the distance of the target is below this fraction of its largest distance, the target has returned.
   static constexpr Scalar kReturned = Scalar(0.5);
@@ -137,7 +138,7 @@ class Recovery {
     return std::sqrt(entrywise(q, [&](Eigen::Index i) { return (goal_(i) - q(i)) * (goal_(i) - q(i)); }).sum());
   }
 
-  struct Known {
+  struct Remembered {
     JointVector q;
     Point tip;
     std::int64_t age;
@@ -145,12 +146,12 @@ class Recovery {
 
   struct Nearest {
     Scalar distance;
-    int place;
+    int index;
   };
   [[nodiscard]] Nearest nearest(const Point& target, Scalar length) const noexcept {
     Nearest found{std::numeric_limits<Scalar>::infinity(), 0};
     for (int i = 0; i < count_; ++i) {
-      const Scalar distance = Distance::between(target, known_[i].tip, length);
+      const Scalar distance = Distance::between(target, memory_[i].tip, length);
       if (distance < found.distance) found = {distance, i};
     }
     return found;
@@ -158,34 +159,34 @@ class Recovery {
 
   /// Index of the older of the two postures whose tips are nearest to each other.
   [[nodiscard]] int most_crowded(Scalar length) const noexcept {
-    int place = 0;
+    int index = 0;
     Scalar least = std::numeric_limits<Scalar>::infinity();
     for (int i = 1; i < count_; ++i) {
       for (int j = 0; j < i; ++j) {
-        const Scalar distance = Distance::between(known_[i].tip, known_[j].tip, length);
+        const Scalar distance = Distance::between(memory_[i].tip, memory_[j].tip, length);
         if (!(distance < least)) continue;
         least = distance;
-        place = known_[i].age < known_[j].age ? i : j;
+        index = memory_[i].age < memory_[j].age ? i : j;
       }
     }
-    return place;
+    return index;
   }
 
   Scalar patience_;
   Scalar dt_;
-  Known known_[kPostures]{};
+  Remembered memory_[kPostures]{};
   int count_ = 0;
   std::int64_t age_ = 0;
-  JointVector seen_;  ///< Last posture passed to remember().
+  JointVector last_remembered_;  ///< Last posture passed to remember().
   JointVector goal_;
   /// Distance from this target to the tip of the last recovery.
-  Scalar tried_ = std::numeric_limits<Scalar>::infinity();
+  Scalar last_distance_ = std::numeric_limits<Scalar>::infinity();
   /// Largest distance of the target from the nearest remembered tip since the task was lost.
   Scalar farthest_ = Scalar(0);
-  bool returned_ = false;      ///< Whether the return of this target has caused a recovery.
-  Scalar whole_ = Scalar(0);   ///< Distance to the posture at the start of the recovery.
-  Scalar left_ = Scalar(0);    ///< Smallest distance to the posture since then.
-  Scalar waited_ = Scalar(0);  ///< Time without progress [s].
+  bool returned_ = false;              ///< Whether the return of this target has caused a recovery.
+  Scalar start_distance_ = Scalar(0);  ///< Distance to the posture at the start of the recovery.
+  Scalar least_distance_ = Scalar(0);  ///< Smallest distance to the posture since then.
+  Scalar waited_ = Scalar(0);          ///< Time without progress [s].
   bool active_ = false;
 };
 

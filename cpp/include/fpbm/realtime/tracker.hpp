@@ -61,10 +61,10 @@ class Tracker {
           const Limits<kLevel, N, Scalar>& limits, const JointVector& qdd0, const Guard_& guard = {})
       : arm_(arm),
         scheme_(scheme),
-        kept_(options, limits, start, qdd0, guard),
+        limited_(options, limits, start, qdd0, guard),
         lower_levels_(options.stall_time, options.dt),
         measured_(limits, options.measured_delay),
-        answer_(qdd0) {
+        last_command_(qdd0) {
     scheme.require_dof(arm.dof());
     validation::require_size("limits", limits.bounds().lower.size(), arm.dof());
     if (limits.tick() != options.dt) {
@@ -80,8 +80,8 @@ class Tracker {
     give_damping(scheme_, options.damping(arm.dof(), first_rows(kinematics).rows()));
     const bool continues = kLevel == Level::kAcceleration ? has_several_tasks(arm_) : has_lower_levels(kinematics);
     require_stable(scheme_, TickOfGains<Scalar>{options.dt, options.integral_gain, continues});
-    if constexpr (kGuarded) kept_.guard().require_clear(limits, start, qdd0);
-    kept_.begin_at(kinematics.tip, kinematics.length);
+    if constexpr (kGuarded) limited_.guard().require_clear(limits, start, qdd0);
+    limited_.begin_at(kinematics.tip, kinematics.length);
   }
 
   Tracker(const Arm& arm, Space space, const Scheme& scheme, const JointState& start, const Options& options = {})
@@ -92,7 +92,7 @@ class Tracker {
 
   /// One tick toward a reference, which continues at constant acceleration until the end of the tick.
   Result tick(const Target& reference) noexcept {
-    return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, kept_.dt()));
+    return advance(References::of([&](Scalar t) noexcept { return ahead(reference, t); }, limited_.dt()));
   }
 
   /// One tick with a source of references: a PathFollower, whose clock advances unless the arm stops, or a
@@ -100,29 +100,29 @@ class Tracker {
   template <typename... Sources>
   Result tick(Sources&... sources) noexcept {
     const Result result =
-        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, kept_.dt()));
-    (advance_source(sources, kept_.dt(), kept_.stopping()), ...);
+        advance(References::of([&](Scalar t) noexcept { return joined(Space{}, t, sources...); }, limited_.dt()));
+    (advance_source(sources, limited_.dt(), limited_.stopping()), ...);
     return result;
   }
 
   /// One tick with references.
   Result advance(References references) noexcept {
-    const JointState& state = kept_.state();
-    const auto& correction = kept_.correction();
-    Result result = kept_.idle(state);
+    const JointState& state = limited_.state();
+    const auto& correction = limited_.correction();
+    Result result = limited_.idle(state);
     Loop loop{arm_, scheme_, {}, state, filled<JointVector>(state.q.size())};
     X x = Loop::packed(state);
     X dx = x;
-    bool one_acceleration = kept_.has_one_acceleration(arm_);
+    bool one_acceleration = limited_.has_one_acceleration(arm_);
     if constexpr (kIsProduct<Space>) {
       if (one_acceleration) arm_.points(state.q, loop.kinematics);
     }
     if (!one_acceleration) loop.update(x);
     if constexpr (kHasLevels) {
-      if (kept_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
+      if (limited_.keeps_stopping()) held_level_.hold(references, loop.kinematics.tip, loop.kinematics.length);
     }
-    watch(loop.kinematics, references.stages[0], result);
-    lower_levels_.hold(references, loop.kinematics, result.error, kept_.correction());
+    measure_error(loop.kinematics, references.stages[0], result);
+    lower_levels_.hold(references, loop.kinematics, result.error, limited_.correction());
     const Target now = references.stages[0];
     if (correction.active()) {
       for (Target& stage : references.stages) stage = correction(stage);
@@ -132,29 +132,29 @@ class Tracker {
     };
     JointState next = state;
     JointVector field = state.qd;
-    const auto rows = kept_.rows();
+    const auto rows = limited_.rows();
     if (one_acceleration) {
-      if constexpr (kIsProduct<Space>) kept_.update_middle(loop, references);
+      if constexpr (kIsProduct<Space>) limited_.tick().update_middle(loop, references);
       resolve(loop, references.middle(), dx, result);
-      if (!failed(result.status)) next = kept_.after(loop.qdd);
+      if (!failed(result.status)) next = limited_.tick().after(loop.qdd);
     } else {
       resolve(loop, references.stages[0], dx, result);
       field = column(dx, 0);
-      one_acceleration =
-          kept_.expects_limits(loop, references.stages[1], rows, column(dx, dx.cols() - 1), next, result);
+      one_acceleration = limited_.evaluate_middle_if_limited(loop, references.stages[1], rows,
+                                                             column(dx, dx.cols() - 1), next, result);
       if (!one_acceleration) {
         if (!failed(result.status)) {
-          result.status = worse(result.status, RK4::step(derivative, Scalar(0), kept_.dt(), dx, x));
+          result.status = worse(result.status, RK4::step(derivative, Scalar(0), limited_.dt(), dx, x));
         }
         next.q = column(x, 0);
         if constexpr (Loop::kSecondOrder) next.qd = column(x, 1);
       }
     }
-    kept_.take(loop, now, rows, next, field, one_acceleration, result);
+    limited_.finish_tick(loop, now, rows, next, field, one_acceleration, result);
     lower_levels_.report(result);
     report_lower_levels(result);
-    lower_levels_.end_tick(!kept_.stopping() && !failed(result.status), kept_.state().qd, Scalar(guard().room()),
-                           correction.length());
+    lower_levels_.end_tick(!limited_.stopping() && !failed(result.status), limited_.state().qd,
+                           Scalar(guard().near_distance_sum()), correction.length());
     return result;
   }
 
@@ -163,17 +163,17 @@ class Tracker {
   /// not corrected. `middle` is the corrected reference in its middle. `next` is the state after the step. `at_start`
   /// is the motion at the start: joint velocities, or accelerations at acceleration level.
   bool begin(const Vector<Space::kRows, Scalar>& error, Scalar length) noexcept {
-    kept_.correction().begin(error, length);
-    return kept_.correction().active();
+    limited_.correction().begin(error, length);
+    return limited_.correction().active();
   }
-  [[nodiscard]] Target corrected(const Target& reference) const noexcept { return kept_.correction()(reference); }
+  [[nodiscard]] Target corrected(const Target& reference) const noexcept { return limited_.correction()(reference); }
   Status finish(const Target& now, const Target& middle, JointState next, const JointVector& at_start) noexcept {
-    Result result = kept_.idle(state());
-    result.error = kept_.correction().error();
+    Result result = limited_.idle(state());
+    result.error = limited_.correction().error();
     Loop loop{arm_, scheme_, {}, state(), filled<JointVector>(state().q.size())};
-    const auto rows = kept_.rows();
-    const bool one_acceleration = kept_.expects_limits(loop, middle, rows, at_start, next, result);
-    kept_.take(loop, now, rows, next, at_start, one_acceleration, result);
+    const auto rows = limited_.rows();
+    const bool one_acceleration = limited_.evaluate_middle_if_limited(loop, middle, rows, at_start, next, result);
+    limited_.finish_tick(loop, now, rows, next, at_start, one_acceleration, result);
     return result.status;
   }
 
@@ -182,35 +182,35 @@ class Tracker {
   [[nodiscard]] Result resolve_measured(const JointVector& q, const JointVector& qd, const Target& reference) noexcept {
     static_assert(kLevel == Level::kAcceleration, "resolve_measured() is for schemes that return accelerations");
     const JointState measured{q, qd};
-    Result result = kept_.idle(measured);
-    if (!kept_.moderate(measured)) {
+    Result result = limited_.idle(measured);
+    if (!limited_.is_brakable(measured)) {
       result.status = Status::kNotFinite;
       multiply_scale(result, Scalar(0));
-      result.qdd = answer_ = fade(kept_.limits(), answer_);
+      result.qdd = last_command_ = fade(limited_.limits(), last_command_);
       return result;
     }
     Loop loop{arm_, scheme_, {}, measured, filled<JointVector>(q.size())};
     X dx = Loop::packed(measured);
     loop.update(dx);
-    watch(loop.kinematics, reference, result);
-    resolve(loop, kept_.correction()(reference), dx, result);
-    result.qdd = answer_ = limit_measured(loop, measured_, kept_, measured, answer_, result);
+    measure_error(loop.kinematics, reference, result);
+    resolve(loop, limited_.correction()(reference), dx, result);
+    result.qdd = last_command_ = limit_measured(loop, measured_, limited_, measured, last_command_, result);
     report_lower_levels(result);
     return result;
   }
 
   /// Brings every joint to rest as fast as the limits allow, for any reference, until resume() is called. With
   /// options.keep_first_level, the joints stop in the null space of the first level.
-  void stop() noexcept { kept_.stop(); }
+  void stop() noexcept { limited_.stop(); }
   void resume() noexcept {
-    kept_.resume();
+    limited_.resume();
     held_level_.release();
     lower_levels_.release();
   }
 
-  [[nodiscard]] const JointState& state() const noexcept { return kept_.state(); }
+  [[nodiscard]] const JointState& state() const noexcept { return limited_.state(); }
   /// Acceleration of the last tick.
-  [[nodiscard]] const JointVector& acceleration() const noexcept { return kept_.last(); }
+  [[nodiscard]] const JointVector& acceleration() const noexcept { return limited_.last(); }
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   /// Enables or disables level k of a stack, counted from 0. The first level is always enabled. The commands stay
   /// within all bounds. If there is no lower level k, returns false without an effect.
@@ -228,7 +228,7 @@ class Tracker {
   bool reorder(const Order& order) noexcept {
     static_assert(kIsProduct<Space>, "only a stack has levels to reorder");
     if (!arm_.reorder(order)) return false;
-    kept_.correction().forget(0, Space::kRows);
+    limited_.correction().reset_integrals(0, Space::kRows);
     held_level_.release();
     lower_levels_.release();
     return true;
@@ -236,8 +236,8 @@ class Tracker {
 
   /// The guard: shapes to avoid, and their distances at the start of the last tick. Shapes of the world can be moved in
   /// it.
-  [[nodiscard]] Guard_& guard() noexcept { return kept_.guard(); }
-  [[nodiscard]] const Guard_& guard() const noexcept { return kept_.guard(); }
+  [[nodiscard]] Guard_& guard() noexcept { return limited_.guard(); }
+  [[nodiscard]] const Guard_& guard() const noexcept { return limited_.guard(); }
 
   /// Tip f(q) of the tracker's own state, the usual start of a PathFollower.
   [[nodiscard]] typename Space::template Point<Scalar> tip() const noexcept {
@@ -251,9 +251,9 @@ class Tracker {
   using Measured = std::conditional_t<kLevel == Level::kAcceleration, MeasuredLimiter<N, Scalar>, NoMeasuredLimiter>;
   using X = typename Loop::X;
 
-  void watch(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
+  void measure_error(const Kinematics<Space, N, Scalar>& kinematics, const Target& reference, Result& result) noexcept {
     result.error = task_error(kinematics, reference.x);
-    kept_.correction().begin(result.error, kinematics.length);
+    limited_.correction().begin(result.error, kinematics.length);
   }
 
   /// Motion of the scheme after update(). σ is from the factorisation of the scheme, or from a factorisation of JJᵀ if
@@ -266,11 +266,11 @@ class Tracker {
 
   Arm arm_;
   Scheme scheme_;
-  LimitedState<kLevel, Space, N, Scalar, Guard_> kept_;
+  LimitedState<kLevel, Space, N, Scalar, Guard_> limited_;
   typename LowerLevelsOf<Space, Scalar>::type lower_levels_;
   std::conditional_t<kHasLevels, HeldLevel<Space, Scalar>, NoHeldLevel> held_level_;
   Measured measured_;
-  JointVector answer_;  ///< Last command for a measured state.
+  JointVector last_command_;  ///< Last command for a measured state.
 };
 
 }  // namespace fpbm

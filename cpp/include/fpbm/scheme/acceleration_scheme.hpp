@@ -82,7 +82,7 @@ struct AccelerationScheme {
                              const Vector<M, Scalar>& xd, const Scalar& length, const State<N, Scalar>& state,
                              Vector<N, Scalar>& qdd, Scalar* sigma) const noexcept {
     if constexpr (kHasSelfMotion<M, N>) {
-      auto foreseen = foresee<kTurns>(
+      auto undamped = undamped_result<kTurns>(
           singular, J, length,
           [&](const auto& motion, Vector<N, Scalar>& u) noexcept {
             if constexpr (!kInLanes<Scalar>) {
@@ -94,13 +94,13 @@ struct AccelerationScheme {
             return with_one_self_motion<kLevel>(motion, weights, alpha, rhs, Jd, null_space, state, u);
           },
           sigma);
-      if (all_of(foreseen.regular)) {
-        qdd = std::move(foreseen.u);
+      if (all_of(undamped.regular)) {
+        qdd = std::move(undamped.u);
         return Status::kOk;
       }
-      return by_gram<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
+      return solve_by_factorisation<kTurns>(b, J, Jd, xd, length, state, undamped, qdd, sigma);
     } else {
-      return by_gram<kTurns>(b, J, Jd, xd, length, state, Unforeseen{}, qdd, sigma);
+      return solve_by_factorisation<kTurns>(b, J, Jd, xd, length, state, NoUndampedResult{}, qdd, sigma);
     }
   }
 
@@ -113,23 +113,24 @@ struct AccelerationScheme {
   ///   α = 1                                        JC
   ///   otherwise, and always with lanes             J and JC (solve_pair)
   template <int kTurns, int M, typename Known>
-  [[nodiscard]] Status by_gram(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
-                               const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd, const Scalar& length,
-                               const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
-                               Scalar* sigma) const noexcept {
+  [[nodiscard]] Status solve_by_factorisation(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
+                                              const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
+                                              const Scalar& length, const State<N, Scalar>& state,
+                                              const Known& undamped, Vector<N, Scalar>& qdd,
+                                              Scalar* sigma) const noexcept {
     constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
     if constexpr (kInLanes<Scalar>) {  // Each lane may have its own alpha.
-      return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
+      return solve_pair<kTurns>(b, J, Jd, xd, length, state, undamped, qdd, sigma);
     } else {
       if constexpr (kUnit) {
-        // With one self-motion, by_gram() is called only near singular postures, and one instantiation for all alpha is
-        // sufficient.
+        // With one self-motion, solve_by_factorisation() is called only near singular postures, and one instantiation
+        // for all alpha is sufficient.
         if constexpr (!kHasSelfMotion<M, N>) {
-          if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, foreseen, qdd, sigma);
+          if (alpha == Scalar(0)) return unweighted<kTurns>(b, J, length, state, undamped, qdd, sigma);
         }
       } else if (alpha == Scalar(0) && (weights.is_unit() || !null_space.template active<kLevel>())) {
         Vector<N, Scalar> result;
-        const Status status = unweighted<kTurns>(b, J, length, state, foreseen, result, sigma);
+        const Status status = unweighted<kTurns>(b, J, length, state, undamped, result, sigma);
         // Near a singular posture, the brake adds −brake qd to z, which N_W must project: continue with both
         // factorisations.
         if (status != Status::kDamped || weights.is_unit() || singular.brake() == Scalar(0)) {
@@ -138,13 +139,13 @@ struct AccelerationScheme {
         }
       }
       if constexpr (!kUnit) {
-        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, foreseen, qdd, sigma);
+        if (alpha != Scalar(1)) return solve_pair<kTurns>(b, J, Jd, xd, length, state, undamped, qdd, sigma);
       }
       const auto force = [&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-        const Vector<N, Scalar> whole = transpose_times(Jd, solutions.force(solutions.shares(xd)));
+        const Vector<N, Scalar> whole = transpose_times(Jd, solutions.force(solutions.coefficients(xd)));
         return entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       };
-      return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, foreseen, qdd,
+      return least_norm<kLevel, kTurns>(weights, b, force, null_space, singular, J, length, state, undamped, qdd,
                                         sigma);
     }
   }
@@ -152,9 +153,9 @@ struct AccelerationScheme {
   /// The law with α = 0 and W = I, which needs one factorisation.
   template <int kTurns, int M, typename Known>
   [[nodiscard]] Status unweighted(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J, const Scalar& length,
-                                  const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qdd,
+                                  const State<N, Scalar>& state, const Known& undamped, Vector<N, Scalar>& qdd,
                                   Scalar* sigma) const noexcept {
-    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoForce{}, null_space, singular, J, length, state, foreseen,
+    return least_norm<kLevel, kTurns>(UnitWeights{}, b, NoForce{}, null_space, singular, J, length, state, undamped,
                                       qdd, sigma);
   }
 
@@ -166,17 +167,17 @@ struct AccelerationScheme {
   [[nodiscard, gnu::flatten]] Status solve_pair(const Vector<M, Scalar>& b, const Matrix<M, N, Scalar>& J,
                                                 const Matrix<M, N, Scalar>& Jd, const Vector<M, Scalar>& xd,
                                                 const Scalar& length, const State<N, Scalar>& state,
-                                                const Known& foreseen, Vector<N, Scalar>& qdd,
+                                                const Known& undamped, Vector<N, Scalar>& qdd,
                                                 Scalar* sigma) const noexcept {
     DampedGram<M, N, Pair<Scalar>, kTurns> gram(singular, J, length);  // J and JC.
     const Matrix<N, M, Pair<Scalar>> rows = weights.with_unit(J);      // Jᵀ and (JC)ᵀ.
     const Status status = gram.factor(rows, Scalar(1), sigma);
-    if (foreseen.answers(gram, qdd)) return Status::kOk;
+    if (undamped.take_if_undamped(gram, qdd)) return Status::kOk;
     if (failed(status)) return status;
 
     Vector<N, Scalar> result = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
       const Vector<M, Scalar> mu =
-          second<M, 1, Scalar>(solutions.force(solutions.shares(side_by_side<M, 1, Scalar>(xd, xd))));
+          second<M, 1, Scalar>(solutions.force(solutions.coefficients(side_by_side<M, 1, Scalar>(xd, xd))));
       const Vector<N, Scalar> whole = transpose_times(Jd, mu);
       const Vector<N, Scalar> force = entrywise(whole, [&](Eigen::Index i) { return alpha * whole.coeff(i); });
       Vector<N, Scalar> y = weights.root_transpose(force);  // α CᵀJdᵀμ, the first term of y.
@@ -184,17 +185,17 @@ struct AccelerationScheme {
       if (braked || null_space.template active<kLevel>()) {
         Vector<N, Scalar> z = null_space.template at<kLevel>(state);
         if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
-        y = sum_of(y, weights.unroot(z));
+        y = sum_of(y, weights.inverse_root(z));
       }
       const Vector<M, Scalar> even = entrywise(b, [&](Eigen::Index i) { return (Scalar(1) - alpha) * b.coeff(i); });
       const Vector<M, Scalar> weighted = entrywise(b, [&](Eigen::Index i) { return alpha * b.coeff(i); });
       const Vector<N, Pair<Scalar>> parts =
-          solutions.motion(solutions.shares(side_by_side<M, 1, Scalar>(even, weighted)));
-      y = second<N, 1, Scalar>(solutions.without(side_by_side<N, 1, Scalar>(y, y)));
+          solutions.motion(solutions.coefficients(side_by_side<M, 1, Scalar>(even, weighted)));
+      y = second<N, 1, Scalar>(solutions.project(side_by_side<N, 1, Scalar>(y, y)));
       y = entrywise(y, [&](Eigen::Index i) { return y.coeff(i) + parts.coeff(i).second(); });
       return plus_first<N, Scalar>(weights.root(y), parts);
     });
-    foreseen.settle(result);
+    undamped.set_undamped_lanes(result);
     if (!is_finite(result)) return Status::kNotFinite;
     qdd = std::move(result);
     return status;

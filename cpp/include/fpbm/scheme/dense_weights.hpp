@@ -52,7 +52,7 @@ class DenseWeights {
 
   [[nodiscard]] Vector<N, Scalar> root(const Vector<N, Scalar>& a) const noexcept { return product(root_, a); }
 
-  [[nodiscard]] Vector<N, Scalar> unroot(const Vector<N, Scalar>& a) const noexcept {
+  [[nodiscard]] Vector<N, Scalar> inverse_root(const Vector<N, Scalar>& a) const noexcept {
     return transpose_times(root_, times(a));
   }
 

@@ -22,39 +22,40 @@ struct NoForce {};
 ///   u = u₀ + J_W⁺(v − J u₀) = C ((JC)⁺v + (I − (JC)⁺JC) y₀),   C Cᵀ = W⁻¹,   y₀ = C⁻¹u₀,   u₀ = z + W⁻¹f.
 ///
 /// u: velocities or accelerations, by level. force(gram) returns f, which needs the factorised Gram matrix JW⁻¹Jᵀ; or
-/// force is NoForce. foreseen: result of foresee(), or Unforeseen. The last kTurns rows of J are angular. length:
-/// characteristic length of the arm [m]. sigma: as in DampedGram::factor(). Returns kDamped if damping acts. If the
-/// status is a failure, u does not change. Flattened, since a compiler may not inline small calls in a large
+/// force is NoForce. undamped: result of undamped_result(), or NoUndampedResult. The last kTurns rows of J are angular.
+/// length: characteristic length of the arm [m]. sigma: as in DampedGram::factor(). Returns kDamped if damping acts. If
+/// the status is a failure, u does not change. Flattened, since a compiler may not inline small calls in a large
 /// translation unit.
 template <Level kLevel, int kTurns, int M, int N, typename Scalar, typename Weights, typename Force, typename Known>
 [[nodiscard, gnu::flatten]] Status least_norm(const Weights& weights, const Vector<M, Scalar>& v, const Force& force,
                                               const NullSpace<N, Scalar>& null_space,
                                               const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J,
                                               const Scalar& length, const State<N, Scalar>& state,
-                                              const Known& foreseen, Vector<N, Scalar>& u,
+                                              const Known& undamped, Vector<N, Scalar>& u,
                                               [[maybe_unused]] Scalar* sigma) noexcept {
   const Matrix<N, M, Scalar> Jt = transpose_of(J);
   const Matrix<N, M, Scalar> rows = weights.root_transpose(Jt);  // (JC)ᵀ
   DampedGram<M, N, Scalar, kTurns> gram(damping, J, length);
   constexpr bool kUnit = std::is_same_v<Weights, UnitWeights>;
   const Status status = gram.factor(rows, weights.template inverse_bound<Scalar>(), kUnit ? sigma : nullptr);
-  if (foreseen.answers(gram, u)) return Status::kOk;
+  if (undamped.take_if_undamped(gram, u)) return Status::kOk;
   if (failed(status)) return status;
 
   constexpr bool kForced = !std::is_same_v<Force, NoForce>;
   const bool braked = kLevel == Level::kAcceleration && status == Status::kDamped;
   const Vector<N, Scalar> y = gram.solved([&](const auto& solutions) noexcept -> Vector<N, Scalar> {
-    if (!(kForced || braked || null_space.template active<kLevel>())) return solutions.motion(solutions.shares(v));
+    if (!(kForced || braked || null_space.template active<kLevel>()))
+      return solutions.motion(solutions.coefficients(v));
     Vector<N, Scalar> z = null_space.template at<kLevel>(state);
     if (braked) z = entrywise(z, [&](Eigen::Index i) { return z.coeff(i) - gram.brake() * state.qd.coeff(i); });
-    Vector<N, Scalar> y0 = weights.unroot(z);
+    Vector<N, Scalar> y0 = weights.inverse_root(z);
     if constexpr (kForced) y0 = sum_of(y0, weights.root_transpose(force(solutions)));
-    const Vector<N, Scalar> free = solutions.without(y0);
-    const Vector<N, Scalar> done = solutions.motion(solutions.shares(v));
+    const Vector<N, Scalar> free = solutions.project(y0);
+    const Vector<N, Scalar> done = solutions.motion(solutions.coefficients(v));
     return sum_of(free, done);
   });
   Vector<N, Scalar> result = weights.root(y);
-  foreseen.settle(result);
+  undamped.set_undamped_lanes(result);
   if (!is_finite(result)) return Status::kNotFinite;
   u = std::move(result);
   return status;

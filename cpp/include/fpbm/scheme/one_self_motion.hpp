@@ -39,45 +39,45 @@ template <Level kLevel, int M, int N, typename Scalar, typename Weights, typenam
   const auto along =
       total<0, N>([&](Eigen::Index i) { return both(i) * Pair<Scalar>(first(y.coeff(i))); });  // vᵀp and vᵀWp.
   const Pair<Scalar> over = Pair<Scalar>(Scalar(1)) / squares;
-  Scalar wanted = -alpha * along.second();
+  Scalar numerator = -alpha * along.second();
   if (null_space.template active<kLevel>()) {
     const Vector<N, Scalar> z = null_space.template at<kLevel>(state);
-    wanted += total<0, N>([&](Eigen::Index i) { return Wv.coeff(i) * z.coeff(i); });
+    numerator += total<0, N>([&](Eigen::Index i) { return Wv.coeff(i) * z.coeff(i); });
   }
   if constexpr (!std::is_same_v<Value, Scalar>) {
     const Scalar rho = over.second() * total<0, N>([&](Eigen::Index i) { return Wv.coeff(i) * y.coeff(i).second(); });
     Vector<N, Scalar> rate;  // J_W⁺xd
     each(Constant<0>{}, Constant<N>{},
          [&](Eigen::Index i) { rate.coeffRef(i) = y.coeff(i).second() - rho * v.coeff(i); });
-    wanted += alpha * motion.along(product(Jd, v), weights.times(rate));
+    numerator += alpha * motion.along(product(Jd, v), weights.times(rate));
   }
-  const Scalar gamma = wanted * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
+  const Scalar gamma = numerator * over.second() - (Scalar(1) - alpha) * along.first() * over.first();
   each(Constant<0>{}, Constant<N>{}, [&](Eigen::Index i) { u.coeffRef(i) = first(y.coeff(i)) + gamma * v.coeff(i); });
 }
 
-/// Replaces Foreseen if the degree of redundancy is not 1: no result is known before the rows are factorised.
-struct Unforeseen {
+/// Replaces UndampedResult if the degree of redundancy is not 1: no result is known before the rows are factorised.
+struct NoUndampedResult {
   template <typename Gram, typename Result>
-  [[nodiscard]] static constexpr bool answers(const Gram&, Result&) noexcept {
+  [[nodiscard]] static constexpr bool take_if_undamped(const Gram&, Result&) noexcept {
     return false;
   }
   template <typename Result>
-  static void settle(Result&) noexcept {}
+  static void set_undamped_lanes(Result&) noexcept {}
 };
 
 /// Result of the law for degree of redundancy 1, which is computed before the damping is known. If damping does not
 /// act, this result is returned in all cases, so that a scheme with damping returns the same bits as a scheme without
 /// damping.
 template <int N, typename Scalar>
-struct Foreseen {
+struct UndampedResult {
   Mask<Scalar> answered{false};  ///< u is the result without damping.
   Mask<Scalar> regular{false};   ///< In addition, a bound on σ_min proves that damping does not act.
   Vector<N, Scalar> u;
 
   /// Whether u is the result, after `gram` has determined whether damping acts. If true, sets result to u.
   template <typename Gram>
-  [[nodiscard]] bool answers([[maybe_unused]] const Gram& gram,
-                             [[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
+  [[nodiscard]] bool take_if_undamped([[maybe_unused]] const Gram& gram,
+                                      [[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
     if constexpr (kInLanes<Scalar>) {
       return false;
     } else {
@@ -87,8 +87,9 @@ struct Foreseen {
     }
   }
 
-  /// answers() for each lane. In `result` of the Gram matrix, a lane is NaN unless damping certainly does not act.
-  void settle([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
+  /// take_if_undamped() for each lane. In `result` of the Gram matrix, a lane is NaN unless damping certainly does not
+  /// act.
+  void set_undamped_lanes([[maybe_unused]] Vector<N, Scalar>& result) const noexcept {
     if constexpr (kInLanes<Scalar>) {
       const Mask<Scalar> holds = regular || (answered && !isnan(result(0)));
       for (int i = 0; i < N; ++i) where(holds, result(i)) = u(i);
@@ -100,11 +101,10 @@ struct Foreseen {
 /// whether damping certainly does not act. The last kTurns rows of J are angular. length: characteristic length of the
 /// arm [m]. sigma, unless null, is set to the lower bound 1/√tr((JJᵀ)⁻¹) on σ_min(J) if there is a result.
 template <int kTurns, int M, int N, typename Scalar, typename Law>
-[[nodiscard, gnu::always_inline]] inline Foreseen<N, Scalar> foresee(const SingularDamping<Scalar>& damping,
-                                                                     const Matrix<M, N, Scalar>& J,
-                                                                     const Scalar& length, const Law& law,
-                                                                     [[maybe_unused]] Scalar* sigma) noexcept {
-  Foreseen<N, Scalar> result;
+[[nodiscard, gnu::always_inline]] inline UndampedResult<N, Scalar> undamped_result(
+    const SingularDamping<Scalar>& damping, const Matrix<M, N, Scalar>& J, const Scalar& length, const Law& law,
+    [[maybe_unused]] Scalar* sigma) noexcept {
+  UndampedResult<N, Scalar> result;
   SelfMotion<M, N, Scalar> motion;
   const Mask<Scalar> undamped = damping.radius() == Scalar(0);
   for (int kind = 0; kind < motion.kKinds && !all_of(result.answered); ++kind) {

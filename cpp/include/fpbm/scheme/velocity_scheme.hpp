@@ -66,27 +66,28 @@ struct VelocityScheme {
                              const Scalar& length, const State<N, Scalar>& state, Vector<N, Scalar>& qd,
                              Scalar* sigma) const noexcept {
     if constexpr (kHasSelfMotion<M, N>) {
-      auto foreseen = foresee<kTurns>(
+      auto undamped = undamped_result<kTurns>(
           singular, J, length,
           [&](const auto& motion, Vector<N, Scalar>& u) noexcept {
             with_one_self_motion<kLevel>(motion, weights, Scalar(1), v, Jd, null_space, state, u);
           },
           sigma);
-      if (all_of(foreseen.regular)) {
-        qd = std::move(foreseen.u);
+      if (all_of(undamped.regular)) {
+        qd = std::move(undamped.u);
         return Status::kOk;
       }
-      return by_gram<kTurns>(v, J, length, state, foreseen, qd, sigma);
+      return solve_by_factorisation<kTurns>(v, J, length, state, undamped, qd, sigma);
     } else {
-      return by_gram<kTurns>(v, J, length, state, Unforeseen{}, qd, sigma);
+      return solve_by_factorisation<kTurns>(v, J, length, state, NoUndampedResult{}, qd, sigma);
     }
   }
 
   template <int kTurns, int M, typename Known>
-  [[nodiscard]] Status by_gram(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J, const Scalar& length,
-                               const State<N, Scalar>& state, const Known& foreseen, Vector<N, Scalar>& qd,
-                               Scalar* sigma) const noexcept {
-    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, foreseen, qd,
+  [[nodiscard]] Status solve_by_factorisation(const Vector<M, Scalar>& v, const Matrix<M, N, Scalar>& J,
+                                              const Scalar& length, const State<N, Scalar>& state,
+                                              const Known& undamped, Vector<N, Scalar>& qd,
+                                              Scalar* sigma) const noexcept {
+    return least_norm<kLevel, kTurns>(weights, v, NoForce{}, null_space, singular, J, length, state, undamped, qd,
                                       sigma);
   }
 };

@@ -15,7 +15,7 @@
 /// diagonal entry of W⁻¹ is 1: W may have any magnitude. All types have the same functions:
 ///   times(a)            W a
 ///   root(a)             C a, where C Cᵀ = W⁻¹
-///   unroot(a)           C⁻¹a
+///   inverse_root(a)           C⁻¹a
 ///   root_transpose(A)   CᵀA for a vector, or for Jᵀ
 ///   with_unit(J)        pairs of the entries of Jᵀ and CᵀJᵀ
 ///   inverse_bound()     an upper bound on the largest eigenvalue of W⁻¹
@@ -44,7 +44,7 @@ struct UnitWeights {
   }
 
   template <int N, typename Scalar>
-  [[nodiscard]] const Vector<N, Scalar>& unroot(const Vector<N, Scalar>& a) const noexcept {
+  [[nodiscard]] const Vector<N, Scalar>& inverse_root(const Vector<N, Scalar>& a) const noexcept {
     return a;
   }
 
@@ -106,7 +106,7 @@ class DiagonalWeights {
     return diagonal_times<N, 1, Scalar>(root_, a);
   }
 
-  [[nodiscard]] Vector<N, Scalar> unroot(const Vector<N, Scalar>& a) const noexcept {
+  [[nodiscard]] Vector<N, Scalar> inverse_root(const Vector<N, Scalar>& a) const noexcept {
     return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) / root_.coeff(i); });
   }
 

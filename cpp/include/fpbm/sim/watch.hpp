@@ -86,13 +86,14 @@ class TaskWatch {
     using TaskVector = Vector<Space::kRows, Scalar>;
     const auto& J = kinematics.J;
     const Scalar step = h * state.qd.cwiseAbs().maxCoeff();
-    const Scalar reach = J.cwiseAbs().maxCoeff();
+    const Scalar largest_entry = J.cwiseAbs().maxCoeff();
     const TaskVector velocity = J.lazyProduct(state.qd);
     const TaskVector e = Space::template difference<Scalar>(arrived.x, kinematics.tip);
     const TaskVector ed = reference.xd - velocity;
     const Scalar travel = Space::template difference<Scalar>(arrived.x, before_.x).norm();
     const Scalar growth = position_.growth(e, h);
-    Mask<Scalar> follows = step <= Scalar(kLargestStep) && position_.follows(growth, e, ed, h, travel, step, reach);
+    Mask<Scalar> follows =
+        step <= Scalar(kLargestStep) && position_.follows(growth, e, ed, h, travel, step, largest_entry);
     if (damped) {
       follows = follows && e.norm() <= undamped_error_ + Scalar(kDampedSteps) * travel;
     } else {
@@ -105,7 +106,7 @@ class TaskWatch {
       const Scalar change = (arrived.xd - before_.xd).norm();
       const TaskVector ed_before = arrived.xd - velocity;
       const Scalar faster = velocity_.growth(ed_before, h);
-      follows = follows && velocity_.follows(faster, ed_before, edd, h, change, step, reach / h);
+      follows = follows && velocity_.follows(faster, ed_before, edd, h, change, step, largest_entry / h);
       if (!damped) {
         made_ += h * made_rate_;
         made_rate_ += max(faster, Scalar(0));
@@ -113,7 +114,7 @@ class TaskWatch {
       velocity_.start_from(ed, edd);
     }
     before_ = reference;
-    accurate_ = min(e.norm(), made_) <= Scalar(kAccuracy) * reach;
+    accurate_ = min(e.norm(), made_) <= Scalar(kAccuracy) * largest_entry;
     return follows;
   }
 

@@ -100,32 +100,32 @@ class DampedGram {
     }
   }
 
-  /// Solutions after factor(): motion(shares(b)) = (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, which is (JC)⁺b if Δ = 0, and force(shares(b))
-  /// = (JW⁻¹Jᵀ + Δ)⁻¹b.
+  /// Solutions after factor(): motion(coefficients(b)) = (JC)ᵀ(JW⁻¹Jᵀ + Δ)⁻¹b, which is (JC)⁺b if Δ = 0, and
+  /// force(coefficients(b)) = (JW⁻¹Jᵀ + Δ)⁻¹b.
   template <bool kDamped>
   struct Solutions {
     const DampedGram& of;
 
-    [[nodiscard]] Vector<M, Value> shares(const Vector<M, Value>& b) const noexcept {
+    [[nodiscard]] Vector<M, Value> coefficients(const Vector<M, Value>& b) const noexcept {
       const Vector<M, Value> scaled = of.in_metres(b);
       if constexpr (kDamped) return of.damped_.solve(scaled);
-      return of.factor_.shares(scaled);
+      return of.factor_.coefficients(scaled);
     }
-    /// a − motion(shares(J C a)). If Δ = 0, this is the projection of a on the null space of JC.
-    [[nodiscard]] Vector<N, Value> without(const Vector<N, Value>& a) const noexcept {
+    /// a − motion(coefficients(J C a)). If Δ = 0, this is the projection of a on the null space of JC.
+    [[nodiscard]] Vector<N, Value> project(const Vector<N, Value>& a) const noexcept {
       if constexpr (kDamped) {
         const Vector<N, Value> taken = motion(of.damped_.solve(transpose_times(of.rows_, a)));
         return entrywise(a, [&](Eigen::Index i) { return a.coeff(i) - taken.coeff(i); });
       }
-      return of.factor_.without(a);
+      return of.factor_.project(a);
     }
-    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& shares) const noexcept {
-      if constexpr (kDamped) return product(of.rows_, shares);
-      return of.factor_.sum(shares);
+    [[nodiscard]] Vector<N, Value> motion(const Vector<M, Value>& coefficients) const noexcept {
+      if constexpr (kDamped) return product(of.rows_, coefficients);
+      return of.factor_.combine(coefficients);
     }
-    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& shares) const noexcept {
-      if constexpr (kDamped) return of.in_metres(shares);
-      return of.in_metres(of.factor_.back(shares));
+    [[nodiscard]] Vector<M, Value> force(const Vector<M, Value>& coefficients) const noexcept {
+      if constexpr (kDamped) return of.in_metres(coefficients);
+      return of.in_metres(of.factor_.back_substitute(coefficients));
     }
   };
 

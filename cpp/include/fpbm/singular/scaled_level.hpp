@@ -29,10 +29,10 @@ struct ScaledLevel {
   ScaledLevel(const Matrix<M, N, Scalar>& rows, const Vector<M, Scalar>& right) noexcept : J(rows), r(right) {
     if constexpr (M == N || M == Eigen::Dynamic || N == Eigen::Dynamic) {
       if (is_diagonal(J)) {
-        const Vector<M, Scalar> shares = shares_of(entrywise(r, [&](Eigen::Index i) { return J.coeff(i, i); }));
+        const Vector<M, Scalar> scales = scales_of(entrywise(r, [&](Eigen::Index i) { return J.coeff(i, i); }));
         for (Eigen::Index i = 0; i < J.rows(); ++i) {
-          J.coeffRef(i, i) *= shares.coeff(i);
-          r.coeffRef(i) *= shares.coeff(i);
+          J.coeffRef(i, i) *= scales.coeff(i);
+          r.coeffRef(i) *= scales.coeff(i);
         }
         return;
       }
@@ -47,7 +47,7 @@ struct ScaledLevel {
   }
 
   /// C⁻¹ of a diagonal J.
-  [[nodiscard]] static Vector<M, Scalar> shares_of(const Vector<M, Scalar>& entries) noexcept {
+  [[nodiscard]] static Vector<M, Scalar> scales_of(const Vector<M, Scalar>& entries) noexcept {
     const Scalar least = kPosture * kPosture * squared_norm(entries);
     return entrywise(
         entries, [&](Eigen::Index i) { return Scalar(1) / std::sqrt(entries.coeff(i) * entries.coeff(i) + least); });
@@ -68,9 +68,9 @@ struct ScaledDiagonal {
   Vector<N, Scalar> r;
 
   ScaledDiagonal(const DiagonalLevel<N, Scalar>& rows, const Vector<N, Scalar>& right) noexcept {
-    const Vector<N, Scalar> shares = ScaledLevel<N, N, Scalar>::shares_of(rows.entries);
-    J = {product(rows, shares)};
-    r = entrywise(right, [&](Eigen::Index i) { return right.coeff(i) * shares.coeff(i); });
+    const Vector<N, Scalar> scales = ScaledLevel<N, N, Scalar>::scales_of(rows.entries);
+    J = {product(rows, scales)};
+    r = entrywise(right, [&](Eigen::Index i) { return right.coeff(i) * scales.coeff(i); });
   }
 };
 

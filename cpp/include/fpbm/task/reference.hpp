@@ -32,8 +32,9 @@ template <typename Space, typename Scalar>
     const Vector<Space::kRows, Scalar>& xd = reference.xd;
     const Vector<Space::kRows, Scalar>& xdd = reference.xdd;
     const Scalar half = seconds / Scalar(2);
-    const auto way = entrywise(xd, [&](Eigen::Index i) { return seconds * (xd.coeff(i) + half * xdd.coeff(i)); });
-    later.x = Space::template displace<Scalar>(reference.x, way);
+    const auto displacement =
+        entrywise(xd, [&](Eigen::Index i) { return seconds * (xd.coeff(i) + half * xdd.coeff(i)); });
+    later.x = Space::template displace<Scalar>(reference.x, displacement);
     later.xd = entrywise(xd, [&](Eigen::Index i) { return xd.coeff(i) + seconds * xdd.coeff(i); });
   }
   return later;

@@ -9,13 +9,13 @@ namespace fpbm {
 /// View of a robot from one of its frames: all functions of Robot that tasks of frames call, with results in this
 /// frame.
 template <typename Robot_>
-class SeenFrom {
+class RelativeView {
  public:
   using Scalar = typename Robot_::Scalar;
   using State = typename Robot_::State;
   using Vector3 = Vector<3, Scalar>;
 
-  SeenFrom(const Robot_& robot, const State& state, const LinkFrame<Scalar>& reference) noexcept
+  RelativeView(const Robot_& robot, const State& state, const LinkFrame<Scalar>& reference) noexcept
       : robot_(robot),
         link_(reference.link()),
         at_(reference.at(robot, state)),
@@ -143,7 +143,7 @@ struct RelativeTask {
   template <typename Robot, typename Point, typename Velocity, typename Selection, typename Rows>
   void evaluate(const Robot& robot, const typename Robot::State& state, Point& x, Velocity& xd, Selection& S,
                 Rows level) const noexcept {
-    task.evaluate(SeenFrom<Robot>(robot, state, reference), state, x, xd, S, level);
+    task.evaluate(RelativeView<Robot>(robot, state, reference), state, x, xd, S, level);
   }
 };
 

@@ -42,7 +42,7 @@ class StampClock {
 
   /// Processes a stamp. Returns the time from the newest stamp to this stamp [s], which becomes the newest, or no value
   /// if the stamp is rejected.
-  [[nodiscard]] std::optional<Scalar> hear(double stamp) noexcept {
+  [[nodiscard]] std::optional<Scalar> accept(double stamp) noexcept {
     if (!std::isfinite(stamp)) return {};
     if (!learns_) return hear_known(stamp);
     if (known_ && !follows(stamp - newest_, std::max(age_, Scalar(0))) && !set_anew(stamp)) return {};
@@ -55,7 +55,7 @@ class StampClock {
     return elapsed;
   }
 
-  /// hear() for a stamp with the current time.
+  /// accept() for a stamp with the current time.
   [[nodiscard]] Scalar hear_now() noexcept {
     const Scalar elapsed = std::max(age_, Scalar(0));
     newest_ += static_cast<double>(elapsed);
@@ -76,7 +76,7 @@ class StampClock {
   }
 
   /// Starts the estimate again, unless the clock is known.
-  void forget() noexcept {
+  void reset() noexcept {
     if (!learns_) return;
     known_ = false;
     age_ = Scalar(0);
@@ -120,7 +120,7 @@ class StampClock {
     }
     if (age_ < Scalar(2) * kHalf && (rejected_ < kRun || rejected_for_ < timeout_)) return false;
     const Scalar since = age_;
-    forget();
+    reset();
     age_ = since;
     return true;
   }

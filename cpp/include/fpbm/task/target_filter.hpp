@@ -49,7 +49,7 @@ class TargetFilter {
   /// newer than all stamps before, or too far ahead (StampClock).
   bool push(const Point& x, double stamp) noexcept {
     if (!is_point(x)) return false;
-    const std::optional<Scalar> elapsed = clock_.hear(stamp);
+    const std::optional<Scalar> elapsed = clock_.accept(stamp);
     if (elapsed) take(orthonormalised(x), *elapsed);
     return elapsed.has_value();
   }
@@ -63,7 +63,7 @@ class TargetFilter {
 
   /// Desired velocity [m/s, rad/s], limited by the bounds, until the timeout. Returns false for a rejected message.
   bool push_twist(const Twist& v, double stamp) noexcept {
-    if (!v.allFinite() || !clock_.hear(stamp)) return false;
+    if (!v.allFinite() || !clock_.accept(stamp)) return false;
     take(v);
     return true;
   }
@@ -99,7 +99,7 @@ class TargetFilter {
     reference_ = Reference<Space, Scalar>::hold(orthonormalised(x));
     compensation_.clear();
     target_.rest_at(reference_.x);
-    clock_.forget();
+    clock_.reset();
     free_ = false;
     return true;
   }
@@ -150,17 +150,17 @@ class TargetFilter {
     const Point x = target_.at(age());
     const Twist velocity = target_.velocity();
     const Twist error = compensation_.difference(x, reference_.x);
-    Twist way;
+    Twist stopping_displacement;
     bool in_step = !velocity.isZero(Scalar(0));
     for (int i = 0; i < Space::kRows; ++i) {
       const auto& stop = axes_(i).stop;
-      way(i) = std::copysign(stop.way(std::abs(velocity(i))), velocity(i));
+      stopping_displacement(i) = std::copysign(stop.stopping_distance(std::abs(velocity(i))), velocity(i));
       const AxisState<Scalar> state{-error(i), reference_.xd(i) - velocity(i), reference_.xdd(i)};
       const Scalar change = stop.jerk * dt_ * dt_;
       const Scalar near = std::max(change * dt_, axes_(i).tolerance(state, extent(x), dt_));
-      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.rest(state)) <= near;
+      in_step = in_step && std::abs(state.v) <= change && std::abs(stop.end_position(state)) <= near;
     }
-    target_.rest_at(Space::template displace<Scalar>(x, way));
+    target_.rest_at(Space::template displace<Scalar>(x, stopping_displacement));
     free_ = free_ || in_step;  // Stop directly: rotations about several axes do not end exactly at the target.
   }
 

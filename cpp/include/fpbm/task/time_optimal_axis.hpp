@@ -19,11 +19,12 @@ struct TimeOptimalAxis {
   Scalar velocity;  ///< V, positive and finite.
   QuickestStop<Scalar> stop;
 
-  /// State after `seconds` [s] of a time-optimal change to the velocity `wanted`.
-  [[nodiscard]] AxisState<Scalar> change(const AxisState<Scalar>& state, Scalar wanted, Scalar seconds) const noexcept {
-    AxisState<Scalar> next = stop.ahead({state.q, state.v - wanted, state.a}, seconds);
-    next.q += seconds * wanted;
-    next.v += wanted;
+  /// State after `seconds` [s] of a time-optimal change to the velocity `desired`.
+  [[nodiscard]] AxisState<Scalar> change(const AxisState<Scalar>& state, Scalar desired,
+                                         Scalar seconds) const noexcept {
+    AxisState<Scalar> next = stop.ahead({state.q, state.v - desired, state.a}, seconds);
+    next.q += seconds * desired;
+    next.v += desired;
     return next;
   }
 
@@ -32,15 +33,17 @@ struct TimeOptimalAxis {
   /// exactly at the target: round-off errors cause no jerk.
   [[nodiscard]] AxisState<Scalar> approach(const AxisState<Scalar>& state, Scalar target, Scalar target_velocity,
                                            Scalar seconds, Scalar tolerance) const noexcept {
-    const Scalar left = target - stop.rest(state);
+    const Scalar left = target - stop.end_position(state);
     AxisState<Scalar> from = state;
     Scalar gone(0);
     if (!(std::abs(left) <= tolerance)) {
       const Scalar d = left < Scalar(0) ? Scalar(-1) : Scalar(1);
-      const Scalar wanted = d * velocity - target_velocity;
-      const auto beyond = [&](Scalar t) noexcept { return d * (stop.rest(change(state, wanted, t)) - target); };
+      const Scalar desired = d * velocity - target_velocity;
+      const auto beyond = [&](Scalar t) noexcept {
+        return d * (stop.end_position(change(state, desired, t)) - target);
+      };
       gone = largest_below_zero(beyond, Scalar(0), seconds, kRounds);
-      from = change(state, wanted, gone);
+      from = change(state, desired, gone);
     }
     AxisState<Scalar> next = stop.ahead(from, seconds - gone);
     if (next.v == Scalar(0) && next.a == Scalar(0) && std::abs(next.q - target) <= tolerance) next.q = target;
@@ -51,7 +54,7 @@ struct TimeOptimalAxis {
   /// of a tick at the bound on jerk. size: largest coordinate of the target, for the round-off error.
   [[nodiscard]] Scalar tolerance(const AxisState<Scalar>& state, Scalar size, Scalar h) const noexcept {
     const Scalar round_off = Scalar(8) * std::numeric_limits<Scalar>::epsilon();
-    return std::max(Scalar(1e-6) * stop.jerk * h * h * h, round_off * (size + std::abs(stop.rest(state))));
+    return std::max(Scalar(1e-6) * stop.jerk * h * h * h, round_off * (size + std::abs(stop.end_position(state))));
   }
 
  private:

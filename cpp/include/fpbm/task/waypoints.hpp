@@ -40,7 +40,7 @@ class Waypoints {
   /// successive points are equal.
   [[nodiscard]] static Waypoints lasting(const std::vector<Point>& points, Scalar duration) {
     validation::require_positive("duration", duration);
-    std::vector<Scalar> times = shares(points);
+    std::vector<Scalar> times = time_fractions(points);
     for (Scalar& time : times) time *= duration;
     times.back() = duration;
     return Waypoints(points, times);
@@ -145,14 +145,14 @@ class Waypoints {
   }
 
   /// Time of each point as a fraction of the duration.
-  static std::vector<Scalar> shares(const std::vector<Point>& points) {
+  static std::vector<Scalar> time_fractions(const std::vector<Point>& points) {
     require_points(points);
     std::vector<Scalar> lengths(points.size(), Scalar(0));
     std::vector<Scalar> angles(points.size(), Scalar(0));
     for (std::size_t i = 1; i < points.size(); ++i) {
-      const Vector<Space::kRows, Scalar> way = Space::template difference<Scalar>(points[i], points[i - 1]);
-      lengths[i] = way.template head<kLinear>().norm();
-      angles[i] = way.template tail<Space::kRows - kLinear>().norm();
+      const Vector<Space::kRows, Scalar> displacement = Space::template difference<Scalar>(points[i], points[i - 1]);
+      lengths[i] = displacement.template head<kLinear>().norm();
+      angles[i] = displacement.template tail<Space::kRows - kLinear>().norm();
       if (!(lengths[i] + angles[i] > Scalar(0))) {
         validation::reject(validation::element("points", static_cast<Eigen::Index>(i)),
                            ": must differ from the previous point");

@@ -14,9 +14,9 @@ namespace fpbm {
 
 /// Smallest change of a task that satisfies rows, and the possible contribution of null-space motion.
 template <int M, typename Scalar>
-struct GivenUp {
-  Vector<M, Scalar> change;  ///< δ, change of J u.
-  Scalar self_motion;        ///< ν = ‖N v‖²/‖v‖² in [0, 1].
+struct TaskChange {
+  Vector<M, Scalar> delta;     ///< δ, change of J u.
+  Scalar null_space_fraction;  ///< ν = ‖N v‖²/‖v‖² in [0, 1].
 };
 
 /// Smallest change δ of a task with which a motion u satisfies rows, if the joints move by J⁺δ only:
@@ -25,21 +25,22 @@ struct GivenUp {
 ///
 /// If the rows belong to a surface ahead of the tip, δ is along the normal of the surface.
 ///
-/// The multipliers λ_k of this problem also give the joint motion v = Σ λ_k g_k that the rows demand. With N = I − J⁺J,
-/// ν = ‖N v‖²/‖v‖² is the fraction of v that null-space motion can realise: 1 if v does not change the task, 0 if
-/// null-space motion contributes nothing. Limiter::beside() uses δ and ν.
+/// The multipliers λ_k of this problem also give the joint motion v = Σ λ_k g_k that the rows require. With N = I −
+/// J⁺J, ν = ‖N v‖²/‖v‖² is the fraction of v that null-space motion can realise: 1 if v does not change the task, 0 if
+/// null-space motion contributes nothing. inverse_task_metric() uses δ and ν.
 ///
 /// Solved by a fixed number of rounds of Hildreth's method (C. Hildreth 1957), so that the result is a continuous
 /// function of all inputs.
 template <int M, int N, int P, typename Scalar>
-[[nodiscard]] GivenUp<M, Scalar> task_given_up(const Matrix<M, N, Scalar>& J, Scalar mu, const Rows<N, P, Scalar>& rows,
-                                               const Vector<N, Scalar>& u) noexcept {
+[[nodiscard]] TaskChange<M, Scalar> smallest_task_change(const Matrix<M, N, Scalar>& J, Scalar mu,
+                                                         const Rows<N, P, Scalar>& rows,
+                                                         const Vector<N, Scalar>& u) noexcept {
   constexpr int kRounds = 8;
-  auto change = filled<Vector<M, Scalar>>(J.rows());
+  auto delta = filled<Vector<M, Scalar>>(J.rows());
   Matrix<M, M, Scalar> gram = gram_of(J);
   for (Eigen::Index i = 0; i < J.rows(); ++i) gram(i, i) += mu;
   Cholesky<M, Scalar> cholesky;
-  if (cholesky.factor(gram) != Status::kOk) return {change, Scalar(0)};
+  if (cholesky.factor(gram) != Status::kOk) return {delta, Scalar(0)};
   std::array<Vector<M, Scalar>, P> normals;  // J⁺ᵀg_k, the gradient of row k by δ.
   Vector<P, Scalar> squares;
   Vector<P, Scalar> excess;  // g_k·u − b_k
@@ -55,21 +56,22 @@ template <int M, int N, int P, typename Scalar>
     for (Eigen::Index k = 0; k < rows.count; ++k) {
       if (!(squares(k) > Scalar(0))) continue;
       const Vector<M, Scalar>& normal = normals[static_cast<std::size_t>(k)];
-      const Scalar beyond = excess(k) + dot(normal, change);
+      const Scalar beyond = excess(k) + dot(normal, delta);
       const Scalar multiplier = std::max(multipliers(k) + beyond / squares(k), Scalar(0));
       const Scalar added = multiplier - multipliers(k);
-      change = entrywise(change, [&](Eigen::Index i) { return change.coeff(i) - added * normal.coeff(i); });
+      delta = entrywise(delta, [&](Eigen::Index i) { return delta.coeff(i) - added * normal.coeff(i); });
       multipliers(k) = multiplier;
     }
   }
-  auto asked = filled<Vector<N, Scalar>>(J.cols());
+  auto required = filled<Vector<N, Scalar>>(J.cols());
   for (Eigen::Index k = 0; k < rows.count; ++k) {
-    asked = entrywise(asked, [&](Eigen::Index i) { return asked.coeff(i) + multipliers(k) * rows.g.coeff(i, k); });
+    required =
+        entrywise(required, [&](Eigen::Index i) { return required.coeff(i) + multipliers(k) * rows.g.coeff(i, k); });
   }
-  const Scalar square = squared_norm(asked);
-  if (!(square > Scalar(0))) return {change, Scalar(0)};
-  asked = sum_of(asked, transpose_times(J, change));  // N v, since δ = −(JJᵀ + μI)⁻¹J v.
-  return {change, squared_norm(asked) / square};
+  const Scalar square = squared_norm(required);
+  if (!(square > Scalar(0))) return {delta, Scalar(0)};
+  required = sum_of(required, transpose_times(J, delta));  // N v, since δ = −(JJᵀ + μI)⁻¹J v.
+  return {delta, squared_norm(required) / square};
 }
 
 }  // namespace fpbm

@@ -8,7 +8,7 @@ namespace fpbm {
 
 /// Joint motion within a box, the result of a saturation.
 template <int N, typename Scalar = double>
-struct Saturated {
+struct SaturatedMotion {
   Vector<N, Scalar> u;
   Scalar scale;            ///< Task scale s in [0, 1].
   JointBits joints;        ///< Bit i is set if joint i is on its bound.

@@ -11,16 +11,17 @@ namespace fpbm {
 /// require accelerations above the joints' bounds. The joints would then oscillate. field: velocities of the scheme at
 /// q [rad/s].
 template <typename Loop, typename Target, int N, typename Scalar>
-[[nodiscard]] Scalar slow_down(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits, const Target& reference,
-                               const Vector<N, Scalar>& q, const Vector<N, Scalar>& field) noexcept {
+[[nodiscard]] Scalar followable_fraction(Loop& loop, const Limits<Level::kVelocity, N, Scalar>& limits,
+                                         const Target& reference, const Vector<N, Scalar>& q,
+                                         const Vector<N, Scalar>& field) noexcept {
   const auto& bounds = limits.bounds();
   // The change of the field along itself is the acceleration of joints that follow the field. At a fraction s of the
   // field, the acceleration is s² times as large.
   Scalar ahead = limits.tick();
   for (Eigen::Index i = 0; i < field.size(); ++i) {
-    const Scalar way = std::abs(field(i)) * ahead;
+    const Scalar displacement = std::abs(field(i)) * ahead;
     const Scalar most = bounds.velocity(i) * limits.tick();
-    if (way > most) ahead *= most / way;
+    if (displacement > most) ahead *= most / displacement;
   }
   const Vector<N, Scalar> x = q + ahead * field;
   Vector<N, Scalar> later = x;

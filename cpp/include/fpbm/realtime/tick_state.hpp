@@ -1,0 +1,69 @@
+#pragma once
+
+#include <utility>
+
+#include "fpbm/core/status.hpp"
+#include "fpbm/core/types.hpp"
+#include "fpbm/linalg/entrywise.hpp"
+#include "fpbm/linalg/sums.hpp"
+#include "fpbm/realtime/tick_motion.hpp"
+
+namespace fpbm {
+
+/// Joint state of a Tracker from tick to tick, with the accelerations of the last ticks.
+template <Level kLevel, typename Space, int N, typename Scalar = double>
+struct TickState {
+  using JointVector = Vector<N, Scalar>;
+  using JointState = State<N, Scalar>;
+
+  TickMotion<kLevel, N, Scalar> motion;
+  JointState joints;
+  JointVector last;    ///< Acceleration of the last tick.
+  JointVector change;  ///< Change of acceleration from the tick before the last tick to the last tick.
+
+  /// State after a tick with the constant motion u.
+  [[nodiscard]] JointState after(const JointVector& u) const noexcept { return motion.after(joints, u); }
+  /// Mean motion of a tick to the state `next`.
+  [[nodiscard]] JointVector motion_to(const JointState& next) const noexcept { return motion.between(joints, next); }
+  /// Mean acceleration of a tick to the state `next`.
+  [[nodiscard]] JointVector acceleration_to(const JointState& next) const noexcept {
+    return motion.rate(joints.qd, next.qd);
+  }
+  /// Posture in the middle of a tick that ends at the posture `end`.
+  [[nodiscard]] JointVector middle_of(const JointVector& end) const noexcept {
+    return entrywise(end, [&](Eigen::Index i) { return (joints.q.coeff(i) + end.coeff(i)) / Scalar(2); });
+  }
+
+  /// Ends a tick at the state `next`, which was reached with the acceleration qdd.
+  void store(JointState&& next, const JointVector& qdd) noexcept {
+    change = entrywise(last, [&](Eigen::Index i) { return qdd.coeff(i) - last.coeff(i); });
+    last = qdd;
+    joints = std::move(next);
+  }
+
+  /// Updates `loop` to the middle of a tick that continues the acceleration of the last tick
+  /// (StackKinematics::continue_tick()). Before the call, `loop` has the points at the start of the tick.
+  template <typename Loop, typename References>
+  void update_middle(Loop& loop, const References& references) const noexcept {
+    const auto tip = loop.kinematics.tip;
+    loop.update(Loop::packed(motion.middle(joints, last)));
+    const auto reference = Space::template difference<Scalar>(references.stages[1].x, references.stages[0].x);
+    const auto moved = Space::template difference<Scalar>(loop.kinematics.tip, tip);
+    loop.kinematics.continue_tick(motion.dt,
+                                  entrywise(moved, [&](Eigen::Index i) { return reference.coeff(i) - moved.coeff(i); }),
+                                  {loop.state.qd, last, change});
+  }
+
+  /// Evaluates the desired motion and the kinematics in the middle of a tick that continues the acceleration of the
+  /// last tick. reference: in the middle of the tick.
+  template <typename Loop, typename Target>
+  [[nodiscard]] Status evaluate_middle(Loop& loop, const Target& reference, JointVector& desired) const noexcept {
+    const JointState middle = motion.middle(joints, last);
+    typename Loop::X dx = Loop::packed(middle);
+    const Status status = loop.evaluate(reference, Loop::packed(middle), dx);
+    if (!failed(status)) desired = column(dx, kLevel == Level::kAcceleration ? 1 : 0);
+    return status;
+  }
+};
+
+}  // namespace fpbm
